@@ -87,6 +87,14 @@ fn run() -> Command {
         .requires("out"),
     )
     .arg(
+        flag(
+            "vtk",
+            "Write files for ParaView into DIR/vtk: lines, cells, particles, grids and bodies at every sample, at \
+             most about 1000 unless --every says how many",
+        )
+        .requires("out"),
+    )
+    .arg(
         checkpoint
             .requires("out")
             .default_value("60")
@@ -212,7 +220,8 @@ fn of_a_case(command: Command) -> Command {
         .arg(option(
             "case",
             "NAME|FILE.toml",
-            "Case of the model, or a file ending in .toml; the model's first case by default",
+            "Case of the model, or a file ending in .toml; the model's first case by default. Of a model in a \
+             file M.clebsch a name stands for M/NAME.toml",
         ))
         .arg(
             option(

@@ -7,6 +7,7 @@
 
 pub mod arguments;
 mod asked;
+mod beside;
 pub mod case_file;
 mod checkpoint;
 mod columns;
@@ -129,6 +130,11 @@ fn dispatch(
         Some(("case", matches)) => {
             let text = |key: &str| matches.get_one::<String>(key).map(String::as_str);
             let name = text("model").unwrap_or_default();
+            let case = beside::case(gallery, name, text("case"))?;
+            if let Some(file) = case.as_deref().filter(|case| text("case") != Some(case)) {
+                streams.out.write_all(plan::case_text(file)?.as_bytes())?;
+                return Ok(DONE);
+            }
             let entry = asked::model(gallery, name, None, &mut streams.err)?;
             if let Some(stated) = case_file::labels::Stated::read(entry.card.source)
                 && let Some(choice) = stated.default_choice()

@@ -10,6 +10,7 @@ use clap::ArgMatches;
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory};
 use clebsch::solvers::Method;
 use clebsch::{ParameterError, StartError};
+use clebsch_core::lattice::Choice;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -33,17 +34,19 @@ pub struct Plan {
     pub compensated: bool,
     /// Whether pictures are drawn for a column of a paper.
     pub paper: bool,
+    /// How many sites a model with labels has, and how its line ends.
+    pub choice: Option<Choice>,
     /// For a case read from a file: its name, and the line of each key.
     origin: Option<(String, BTreeMap<String, usize>)>,
 }
 
 impl Plan {
-    /// Reads the case and applies the options.
+    /// Reads the case, a name or a file, and applies the options.
     ///
     /// # Errors
     /// Usage: an unknown case, an unreadable or wrong file.
-    pub fn new(entry: &Entry, matches: &ArgMatches) -> Result<Self, Failure> {
-        let asked = matches.get_one::<String>("case").map(String::as_str);
+    pub fn new(entry: &Entry, case: Option<&str>, matches: &ArgMatches) -> Result<Self, Failure> {
+        let (asked, typed) = (case, matches.get_one::<String>("case"));
         let steps = matches.get_one::<u64>("steps").copied();
         let h = matches.get_one::<f64>("h").copied();
         let every = matches.try_get_one::<u64>("every").ok().flatten().copied();
@@ -62,12 +65,16 @@ impl Plan {
         };
         let size = matches.get_one::<u64>("dim").copied();
         let cards = of_size(entry, size)?;
-        let (mut case, origin) = match asked.filter(|name| is_file(name)) {
+        let (mut case, origin, choice) = match asked.filter(|name| is_file(name)) {
             Some(file) => {
-                let Located { case, file, lines } = read(file, &cards)?;
-                (case, Some((file, lines)))
+                let (Located { case, file, lines }, choice) = read(file, &cards)?;
+                (case, Some((file, lines)), choice)
             }
-            None => (case_of_size(entry, asked, size)?.clone(), None),
+            None => {
+                let stated = Stated::read(entry.card.source);
+                let choice = stated.and_then(|stated| stated.default_choice());
+                (case_of_size(entry, asked, size)?.clone(), None, choice)
+            }
         };
         case.steps = steps.unwrap_or(case.steps);
         case.h = h.unwrap_or(case.h);
@@ -77,7 +84,7 @@ impl Plan {
             order,
             arguments: json!({
                 "model": matches.get_one::<String>("model").map_or(entry.card.kebab, String::as_str),
-                "case": asked,
+                "case": typed,
                 "steps": steps,
                 "h": h,
                 "order": order,
@@ -94,6 +101,7 @@ impl Plan {
                 .flatten()
                 .copied()
                 .unwrap_or(false),
+            choice,
             origin,
         })
     }
@@ -109,6 +117,7 @@ impl Plan {
             solver: None,
             compensated: false,
             paper: false,
+            choice: None,
             origin: None,
         }
     }
@@ -192,15 +201,16 @@ pub(crate) fn case_text(file: &str) -> Result<String, Failure> {
 }
 
 /// The case of a file, by the first card whose fields it fits; the message is that of the first.
-fn read(file: &str, cards: &[Card]) -> Result<Located, Failure> {
+fn read(file: &str, cards: &[Card]) -> Result<(Located, Option<Choice>), Failure> {
     let text = case_text(file)?;
     let mut first = None;
     for card in cards {
         let located = match Stated::read(card.source) {
-            None => case_file::read(file, &text, card),
+            None => case_file::read(file, &text, card).map(|located| (located, None)),
             Some(stated) => {
                 let out = labels::written_out(file, &text, &stated, card)?;
                 case_file::read_written_out(file, &out.text, &out.lines, card)
+                    .map(|located| (located, Some(out.choice)))
             }
         };
         match located {

@@ -3,6 +3,7 @@
 
 use crate::Streams;
 use crate::asked;
+use crate::beside;
 use crate::checkpoint::{Checkpoint, Identity};
 use crate::failure::{BOUND_LEFT, BY_SIGNAL, DONE, FAILED, Failure};
 use crate::follow::{End, Kept, Run};
@@ -27,6 +28,9 @@ use std::path::{Path, PathBuf};
 /// Steps whose every node is kept for the plots: all the swings there is room for, of 150 steps each.
 const OPENING: u64 = 10_000;
 
+/// Most numbers that are kept of them, a quarter of a gigabyte: of a fluid fewer steps.
+const OPENING_NUMBERS: u64 = 1 << 25;
+
 /// Where the texts of a summary begin, behind their names.
 const SUMMARY: usize = 21;
 
@@ -45,12 +49,18 @@ pub fn run(
         .get_one::<String>("model")
         .map_or("", String::as_str);
     let case = matches.get_one::<String>("case").map(String::as_str);
+    let case = beside::case(gallery, model, case)?;
+    let case = case.as_deref();
     let entry = asked::model(gallery, model, case, &mut streams.err)?;
-    let plan = Plan::new(&entry, matches)?;
+    let plan = Plan::new(&entry, case, matches)?;
     let card = &entry.card_of(&plan.case);
     let target = matches.get_one::<PathBuf>("out");
     let as_json = matches.get_flag("json");
     let identity = Identity::of(card, &plan);
+    let drawn = match matches.get_flag("vtk") {
+        true => output::vtk::drawn(card, &plan)?,
+        false => Vec::new(),
+    };
     let (mut staging, checkpoint) = match target {
         None => (None, None),
         Some(target) => {
@@ -60,7 +70,9 @@ pub fn run(
                 false => Found::Nothing,
             };
             match found {
-                Found::Results => return already(card, &plan, target, as_json, streams),
+                Found::Results => {
+                    return already(card, &plan, target, (as_json, !drawn.is_empty()), streams);
+                }
                 Found::Middle(both) => (Some(both.0), Some(both.1)),
                 Found::Nothing => {
                     let force = matches.get_flag("force");
@@ -148,9 +160,9 @@ pub fn run(
         stopped,
     };
     let stream = kept.map(|kept| kept.stream);
-    let (mut files, mut place) = (Vec::new(), None);
+    let (mut files, mut place) = (Vec::<String>::new(), None);
     if let (Some(staging), Some(stream), Some(target)) = (staging, stream, target) {
-        let write = |files: &mut Vec<&'static str>| {
+        let write = |files: &mut Vec<String>| {
             let rows = stream.into_rows();
             let rows = rows.map_err(|error| cannot(&staging, &error))?;
             // Who has interrupted a run waits for its end, not for its beginning.
@@ -158,7 +170,7 @@ pub fn run(
                 End::Interrupted(_) => None,
                 _ => opening(card, &plan, summary.steps)?,
             };
-            *files = output::write(&staging, &run, &rows, opening)?;
+            *files = output::write(&staging, &run, &rows, opening, drawn)?;
             match (&end, &run.stopped) {
                 (End::Interrupted(_), _) => staging.commit_stopped(),
                 (_, None) => staging.commit().map(|()| {
@@ -271,7 +283,7 @@ fn already(
     card: &Card,
     plan: &Plan,
     target: &Path,
-    as_json: bool,
+    (as_json, vtk): (bool, bool),
     streams: &mut Streams<'_>,
 ) -> Result<u8, Failure> {
     let wrong = |words: &str| Failure::Usage(format!("--resume: {}: {words}", shown(target)));
@@ -292,6 +304,18 @@ fn already(
         if there["arguments"][key] != plan.arguments[key] {
             return Err(wrong(&format!("it holds another run: its {key} differs")));
         }
+    }
+    let there_files = there["results"]["files"].as_array();
+    let has_vtk = there_files.is_some_and(|all| {
+        all.iter().any(|f| {
+            f.as_str()
+                .is_some_and(|f| f.starts_with(output::vtk::FOLDER))
+        })
+    });
+    if vtk && !has_vtk {
+        return Err(wrong(
+            "the run there is complete and was written without --vtk; give --force instead to run it again",
+        ));
     }
     if there["results"]["complete"] != json!(true) {
         let why = there["results"]["stopped"]["why"].as_str().unwrap_or("?");
@@ -361,7 +385,8 @@ fn opening(card: &Card, plan: &Plan, made: u64) -> Result<Option<Record>, Failur
     if plan.every == 1 {
         return Ok(None);
     }
-    let steps = made.min(OPENING);
+    let width = samples::width(card) as u64;
+    let steps = made.min(OPENING).min(OPENING_NUMBERS / width.max(1));
     let mut recorder = Recorder::new(card, steps, true, false);
     let mut trajectory = plan.open(card)?;
     integrate::run(trajectory.as_mut(), steps, 1, &mut recorder)

@@ -9,6 +9,8 @@ use super::start::places;
 use super::value::number;
 use crate::failure::Failure;
 use clebsch::line::LineError;
+use clebsch::mesh::{Domain, Voronoi};
+use clebsch::nalgebra::SVector;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::value::SiteData;
 use clebsch_core::lattice::{Choice, Kind, Quantity};
@@ -307,14 +309,22 @@ impl Reader<'_> {
                                site, or { depth = \"...\" }";
                 return Err(self.wrong(&named, value, message));
             }
-            Some(DeValue::Table(table)) => match table.get("depth") {
-                Some(depth) if !self.is_grid(q) && size(q) == 1 && table.len() == 1 => {
-                    let share = self.space.measure() / self.count(q) as f64;
+            Some(DeValue::Table(table)) => match (table.get("depth"), table.get("share")) {
+                (Some(depth), share)
+                    if !self.is_grid(q)
+                        && size(q) == 1
+                        && table.len() == 1 + usize::from(share.is_some()) =>
+                {
                     let depths = self.read(q, depth.get_ref());
-                    depths.map(|all| all.into_iter().map(|d| d * share).collect())
+                    let shares = self.shares(q, share.map(Spanned::get_ref));
+                    depths.and_then(|all| {
+                        let each = all.into_iter().zip(shares?);
+                        Ok(each.map(|(depth, share)| depth * share).collect())
+                    })
                 }
                 _ => Err(
-                    "expected { depth = \"an expression of x, y\" }, for a particle's share of it"
+                    "expected { depth = \"an expression of x, y\" }, for a particle's share of it, \
+                     and share = \"cells\" beside it for that of its Voronoi cell"
                         .to_owned(),
                 ),
             },
@@ -323,6 +333,29 @@ impl Reader<'_> {
         let numbers = read.map_err(|why| self.wrong(&named, value, &why))?;
         self.keep(&key, numbers, size(q), value);
         Ok(())
+    }
+
+    /// The part of the domain that each particle has: the same for all, or its Voronoi cell.
+    #[allow(clippy::cast_precision_loss)]
+    fn shares(&self, q: &Quantity, given: Option<&DeValue<'_>>) -> Result<Vec<f64>, String> {
+        let count = self.count(q);
+        match given.map(DeValue::as_str) {
+            None | Some(Some("equal")) => Ok(vec![self.space.measure() / count as f64; count]),
+            Some(Some("cells")) => {
+                let none =
+                    "share: Voronoi cells are those of particles on a torus of two dimensions";
+                let own = self.stated.lattice.places().map(|p| ascii(&p.name.text));
+                let own = own.and_then(|key| self.fluid.columns.get(&key));
+                match (own, &self.space.lengths[..], Space::torus(self.stated)) {
+                    (Some(places), [width, height], Some(_)) => {
+                        cells([*width, *height], &places.numbers)
+                            .map_err(|why| format!("share: {why}"))
+                    }
+                    _ => Err(none.to_owned()),
+                }
+            }
+            _ => Err("share: expected \"equal\" or \"cells\"".to_owned()),
+        }
     }
 
     /// Momenta, given or by their velocities.
@@ -407,6 +440,18 @@ enum Untold {
     Parameter(String),
     /// The velocities are not, or the model does not say.
     Velocity(String),
+}
+
+/// The areas of the Voronoi cells of particles on a torus.
+fn cells(lengths: [f64; 2], places: &[f64]) -> Result<Vec<f64>, String> {
+    let places = places.as_chunks::<2>().0.iter();
+    let places: Vec<SVector<f64, 2>> = places.map(|x| SVector::from(*x)).collect();
+    let mut mesh =
+        Voronoi::new(&Domain::torus(lengths), places.len()).map_err(|e| e.to_string())?;
+    let mut areas = vec![0.0; places.len()];
+    mesh.update(&places).map_err(|e| e.to_string())?;
+    mesh.areas(&mut areas).map_err(|e| e.to_string())?;
+    Ok(areas)
 }
 
 /// How many numbers a quantity has at a site.

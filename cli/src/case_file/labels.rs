@@ -204,6 +204,8 @@ pub(super) fn table<'a, 'i>(
 pub(crate) struct WrittenOut {
     pub text: String,
     pub lines: Vec<usize>,
+    /// How many sites there are, and how the line ends.
+    pub choice: Choice,
 }
 
 impl WrittenOut {
@@ -236,6 +238,7 @@ pub(crate) fn written_out(
     let mut out = WrittenOut {
         text: String::new(),
         lines: Vec::new(),
+        choice: choice.clone(),
     };
     let raw = |span: &Range<usize>| text.get(span.clone()).unwrap_or_default().to_owned();
     const TABLES: [&str; 7] = [

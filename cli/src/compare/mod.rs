@@ -9,6 +9,7 @@ pub(crate) use score::{Curve, Score};
 
 use crate::Streams;
 use crate::asked;
+use crate::beside;
 use crate::columns::aligned;
 use crate::failure::{DONE, FAILED, Failure};
 use crate::gallery::Gallery;
@@ -57,8 +58,10 @@ pub fn compare(
         .get_one::<String>("model")
         .map_or("", String::as_str);
     let case = matches.get_one::<String>("case").map(String::as_str);
+    let case = beside::case(gallery, model, case)?;
+    let case = case.as_deref();
     let entry = asked::model(gallery, model, case, &mut streams.err)?;
-    let plan = Plan::new(&entry, matches)?;
+    let plan = Plan::new(&entry, case, matches)?;
     let card = &entry.card_of(&plan.case);
     let as_json = matches.get_flag("json");
     let target = matches.get_one::<PathBuf>("out");

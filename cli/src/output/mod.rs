@@ -1,14 +1,17 @@
-//! What a run leaves behind: trajectory.csv, trajectory.npz, run.json and plots in one new folder.
+//! What a run leaves behind: trajectory.csv, trajectory.npz, run.json and plots in one new folder, on demand files for
+//! ParaView in one within.
 //! Takes a run, finished or stopped in the middle; gives the names of the files. Nothing in them depends on the time of day.
 
 pub(crate) mod arrays;
 mod interrupted;
+pub(crate) mod points;
 pub(crate) mod run_json;
 pub(crate) mod samples;
 pub(crate) mod sites;
 mod staging;
 mod standing;
 mod thinned;
+pub(crate) mod vtk;
 
 pub(crate) use interrupted::Listening;
 pub use staging::{Found, Staging};
@@ -55,7 +58,7 @@ pub struct Finished<'a> {
 }
 
 /// Every file name a run can write, so that a folder with anything else is never replaced.
-pub const FILES: [&str; 14] = [
+pub const FILES: [&str; 16] = [
     "trajectory.csv",
     "trajectory.npz",
     "run.json",
@@ -66,7 +69,9 @@ pub const FILES: [&str; 14] = [
     "attitude.svg",
     "angles.svg",
     "particles.svg",
+    "vorticity.svg",
     "run.html",
+    vtk::FOLDER,
     // While it runs, and where it can be gone on with.
     samples::NAME,
     checkpoint::NAME,
@@ -82,7 +87,8 @@ pub fn write(
     run: &Finished<'_>,
     rows: &Rows,
     opening: Option<Record>,
-) -> Result<Vec<&'static str>, Failure> {
+    in_space: Vec<vtk::Drawn>,
+) -> Result<Vec<String>, Failure> {
     let [
         csv,
         archive,
@@ -94,6 +100,7 @@ pub fn write(
         attitude,
         angles,
         particles,
+        vorticity,
         html,
         ..,
     ] = FILES;
@@ -106,7 +113,7 @@ pub fn write(
     })?;
     let samples = &Samples { record, opening };
     let record = &samples.record;
-    let mut files = vec![csv, archive, json];
+    let mut files = vec![csv.to_owned(), archive.to_owned(), json.to_owned()];
     let mut pictures = Vec::new();
     let drawn = [
         (momentum, plots::momentum(run, samples)),
@@ -116,18 +123,22 @@ pub fn write(
         (attitude, plots::attitude(run, samples)),
         (angles, plots::angles(run, samples)),
         (particles, plots::particles(run, record)),
+        (vorticity, plots::vorticity(run, record)),
     ];
     for (name, plot) in drawn {
         let plot = plot.map_err(|error| Failure::Failed(format!("cannot draw {name}: {error}")))?;
         if let Some(svg) = plot {
             staging.write(name, |file| file.write_all(svg.as_bytes()))?;
-            files.push(name);
+            files.push(name.to_owned());
             pictures.push((name, svg));
         }
     }
     let page = page::page(run, samples, &pictures);
     staging.write(html, |file| file.write_all(page.as_bytes()))?;
-    files.push(html);
+    files.push(html.to_owned());
+    if !in_space.is_empty() {
+        files.extend(vtk::write(staging, run.plan, rows, in_space)?);
+    }
     let text = format!("{:#}\n", run_json::run_json(run, &files));
     staging.write(json, |file| file.write_all(text.as_bytes()))?;
     Ok(files)

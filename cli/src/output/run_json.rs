@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 
 /// The object written as run.json and printed by `--json`; `files` are the names beside it.
 #[must_use]
-pub fn run_json(run: &Finished<'_>, files: &[&str]) -> Value {
+pub fn run_json(run: &Finished<'_>, files: &[String]) -> Value {
     let Finished {
         card,
         plan,

@@ -122,18 +122,10 @@ impl Staging {
         if lock.try_lock().is_err() {
             return Ok(());
         }
-        let files: Vec<_> = fs::read_dir(folder)?.collect::<io::Result<_>>()?;
-        let ours = |file: &fs::DirEntry| {
-            let known = self.known.iter().any(|name| file.file_name() == *name);
-            known && file.file_type().is_ok_and(|kind| kind.is_file())
-        };
-        if !files.iter().all(ours) {
-            return Ok(());
+        match standing::look(folder, &self.known)? {
+            Ok(files) => files.remove(folder),
+            Err(_) => Ok(()),
         }
-        for file in &files {
-            fs::remove_file(file.path())?;
-        }
-        fs::remove_dir(folder)
     }
 
     /// Makes a hidden sibling that was not there. The process id only keeps the search short.
@@ -162,6 +154,17 @@ impl Staging {
     pub(crate) fn keep(&mut self) {
         self.kept = true;
         interrupted::keep(&self.hidden);
+    }
+
+    /// Makes a folder within, into which files are written by names that begin with its own.
+    ///
+    /// # Errors
+    /// Failed: the file system refuses.
+    pub(crate) fn make_folder(&self, name: &str) -> Result<(), Failure> {
+        fs::create_dir(self.hidden.join(name)).map_err(|error| {
+            let path = self.target.join(name);
+            Failure::io(&format!("cannot make the folder {}", shown(&path)), &error)
+        })
     }
 
     /// Writes one file and sees it to the disk.

@@ -1,6 +1,7 @@
 //! What stands where results are to go: nothing, the folder of an earlier run, or something else.
 //! Takes a path; gives what `--force` may replace, or why nothing may be.
 
+use super::vtk;
 use crate::failure::Failure;
 use crate::plain::shown;
 use std::ffi::OsString;
@@ -12,7 +13,8 @@ use std::time::SystemTime;
 /// One file as it stood: name, size, time of its last change.
 type Entry = (OsString, u64, Option<SystemTime>);
 
-/// The files of an earlier run, by name. Two folders are told apart by it: no run changes a file.
+/// The files of an earlier run, by name, those of a folder within before it. Two folders are told apart by it: no run
+/// changes a file.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Standing(Vec<Entry>);
 
@@ -52,12 +54,21 @@ pub(super) fn at(target: &Path, force: bool, known: &[&str]) -> Result<Option<St
     }
 }
 
-/// The files in `folder`, or the name of one that no run wrote.
+/// The files in `folder`, or the name of one that no run wrote. A name that ends in a stroke is that of a folder within,
+/// which holds files with the endings of pictures in space alone.
 pub(super) fn look(folder: &Path, known: &[&str]) -> io::Result<Result<Standing, OsString>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {
         let entry: DirEntry = entry?;
         let (name, found) = (entry.file_name(), entry.metadata()?);
+        let folder = name.to_str().map(|name| format!("{name}/"));
+        if found.is_dir() && folder.is_some_and(|own| known.contains(&own.as_str())) {
+            match within(&entry.path(), &name)? {
+                Ok(own) => files.extend(own),
+                Err(foreign) => return Ok(Err(foreign)),
+            }
+            continue;
+        }
         if !found.is_file() || !known.iter().any(|file| name == **file) {
             return Ok(Err(name));
         }
@@ -67,11 +78,44 @@ pub(super) fn look(folder: &Path, known: &[&str]) -> io::Result<Result<Standing,
     Ok(Ok(Standing(files)))
 }
 
+/// The files of a folder within, by their names with its own.
+fn within(path: &Path, name: &OsString) -> io::Result<Result<Vec<Entry>, OsString>> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(path)? {
+        let entry: DirEntry = entry?;
+        let found = entry.metadata()?;
+        let own = Path::new(name).join(entry.file_name());
+        let ending = own.extension().and_then(|e| e.to_str());
+        if !found.is_file() || !ending.is_some_and(|e| vtk::ENDINGS.contains(&e)) {
+            return Ok(Err(own.into_os_string()));
+        }
+        files.push((own.into_os_string(), found.len(), found.modified().ok()));
+    }
+    Ok(Ok(files))
+}
+
+/// Removes a folder within and what a run has written into it.
+pub(super) fn remove_folder(path: &Path) -> io::Result<()> {
+    let name = path.file_name().unwrap_or_default().to_owned();
+    if let Ok(files) = within(path, &name)? {
+        let parent = path.parent().unwrap_or(Path::new(""));
+        for (file, ..) in files {
+            fs::remove_file(parent.join(file))?;
+        }
+    }
+    fs::remove_dir(path)
+}
+
 impl Standing {
     /// Removes these files from `folder`, and the folder when nothing else is in it.
     pub(super) fn remove(&self, folder: &Path) -> io::Result<()> {
         for (name, ..) in &self.0 {
             fs::remove_file(folder.join(name))?;
+        }
+        // What they stood in, which is empty now.
+        let own = fs::read_dir(folder)?.collect::<io::Result<Vec<DirEntry>>>()?;
+        for entry in own {
+            fs::remove_dir(entry.path())?;
         }
         fs::remove_dir(folder)
     }

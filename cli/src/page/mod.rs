@@ -1,7 +1,7 @@
 //! One page per run, in a single file that needs no other: a view in space that can be turned and played, the table of
 //! invariants, all pictures. Takes a run and its pictures; gives HTML.
 
-mod places;
+pub(crate) mod places;
 mod scene;
 
 use crate::output::Finished;

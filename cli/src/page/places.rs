@@ -1,15 +1,16 @@
 //! Where bodies at the sites of a line are drawn: at the point of their node, or midway between the nodes of their
 //! segment, those that an end holds and those once around a ring among them.
 
-use crate::output::Finished;
 use crate::output::sites::{AtSites, at_sites};
+use crate::plan::Plan;
+use clebsch::card::Card;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::Sites;
 use std::ops::Range;
 
 /// A point that a body is drawn at.
 #[derive(Clone)]
-pub(super) enum Point {
+pub(crate) enum Point {
     /// One that moves, in these columns, and what is added to it once around a ring.
     Moving(Range<usize>, Vec<f64>),
     /// One that an end holds.
@@ -17,8 +18,9 @@ pub(super) enum Point {
 }
 
 /// The points that bodies at sites are drawn at: a field of places of the same label.
-pub(super) struct Places<'a> {
-    run: &'a Finished<'a>,
+pub(crate) struct Places<'a> {
+    card: &'a Card,
+    plan: &'a Plan,
     points: &'a AtSites<'a>,
     /// From the site of a body to those of the points next to it.
     next: [isize; 2],
@@ -29,7 +31,7 @@ pub(super) struct Places<'a> {
 impl<'a> Places<'a> {
     /// The points of these bodies; `None` where there are none, or none that stand beside them.
     pub(super) fn of(
-        run: &'a Finished<'_>,
+        (card, plan): (&'a Card, &'a Plan),
         sites: &'a [AtSites<'_>],
         bodies: &AtSites<'_>,
     ) -> Option<Self> {
@@ -46,11 +48,20 @@ impl<'a> Places<'a> {
             _ => return None,
         };
         Some(Places {
-            run,
-            points,
             next,
-            count: points.members.len(),
+            ..Self::themselves((card, plan), points)
         })
+    }
+
+    /// These points, at their own sites.
+    pub(crate) fn themselves((card, plan): (&'a Card, &'a Plan), points: &'a AtSites<'a>) -> Self {
+        Places {
+            card,
+            plan,
+            points,
+            next: [0, 0],
+            count: points.members.len(),
+        }
     }
 
     /// The points beside a site, twice the only one; `None` where there is none.
@@ -69,7 +80,8 @@ impl<'a> Places<'a> {
         }
     }
 
-    fn point(&self, wanted: isize) -> Option<Point> {
+    /// The point of a site, of a ring also beyond the last one.
+    pub(crate) fn point(&self, wanted: isize) -> Option<Point> {
         let found = |site: usize| {
             let mut members = self.points.members.iter();
             members.find(|(s, _)| *s == site).map(|(_, c)| c.clone())
@@ -99,15 +111,18 @@ impl<'a> Places<'a> {
 
     /// The value of a parameter.
     fn given(&self, name: &str) -> Option<Vec<f64>> {
-        let parameters = self.run.card.parameters.iter();
-        let mut all = parameters.zip(&self.run.plan.case.parameters);
+        let parameters = self.card.parameters.iter();
+        let mut all = parameters.zip(&self.plan.case.parameters);
         let (_, value) = all.find(|(field, _)| field.ascii == name)?;
         Some(value.clone())
     }
 
     /// On an open line one node more than segments; places given there are found before.
     fn is_ring(&self) -> bool {
-        let segments = at_sites(self.run.card);
+        if let Some(choice) = &self.plan.choice {
+            return choice.periodic;
+        }
+        let segments = at_sites(self.card);
         let mut other = segments
             .iter()
             .filter(|q| q.index == self.points.index && q.at != self.points.at);

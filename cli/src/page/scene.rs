@@ -3,6 +3,7 @@
 
 use super::places::{Places, Point};
 use crate::output::Finished;
+use crate::output::points::Diagonals;
 use crate::output::sites::{AtSites, at_sites};
 use crate::plots::attitude::{matrix, placed};
 use crate::plots::particles::space;
@@ -64,7 +65,7 @@ pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Value> {
     let times = shown.record.times.iter().take(shown.count).enumerate();
     let times = times.filter(|(i, _)| is_shown(*i)).map(|(_, t)| *t);
     let finite = |x: &f64| if x.is_finite() { *x } else { 0.0 };
-    let lengths = space(run).map(|(space, _)| space.lengths);
+    let lengths = space(run.card, run.plan).map(|(space, _)| space.lengths);
     let flat = seen
         .iter()
         .all(|s| matches!(s, Seen::Chain { dim, .. } if *dim < 3));
@@ -102,12 +103,13 @@ fn seen(run: &Finished<'_>) -> Vec<Seen> {
         .flat_map(|q| q.members.iter().map(|(_, c)| c.start))
         .collect();
     let mut out: Vec<Seen> = sites.iter().filter_map(|q| chain_of(q)).collect();
+    let diagonals = Diagonals::of(run.card);
     let mut number = 0;
     for q in sites
         .iter()
         .filter(|q| turns(q.field) || is_placed(q.field))
     {
-        let places = Places::of(run, &sites, q);
+        let places = Places::of((run.card, run.plan), &sites, q);
         for (site, turn) in &q.members {
             let place = match places.as_ref().and_then(|p| p.at(*site)) {
                 _ if is_placed(q.field) => Place::Within,
@@ -140,10 +142,7 @@ fn seen(run: &Finished<'_>) -> Vec<Seen> {
                 },
             });
             number += 1;
-        } else if behind == Some(Kind::FieldMomentum)
-            && field.cols == 1
-            && [2, 3].contains(&field.rows)
-        {
+        } else if diagonals.leave(field, behind) {
             out.push(Seen::Chain {
                 name: field.name.to_owned(),
                 dim: field.rows,

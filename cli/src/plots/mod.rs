@@ -3,6 +3,7 @@
 
 pub(crate) mod attitude;
 pub mod axis;
+mod cells;
 mod comparison;
 pub mod curve;
 pub mod figure;
@@ -15,15 +16,17 @@ pub(crate) mod window;
 
 pub(crate) use attitude::{angles, attitude};
 pub(crate) use comparison::comparison;
-pub(crate) use particles::particles;
+pub(crate) use particles::{particles, vorticity};
 
 use crate::output::Finished;
+use crate::output::points::Diagonals;
 use crate::plain::steps;
 use crate::record::Samples;
 use crate::run::end;
 use axis::{Axis, FLOOR, superscript};
 use clebsch::card::{Field, Kind};
 use clebsch::integrate::Drift;
+use clebsch::nalgebra::DMatrix;
 use clebsch::record::Record;
 use clebsch::scalar::largest;
 use curve::{Curve, Stroke};
@@ -203,11 +206,51 @@ fn observables(
         return Ok(None);
     }
     let shown = window(samples, &columns);
-    let panels = fields.into_iter().zip(columns);
-    let panels = panels
-        .map(|(field, columns)| panel(field, columns, shown))
-        .collect();
+    let diagonals = Diagonals::of(run.card);
+    let mut panels = Vec::new();
+    for (field, columns) in fields.into_iter().zip(columns) {
+        panels.push(panel(field, columns.clone(), shown));
+        panels.extend(volume(field, &columns, shown, diagonals.have(field)));
+    }
     figure(run, shown, what, panels)
+}
+
+/// The determinant of a placement, by which volumes change; nothing of other fields and of momenta.
+fn volume(
+    field: &Field,
+    columns: &Range<usize>,
+    shown: Window<'_>,
+    is_diagonal: bool,
+) -> Option<Panel> {
+    let size = field.rows;
+    let square = field.kind == Kind::Matrix && field.cols == size && size > 1;
+    if !is_diagonal && !square {
+        return None;
+    }
+    let of = |row: &[f64]| {
+        let own = row.get(columns.clone()).unwrap_or_default();
+        match is_diagonal {
+            true => own.iter().product(),
+            false => DMatrix::from_row_slice(size, size, own).determinant(),
+        }
+    };
+    let times = shown.record.times.get(..shown.count).unwrap_or_default();
+    let values = shown.record.observables.rows().take(shown.count).map(of);
+    let label = format!("det {}", field.name);
+    let curves = vec![Curve {
+        label: label.clone(),
+        note: None,
+        points: reduce::extremes(times, values),
+        stroke: Stroke::number(0),
+    }];
+    Some(Panel {
+        caption: format!("{label}: the ratio of volumes"),
+        y_label: label,
+        y: Axis::around(&curves),
+        height: 230,
+        curves,
+        map: None,
+    })
 }
 
 /// The components of one observable, which are the given columns of the record.

@@ -1,6 +1,7 @@
-//! A map of the particles of a fluid at the first and the last sample, coloured by a functional of all sites: at
-//! particles, or at the nodes of a grid below them. Takes a run; gives an SVG.
+//! A map of the particles of a fluid at the first and the last sample, coloured by a functional of all sites: on the cells of
+//! particles, or at the nodes of a grid below them; and one of the vorticity of cells. Takes a run; gives an SVG.
 
+use super::cells::{area, around, cells_of, clipped, most_of};
 use super::figure::{Area, fine, text};
 use super::map::{Map, color};
 use super::sphere::printed_size;
@@ -10,9 +11,14 @@ use crate::case_file::labels::Stated;
 use crate::case_file::space::Space;
 use crate::output::Finished;
 use crate::output::sites::{AtSites, at_sites};
+use crate::plan::Plan;
+use clebsch::card::Card;
 use clebsch::record::Record;
 use clebsch_core::expr::symbol::ascii;
-use plotters::prelude::{Circle, Color, IntoDrawingArea, RGBColor, Rectangle, SVGBackend, WHITE};
+use clebsch_core::lattice::Source;
+use plotters::prelude::{
+    Circle, Color, IntoDrawingArea, PathElement, Polygon, RGBColor, Rectangle, SVGBackend, WHITE,
+};
 
 /// Widest side of a panel, in pixels; of two in a column of a paper.
 const SIDE: f64 = 360.0;
@@ -22,29 +28,33 @@ const LEFT: i32 = 44;
 const TOP: i32 = 76;
 const BARE: i32 = 26;
 const GAP: i32 = 56;
+/// Least room of a particle that is drawn above cells, in square pixels.
+const ROOM: f64 = 30.0;
 /// Least height, which the bar of colours takes.
 const LEAST: i32 = 170;
 const INK: RGBColor = RGBColor(30, 30, 30);
 const FAINT: RGBColor = RGBColor(110, 110, 110);
 
 /// A colour at a place.
-struct Mark {
+pub(super) struct Mark {
     place: [f64; 2],
     value: f64,
 }
 
 /// The state at one sample: what is coloured, and particles above it.
-struct Snapshot {
-    time: f64,
-    marks: Vec<Mark>,
-    dots: Vec<[f64; 2]>,
+pub(super) struct Snapshot {
+    pub(super) time: f64,
+    pub(super) marks: Vec<Mark>,
+    /// Cells in the place of marks, by their corners.
+    pub(super) cells: Vec<(Vec<[f64; 2]>, f64)>,
+    pub(super) dots: Vec<[f64; 2]>,
     /// Of a mark, in pixels.
-    radius: f64,
+    pub(super) radius: f64,
 }
 
 /// The picture; nothing for models that are no fluids.
 pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
-    let Some((space, stated)) = space(run) else {
+    let Some((space, stated)) = space(run.card, run.plan) else {
         return Ok(None);
     };
     let all = at_sites(run.card);
@@ -53,32 +63,70 @@ pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
     else {
         return Ok(None);
     };
-    let mut meshes = stated.lattice.meshes.iter();
-    let Some(shown) = meshes.find_map(|m| all.iter().find(|s| s.key == ascii(&m.name.text))) else {
+    // A depth that is smoothed moves the fluid, not the one that it is made of.
+    let meshes = &stated.lattice.meshes;
+    let taken = |at: usize| meshes.iter().any(|m| m.of == Source::Functional(at));
+    let last = meshes.iter().enumerate().filter(|(at, _)| !taken(*at));
+    let mut last = last.map(|(_, m)| ascii(&m.name.text));
+    let Some(shown) = last.find_map(|key| all.iter().find(|s| s.key == key)) else {
         return Ok(None);
     };
     let count = record.times.len();
     let picked = [0, count.saturating_sub(1)];
     let side = if run.plan.paper { PRINTED } else { SIDE };
-    let shots = picked.map(|sample| snapshot(record, sample, &space, (places, shown), side));
+    let shots = match cells_of(run, record, &picked, &shown.key) {
+        Some(shots) => shots,
+        None => picked.map(|sample| snapshot(record, sample, &space, (places, shown), side)),
+    };
+    titled(run, record, &shown.name, (&space, &shots, side))
+}
+
+/// The vorticity of a fluid of cells; nothing for other models.
+pub(crate) fn vorticity(run: &Finished<'_>, record: &Record) -> Plot {
+    let Some((space, _)) = space(run.card, run.plan) else {
+        return Ok(None);
+    };
+    let side = if run.plan.paper { PRINTED } else { SIDE };
+    let picked = [0, record.times.len().saturating_sub(1)];
+    match cells_of(run, record, &picked, "vorticity") {
+        None => Ok(None),
+        Some(mut shots) => {
+            let all = shots.iter().flat_map(|s| s.cells.iter().map(|(_, v)| *v));
+            let (low, high) = most_of(all.collect());
+            let each = shots.iter_mut().flat_map(|s| &mut s.cells);
+            each.for_each(|(_, v)| *v = v.clamp(low, high));
+            let what = "vorticity (colours of 99 cells in 100)";
+            titled(run, record, what, (&space, &shots, side))
+        }
+    }
+}
+
+/// Two samples below the titles of a run.
+fn titled(
+    run: &Finished<'_>,
+    record: &Record,
+    what: &str,
+    (space, shots, side): (&Space, &[Snapshot; 2], f64),
+) -> Plot {
+    let count = record.times.len();
     let window = Window {
         record,
         count,
         cut: false,
     };
-    let titles = titles(run, window, &shown.name);
+    let titles = titles(run, window, what);
     let titles = (!run.plan.paper).then_some(titles);
-    draw(titles, &space, &shots, side).map(Some)
+    draw(titles, space, shots, side).map(Some)
 }
 
 /// Where the particles of a run live.
-pub(crate) fn space(run: &Finished<'_>) -> Option<(Space, Stated)> {
-    let stated = Stated::read(run.card.source)?;
+pub(crate) fn space(card: &Card, plan: &Plan) -> Option<(Space, Stated)> {
+    let stated = Stated::read(card.source)?;
     let sample = Space::sample(&stated)?;
     let d = sample.lengths.len();
     let of = |key: &str| {
-        let at = run.card.parameters.iter().position(|f| f.ascii == key)?;
-        run.plan.case.parameters.get(at).cloned()
+        let at = card.parameters.iter().position(|f| f.ascii == key)?;
+        plan.case.parameters.get(at).cloned()
     };
     let torus = Space::torus(&stated).map(ascii);
     let own = of(torus.as_deref().unwrap_or("domain"))?;
@@ -142,20 +190,41 @@ fn snapshot(
         [x, y] => Some([*x, *y]),
         _ => None,
     });
-    let radius = match space.lengths.as_slice() {
+    let (radius, room) = match space.lengths.as_slice() {
         // As large as the room that each has.
         [width, height] => {
             let longest = width.max(*height);
-            let room = width * height * (side / longest).powi(2) / marks.len().max(1) as f64;
-            (0.55 * room.sqrt()).clamp(1.0, 16.0)
+            let whole = width * height * (side / longest).powi(2);
+            let room = whole / marks.len().max(1) as f64;
+            ((0.55 * room.sqrt()).clamp(1.0, 16.0), whole)
         }
-        _ => 2.5,
+        _ => (2.5, 0.0),
+    };
+    let on_grid = shown.index != places.index && space.lengths.len() == 2;
+    let (marks, cells) = match on_grid {
+        true => {
+            let each = on.iter().zip(&values);
+            (
+                Vec::new(),
+                each.filter_map(|(x, v)| Some((around(space, x)?, *v)))
+                    .collect(),
+            )
+        }
+        false => (marks, Vec::new()),
+    };
+    let dots: Vec<[f64; 2]> = dots.collect();
+    // So many that they would hide what they stand on are left out.
+    let dots = if ROOM * dots.len() as f64 > room {
+        Vec::new()
+    } else {
+        dots
     };
     Snapshot {
         radius,
         time: record.times.get(sample).copied().unwrap_or(f64::NAN),
         marks,
-        dots: dots.collect(),
+        cells,
+        dots,
     }
 }
 
@@ -168,6 +237,29 @@ struct Frame {
 }
 
 impl Frame {
+    /// What of a cell of a periodic domain lies in the panel, on either side of its seams.
+    #[allow(clippy::cast_possible_truncation)]
+    fn within(&self, corners: &[[f64; 2]]) -> Vec<Vec<(i32, i32)>> {
+        let length = |d: usize| self.high[d] - self.low[d];
+        let unit = f64::from(fine(1));
+        let mut parts = Vec::new();
+        for (i, j) in (-1..=1).flat_map(|i| (-1..=1).map(move |j| (f64::from(i), f64::from(j)))) {
+            let moved = |c: &[f64; 2]| {
+                let part = |d: usize, by: f64| (c[d] - self.low[d]) / length(d) + by;
+                [part(0, i), part(1, j)]
+            };
+            let inside = clipped(corners.iter().map(moved).collect());
+            // What only touches the edge has no area.
+            if area(&inside) > 1e-12 {
+                let at =
+                    |d: usize, p: f64| ((self.corner[d] + p * self.side[d]) * unit).round() as i32;
+                let drawn = inside.iter().map(|[x, y]| (at(0, *x), at(1, 1.0 - y)));
+                parts.push(drawn.collect());
+            }
+        }
+        parts
+    }
+
     #[allow(clippy::cast_possible_truncation)]
     fn at(&self, place: [f64; 2]) -> Option<(i32, i32)> {
         let part = |d: usize| (place[d] - self.low[d]) / (self.high[d] - self.low[d]);
@@ -188,7 +280,10 @@ fn draw(
     shots: &[Snapshot; 2],
     longest_side: f64,
 ) -> Result<String, String> {
-    let values = shots.iter().flat_map(|s| s.marks.iter().map(|m| m.value));
+    let values = shots.iter().flat_map(|s| {
+        let of_cells = s.cells.iter().map(|(_, value)| *value);
+        s.marks.iter().map(|m| m.value).chain(of_cells)
+    });
     let map = Map {
         times: Vec::new(),
         end: 0.0,
@@ -264,6 +359,14 @@ fn panel(
         corner(1, 0.0),
         corner(1, 1.0),
     );
+    for (corners, value) in shot.cells.iter().filter(|(_, v)| v.is_finite()) {
+        let color = color((value - low) / (high - low));
+        for part in frame.within(corners) {
+            // Neighbours meet without a seam.
+            root.draw(&Polygon::new(part.clone(), color.filled()))?;
+            root.draw(&PathElement::new(part, color.stroke_width(fine(1))))?;
+        }
+    }
     let edge = [(left * unit, up * unit), (right * unit, down * unit)];
     root.draw(&Rectangle::new(edge, INK.stroke_width(fine(1))))?;
     let time = format!("t = {}", axis::plain(shot.time));

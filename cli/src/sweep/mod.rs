@@ -11,6 +11,7 @@ pub(crate) use collect::collect;
 
 use crate::Streams;
 use crate::asked;
+use crate::beside;
 use crate::checkpoint::{Checkpoint, Identity};
 use crate::failure::{BY_SIGNAL, DONE, Failure};
 use crate::gallery::Gallery;
@@ -85,8 +86,10 @@ pub(crate) fn sweep(
 ) -> Result<u8, Failure> {
     let text = |key: &str| matches.get_one::<String>(key).map(String::as_str);
     let name = text("model").unwrap_or_default();
-    let entry = asked::model(gallery, name, text("case"), &mut streams.err)?;
-    let plan = Plan::new(&entry, matches)?;
+    let case = beside::case(gallery, name, text("case"))?;
+    let case = case.as_deref();
+    let entry = asked::model(gallery, name, case, &mut streams.err)?;
+    let plan = Plan::new(&entry, case, matches)?;
     let card = &entry.card_of(&plan.case);
     let axes = matches.get_many::<String>("vary").into_iter().flatten();
     let axes: Vec<Axis> = axes

@@ -264,6 +264,24 @@ pub fn shipped(arguments: &[&str]) -> Done {
     on(&Gallery::shipped(), arguments)
 }
 
+/// Runs the program itself: a process opens so many model files and no more, and tests share one.
+pub fn program(arguments: &[&str]) -> Done {
+    let done = std::process::Command::new(env!("CARGO_BIN_EXE_clebsch"))
+        .args(arguments)
+        .output()
+        .expect("runs");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    Done {
+        code: done
+            .status
+            .code()
+            .and_then(|c| u8::try_from(c).ok())
+            .expect("a code"),
+        out: text(&done.stdout),
+        err: text(&done.stderr),
+    }
+}
+
 /// Runs `clebsch` on any gallery.
 pub fn on(gallery: &Gallery, arguments: &[&str]) -> Done {
     with(gallery, arguments, "", None)

@@ -1,7 +1,7 @@
 //! Fluids on the command line: derived, run from cases with domains, lattices and expressions of the place, wrong
 //! cases told by key and site.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Folder, clebsch, program};
 
 /// The model files that the project ships, each with its case.
 const SHIPPED: [&str; 4] = [
@@ -69,8 +69,11 @@ fn arrays_are_by_sample_particle_and_component_and_particles_are_mapped() {
     }
     let map = std::fs::read_to_string(format!("{out}/particles.svg")).expect("is written");
     let circles = map.matches("<circle").count();
-    // Nodes and particles, twice.
-    assert_eq!(circles, 2 * (528 + 1800), "{circles}");
+    // Particles, twice.
+    assert_eq!(circles, 2 * 1800, "{circles}");
+    // Below them the cells of nodes, of which those at the seam lie on both sides, with their edges.
+    let cells = map.matches("<polygon").count();
+    assert_eq!(cells, 2 * (528 + 33), "{cells}");
 }
 
 #[test]
@@ -188,5 +191,51 @@ fn a_wrong_case_is_told_by_key_and_site() {
                 "which has no walls",
             ),
         ],
+    );
+}
+
+#[test]
+fn masses_are_depths_times_the_areas_of_cells() {
+    let folder = Folder::new("fluids-shares");
+    let model = shipped("shallow-water-2d.clebsch");
+    let text = text("shallow-water-2d.toml");
+    let with = |share: &str| text.replace("{ depth = \"1\" }", share);
+    let own = folder.write("cells.toml", &with("{ depth = \"2\", share = \"cells\" }"));
+    let out = folder.path("out");
+    let done = program(&["run", &model, "--case", &own, "--steps", "1", "--out", &out]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    let json = std::fs::read_to_string(format!("{out}/run.json")).expect("is written");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let masses: Vec<f64> = (0..400)
+        .map(|a| {
+            json["parameters"][format!("m_{a}")]
+                .as_f64()
+                .expect("a mass")
+        })
+        .collect();
+    // Twice the area of the domain, in 400 parts that differ on a lattice with jitter.
+    assert!((masses.iter().sum::<f64>() - 2.0).abs() < 1e-13);
+    assert!(masses.iter().any(|m| (m - 0.005).abs() > 1e-4));
+    let wrong = folder.write("wrong.toml", &with("{ depth = \"2\", share = \"boxes\" }"));
+    let done = program(&["run", &model, "--case", &wrong, "--steps", "1"]);
+    assert_eq!(done.code, 2, "{}", done.out);
+    assert!(
+        done.err.contains("share: expected \"equal\" or \"cells\""),
+        "{}",
+        done.err
+    );
+    let grid = shipped("particle-mesh-1d.clebsch");
+    let case = std::fs::read_to_string(shipped("particle-mesh-1d.toml")).expect("is shipped");
+    let case = case.replace(
+        "-200*(x - 0.5)^2)\" }",
+        "-200*(x - 0.5)^2)\", share = \"cells\" }",
+    );
+    let wrong = folder.write("grid.toml", &case);
+    let done = program(&["run", &grid, "--case", &wrong, "--steps", "1"]);
+    assert_eq!(done.code, 2, "{}", done.out);
+    assert!(
+        done.err.contains("share: Voronoi cells are those"),
+        "{}",
+        done.err
     );
 }

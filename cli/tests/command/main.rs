@@ -3,6 +3,7 @@
 
 mod book;
 mod case_files;
+mod cases;
 mod common;
 mod comparisons;
 mod elastic;
@@ -25,3 +26,4 @@ mod staging;
 mod stopped;
 mod sweeps;
 mod terminal;
+mod vtk;

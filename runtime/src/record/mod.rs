@@ -1,10 +1,12 @@
-//! What was seen of a run, and files of it: tables in memory, CSV, and with the feature `npz` archives for numpy.
+//! What was seen of a run, and files of it: tables in memory, CSV, files for ParaView, and with the feature `npz` archives
+//! for numpy.
 //! Takes the samples of the integration loop; gives tables with one row per sample.
 
 mod csv;
 mod names;
 #[cfg(feature = "npz")]
 pub mod npz;
+pub mod vtk;
 
 pub use csv::write as write_csv;
 pub use names::{columns, invariant as invariant_name};

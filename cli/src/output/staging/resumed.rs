@@ -2,7 +2,7 @@
 //! Takes the place where its results were to go; gives its folder, locked and hidden, with its checkpoint, or why there
 //! is nothing to go on with. What cannot be taken up is left as it is.
 
-use super::{PARTIAL, Staging, first_free, interrupted};
+use super::{PARTIAL, Staging, first_free, interrupted, standing};
 use crate::checkpoint::{self, Checkpoint, Identity};
 use crate::failure::Failure;
 use crate::output::samples;
@@ -176,8 +176,11 @@ impl Staging {
     pub(crate) fn go_on(&mut self) {
         self.taken_from = None;
         for name in &self.known {
-            if ![checkpoint::NAME, samples::NAME].contains(name) {
-                let _ = fs::remove_file(self.hidden.join(name));
+            let path = self.hidden.join(name);
+            if name.ends_with('/') {
+                let _ = standing::remove_folder(&path);
+            } else if ![checkpoint::NAME, samples::NAME].contains(name) {
+                let _ = fs::remove_file(path);
             }
         }
     }

@@ -1,0 +1,32 @@
+//! Which fields are points of the plane or of space: vectors that move, but no diagonals of matrices, which are kept as
+//! vectors. Takes a card; gives the names of the latter.
+
+use clebsch::card::{Card, Field, Kind};
+use std::collections::HashSet;
+
+/// The fields of a model that are diagonals.
+pub(crate) struct Diagonals(HashSet<&'static str>);
+
+impl Diagonals {
+    /// As the model is stated.
+    pub(crate) fn of(card: &Card) -> Self {
+        // The source of a card states them as vectors, and them themselves as `diag(D)`.
+        let text: String = card.source.split_whitespace().collect();
+        let stated = |name: &str| text.contains(&format!("diag({name})"));
+        let fields = card.observables.iter().filter(|f| stated(f.name));
+        Self(fields.map(|f| f.ascii).collect())
+    }
+
+    /// Whether it is one of them.
+    pub(crate) fn have(&self, field: &Field) -> bool {
+        self.0.contains(field.ascii)
+    }
+
+    /// Whether it is a point, behind which this is shown.
+    pub(crate) fn leave(&self, field: &Field, behind: Option<Kind>) -> bool {
+        behind == Some(Kind::FieldMomentum)
+            && field.cols == 1
+            && [2, 3].contains(&field.rows)
+            && !self.have(field)
+    }
+}

@@ -1,0 +1,206 @@
+//! Named cases beside the files of models: found by their names, printed, suggested; all that are shipped run, and two of
+//! them give the numbers of other implementations and of closed forms.
+
+use crate::common::{Folder, program as clebsch};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn models() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../models")
+}
+
+fn model(name: &str) -> String {
+    let path = models().join(format!("{name}.clebsch"));
+    path.to_string_lossy().into_owned()
+}
+
+/// Model files with the names of the cases in the folders beside them.
+fn shipped() -> Vec<(String, Vec<String>)> {
+    let mut all = Vec::new();
+    for kind in ["elastic", "fluids", "lattices"] {
+        for entry in fs::read_dir(models().join(kind))
+            .expect("a folder")
+            .flatten()
+        {
+            let path = entry.path();
+            if !path.is_dir() {
+                continue;
+            }
+            let files = fs::read_dir(&path).expect("a folder").flatten();
+            let mut names: Vec<String> = files
+                .map(|e| {
+                    e.path()
+                        .file_stem()
+                        .expect("a name")
+                        .to_string_lossy()
+                        .into_owned()
+                })
+                .collect();
+            names.sort();
+            let file = path.with_extension("clebsch");
+            assert!(file.is_file(), "{}", file.display());
+            all.push((file.to_string_lossy().into_owned(), names));
+        }
+    }
+    all.sort();
+    all
+}
+
+#[test]
+fn every_shipped_case_runs_by_its_name() {
+    let all = shipped();
+    let count: usize = all.iter().map(|(_, names)| names.len()).sum();
+    assert!(count >= 12, "{all:?}");
+    for (model, names) in all {
+        for name in names {
+            let done = clebsch(&["run", &model, "--case", &name, "--steps", "2"]);
+            assert_eq!(done.code, 0, "{model} {name}: {}{}", done.out, done.err);
+            let told = format!("case {name}: ");
+            assert!(done.out.contains(&told), "{model} {name}: {}", done.out);
+        }
+    }
+    for name in [
+        "fluids/particle-mesh-2d-over-ground",
+        "lattices/hanging-chain",
+    ] {
+        let done = clebsch(&["derive", &model(name)]);
+        assert_eq!(done.code, 0, "{name}: {}", done.err);
+    }
+    // The one that is called as its model goes by the name that it bears.
+    let done = clebsch(&[
+        "run",
+        &model("lattices/hanging-chain"),
+        "--case",
+        "swing",
+        "--steps",
+        "2",
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(done.out.contains("constraint_n"), "{}", done.out);
+}
+
+#[test]
+fn a_case_is_printed_and_a_wrong_name_told() {
+    let own = model("fluids/shallow-water-2d-regularised");
+    let done = clebsch(&["case", &own, "--case", "bickley-jet"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let file = models().join("fluids/shallow-water-2d-regularised/bickley-jet.toml");
+    assert_eq!(done.out, fs::read_to_string(file).expect("is shipped"));
+    for (name, told) in [
+        ("bickley-jets", "did you mean `bickley-jet`?"),
+        ("xyz", "known: shear, bickley-jet, geostrophic-vortex, "),
+    ] {
+        let done = clebsch(&["run", &own, "--case", name]);
+        assert_eq!(done.code, 2, "{}", done.out);
+        assert!(done.err.contains(told), "{}", done.err);
+    }
+    // Without any beside it a name can only be that of the sample values.
+    let folder = Folder::new("cases-alone");
+    let text = fs::read_to_string(model("elastic/neo-hooke")).expect("is shipped");
+    let alone = folder.write("alone.clebsch", &text);
+    let done = clebsch(&["run", &alone, "--case", "sample", "--steps", "2"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert_eq!(clebsch(&["run", &alone, "--case", "other"]).code, 2);
+}
+
+/// Columns of the trajectory of a case by the beginnings of their names.
+fn trajectory(name: &str, case: &str, steps: &str, wanted: &str) -> Vec<Vec<f64>> {
+    let folder = Folder::new(&format!("cases-{case}"));
+    let out = folder.path("out");
+    let done = clebsch(&[
+        "run",
+        &model(name),
+        "--case",
+        case,
+        "--steps",
+        steps,
+        "--out",
+        &out,
+    ]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    let csv = fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
+    let mut lines = csv.lines();
+    let head = lines.next().expect("a head").split(',');
+    let at: Vec<usize> = head
+        .enumerate()
+        .filter(|(_, name)| name.starts_with(wanted))
+        .map(|(i, _)| i)
+        .collect();
+    let row = |line: &str| {
+        let all: Vec<&str> = line.split(',').collect();
+        at.iter()
+            .map(|i| all[*i].parse().expect("a number"))
+            .collect()
+    };
+    lines.map(row).collect()
+}
+
+/// Singular values of the placement at nodes 10 and 50, as another implementation of the same scheme has them; by the
+/// sum of their squares and by their product, the determinant.
+#[test]
+fn the_data_of_the_figures_give_the_stretches_of_the_reference_run() {
+    let rows = trajectory("elastic/mooney-rivlin", "thesis-figures", "1000", "Q_");
+    let determinant = |q: &[f64]| {
+        q[0] * (q[4] * q[8] - q[5] * q[7]) - q[1] * (q[3] * q[8] - q[5] * q[6])
+            + q[2] * (q[3] * q[7] - q[4] * q[6])
+    };
+    for (node, stretches) in [
+        (
+            10,
+            [1.226539590135073, 0.9357611651938557, 0.7393750419258576],
+        ),
+        (
+            50,
+            [1.140689429138439, 0.8964305035068983, 0.7774157151281648],
+        ),
+    ] {
+        let squares: f64 = rows[node].iter().map(|x| x * x).sum();
+        let wanted: f64 = stretches.iter().map(|x| x * x).sum();
+        // Fifty steps of rounding, which they enlarge about a thousandfold.
+        assert!(
+            (squares - wanted).abs() < 1e-12,
+            "{node}: {squares} {wanted}"
+        );
+        let wanted: f64 = stretches.iter().product();
+        assert!((determinant(&rows[node]) - wanted).abs() < 1e-12, "{node}");
+    }
+    for q in &rows {
+        assert!(
+            (0.753..1.022).contains(&determinant(q)),
+            "{}",
+            determinant(q)
+        );
+    }
+}
+
+/// Behind the encounter solitons of parameters κ₁ > κ₂ are where they would be alone but for -log(A)/(2 κ₁) ahead and
+/// -log(A)/(2 κ₂) behind, with √A the quotient of sinh((κ₁ - κ₂)/2) and sinh((κ₁ + κ₂)/2).
+#[test]
+fn solitons_are_displaced_by_their_encounter() {
+    let rows = trajectory("lattices/toda-chain", "two-solitons", "1600", "momentum_q_");
+    let (fast, slow) = (1.5_f64, 0.5_f64);
+    let root = ((fast - slow) / 2.0).sinh() / ((fast + slow) / 2.0).sinh();
+    let shift = -2.0 * root.ln();
+    // The top of a soliton near a place, between sites by the parabola through three logarithms.
+    let top = |row: &[f64], near: f64| {
+        let near = near.round() as isize;
+        let at = |site: isize| row[site.rem_euclid(128) as usize];
+        let highest = (near - 4..=near + 4).max_by(|a, b| at(*a).total_cmp(&at(*b)));
+        let highest = highest.expect("there are nine");
+        let [a, b, c] = [-1, 0, 1].map(|by| at(highest + by).ln());
+        highest as f64 + (a - c) / (2.0 * (a - 2.0 * b + c)) - 0.5
+    };
+    let (before, after) = (&rows[0], rows.last().expect("rows"));
+    for (kappa, from, moved) in [
+        (fast, 20.0, shift / (2.0 * fast)),
+        (slow, 40.0, -shift / (2.0 * slow)),
+    ] {
+        // Alone it would have run so far, sinh(κ)/κ sites a unit of time.
+        let run = 80.0 * kappa.sinh() / kappa;
+        // The slow one starts behind the fast one's influence.
+        let start = top(before, from);
+        let found = top(after, from + run) - start - run;
+        // The step of 0.05 makes them faster by parts in 1000, over 120 sites; places are known to a hundredth of a site.
+        assert!((found - moved).abs() < 0.1, "{kappa}: {found} {moved}");
+    }
+}
