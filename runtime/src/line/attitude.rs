@@ -1,7 +1,8 @@
 //! The attitude of one site: a rotation with its matrix, which the site and its neighbours read.
 
 use crate::saved::{Saved, Words};
-use crate::{Real, Rotation, TurnedRotation};
+use crate::solvers::moser_veselov::Poinsot;
+use crate::{Real, Rotation, TurnedRotation, linalg};
 use nalgebra::Matrix3;
 
 /// A rotation, body to space, and its matrix.
@@ -39,6 +40,23 @@ impl<T: Real> Attitude<T> {
     #[inline(always)]
     pub fn matrix(&self) -> Matrix3<T> {
         self.matrix
+    }
+}
+
+/// How the attitude at the end of an edge turns, seen from there, by an impulse at its start, seen from there: with
+/// `S = Ω J` and `h` the step, `h Ω^T (tr(S) Id - S)^-1`. All NaN where the edge is a fold of its equation.
+#[inline(always)]
+pub fn turned_by<T: Real>(
+    body: &Poinsot<T>,
+    h: T,
+    from: &Attitude<T>,
+    to: &Attitude<T>,
+) -> Matrix3<T> {
+    let turn = from.matrix.tr_mul(&to.matrix);
+    let factor = linalg::trace_complement(&(turn * body.matrix()));
+    match linalg::inverse(&factor) {
+        Some(inverse) => turn.tr_mul(&inverse) * h,
+        None => Matrix3::repeat(T::from_f64(f64::NAN)),
     }
 }
 

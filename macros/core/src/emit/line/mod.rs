@@ -8,10 +8,12 @@ mod ends;
 mod energy;
 mod forms;
 mod given;
+mod held;
 mod items;
 mod locals;
 mod meshes;
 mod pulls;
+mod reactions;
 mod solved;
 mod state;
 mod step;
@@ -60,6 +62,8 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
         solved::solved(&l),
         tied::tied(&l),
         acting::acting(&l),
+        held::held(&l),
+        reactions::told(&l),
         energy::energy(&l, of_meshes),
         of_meshes.map(|m| m.items.clone()).unwrap_or_default(),
         walls.map(|w| w.items).unwrap_or_default(),

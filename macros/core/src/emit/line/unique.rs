@@ -8,7 +8,7 @@ use quote::format_ident;
 use std::collections::BTreeSet;
 
 /// What kernels and the functions around them call their own.
-const KERNEL: [&str; 50] = [
+const KERNEL: [&str; 60] = [
     "a",
     "acting",
     "after",
@@ -26,7 +26,10 @@ const KERNEL: [&str; 50] = [
     "first",
     "from",
     "h",
+    "held",
+    "here",
     "i",
+    "impulses",
     "index",
     "inertia",
     "inside",
@@ -45,7 +48,11 @@ const KERNEL: [&str; 50] = [
     "parts",
     "pulls",
     "quantity",
+    "rate",
+    "reached",
+    "responses",
     "ring",
+    "row",
     "rows",
     "self",
     "setting",
@@ -53,12 +60,15 @@ const KERNEL: [&str; 50] = [
     "sites",
     "space",
     "state",
+    "still",
+    "there",
     "to",
     "turn",
     "twice",
     "validate",
     "velocities",
     "velocity",
+    "weights",
 ];
 
 /// A name of the model that emitted code has for something else, if so.

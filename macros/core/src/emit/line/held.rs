@@ -1,0 +1,767 @@
+//! Kernels of constraints that are held: what one of them holds and its derivatives, what impulses give to a configuration,
+//! how what moves answers to them, and the rows of the system for the impulses of all sites.
+
+use super::acting;
+use super::locals::Places;
+use super::pulls::{known, range_of};
+use super::{Lines, Moving, number};
+use crate::emit::expression::Bindings;
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{Expr, Letter};
+use crate::line::{Held, Matrix, Reach, Unit};
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+/// Configurations of a site whose velocities are found together.
+pub(super) struct Bodies<'a> {
+    pub members: Vec<Moving<'a>>,
+    pub unit: &'a Unit,
+    /// How many components their velocities have.
+    pub n: usize,
+    /// Whether they answer to an impulse by a multiple of it.
+    pub scalar: bool,
+}
+
+impl Bodies<'_> {
+    /// The field of what is kept of them, and the end of the names of their kernels.
+    pub(super) fn field(&self) -> Ident {
+        self.members
+            .first()
+            .map_or_else(|| format_ident!("none"), Moving::name)
+    }
+
+    /// The first of them.
+    pub(super) fn first(&self) -> Option<&Moving<'_>> {
+        self.members.first()
+    }
+
+    /// The type of how they answer to an impulse.
+    pub(super) fn response(&self) -> TokenStream {
+        let n = number(self.n);
+        match self.scalar {
+            true => quote!(T),
+            false => quote!(SMatrix<T, #n, #n>),
+        }
+    }
+
+    /// No answer.
+    pub(super) fn none(&self) -> TokenStream {
+        let n = number(self.n);
+        match self.scalar {
+            true => quote!(T::zero()),
+            false => quote!(SMatrix::<T, #n, #n>::zeros()),
+        }
+    }
+
+    /// Whether it takes velocities to know how they answer in a step.
+    pub(super) fn takes_velocities(&self) -> bool {
+        self.members.iter().any(|m| m.system().is_some())
+    }
+
+    /// Whether they answer in a step, or at a node, as parameters say alone.
+    pub(super) fn is_steady(&self, at_node: bool) -> bool {
+        let Some(m) = self.first() else { return false };
+        let s = &m.outline().letters.symbols;
+        let of = match (at_node, &self.unit.of_edge) {
+            (true, _) => &self.unit.of_node,
+            (false, Some(list)) => list,
+            (false, None) => return false,
+        };
+        let parameter = |l: &Letter| matches!(s.get(l.symbol).role, Role::Parameter | Role::Step);
+        of.iter().flat_map(Matrix::expressions).all(|e| {
+            crate::expr::letters(&m.outline().defined(e))
+                .iter()
+                .all(parameter)
+        })
+    }
+
+    /// The row at which the velocity of a member begins, and how many it has.
+    pub(super) fn rows(&self, on: &str) -> Option<[usize; 2]> {
+        let mut row = 0;
+        for m in &self.members {
+            if m.mover.name == on {
+                return Some([row, m.components()]);
+            }
+            row += m.components();
+        }
+        None
+    }
+}
+
+impl Lines<'_> {
+    /// Whether constraints are held.
+    pub(super) fn is_held(&self) -> bool {
+        !self.line.holds.is_empty()
+    }
+
+    /// What constraints reach.
+    pub(super) fn bodies(&self) -> Vec<Bodies<'_>> {
+        let mut out = Vec::new();
+        for (lone, units) in self.line.lone.iter().zip(&self.line.units) {
+            for unit in units {
+                let own = |i: &usize| {
+                    let mover = lone.movers.iter().find(|m| m.index == *i)?;
+                    Some(Moving { lone, mover })
+                };
+                let members: Vec<Moving> = unit.members.iter().filter_map(own).collect();
+                let multiple = |list: &[Matrix]| matches!(list, [Matrix::Multiple(_)]);
+                let of_edge = unit.of_edge.as_ref().is_some_and(|list| multiple(list));
+                out.push(Bodies {
+                    n: members.iter().map(Moving::components).sum(),
+                    scalar: of_edge && multiple(&unit.of_node),
+                    members,
+                    unit,
+                });
+            }
+        }
+        out
+    }
+
+    /// The bodies that a configuration is one of, where impulses move it.
+    pub(super) fn body_of(&self, name: &str) -> Option<Bodies<'_>> {
+        let mut all = self.bodies().into_iter();
+        all.find(|b| b.members.iter().any(|m| m.mover.name == name))
+    }
+
+    /// Whether a constraint acts on a configuration.
+    pub(super) fn is_reached(&self, name: &str) -> bool {
+        let mut all = self.line.holds.iter().flat_map(|h| &h.reaches);
+        all.any(|r| r.on == name)
+    }
+
+    /// How many multipliers a site has.
+    pub(super) fn held_components(&self) -> usize {
+        self.line.holds.iter().map(|h| h.components).sum()
+    }
+
+    /// Where those of a constraint begin among them.
+    pub(super) fn held_row(&self, held: &Held) -> usize {
+        let before = self.line.holds.iter().take_while(|h| h.name != held.name);
+        before.map(|h| h.components).sum()
+    }
+
+    /// Constraints with their numbers.
+    pub(super) fn holds(&self) -> impl Iterator<Item = (usize, &Held)> {
+        (1..).zip(&self.line.holds)
+    }
+}
+
+/// A derivative as it is kept.
+enum Kept {
+    /// A number that stands where it is used.
+    Fixed(TokenStream),
+    /// A number of each site.
+    Number,
+    /// A matrix of each site.
+    Matrix,
+}
+
+/// The field of a derivative.
+fn field(r: &Reach) -> Ident {
+    format_ident!("{}_{}", r.on, r.site)
+}
+
+fn kept(l: &Lines, r: &Reach) -> Kept {
+    match &r.columns {
+        Matrix::Columns(_) => Kept::Matrix,
+        Matrix::Multiple(e) if crate::expr::letters(e).is_empty() => {
+            let s = &l.line.representative.d.letters.symbols;
+            let (_, value) = l.program(s, std::slice::from_ref(e), &Bindings::new());
+            Kept::Fixed(value.into_iter().next().unwrap_or_default())
+        }
+        Matrix::Multiple(_) => Kept::Number,
+    }
+}
+
+/// The size of a derivative, in the list of what is held at a site.
+pub(super) fn size_of(l: &Lines, r: &Reach, list: &Ident) -> TokenStream {
+    let own = field(r);
+    let number = match kept(l, r) {
+        Kept::Matrix => return quote!(length(&reached.#list[site + 1].#own)),
+        Kept::Fixed(c) => quote!((#c)),
+        Kept::Number => quote!(reached.#list[site + 1].#own),
+    };
+    quote!((#number * #number).sqrt())
+}
+
+/// A matrix of the columns that were computed; those that vanish are left out.
+fn filled(
+    (rows, cols): (usize, usize),
+    columns: &[(usize, usize, usize, TokenStream)],
+) -> TokenStream {
+    let (r, c) = (number(rows), number(cols));
+    let each = columns.iter().map(|(row, count, column, value)| {
+        let (row, count, column) = (number(*row), number(*count), number(*column));
+        quote!(a.fixed_view_mut::<#count, 1>(#row, #column).copy_from(&(#value));)
+    });
+    quote!({
+        let mut a = SMatrix::<T, #r, #c>::zeros();
+        #(#each)*
+        a
+    })
+}
+
+/// Structures and kernels.
+pub(super) fn held(l: &Lines) -> TokenStream {
+    if !l.is_held() {
+        return TokenStream::new();
+    }
+    let name = l.item("");
+    let [reached, responses, velocities] =
+        ["Reached", "Responses", "Velocities"].map(|x| l.item(x));
+    let (mut structs, mut kernels) = (TokenStream::new(), TokenStream::new());
+    for (k, h) in l.holds() {
+        let (structure, kernel) = of_hold(l, k, h);
+        structs.extend(structure);
+        kernels.extend(kernel);
+    }
+    let lists = l.holds().map(|(k, _)| {
+        let (field, ty) = (format_ident!("held_{k}"), l.item(&format!("Held{k}")));
+        quote!(#field: Vec<#ty<T>>)
+    });
+    let bodies = l.bodies();
+    let of_bodies = bodies.iter().map(|b| {
+        let (field, ty) = (b.field(), b.response());
+        quote!(#field: Vec<#ty>)
+    });
+    let of_velocities = bodies.iter().map(|b| {
+        let (field, n) = (b.field(), number(b.n));
+        quote!(#field: Vec<SVector<T, #n>>)
+    });
+    let each: Vec<TokenStream> = bodies.iter().map(|b| of_bodies_kernels(l, b)).collect();
+    let reacted: Vec<TokenStream> = l
+        .moving()
+        .filter(|m| l.is_reached(&m.mover.name))
+        .map(|m| reacted(l, &m))
+        .collect();
+    let rows = rows(l, &bodies);
+    let all = sweep(l);
+    quote! {
+        #structs
+
+        /// What is held at all sites, with a place more before the first and two behind the last.
+        #[derive(Clone, Debug)]
+        struct #reached<T> { #(#lists),* }
+
+        /// How what moves answers to impulses.
+        #[derive(Clone, Debug)]
+        struct #responses<T> { #(#of_bodies),* }
+
+        /// Velocities in the limit of small steps.
+        #[derive(Clone, Debug)]
+        struct #velocities<T> { #(#of_velocities),* }
+
+        impl<T: Real> #name<T> {
+            #kernels
+            #(#each)*
+            #(#reacted)*
+            #rows
+            #all
+        }
+    }
+}
+
+/// What is held at one index and its derivatives.
+fn of_hold(l: &Lines, k: usize, h: &Held) -> (TokenStream, TokenStream) {
+    let part = &l.line.representative;
+    let s = &part.d.letters.symbols;
+    let (ty, places) = (l.item(&format!("Held{k}")), l.item("Places"));
+    let r = number(h.components);
+    let (mut fields, mut zeros) = (TokenStream::new(), TokenStream::new());
+    let mut values: Vec<Expr> = vec![h.value.clone(), h.scale.clone()];
+    for reach in &h.reaches {
+        let name = field(reach);
+        match kept(l, reach) {
+            Kept::Fixed(_) => continue,
+            Kept::Number => {
+                fields.extend(quote!(#name: T,));
+                zeros.extend(quote!(#name: T::zero(),));
+            }
+            Kept::Matrix => {
+                let c = number(components(l, &reach.on));
+                fields.extend(quote!(#name: SMatrix<T, #c, #r>,));
+                zeros.extend(quote!(#name: SMatrix::<T, #c, #r>::zeros(),));
+            }
+        }
+        values.extend(reach.columns.expressions().iter().cloned());
+    }
+    let letters = known(l, &values);
+    let (locals, bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
+    let (lets, results) = l.program(s, &values, &bindings);
+    let mut results = results.into_iter();
+    let value = array(h, results.next().unwrap_or_default());
+    let size = results.next().unwrap_or_default();
+    let mut made = TokenStream::new();
+    for reach in &h.reaches {
+        let (name, c) = (field(reach), components(l, &reach.on));
+        match (kept(l, reach), &reach.columns) {
+            (Kept::Fixed(_), _) => {}
+            (Kept::Number, _) => {
+                let value = results.next().unwrap_or_default();
+                made.extend(quote!(#name: #value,));
+            }
+            (Kept::Matrix, of) => {
+                let is_number = is_number(l, &reach.on);
+                let columns = of.expressions().iter().enumerate().filter_map(|(j, e)| {
+                    let value = results.next().unwrap_or_default();
+                    let value = match is_number {
+                        true => quote!(SMatrix::<T, 1, 1>::new(#value)),
+                        false => value,
+                    };
+                    (!e.is_zero()).then_some((0, c, j, value))
+                });
+                let value = filled((c, h.components), &columns.collect::<Vec<_>>());
+                made.extend(quote!(#name: #value,));
+            }
+        }
+    }
+    let kernel = format_ident!("held_{k}");
+    let doc = format!(
+        " What `{}` holds, the size of its terms, and what the multiplier gives to each momentum.",
+        h.name
+    );
+    let structure = quote! {
+        #[doc = #doc]
+        #[derive(Clone, Copy, Debug)]
+        struct #ty<T> { value: SMatrix<T, #r, 1>, size: T, #fields }
+        impl<T: Real> #ty<T> {
+            /// Nothing.
+            fn none() -> Self { Self { value: SMatrix::<T, #r, 1>::zeros(), size: T::zero(), #zeros } }
+        }
+    };
+    let kernel = quote! {
+        #[doc = #doc]
+        #[inline(always)]
+        fn #kernel(&self, site: usize, at: &#places<T>) -> #ty<T> {
+            let _ = (site, at);
+            #locals
+            #lets
+            #ty { value: #value, size: #size, #made }
+        }
+    };
+    (structure, kernel)
+}
+
+/// What is held as an array.
+fn array(h: &Held, value: TokenStream) -> TokenStream {
+    match h.value.shape().is_scalar() {
+        true => quote!(SMatrix::<T, 1, 1>::new(#value)),
+        false => value,
+    }
+}
+
+fn is_number(l: &Lines, on: &str) -> bool {
+    l.moving().any(|m| m.mover.name == on && m.is_number())
+}
+
+fn components(l: &Lines, on: &str) -> usize {
+    let own = l.moving().find(|m| m.mover.name == on);
+    own.map_or(0, |m| m.components())
+}
+
+/// The kernels of what moves: how it answers in a step and at a node, and its velocity there.
+fn of_bodies_kernels(l: &Lines, b: &Bodies) -> TokenStream {
+    let Some(first) = b.first() else {
+        return TokenStream::new();
+    };
+    let (places, momenta) = (l.item("Places"), l.item("Momenta"));
+    let field = b.field();
+    let [response, weight, velocity] =
+        ["response", "weight", "node_velocity"].map(|x| format_ident!("{x}_{field}"));
+    let (ty, n) = (b.response(), number(b.n));
+    let d = first.outline();
+    let h = super::locals::step(d);
+    let of_edge = match &b.unit.of_edge {
+        None => {
+            let factor = format_ident!("factor_{}", first.mover.name);
+            quote! {
+                /// How it turns at the end of an edge by an impulse at its start.
+                #[inline(always)]
+                fn #response(&self, #h: T, site: usize, from: &#places<T>, to: &#places<T>) -> #ty {
+                    let factor = &self.#factor[site.min(self.#factor.len() - 1)];
+                    line::turned_by(factor, #h, &from.#field[site], &to.#field[site])
+                }
+            }
+        }
+        Some(list) => {
+            let (more, argument) = match b.takes_velocities() {
+                true => (true, Some(quote!(velocity: &SVector<T, #n>))),
+                false => (false, None),
+            };
+            let body = inverse(l, b, list, more);
+            quote! {
+                /// How velocities answer to an impulse at the start of an edge.
+                #[inline(always)]
+                fn #response(&self, #h: T, site: usize, at: &#places<T>, #argument) -> #ty {
+                    let _ = (#h, site, at);
+                    #body
+                }
+            }
+        }
+    };
+    let of_node = inverse(l, b, &b.unit.of_node, false);
+    let at_rest = at_rest(l, b);
+    let stacked = b.members.iter().map(|m| {
+        let [row, rows] = b.rows(&m.mover.name).unwrap_or([0, 0]);
+        let (row, rows) = (number(row), number(rows));
+        let own = super::energy::momentum(m, &quote!(site));
+        quote!(momentum.fixed_view_mut::<#rows, 1>(#row, 0).copy_from(&(#own));)
+    });
+    let apply = match b.scalar {
+        true => quote!(momentum * weights[site]),
+        false => quote!(weights[site] * momentum),
+    };
+    quote! {
+        #of_edge
+
+        /// How velocities answer to an impulse at a node, in the limit of small steps.
+        #[inline(always)]
+        fn #weight(&self, #h: T, site: usize, at: &#places<T>) -> #ty {
+            let _ = (#h, site, at);
+            #of_node
+        }
+
+        /// The velocities of the momenta of a node, in the limit of small steps.
+        #[inline(always)]
+        fn #velocity(&self, #h: T, site: usize, at: &#places<T>, momenta: &#momenta<T>, weights: &[#ty]) -> SVector<T, #n> {
+            let _ = (#h, at);
+            let mut momentum = SVector::<T, #n>::zeros();
+            #(#stacked)*
+            #at_rest
+            #apply
+        }
+    }
+}
+
+/// The momenta at rest, taken from those of a node.
+fn at_rest(l: &Lines, b: &Bodies) -> Option<TokenStream> {
+    let m = b.first()?;
+    let d = m.outline();
+    let values: Vec<Expr> = b.unit.at_rest.iter().map(|e| d.defined(e)).collect();
+    if values.iter().all(Expr::is_zero) {
+        return None;
+    }
+    let (lets, results) = l.computed(&d.letters.symbols, &l.of_site(d, &values), &values);
+    let each = b.members.iter().zip(results).zip(&values);
+    let each = each.filter(|(_, e)| !e.is_zero()).map(|((m, value), _)| {
+        let [row, rows] = b.rows(&m.mover.name).unwrap_or([0, 0]);
+        let (row, rows, value) = (number(row), number(rows), m.array(value));
+        quote!(still.fixed_view_mut::<#rows, 1>(#row, 0).copy_from(&(#value));)
+    });
+    let n = number(b.n);
+    Some(quote! {
+        let mut still = SVector::<T, #n>::zeros();
+        {
+            #lets
+            #(#each)*
+        }
+        let momentum = momentum - still;
+    })
+}
+
+/// The inverse of the derivative of momenta by velocities.
+fn inverse(l: &Lines, b: &Bodies, list: &[Matrix], with_velocities: bool) -> TokenStream {
+    let Some(first) = b.first() else {
+        return TokenStream::new();
+    };
+    let d = first.outline();
+    let s: &Symbols = &d.letters.symbols;
+    let values: Vec<Expr> = list
+        .iter()
+        .flat_map(Matrix::expressions)
+        .map(|e| d.defined(e))
+        .collect();
+    let letters = l.of_site(d, &values);
+    let (locals, mut bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
+    let velocities = match with_velocities {
+        true => acting::velocities(&b.members, &letters, &mut bindings),
+        false => TokenStream::new(),
+    };
+    let (lets, results) = l.program(s, &values, &bindings);
+    if b.scalar {
+        let value = results.into_iter().next().unwrap_or_default();
+        return quote!(#locals #velocities #lets T::one() / (#value));
+    }
+    let mut columns = Vec::new();
+    let mut results = results.into_iter().zip(&values);
+    for (m, of) in b.members.iter().zip(list) {
+        let [row, rows] = b.rows(&m.mover.name).unwrap_or([0, 0]);
+        match of {
+            Matrix::Multiple(_) => {
+                let Some((value, _)) = results.next() else {
+                    continue;
+                };
+                let axis = |j: usize| {
+                    let (rows, j) = (number(rows), number(j));
+                    match m.is_number() {
+                        true => quote!(SMatrix::<T, 1, 1>::new(#value)),
+                        false => quote!(unit::<T, #rows>(#j) * (#value)),
+                    }
+                };
+                columns.extend((0..rows).map(|j| (row, rows, row + j, axis(j))));
+            }
+            Matrix::Columns(own) => {
+                for j in 0..own.len() {
+                    let Some((value, e)) = results.next() else {
+                        continue;
+                    };
+                    if !e.is_zero() {
+                        columns.push((row, rows, j, m.array(value)));
+                    }
+                }
+            }
+        }
+    }
+    let matrix = filled((b.n, b.n), &columns);
+    quote! {
+        #locals
+        #velocities
+        #lets
+        let inertia = #matrix;
+        inverse_or_nan(&inertia)
+    }
+}
+
+/// What the impulses around a site give to the momentum of one configuration.
+fn reacted(l: &Lines, m: &Moving) -> TokenStream {
+    let name = &m.mover.name;
+    let (kernel, t, reached) = (
+        format_ident!("reacted_{name}"),
+        m.covector(),
+        l.item("Reached"),
+    );
+    let size = number(l.held_components());
+    let mut terms = Vec::new();
+    for (k, h) in l.holds() {
+        let list = format_ident!("held_{k}");
+        let (row, r) = (number(l.held_row(h)), number(h.components));
+        for reach in h.reaches.iter().filter(|r| r.on == *name) {
+            let (own, by) = (field(reach), number(1 - reach.site));
+            let impulse = quote!(impulses[site + #by].fixed_rows::<#r>(#row).into_owned());
+            terms.push(match kept(l, reach) {
+                Kept::Fixed(c) => quote!(#impulse * (#c)),
+                Kept::Number => quote!(#impulse * reached.#list[site + #by].#own),
+                Kept::Matrix => quote!(reached.#list[site + #by].#own * #impulse),
+            });
+        }
+    }
+    let doc = format!(" What impulses of constraints give to the momentum of `{name}`.");
+    quote! {
+        #[doc = #doc]
+        #[inline(always)]
+        fn #kernel(&self, site: usize, reached: &#reached<T>, impulses: &[SVector<T, #size>]) -> #t {
+            let _ = reached;
+            #(#terms)+*
+        }
+    }
+}
+
+/// A factor of a product: a multiple of the identity, or a matrix.
+#[derive(Clone)]
+enum Factor {
+    Multiple(TokenStream),
+    Matrix(TokenStream),
+}
+
+impl Factor {
+    fn times(&self, other: &Factor) -> Factor {
+        match (self, other) {
+            (Factor::Multiple(a), Factor::Multiple(b)) => Factor::Multiple(quote!(#a * #b)),
+            (Factor::Multiple(a), Factor::Matrix(b)) | (Factor::Matrix(b), Factor::Multiple(a)) => {
+                Factor::Matrix(quote!(#b * #a))
+            }
+            (Factor::Matrix(a), Factor::Matrix(b)) => Factor::Matrix(quote!(#a * #b)),
+        }
+    }
+}
+
+fn factor(l: &Lines, r: &Reach, list: &str, k: usize, at: &TokenStream) -> Factor {
+    let (list, held, own) = (format_ident!("{list}"), format_ident!("held_{k}"), field(r));
+    match kept(l, r) {
+        Kept::Fixed(c) => Factor::Multiple(quote!((#c))),
+        Kept::Number => Factor::Multiple(quote!(#list.#held[#at].#own)),
+        Kept::Matrix => Factor::Matrix(quote!(#list.#held[#at].#own)),
+    }
+}
+
+/// The kernels of the system: what is held and the sizes of its terms, its derivatives by the impulses of the site before,
+/// of the site and of the one after, and its rate of change.
+fn rows(l: &Lines, bodies: &[Bodies]) -> TokenStream {
+    let [reached, responses, velocities] =
+        ["Reached", "Responses", "Velocities"].map(|x| l.item(x));
+    let total = l.held_components();
+    let (size, wide) = (number(total), number(3 * total));
+    let (mut values, mut lets, mut fill, mut rates) = Default::default();
+    let of = |on: &str| {
+        bodies
+            .iter()
+            .find(|b| b.members.iter().any(|m| m.mover.name == on))
+    };
+    let mut lefts = 0;
+    for (k, a) in l.holds() {
+        let (list, row, r) = (
+            format_ident!("held_{k}"),
+            number(l.held_row(a)),
+            number(a.components),
+        );
+        let own: &mut TokenStream = &mut values;
+        own.extend(quote! {
+            held.fixed_view_mut::<#r, 1>(#row, 0).copy_from(&(reached.#list[site + 1].value));
+            held.fixed_view_mut::<#r, 1>(#row, 1).copy_from(&(SMatrix::<T, #r, 1>::repeat(reached.#list[site + 1].size)));
+        });
+        let mut sums: Vec<(usize, isize, Vec<Factor>)> = Vec::new();
+        let mut parts = Vec::new();
+        for reach in &a.reaches {
+            let Some(b) = of(&reach.on) else { continue };
+            let (body, by) = (b.field(), number(reach.site));
+            let [at_row, rows] = b.rows(&reach.on).unwrap_or([0, 0]);
+            let (at_row, rows) = (number(at_row), number(rows));
+            let left = factor(l, reach, "there", k, &quote!(site + 1));
+            let velocity =
+                quote!(velocities.#body[site + #by].fixed_rows::<#rows>(#at_row).into_owned());
+            parts.push(match factor(l, reach, "reached", k, &quote!(site + 1)) {
+                Factor::Multiple(c) => quote!(#velocity * #c),
+                Factor::Matrix(g) => quote!(#g.tr_mul(&#velocity)),
+            });
+            let made = format_ident!("left_{lefts}");
+            lefts += 1;
+            let response = quote!(responses.#body[site + #by]);
+            let n = number(b.n);
+            let value = match (&left, b.scalar) {
+                (Factor::Multiple(g), true) => quote!(#response * #g),
+                (Factor::Matrix(g), true) => quote!(#g.transpose() * #response),
+                (Factor::Multiple(g), false) => {
+                    quote!((#response.fixed_view::<#rows, #n>(#at_row, 0).into_owned()) * #g)
+                }
+                (Factor::Matrix(g), false) => {
+                    quote!(#g.tr_mul(&(#response.fixed_view::<#rows, #n>(#at_row, 0).into_owned())))
+                }
+            };
+            // Of one configuration alone its whole response.
+            let value = match (b.scalar, b.members.len()) {
+                (false, 1) => match &left {
+                    Factor::Multiple(g) => quote!(#response * #g),
+                    Factor::Matrix(g) => quote!(#g.tr_mul(&#response)),
+                },
+                _ => value,
+            };
+            let lets: &mut TokenStream = &mut lets;
+            lets.extend(quote!(let #made = #value;));
+            for m in &b.members {
+                let [column, columns] = b.rows(&m.mover.name).unwrap_or([0, 0]);
+                let (column, columns) = (number(column), number(columns));
+                let own = match (&left, b.scalar, b.members.len()) {
+                    (Factor::Multiple(_), true, _) => Factor::Multiple(quote!(#made)),
+                    (_, _, 1) => Factor::Matrix(quote!(#made)),
+                    _ => Factor::Matrix(
+                        quote!((#made.fixed_view::<#r, #columns>(0, #column).into_owned())),
+                    ),
+                };
+                for (other, c) in l.holds() {
+                    for right in c.reaches.iter().filter(|x| x.on == m.mover.name) {
+                        let by = 1 + reach.site - right.site;
+                        let by_tokens = number(by);
+                        let right = factor(l, right, "here", other, &quote!(site + #by_tokens));
+                        let product = own.times(&right);
+                        let offset = by as isize - 1;
+                        match sums
+                            .iter_mut()
+                            .find(|(o, by, _)| (*o, *by) == (other, offset))
+                        {
+                            Some((.., list)) => list.push(product),
+                            None => sums.push((other, offset, vec![product])),
+                        }
+                    }
+                }
+            }
+        }
+        for (other, offset, list) in sums {
+            let Some((_, c)) = l.holds().find(|(k, _)| *k == other) else {
+                continue;
+            };
+            let block = usize::try_from(offset + 1).unwrap_or(0);
+            let column = number(total * block + l.held_row(c));
+            let columns = number(c.components);
+            let (mut multiples, mut matrices) = (Vec::new(), Vec::new());
+            for product in list {
+                match product {
+                    Factor::Multiple(x) => multiples.push(x),
+                    Factor::Matrix(x) => matrices.push(x),
+                }
+            }
+            if !multiples.is_empty() {
+                matrices.push(
+                    quote!(SMatrix::<T, #r, #columns>::from_diagonal_element(#(#multiples)+*)),
+                );
+            }
+            let fill: &mut TokenStream = &mut fill;
+            fill.extend(quote!(row.fixed_view_mut::<#r, #columns>(#row, #column).copy_from(&(#(#matrices)+*));));
+        }
+        let rates: &mut TokenStream = &mut rates;
+        rates.extend(quote!(rate.fixed_view_mut::<#r, 1>(#row, 0).copy_from(&(#(#parts)+*));));
+    }
+    quote! {
+        /// What is held at a site, and the sizes of its terms.
+        #[inline(always)]
+        fn held_at(&self, site: usize, reached: &#reached<T>) -> SMatrix<T, #size, 2> {
+            let mut held = SMatrix::<T, #size, 2>::zeros();
+            #values
+            held
+        }
+
+        /// The derivatives of what is held at places `there` by impulses that act at `here`.
+        #[inline(always)]
+        fn held_row(&self, site: usize, there: &#reached<T>, here: &#reached<T>, responses: &#responses<T>) -> SMatrix<T, #size, #wide> {
+            let _ = (there, here);
+            #lets
+            let mut row = SMatrix::<T, #size, #wide>::zeros();
+            #fill
+            row
+        }
+
+        /// The rates of change of what is held.
+        #[inline(always)]
+        fn held_rate(&self, site: usize, reached: &#reached<T>, velocities: &#velocities<T>) -> SVector<T, #size> {
+            let _ = reached;
+            let mut rate = SVector::<T, #size>::zeros();
+            #rates
+            rate
+        }
+    }
+}
+
+/// The sweep over all that is held, and the repetition along a ring.
+fn sweep(l: &Lines) -> TokenStream {
+    let (places, reached) = (l.item("Places"), l.item("Reached"));
+    let each = l.holds().map(|(k, h)| {
+        let list = format_ident!("held_{k}");
+        let range = range_of(l, h.label, 0, h.to);
+        let count = l.count_field(h.label);
+        let closed = l.line.lattice.line == Some(h.label) && l.line.lattice.periodic.is_some();
+        let around = closed.then(|| {
+            quote! {
+                if self.is_ring() {
+                    reached.#list[0] = reached.#list[self.sites.#count];
+                    reached.#list[self.sites.#count + 1] = reached.#list[1];
+                }
+            }
+        });
+        quote! {
+            {
+                #range
+                line::fill(self.threads, &mut reached.#list[first + 1..last + 1], |i| {
+                    self.#list(first + i, at)
+                });
+                #around
+            }
+        }
+    });
+    let each: Vec<TokenStream> = each.collect();
+    quote! {
+        /// What is held at these places, and its derivatives.
+        #[inline]
+        fn reached(&self, at: &#places<T>, reached: &mut #reached<T>) {
+            #(#each)*
+        }
+    }
+}
