@@ -135,14 +135,22 @@ impl Carded {
         });
         let mut kept = kept;
         // What functionals of all sites leave as it is, the short line does not tell.
-        let of_functionals = model.conserved().filter(|_| !lattice.meshes.is_empty());
-        for (name, rows, reason) in of_functionals {
+        // Neither does it tell of the constraints of all sites together.
+        let of_holds = |name: &str| name.starts_with("constraint_");
+        let has_holds = !unfolded.holds.is_empty();
+        let others = model.conserved();
+        let others = others.filter(|(name, ..)| !lattice.meshes.is_empty() || of_holds(name));
+        for (name, rows, reason) in others {
             if kept.iter().all(|i| i.name != name) {
-                let formula = format!("a sum over all sites; {reason}");
+                let formula = match of_holds(name) {
+                    true => format!("the root of the sum of squares over all sites; {reason}"),
+                    false => format!("a sum over all sites; {reason}"),
+                };
                 kept.push(Invariant::exact(text(name), text(&formula), rows));
             }
         }
-        left_out.extend(lost.iter().map(|i| expander.at_its_site(i.name)));
+        let lost = lost.iter().filter(|i| !(has_holds && of_holds(i.name)));
+        left_out.extend(lost.map(|i| expander.at_its_site(i.name)));
         let summary = words
             .summary
             .replace(&short.words(lattice), &choice.words(lattice));
@@ -278,8 +286,18 @@ impl Short<'_> {
             field: *field,
             place: place(key),
             of: copy.of.clone(),
-            label: self.lattice.find(&copy.of)?.label,
+            label: match self.lattice.find(&copy.of) {
+                Some(q) => q.label,
+                None => self.held(&copy.of)?,
+            },
         })
+    }
+
+    /// The label of the sites at which a multiplier holds something.
+    fn held(&self, multiplier: &str) -> Option<usize> {
+        let mut all = self.unfolded.holds.iter();
+        let own = all.find(|h| h.name == multiplier)?;
+        Some(own.range.label)
     }
 
     /// A text in which parameters of the last end stand at the last site of the whole line.
