@@ -124,14 +124,17 @@ fn begin<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     })
 }
 
-/// `search.wants_derivatives(&held)`
+/// `search.wants_derivatives(&held, &mut out)`
 fn wants<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
-    let [own, held] = a else {
+    let [own, held, out] = a else {
         return Err(missing());
     };
     with(places, own, |search, places| {
         let held = numbers(held.place(places)?)?;
         let wants = search.wants(held.0 / 2, |site| at(held, site));
+        if search.is_corrected() {
+            put(search, places, out)?;
+        }
         Some(Value::Bool(wants))
     })
 }

@@ -44,7 +44,8 @@ impl<T: Real> Attitude<T> {
 }
 
 /// How the attitude at the end of an edge turns, seen from there, by an impulse at its start, seen from there: with
-/// `S = Ω J` and `h` the step, `h Ω^T (tr(S) Id - S)^-1`. All NaN where the edge is a fold of its equation.
+/// `S = Ω J` and `h` the step, `h Ω^T (tr(S) Id - S)^-1`. Nothing finite where the edge is a fold of its
+/// equation.
 #[inline(always)]
 pub fn turned_by<T: Real>(
     body: &Poinsot<T>,
@@ -54,10 +55,11 @@ pub fn turned_by<T: Real>(
 ) -> Matrix3<T> {
     let turn = from.matrix.tr_mul(&to.matrix);
     let factor = linalg::trace_complement(&(turn * body.matrix()));
-    match linalg::inverse(&factor) {
-        Some(inverse) => turn.tr_mul(&inverse) * h,
-        None => Matrix3::repeat(T::from_f64(f64::NAN)),
-    }
+    // The inverse by its adjugate: three columns that are cross products, over the determinant.
+    let [a, b, c] = [0, 1, 2].map(|i| factor.row(i).transpose());
+    let columns = [b.cross(&c), c.cross(&a), a.cross(&b)];
+    let scale = h / a.dot(&columns[0]);
+    turn.tr_mul(&Matrix3::from_columns(&columns)) * scale
 }
 
 impl Saved for Attitude<f64> {

@@ -112,6 +112,8 @@ pub struct Multipliers<T> {
     further: u32,
     /// The largest of what is held, in roundings of its terms.
     roundings: f64,
+    /// Whether that was corrected by derivatives that were known.
+    corrected: bool,
 }
 
 /// Puts a value at each site of a list that has one place more on either side, which repeat a ring.
@@ -150,6 +152,7 @@ impl<T: Real> Multipliers<T> {
             passes: 0,
             further: 0,
             roundings: 0.0,
+            corrected: false,
         }
     }
 
@@ -187,10 +190,19 @@ impl<T: Real> Multipliers<T> {
         !matches!(self.phase, Phase::Found | Phase::Lost)
     }
 
-    /// Takes what is held at these places, with the sizes of its terms beside it; whether derivatives are wanted.
+    /// Takes what is held at these places, with the sizes of its terms beside it; whether derivatives are wanted. Where those
+    /// known do for the last correction, impulses are corrected by them.
     #[inline]
-    pub fn wants_derivatives<const N: usize>(&mut self, held: &[SMatrix<T, N, 2>]) -> bool {
-        self.wants(N, |site| held[site].as_slice())
+    pub fn wants_derivatives<const N: usize>(
+        &mut self,
+        held: &[SMatrix<T, N, 2>],
+        out: &mut [SVector<T, N>],
+    ) -> bool {
+        let wants = self.wants(N, |site| held[site].as_slice());
+        if self.corrected {
+            put(self, out);
+        }
+        wants
     }
 
     /// The same, by the numbers of a site: values, then sizes.
@@ -199,6 +211,7 @@ impl<T: Real> Multipliers<T> {
     where
         T: 'a,
     {
+        self.corrected = false;
         if self.phase == Phase::Last {
             self.phase = Phase::Found;
             return false;
@@ -236,7 +249,7 @@ impl<T: Real> Multipliers<T> {
                 }
             }
         }
-        self.roundings = worst;
+        let before = core::mem::replace(&mut self.roundings, worst);
         if worst <= ROUNDINGS && left == 0.0 && self.phase != Phase::Further {
             if self.further == 0 {
                 self.phase = Phase::Found;
@@ -244,7 +257,25 @@ impl<T: Real> Multipliers<T> {
             }
             self.phase = Phase::Further;
         }
+        // The tangent of the correction before leaves as small a part of what is held as it did then.
+        let falls = worst * (worst / before) <= ROUNDINGS;
+        let again = matches!(self.phase, Phase::Second | Phase::Later);
+        if again && falls && left == 0.0 && self.further == 0 {
+            self.blocks.solve(n, &mut self.correction);
+            for (x, d) in self.impulses.iter_mut().zip(&self.correction) {
+                *x += *d;
+            }
+            self.phase = Phase::Later;
+            self.corrected = true;
+            return false;
+        }
         true
+    }
+
+    /// Whether impulses were corrected when what is held was taken last.
+    #[must_use]
+    pub fn is_corrected(&self) -> bool {
+        self.corrected
     }
 
     /// What is left of the constraints at the end of the stage.

@@ -306,7 +306,7 @@ pub(super) fn search(l: &Lines, solved: &TokenStream) -> TokenStream {
                 let (there,) = (&work.there,);
                 line::fill(self.threads, &mut work.held[0..last], |i| self.held_at(i, there));
             }
-            if work.search.wants_derivatives(&work.held) {
+            if work.search.wants_derivatives(&work.held, &mut work.impulses) {
                 #(#responses)*
                 {
                     let last = work.search.sites();
