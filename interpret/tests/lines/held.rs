@@ -10,6 +10,47 @@ use std::collections::BTreeMap;
 pub const ROD: &str = include_str!("../../../models/lattices/kirchhoff-rod.clebsch");
 pub const CHAIN: &str = include_str!("../../../models/lattices/hanging-chain.clebsch");
 
+clebsch::model! {
+    /// Charged beads in the plane at distances that do not change, each with a number that follows from its place and whose
+    /// velocity stands beside that of the place.
+    pub model ChargedLinks {
+        label i in 0..N;
+        periodic;
+        param m: Real at nodes;
+        param a: Real at segments;
+        param f, b, e: Real;
+        field X: Vec<2> at nodes;
+        field q: Real at nodes;
+        hold λ: dot(next(X, i) - X, next(X, i) - X) = a^2;
+        hold κ: q = b*dot(X, X);
+        let d = next(X) - X;
+        lagrangian = m*dot(d, d)/(2*h) + m*(next(q) - q)^2/(2*h) + e*(next(q) - q)*d[1]/h
+            + (f/2)*dot(perp(X), next(X)) - h*m*X[2] - h*m*(next(q, i) - q)^2/2;
+    }
+}
+
+compiled!(
+    ChargedLine,
+    ChargedLinks,
+    ChargedLinksState,
+    ChargedLinksWorkspace,
+    |s, name| match name {
+        "X" => flat(s.X()),
+        "momentum_X" => flat(s.momentum_X()),
+        "q" => flat(s.q()),
+        "momentum_q" => flat(s.momentum_q()),
+        "λ" => flat(s.λ()),
+        "κ" => flat(s.κ()),
+        _ => Vec::new(),
+    },
+    |m, s| vec![
+        ("constraint_kappa", vec![m.constraint_κ(s)]),
+        ("constraint_lambda", vec![m.constraint_λ(s)]),
+        ("constraint_rate_kappa", vec![m.constraint_rate_κ(s)]),
+        ("constraint_rate_lambda", vec![m.constraint_rate_λ(s)]),
+    ]
+);
+
 compiled!(
     RodLine,
     KirchhoffRod,
@@ -178,7 +219,68 @@ fn chain(case: &Case) -> Made {
     (Box::new(ChainLine(model, state, work)), data)
 }
 
-/// Both, with the numbers of their sites and their ends.
+fn charged(case: &Case) -> Made {
+    let (n, nodes) = (case.n, case.nodes());
+    let mut r = Random(8 + n as u64);
+    let mut places = vec![[0.3, -0.2]];
+    for i in 0..n {
+        let angle = std::f64::consts::TAU * i as f64 / n as f64;
+        let [x, y] = match case.ends {
+            None => [angle.cos(), angle.sin() + 0.3 * r.number()],
+            Some(_) => [1.0, 0.5 * r.number()],
+        };
+        places.push([places[i][0] + 0.4 * x, places[i][1] + 0.4 * y]);
+    }
+    let places = &places[..nodes];
+    let length = |i: usize| {
+        let (x, y) = (places[i], places[(i + 1) % nodes]);
+        (y[0] - x[0]).hypot(y[1] - x[1])
+    };
+    // At rest: momenta are those that the field gives.
+    let (f, b) = (0.7, 0.2);
+    let data = Data(BTreeMap::from([
+        ("m", r.list(nodes, 0.2).iter().map(|x| 1.0 + x).collect()),
+        ("a", (0..n).map(length).collect()),
+        ("f", vec![f]),
+        ("b", vec![b]),
+        ("e", vec![0.3]),
+        ("X", places.concat()),
+        (
+            "q",
+            places.iter().map(|[x, y]| b * (x * x + y * y)).collect(),
+        ),
+        (
+            "momentum_X",
+            places
+                .iter()
+                .flat_map(|[x, y]| [-f * y / 2.0, f * x / 2.0])
+                .collect(),
+        ),
+        ("momentum_q", vec![0.0; nodes]),
+    ]));
+    let ends = match case.ends {
+        None => ChargedLinksEnds::Ring,
+        Some(_) => ChargedLinksEnds::Open,
+    };
+    let parameters = ChargedLinksParameters {
+        m: data.numbers("m"),
+        a: data.numbers("a"),
+        f,
+        b,
+        e: data.number("e"),
+    };
+    let model = ChargedLinks::new(parameters, ChargedLinksSites { N: n, ends }).expect("links");
+    let initial = ChargedLinksInitial {
+        X: data.arrays("X"),
+        momentum_X: data.arrays("momentum_X"),
+        q: data.arrays("q"),
+        momentum_q: data.arrays("momentum_q"),
+    };
+    let (state, work) = model.start(initial, case.h).expect("starts");
+    (Box::new(ChargedLine(model, state, work)), data)
+}
+
+/// All of them, with the numbers of their sites and their ends.
 pub fn all() -> Vec<Line> {
     let mut of_rod = Vec::new();
     for first in ["free", "pinned", "clamped"] {
@@ -197,5 +299,13 @@ pub fn all() -> Vec<Line> {
     vec![
         (ROD, rod, cases(true, &of_rod)),
         (CHAIN, chain, of_chain.collect()),
+        (
+            ChargedLinks::<f64>::SOURCE,
+            charged,
+            cases(true, &[["free", "free"]])
+                .into_iter()
+                .filter(|c| c.n > 2)
+                .collect(),
+        ),
     ]
 }

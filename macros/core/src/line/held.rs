@@ -199,6 +199,13 @@ fn one(part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
     };
     let own = expr::here(s, hold.multiplier);
     let value = defined(part, &hold.value)?;
+    let step = Letter {
+        symbol: d.spec.step,
+        shift: Shift::HERE,
+    };
+    if expr::contains(&value, step) {
+        return refused(format!("`{name}` holds something that depends on the step"));
+    }
     let axes = expr::axes(shape).unwrap_or_default();
     let reaches = forces(part, &pairing(&d.letters, &own, &value));
     let reaches = reaches.into_iter().map(|f| {

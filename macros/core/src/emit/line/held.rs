@@ -1,12 +1,11 @@
-//! Kernels of constraints that are held: what one of them holds and its derivatives, what impulses give to a configuration,
-//! how what moves answers to them, and the rows of the system for the impulses of all sites.
+//! Kernels of constraints that are held: what one of them holds and its derivatives, and what impulses give to a
+//! configuration.
 
-use super::acting;
 use super::locals::Places;
 use super::pulls::{known, range_of};
-use super::{Lines, Moving, number};
+use super::{Lines, Moving, number, responses, rows};
 use crate::emit::expression::Bindings;
-use crate::expr::symbol::{Role, Symbols};
+use crate::expr::symbol::Role;
 use crate::expr::{Expr, Letter};
 use crate::line::{Held, Matrix, Reach, Unit};
 use proc_macro2::{Ident, TokenStream};
@@ -147,7 +146,7 @@ impl Lines<'_> {
 }
 
 /// A derivative as it is kept.
-enum Kept {
+pub(super) enum Kept {
     /// A number that stands where it is used.
     Fixed(TokenStream),
     /// A number of each site.
@@ -157,11 +156,11 @@ enum Kept {
 }
 
 /// The field of a derivative.
-fn field(r: &Reach) -> Ident {
+pub(super) fn field(r: &Reach) -> Ident {
     format_ident!("{}_{}", r.on, r.site)
 }
 
-fn kept(l: &Lines, r: &Reach) -> Kept {
+pub(super) fn kept(l: &Lines, r: &Reach) -> Kept {
     match &r.columns {
         Matrix::Columns(_) => Kept::Matrix,
         Matrix::Multiple(e) if crate::expr::letters(e).is_empty() => {
@@ -185,7 +184,7 @@ pub(super) fn size_of(l: &Lines, r: &Reach, list: &Ident) -> TokenStream {
 }
 
 /// A matrix of the columns that were computed; those that vanish are left out.
-fn filled(
+pub(super) fn filled(
     (rows, cols): (usize, usize),
     columns: &[(usize, usize, usize, TokenStream)],
 ) -> TokenStream {
@@ -228,13 +227,13 @@ pub(super) fn held(l: &Lines) -> TokenStream {
         let (field, n) = (b.field(), number(b.n));
         quote!(#field: Vec<SVector<T, #n>>)
     });
-    let each: Vec<TokenStream> = bodies.iter().map(|b| of_bodies_kernels(l, b)).collect();
+    let each: Vec<TokenStream> = bodies.iter().map(|b| responses::kernels(l, b)).collect();
     let reacted: Vec<TokenStream> = l
         .moving()
         .filter(|m| l.is_reached(&m.mover.name))
         .map(|m| reacted(l, &m))
         .collect();
-    let rows = rows(l, &bodies);
+    let rows = rows::rows(l, &bodies);
     let all = sweep(l);
     quote! {
         #structs
@@ -359,169 +358,6 @@ fn components(l: &Lines, on: &str) -> usize {
     own.map_or(0, |m| m.components())
 }
 
-/// The kernels of what moves: how it answers in a step and at a node, and its velocity there.
-fn of_bodies_kernels(l: &Lines, b: &Bodies) -> TokenStream {
-    let Some(first) = b.first() else {
-        return TokenStream::new();
-    };
-    let (places, momenta) = (l.item("Places"), l.item("Momenta"));
-    let field = b.field();
-    let [response, weight, velocity] =
-        ["response", "weight", "node_velocity"].map(|x| format_ident!("{x}_{field}"));
-    let (ty, n) = (b.response(), number(b.n));
-    let d = first.outline();
-    let h = super::locals::step(d);
-    let of_edge = match &b.unit.of_edge {
-        None => {
-            let factor = format_ident!("factor_{}", first.mover.name);
-            quote! {
-                /// How it turns at the end of an edge by an impulse at its start.
-                #[inline(always)]
-                fn #response(&self, #h: T, site: usize, from: &#places<T>, to: &#places<T>) -> #ty {
-                    let factor = &self.#factor[site.min(self.#factor.len() - 1)];
-                    line::turned_by(factor, #h, &from.#field[site], &to.#field[site])
-                }
-            }
-        }
-        Some(list) => {
-            let (more, argument) = match b.takes_velocities() {
-                true => (true, Some(quote!(velocity: &SVector<T, #n>))),
-                false => (false, None),
-            };
-            let body = inverse(l, b, list, more);
-            quote! {
-                /// How velocities answer to an impulse at the start of an edge.
-                #[inline(always)]
-                fn #response(&self, #h: T, site: usize, at: &#places<T>, #argument) -> #ty {
-                    let _ = (#h, site, at);
-                    #body
-                }
-            }
-        }
-    };
-    let of_node = inverse(l, b, &b.unit.of_node, false);
-    let at_rest = at_rest(l, b);
-    let stacked = b.members.iter().map(|m| {
-        let [row, rows] = b.rows(&m.mover.name).unwrap_or([0, 0]);
-        let (row, rows) = (number(row), number(rows));
-        let own = super::energy::momentum(m, &quote!(site));
-        quote!(momentum.fixed_view_mut::<#rows, 1>(#row, 0).copy_from(&(#own));)
-    });
-    let apply = match b.scalar {
-        true => quote!(momentum * weights[site]),
-        false => quote!(weights[site] * momentum),
-    };
-    quote! {
-        #of_edge
-
-        /// How velocities answer to an impulse at a node, in the limit of small steps.
-        #[inline(always)]
-        fn #weight(&self, #h: T, site: usize, at: &#places<T>) -> #ty {
-            let _ = (#h, site, at);
-            #of_node
-        }
-
-        /// The velocities of the momenta of a node, in the limit of small steps.
-        #[inline(always)]
-        fn #velocity(&self, #h: T, site: usize, at: &#places<T>, momenta: &#momenta<T>, weights: &[#ty]) -> SVector<T, #n> {
-            let _ = (#h, at);
-            let mut momentum = SVector::<T, #n>::zeros();
-            #(#stacked)*
-            #at_rest
-            #apply
-        }
-    }
-}
-
-/// The momenta at rest, taken from those of a node.
-fn at_rest(l: &Lines, b: &Bodies) -> Option<TokenStream> {
-    let m = b.first()?;
-    let d = m.outline();
-    let values: Vec<Expr> = b.unit.at_rest.iter().map(|e| d.defined(e)).collect();
-    if values.iter().all(Expr::is_zero) {
-        return None;
-    }
-    let (lets, results) = l.computed(&d.letters.symbols, &l.of_site(d, &values), &values);
-    let each = b.members.iter().zip(results).zip(&values);
-    let each = each.filter(|(_, e)| !e.is_zero()).map(|((m, value), _)| {
-        let [row, rows] = b.rows(&m.mover.name).unwrap_or([0, 0]);
-        let (row, rows, value) = (number(row), number(rows), m.array(value));
-        quote!(still.fixed_view_mut::<#rows, 1>(#row, 0).copy_from(&(#value));)
-    });
-    let n = number(b.n);
-    Some(quote! {
-        let mut still = SVector::<T, #n>::zeros();
-        {
-            #lets
-            #(#each)*
-        }
-        let momentum = momentum - still;
-    })
-}
-
-/// The inverse of the derivative of momenta by velocities.
-fn inverse(l: &Lines, b: &Bodies, list: &[Matrix], with_velocities: bool) -> TokenStream {
-    let Some(first) = b.first() else {
-        return TokenStream::new();
-    };
-    let d = first.outline();
-    let s: &Symbols = &d.letters.symbols;
-    let values: Vec<Expr> = list
-        .iter()
-        .flat_map(Matrix::expressions)
-        .map(|e| d.defined(e))
-        .collect();
-    let letters = l.of_site(d, &values);
-    let (locals, mut bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
-    let velocities = match with_velocities {
-        true => acting::velocities(&b.members, &letters, &mut bindings),
-        false => TokenStream::new(),
-    };
-    let (lets, results) = l.program(s, &values, &bindings);
-    if b.scalar {
-        let value = results.into_iter().next().unwrap_or_default();
-        return quote!(#locals #velocities #lets T::one() / (#value));
-    }
-    let mut columns = Vec::new();
-    let mut results = results.into_iter().zip(&values);
-    for (m, of) in b.members.iter().zip(list) {
-        let [row, rows] = b.rows(&m.mover.name).unwrap_or([0, 0]);
-        match of {
-            Matrix::Multiple(_) => {
-                let Some((value, _)) = results.next() else {
-                    continue;
-                };
-                let axis = |j: usize| {
-                    let (rows, j) = (number(rows), number(j));
-                    match m.is_number() {
-                        true => quote!(SMatrix::<T, 1, 1>::new(#value)),
-                        false => quote!(unit::<T, #rows>(#j) * (#value)),
-                    }
-                };
-                columns.extend((0..rows).map(|j| (row, rows, row + j, axis(j))));
-            }
-            Matrix::Columns(own) => {
-                for j in 0..own.len() {
-                    let Some((value, e)) = results.next() else {
-                        continue;
-                    };
-                    if !e.is_zero() {
-                        columns.push((row, rows, j, m.array(value)));
-                    }
-                }
-            }
-        }
-    }
-    let matrix = filled((b.n, b.n), &columns);
-    quote! {
-        #locals
-        #velocities
-        #lets
-        let inertia = #matrix;
-        inverse_or_nan(&inertia)
-    }
-}
-
 /// What the impulses around a site give to the momentum of one configuration.
 fn reacted(l: &Lines, m: &Moving) -> TokenStream {
     let name = &m.mover.name;
@@ -552,180 +388,6 @@ fn reacted(l: &Lines, m: &Moving) -> TokenStream {
         fn #kernel(&self, site: usize, reached: &#reached<T>, impulses: &[SVector<T, #size>]) -> #t {
             let _ = reached;
             #(#terms)+*
-        }
-    }
-}
-
-/// A factor of a product: a multiple of the identity, or a matrix.
-#[derive(Clone)]
-enum Factor {
-    Multiple(TokenStream),
-    Matrix(TokenStream),
-}
-
-impl Factor {
-    fn times(&self, other: &Factor) -> Factor {
-        match (self, other) {
-            (Factor::Multiple(a), Factor::Multiple(b)) => Factor::Multiple(quote!(#a * #b)),
-            (Factor::Multiple(a), Factor::Matrix(b)) | (Factor::Matrix(b), Factor::Multiple(a)) => {
-                Factor::Matrix(quote!(#b * #a))
-            }
-            (Factor::Matrix(a), Factor::Matrix(b)) => Factor::Matrix(quote!(#a * #b)),
-        }
-    }
-}
-
-fn factor(l: &Lines, r: &Reach, list: &str, k: usize, at: &TokenStream) -> Factor {
-    let (list, held, own) = (format_ident!("{list}"), format_ident!("held_{k}"), field(r));
-    match kept(l, r) {
-        Kept::Fixed(c) => Factor::Multiple(quote!((#c))),
-        Kept::Number => Factor::Multiple(quote!(#list.#held[#at].#own)),
-        Kept::Matrix => Factor::Matrix(quote!(#list.#held[#at].#own)),
-    }
-}
-
-/// The kernels of the system: what is held and the sizes of its terms, its derivatives by the impulses of the site before,
-/// of the site and of the one after, and its rate of change.
-fn rows(l: &Lines, bodies: &[Bodies]) -> TokenStream {
-    let [reached, responses, velocities] =
-        ["Reached", "Responses", "Velocities"].map(|x| l.item(x));
-    let total = l.held_components();
-    let (size, wide) = (number(total), number(3 * total));
-    let (mut values, mut lets, mut fill, mut rates) = Default::default();
-    let of = |on: &str| {
-        bodies
-            .iter()
-            .find(|b| b.members.iter().any(|m| m.mover.name == on))
-    };
-    let mut lefts = 0;
-    for (k, a) in l.holds() {
-        let (list, row, r) = (
-            format_ident!("held_{k}"),
-            number(l.held_row(a)),
-            number(a.components),
-        );
-        let own: &mut TokenStream = &mut values;
-        own.extend(quote! {
-            held.fixed_view_mut::<#r, 1>(#row, 0).copy_from(&(reached.#list[site + 1].value));
-            held.fixed_view_mut::<#r, 1>(#row, 1).copy_from(&(SMatrix::<T, #r, 1>::repeat(reached.#list[site + 1].size)));
-        });
-        let mut sums: Vec<(usize, isize, Vec<Factor>)> = Vec::new();
-        let mut parts = Vec::new();
-        for reach in &a.reaches {
-            let Some(b) = of(&reach.on) else { continue };
-            let (body, by) = (b.field(), number(reach.site));
-            let [at_row, rows] = b.rows(&reach.on).unwrap_or([0, 0]);
-            let (at_row, rows) = (number(at_row), number(rows));
-            let left = factor(l, reach, "there", k, &quote!(site + 1));
-            let velocity =
-                quote!(velocities.#body[site + #by].fixed_rows::<#rows>(#at_row).into_owned());
-            parts.push(match factor(l, reach, "reached", k, &quote!(site + 1)) {
-                Factor::Multiple(c) => quote!(#velocity * #c),
-                Factor::Matrix(g) => quote!(#g.tr_mul(&#velocity)),
-            });
-            let made = format_ident!("left_{lefts}");
-            lefts += 1;
-            let response = quote!(responses.#body[site + #by]);
-            let n = number(b.n);
-            let value = match (&left, b.scalar) {
-                (Factor::Multiple(g), true) => quote!(#response * #g),
-                (Factor::Matrix(g), true) => quote!(#g.transpose() * #response),
-                (Factor::Multiple(g), false) => {
-                    quote!((#response.fixed_view::<#rows, #n>(#at_row, 0).into_owned()) * #g)
-                }
-                (Factor::Matrix(g), false) => {
-                    quote!(#g.tr_mul(&(#response.fixed_view::<#rows, #n>(#at_row, 0).into_owned())))
-                }
-            };
-            // Of one configuration alone its whole response.
-            let value = match (b.scalar, b.members.len()) {
-                (false, 1) => match &left {
-                    Factor::Multiple(g) => quote!(#response * #g),
-                    Factor::Matrix(g) => quote!(#g.tr_mul(&#response)),
-                },
-                _ => value,
-            };
-            let lets: &mut TokenStream = &mut lets;
-            lets.extend(quote!(let #made = #value;));
-            for m in &b.members {
-                let [column, columns] = b.rows(&m.mover.name).unwrap_or([0, 0]);
-                let (column, columns) = (number(column), number(columns));
-                let own = match (&left, b.scalar, b.members.len()) {
-                    (Factor::Multiple(_), true, _) => Factor::Multiple(quote!(#made)),
-                    (_, _, 1) => Factor::Matrix(quote!(#made)),
-                    _ => Factor::Matrix(
-                        quote!((#made.fixed_view::<#r, #columns>(0, #column).into_owned())),
-                    ),
-                };
-                for (other, c) in l.holds() {
-                    for right in c.reaches.iter().filter(|x| x.on == m.mover.name) {
-                        let by = 1 + reach.site - right.site;
-                        let by_tokens = number(by);
-                        let right = factor(l, right, "here", other, &quote!(site + #by_tokens));
-                        let product = own.times(&right);
-                        let offset = by as isize - 1;
-                        match sums
-                            .iter_mut()
-                            .find(|(o, by, _)| (*o, *by) == (other, offset))
-                        {
-                            Some((.., list)) => list.push(product),
-                            None => sums.push((other, offset, vec![product])),
-                        }
-                    }
-                }
-            }
-        }
-        for (other, offset, list) in sums {
-            let Some((_, c)) = l.holds().find(|(k, _)| *k == other) else {
-                continue;
-            };
-            let block = usize::try_from(offset + 1).unwrap_or(0);
-            let column = number(total * block + l.held_row(c));
-            let columns = number(c.components);
-            let (mut multiples, mut matrices) = (Vec::new(), Vec::new());
-            for product in list {
-                match product {
-                    Factor::Multiple(x) => multiples.push(x),
-                    Factor::Matrix(x) => matrices.push(x),
-                }
-            }
-            if !multiples.is_empty() {
-                matrices.push(
-                    quote!(SMatrix::<T, #r, #columns>::from_diagonal_element(#(#multiples)+*)),
-                );
-            }
-            let fill: &mut TokenStream = &mut fill;
-            fill.extend(quote!(row.fixed_view_mut::<#r, #columns>(#row, #column).copy_from(&(#(#matrices)+*));));
-        }
-        let rates: &mut TokenStream = &mut rates;
-        rates.extend(quote!(rate.fixed_view_mut::<#r, 1>(#row, 0).copy_from(&(#(#parts)+*));));
-    }
-    quote! {
-        /// What is held at a site, and the sizes of its terms.
-        #[inline(always)]
-        fn held_at(&self, site: usize, reached: &#reached<T>) -> SMatrix<T, #size, 2> {
-            let mut held = SMatrix::<T, #size, 2>::zeros();
-            #values
-            held
-        }
-
-        /// The derivatives of what is held at places `there` by impulses that act at `here`.
-        #[inline(always)]
-        fn held_row(&self, site: usize, there: &#reached<T>, here: &#reached<T>, responses: &#responses<T>) -> SMatrix<T, #size, #wide> {
-            let _ = (there, here);
-            #lets
-            let mut row = SMatrix::<T, #size, #wide>::zeros();
-            #fill
-            row
-        }
-
-        /// The rates of change of what is held.
-        #[inline(always)]
-        fn held_rate(&self, site: usize, reached: &#reached<T>, velocities: &#velocities<T>) -> SVector<T, #size> {
-            let _ = reached;
-            let mut rate = SVector::<T, #size>::zeros();
-            #rates
-            rate
         }
     }
 }

@@ -3,6 +3,7 @@
 //! Takes a [`Line`]; gives Rust items.
 
 mod acting;
+mod constraints;
 mod domain;
 mod ends;
 mod energy;
@@ -14,6 +15,8 @@ mod locals;
 mod meshes;
 mod pulls;
 mod reactions;
+mod responses;
+mod rows;
 mod solved;
 mod state;
 mod step;
@@ -63,7 +66,7 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
         tied::tied(&l),
         acting::acting(&l),
         held::held(&l),
-        reactions::told(&l),
+        constraints::told(&l),
         energy::energy(&l, of_meshes),
         of_meshes.map(|m| m.items.clone()).unwrap_or_default(),
         walls.map(|w| w.items).unwrap_or_default(),

@@ -87,6 +87,11 @@ pub(super) fn refusal(line: &Line) -> Option<String> {
             "`{name}` is a name of emitted code: call the number of sites `N`"
         ));
     }
+    if line.holds.iter().any(|h| h.name == "node") {
+        return Some(
+            "`node` is a name of emitted code: give the multiplier another name".to_owned(),
+        );
+    }
     let scalar = line.model.name.text == "T";
     scalar.then(|| "`T` is the scalar of emitted code: give the model another name".to_owned())
 }
