@@ -10,7 +10,8 @@ use clebsch::{BodyMomentum, Rotation};
 use clebsch_benches::blocks::computed;
 use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
 use clebsch_models::lattices::{
-    coupled_tops::*, elastic_rod::*, hanging_chain::*, kirchhoff_rod::*, shallow_water::*, toda_chain::*,
+    coupled_tops::*, elastic_rod::*, hanging_chain::*, kirchhoff_rod::*, shallow_water::*,
+    toda_chain::*,
 };
 use std::hint::black_box;
 use std::time::Instant;
@@ -52,7 +53,12 @@ fn main() {
     }
     for n in SIZES {
         let (one, other) = both(&mut links(n), &mut rod(n));
-        row("chain of rigid links, beside the elastic rod", n, one, other);
+        row(
+            "chain of rigid links, beside the elastic rod",
+            n,
+            one,
+            other,
+        );
     }
     let wall = |threads| {
         let mut block = tops(100_000, threads);

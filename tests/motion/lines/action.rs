@@ -58,14 +58,15 @@ pub fn trace<T: Real>(a: &Matrix3<T>, b: &Matrix3<T>) -> T {
 pub fn stationarity(line: &dyn Line, [a, b, c]: &[Configuration<f64>; 3]) -> f64 {
     let (before, after) = (a.lifted(), c.lifted());
     let (mut worst, mut scale) = (0.0_f64, 1e-300_f64);
-    let mut sums = vec![0.0; b.coordinates()];
+    let mut sums = Vec::new();
     for at in 0..b.coordinates() {
         if line.held(at) {
+            sums.push(0.0);
             continue;
         }
         let here = b.varied(at);
         let (into, out) = (line.action(&before, &here), line.action(&here, &after));
-        sums[at] = into.dual[0] + out.dual[0];
+        sums.push(into.dual[0] + out.dual[0]);
         worst = worst.max((into.dual[0] + out.dual[0]).abs());
         scale = scale.max(into.dual[0].abs()).max(out.dual[0].abs());
     }
