@@ -152,6 +152,8 @@ pub enum Code<T: Real> {
     If(Box<Code<T>>, Box<Code<T>>, Option<Box<Code<T>>>),
     /// `match`
     Match(Box<Code<T>>, Vec<Arm<T>>),
+    /// `while`
+    While(Box<Code<T>>, Box<Code<T>>),
     /// `for` over counts, upwards.
     For(usize, Box<Code<T>>, Box<Code<T>>, Box<Code<T>>),
     /// The same, downwards.
@@ -366,6 +368,7 @@ impl<T: Real> Code<T> {
             | Code::Assign(..)
             | Code::Increase(..)
             | Code::For(..)
+            | Code::While(..)
             | Code::Down(..) => {
                 self.follow(places)?;
                 Ok(Value::Unit)
@@ -449,6 +452,12 @@ impl<T: Real> Code<T> {
             Code::For(at, from, to, body) => {
                 for i in from.count(places)?..to.count(places)? {
                     *unfit(places.get_mut(*at))? = Value::Int(i as i64);
+                    body.run(places)?;
+                }
+                Ok(())
+            }
+            Code::While(condition, body) => {
+                while condition.truth(places)? {
                     body.run(places)?;
                 }
                 Ok(())

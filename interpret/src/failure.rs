@@ -2,7 +2,7 @@
 
 use clebsch::domain::Contact;
 use clebsch::emitted::{LeftFactorError, MoserVeselovError, OpenError, QuaternionError, Unsolved};
-use clebsch::line::{LineError, NoRoot};
+use clebsch::line::{LineError, NoReaction, NoRoot};
 use clebsch::mesh::MeshError;
 use clebsch::solvers::two_sided::SingularFactor;
 use clebsch::{
@@ -35,6 +35,8 @@ pub enum Failure {
     Singular(SingularFactor),
     /// Of an equation of one site.
     NoRoot(NoRoot),
+    /// Of the constraints of a line.
+    NoReaction(NoReaction),
     /// Of a domain.
     Contact(Contact),
     /// Of given values.
@@ -79,6 +81,7 @@ from! {
     Quaternion: QuaternionError,
     Singular: SingularFactor,
     NoRoot: NoRoot,
+    NoReaction: NoReaction,
     Contact: Contact,
     Open: OpenError,
     Rotation: NotARotation,
@@ -103,6 +106,7 @@ impl Failure {
             Failure::Contact(e) => e.into(),
             Failure::Singular(e) => StepCause::Singular(e),
             Failure::NoRoot(e) => StepCause::NoRoot(e),
+            Failure::NoReaction(e) => StepCause::NoReaction(e),
             Failure::LeftFactor(e) => StepCause::Factor(e),
             _ => UNTOLD,
         }

@@ -47,6 +47,8 @@ impl Saved for Value<f64> {
             | Value::Call(_) => {}
             // What it stands for is put back whole.
             Value::Stamp(_) => {}
+            // Begun anew in every step.
+            Value::Multipliers(_) => {}
             // Made of the parameters.
             Value::Extent(_) | Value::Around(_) => {}
             Value::Functional(held) => held.words(words),

@@ -167,6 +167,8 @@ pub enum Value<T: Real> {
     Stamp(line::Stamp),
     /// A quantity at a site.
     At(line::Place),
+    /// A search for the impulses of constraints.
+    Multipliers(Box<line::Multipliers<T>>),
     /// A search for velocities.
     Search(crate::newton::Held),
     /// Part of an array, from an offset on: the place of the array.

@@ -3,7 +3,7 @@
 
 use crate::domain::{Contact, Domain, Function};
 use crate::groups::{NotARigidMotion, NotARotation, NotInvertible};
-use crate::line::{NoRoot, Place};
+use crate::line::{NoReaction, NoRoot, Place};
 use crate::mesh::MeshError;
 use crate::said::{self, place};
 use crate::solvers::left_factor::{LeftFactorError, Unsolved};
@@ -408,6 +408,8 @@ pub enum StepCause {
     Newton(NewtonError),
     /// Along a line, no velocity follows from rest.
     NoRoot(NoRoot),
+    /// Along a line, no reactions hold the constraints.
+    NoReaction(NoReaction),
     /// The step leaves what the model is defined on.
     Contact(Contact),
     /// A quantity became NaN or infinite.
@@ -493,6 +495,7 @@ impl fmt::Display for StepCause {
             Self::Singular(error) => write!(f, "{error}"),
             Self::Newton(error) => write!(f, "{error}"),
             Self::NoRoot(error) => write!(f, "{error}"),
+            Self::NoReaction(error) => write!(f, "{error}"),
             Self::Contact(contact) => write!(f, "{contact}"),
             Self::NotFinite { what } => write!(
                 f,
@@ -529,6 +532,7 @@ impl std::error::Error for StepCause {
             Self::Singular(error) => Some(error),
             Self::Newton(error) => Some(error),
             Self::NoRoot(error) => Some(error),
+            Self::NoReaction(error) => Some(error),
             Self::Contact(contact) => Some(contact),
             Self::AtSite { cause, .. } => Some(*cause),
             Self::Functional { cause, .. } => Some(cause),

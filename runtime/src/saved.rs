@@ -216,13 +216,14 @@ pub fn sites<X: Saved>(list: &mut [X], words: &mut Words) {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! saved_line {
-    ($name:ident { $($list:ident),* $(,)? }) => {
+    ($name:ident { $($list:ident),* $(,)? } $($multiplier:ident)*) => {
         impl $crate::saved::Saved for $name<f64> {
             fn words(&mut self, words: &mut $crate::saved::Words) {
                 $(
                     $crate::saved::sites(&mut self.places.$list, words);
                     $crate::saved::sites(&mut self.momenta.$list, words);
                 )*
+                $($crate::saved::sites(&mut self.multipliers.$multiplier, words);)*
                 $crate::saved::Saved::words(&mut self.node, words);
                 if words.are_given() {
                     self.stamp = $crate::line::Stamp::fresh();

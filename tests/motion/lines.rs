@@ -13,6 +13,8 @@
 mod action;
 #[path = "lines/experiments.rs"]
 mod experiments;
+#[path = "lines/held.rs"]
+mod held;
 #[path = "lines/laws.rs"]
 mod laws;
 #[path = "lines/models/mod.rs"]

@@ -1,5 +1,5 @@
 //! Time per site and step of lines that are compiled for every number of sites: Toda's chain and shallow water beside plain
-//! loops, coupled tops and an elastic rod beside the lone heavy top. Takes no arguments; prints a table.
+//! loops, coupled tops and an elastic rod beside the lone heavy top, lines with held constraints beside the elastic rod. Takes no arguments; prints a table.
 //! `cargo run --release --manifest-path benches/Cargo.toml --bin lines`, a minute.
 
 // The fields of the models are Greek letters, as in the papers.
@@ -9,7 +9,10 @@ use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
 use clebsch::{BodyMomentum, Rotation};
 use clebsch_benches::blocks::computed;
 use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
-use clebsch_models::lattices::{coupled_tops::*, elastic_rod::*, shallow_water::*, toda_chain::*};
+use clebsch_models::lattices::{
+    coupled_tops::*, elastic_rod::*, hanging_chain::*, kirchhoff_rod::*, shallow_water::*,
+    toda_chain::*,
+};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -43,6 +46,19 @@ fn main() {
     for n in SIZES {
         let (one, other) = both(&mut rod(n), &mut lone(n));
         row("elastic rod, beside the lone heavy top", n, one, other);
+    }
+    for n in SIZES {
+        let (one, other) = both(&mut inextensible(n), &mut rod(n));
+        row("inextensible rod, beside the elastic one", n, one, other);
+    }
+    for n in SIZES {
+        let (one, other) = both(&mut links(n), &mut rod(n));
+        row(
+            "chain of rigid links, beside the elastic rod",
+            n,
+            one,
+            other,
+        );
     }
     let wall = |threads| {
         let mut block = tops(100_000, threads);
@@ -297,6 +313,71 @@ fn rod(n: usize) -> impl FnMut() {
     move || {
         for _ in 0..WORK / n {
             rod.step(&mut state, &mut work).expect("steps");
+        }
+        black_box(&state);
+    }
+}
+
+/// A rod that cannot be stretched, free, its sections turning in waves.
+fn inextensible(n: usize) -> impl FnMut() {
+    let s = 0.1;
+    let mass = |i: usize| s * if i == 0 || i == n { 0.5 } else { 1.0 };
+    let parameters = KirchhoffRodParameters {
+        s,
+        m: (0..=n).map(mass).collect(),
+        J: vec![diagonal(0.01, 0.01, 0.02); n],
+        B: diagonal(1.0, 1.0, 2.0),
+        g: Vector3::zeros(),
+    };
+    let ends = KirchhoffRodEnds::Open {
+        first: KirchhoffRodFirst::Free,
+        last: KirchhoffRodLast::Free,
+    };
+    let rod = KirchhoffRod::new(parameters, KirchhoffRodSites { N: n, ends }).expect("a rod");
+    let spin = |i: usize| Vector3::new(0.0, 1e-3 * (0.2 * i as f64).sin(), 1e-3);
+    let mut v = vec![Vector3::zeros()];
+    for i in 0..n {
+        v.push(v[i] + spin(i).cross(&Vector3::z()) * s);
+    }
+    let turning = diagonal(0.03, 0.03, 0.02) * s;
+    let initial = KirchhoffRodInitial {
+        φ: (0..=n).map(|i| Vector3::z() * (s * i as f64)).collect(),
+        momentum_φ: (0..=n).map(|i| v[i] * mass(i)).collect(),
+        Λ: vec![Rotation::identity(); n],
+        body_momentum_Λ: (0..n).map(|i| BodyMomentum(turning * spin(i))).collect(),
+    };
+    let (mut state, mut work) = rod.start(initial, 0.001).expect("starts");
+    move || {
+        for _ in 0..WORK / n {
+            rod.step(&mut state, &mut work).expect("steps");
+        }
+        black_box(&state);
+    }
+}
+
+/// A chain of rigid links, free, in waves.
+fn links(n: usize) -> impl FnMut() {
+    let a = 0.1;
+    let parameters = HangingChainParameters {
+        m: vec![0.1; n + 1],
+        a: vec![a; n],
+        g: Vector3::zeros(),
+    };
+    let ends = HangingChainEnds::Open {
+        first: HangingChainFirst::Free,
+        last: HangingChainLast::Free,
+    };
+    let chain = HangingChain::new(parameters, HangingChainSites { N: n, ends }).expect("a chain");
+    let initial = HangingChainInitial {
+        x: (0..=n).map(|i| Vector3::z() * (a * i as f64)).collect(),
+        momentum_x: (0..=n)
+            .map(|i| Vector3::x() * (1e-3 * (0.2 * i as f64).sin()))
+            .collect(),
+    };
+    let (mut state, mut work) = chain.start(initial, 0.001).expect("starts");
+    move || {
+        for _ in 0..WORK / n {
+            chain.step(&mut state, &mut work).expect("steps");
         }
         black_box(&state);
     }

@@ -4,9 +4,11 @@
 use crate::common::{Folder, clebsch};
 
 /// The model files that the project ships, each with its case.
-const SHIPPED: [&str; 5] = [
+const SHIPPED: [&str; 7] = [
     "coupled-tops",
     "elastic-rod",
+    "hanging-chain",
+    "kirchhoff-rod",
     "shallow-water",
     "sine-gordon",
     "toda-chain",

@@ -7,6 +7,7 @@ pub(crate) mod groups;
 mod line;
 mod mesh;
 mod momenta;
+mod reactions;
 mod solvers;
 mod special;
 mod validate;
@@ -79,6 +80,7 @@ pub fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
         .or_else(|| domain::native(name, arguments))
         .or_else(|| validate::native(name, arguments))
         .or_else(|| line::native(name, arguments))
+        .or_else(|| reactions::native(name, arguments))
         .or_else(|| mesh::native(name, arguments))
 }
 
@@ -93,5 +95,6 @@ pub fn kernel<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
 pub fn special<T: Real>(name: &str) -> Option<Special<T>> {
     special::special(name)
         .or_else(|| line::special(name))
+        .or_else(|| reactions::special(name))
         .or_else(|| mesh::special(name))
 }

@@ -367,7 +367,8 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             "StepCause::Singular"
             | "StepCause::Factor"
             | "StepCause::LeftFactor"
-            | "StepCause::NoRoot",
+            | "StepCause::NoRoot"
+            | "StepCause::NoReaction",
             1,
         ) => |a, _| match a.first()? {
             Value::Failed(e) => Some(Value::failed((**e).clone().cause())),

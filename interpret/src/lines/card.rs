@@ -129,16 +129,24 @@ impl Carded {
             formula: text(formula),
             ..*own
         });
+        // Constraints are told of all sites together, not of those of the short line.
+        let of_holds = |name: &str| name.starts_with("constraint_");
+        let has_holds = !unfolded.holds.is_empty();
+        let named = named.filter(|i| !(has_holds && of_holds(i.name)));
         let (kept, lost): (Vec<Invariant>, Vec<Invariant>) = named.partition(|i| match i.name {
             "energy" => model.has_energies(),
             name => model.totals().any(|t| t == name),
         });
         let mut kept = kept;
         // What functionals of all sites leave as it is, the short line does not tell.
-        let of_functionals = model.conserved().filter(|_| !lattice.meshes.is_empty());
-        for (name, rows, reason) in of_functionals {
+        let others = model.conserved();
+        let others = others.filter(|(name, ..)| !lattice.meshes.is_empty() || of_holds(name));
+        for (name, rows, reason) in others {
             if kept.iter().all(|i| i.name != name) {
-                let formula = format!("a sum over all sites; {reason}");
+                let formula = match of_holds(name) {
+                    true => format!("the root of the sum of squares over all sites; {reason}"),
+                    false => format!("a sum over all sites; {reason}"),
+                };
                 kept.push(Invariant::exact(text(name), text(&formula), rows));
             }
         }
@@ -147,11 +155,20 @@ impl Carded {
             .summary
             .replace(&short.words(lattice), &choice.words(lattice));
         let mut summary = expander.at_its_site(&summary);
+        if has_holds {
+            summary = of_all_sites(
+                &summary,
+                kept.iter().map(|i| i.name).filter(|n| of_holds(n)),
+            );
+        }
         summary.push_str(&told(&left_out));
         let card = Card {
             source: text(source),
             summary: text(&summary),
-            solver: text(&words.solver),
+            solver: match has_holds {
+                true => HELD,
+                false => text(&words.solver),
+            },
             orders: &[2],
             solvers: &[],
             parameters,
@@ -188,6 +205,27 @@ fn of_space(name: &str, count: usize) -> (Field, Place) {
     let key = ascii(name);
     let field = kind.field(text(name), [count, 1], doc);
     (field.spelt(text(&key)), Place { key, site: None })
+}
+
+/// How multipliers along a line are found.
+const HELD: &str = "the multipliers of all sites together by Newton's method with block-tridiagonal derivatives, velocities \
+                    site by site, so that the constraints hold at the end of the step";
+
+/// A summary whose invariants name constraints of all sites together.
+fn of_all_sites<'a>(summary: &str, names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.collect();
+    let each = summary.lines().map(|line| {
+        if !line.starts_with("invariants ") {
+            return line.to_owned();
+        }
+        let (head, list) = line.split_at(line.find("  ").unwrap_or(0));
+        let spaces: String = list.chars().take_while(|c| *c == ' ').collect();
+        let own = list.trim_start().split(", ");
+        let own = own.filter(|name| !name.starts_with("constraint_"));
+        let all: Vec<&str> = own.chain(names.iter().copied()).collect();
+        format!("{head}{spaces}{}", all.join(", "))
+    });
+    each.collect::<Vec<_>>().join("\n")
 }
 
 /// What a reader is told of how a line is run.
@@ -278,8 +316,18 @@ impl Short<'_> {
             field: *field,
             place: place(key),
             of: copy.of.clone(),
-            label: self.lattice.find(&copy.of)?.label,
+            label: match self.lattice.find(&copy.of) {
+                Some(q) => q.label,
+                None => self.held(&copy.of)?,
+            },
         })
+    }
+
+    /// The label of the sites at which a multiplier holds something.
+    fn held(&self, multiplier: &str) -> Option<usize> {
+        let mut all = self.unfolded.holds.iter();
+        let own = all.find(|h| h.name == multiplier)?;
+        Some(own.range.label)
     }
 
     /// A text in which parameters of the last end stand at the last site of the whole line.

@@ -19,6 +19,7 @@ use crate::value::Value;
 use clebsch::StepCause;
 use clebsch::line::LineError;
 use clebsch::saved::{Saved, Words};
+use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::Choice;
 use clebsch_core::line as core_line;
 use clebsch_core::{emit, pipeline};
@@ -171,11 +172,25 @@ impl LineModel {
                 .filter(|(t, f)| t == ty && wanted(f));
             all.map(|(_, f)| f.clone()).collect()
         };
-        let totals = own(name, &|f| line.totals.iter().any(|t| t.name == f));
+        let of_holds = |f: &str| held(line, f).is_some();
+        let totals = own(name, &|f| {
+            line.totals.iter().any(|t| t.name == f) || of_holds(f)
+        });
         let conserved = line.totals.iter().filter_map(|t| {
             let rows = rows(&program.function(name, &t.name)?.sig.output)?;
             Some((t.name.clone(), rows, t.reason.clone()))
         });
+        let of_constraints = totals.iter().filter_map(|f| {
+            let (multiplier, is_rate) = held(line, f)?;
+            let reason = match is_rate {
+                true => format!(
+                    "the rate of change of what {multiplier} holds vanishes: the momentum is projected on arrival"
+                ),
+                false => format!("held by the multiplier {multiplier}"),
+            };
+            Some((ascii(f), 1, reason))
+        });
+        let conserved = conserved.chain(of_constraints.collect::<Vec<_>>());
         let observers = own(&state, &|f| f != "node");
         let functionals = own(name, &|f| f.starts_with("values_"));
         let momenta = own(name, &|f| f.starts_with("momenta_of_"));
@@ -205,10 +220,25 @@ impl LineModel {
             false => None,
         };
         let sized = totals.iter().map(|(f, _)| {
-            let routine = entry(&mut shared, (name, f), &of, at::FIRST)?;
+            // Of constraints the sizes of terms are another function.
+            let own = match held(line, f) {
+                Some((multiplier, true)) => format!("constraint_rate_size_{multiplier}"),
+                Some((multiplier, false)) => format!("constraint_size_{multiplier}"),
+                None => f.clone(),
+            };
+            let routine = entry(&mut shared, (name, &own), &of, at::FIRST)?;
             Ok((f.clone(), routine))
         });
         let total_sizes = sized.collect::<Result<Asked, Refused>>()?;
+        let spelt = |list: Asked| -> Asked {
+            let all = list.into_iter();
+            all.map(|(f, r)| match held(line, &f) {
+                Some(_) => (ascii(&f), r),
+                None => (f, r),
+            })
+            .collect()
+        };
+        let (totals, total_sizes) = (spelt(totals), spelt(total_sizes));
         let node = shared.name("node");
         let of_state = totals.iter().chain(&observers).chain(&total_sizes);
         let of_state = of_state.chain(&functionals).chain(&momenta);
@@ -368,6 +398,18 @@ impl LineModel {
             h,
         })
     }
+}
+
+/// The multiplier of a function that tells how far a state is off its constraint, and whether it tells how fast.
+fn held<'a>(line: &'a core_line::Line, function: &str) -> Option<(&'a str, bool)> {
+    line.holds.iter().find_map(|h| {
+        let own = function.strip_suffix(h.name.as_str())?;
+        match own {
+            "constraint_" => Some((h.name.as_str(), false)),
+            "constraint_rate_" => Some((h.name.as_str(), true)),
+            _ => None,
+        }
+    })
 }
 
 fn unread() -> Failure {

@@ -90,6 +90,10 @@ impl<T: Lowered> Lower<'_, '_, T> {
             }
             syn::Expr::Try(t) => Code::Try(Box::new(self.expression(&t.expr, ty)?)),
             syn::Expr::ForLoop(f) => self.counted(f)?,
+            syn::Expr::While(w) => {
+                let condition = self.expression(&w.cond, None)?;
+                Code::While(Box::new(condition), Box::new(self.block(&w.body)?))
+            }
             syn::Expr::Closure(c) => self.closure(c)?,
             syn::Expr::Macro(m) => self.macro_call(m)?,
             other => return Err(refuse(other)),
@@ -163,8 +167,8 @@ impl<T: Lowered> Lower<'_, '_, T> {
             [.., "Domain", "NotNegative"] => Value::Domain(domain::Domain::NotNegative),
             [.., "Domain", "NotZero"] => Value::Domain(domain::Domain::NotZero),
             [.., "Function", name] => Value::Function(function(name).ok_or_else(|| refuse(path))?),
-            // Sizes are looked at when they are chosen.
-            [.., "ADMITTED"] => Value::Unit,
+            // Sizes are looked at when they are chosen, scalars known.
+            [.., "ADMITTED" | "PhantomData"] => Value::Unit,
             _ => return Ok(None),
         })))
     }

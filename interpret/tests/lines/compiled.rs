@@ -163,6 +163,8 @@ macro_rules! compiled {
     };
 }
 
+#[path = "held.rs"]
+pub mod held;
 #[path = "newton.rs"]
 pub mod newton;
 
@@ -251,7 +253,7 @@ compiled!(
     ]
 );
 
-type Made = (Box<dyn Compiled>, Data);
+pub type Made = (Box<dyn Compiled>, Data);
 
 fn toda_chain(case: &Case, data: &Data) -> Result<TodaLine, String> {
     let parameters = TodaChainParameters {
@@ -497,7 +499,8 @@ fn cases(ring: bool, ends: &[[&'static str; 2]]) -> Vec<Case> {
         .collect()
 }
 
-type Line = (&'static str, fn(&Case) -> Made, Vec<Case>);
+/// The text of a model, its compiled line with data, and numbers of sites.
+pub type Line = (&'static str, fn(&Case) -> Made, Vec<Case>);
 
 /// Every compiled line, with the numbers of its sites and its ends.
 pub fn all() -> Vec<Line> {

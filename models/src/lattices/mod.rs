@@ -3,12 +3,14 @@
 
 pub mod coupled_tops;
 pub mod elastic_rod;
+pub mod hanging_chain;
+pub mod kirchhoff_rod;
 pub mod shallow_water;
 pub mod sine_gordon;
 pub mod toda_chain;
 
 /// The files and the statements that are compiled.
-pub const STATEMENTS: [(&str, &str); 5] = [
+pub const STATEMENTS: [(&str, &str); 7] = [
     (
         include_str!("../../lattices/coupled-tops.clebsch"),
         coupled_tops::CoupledTops::<f64>::SOURCE,
@@ -16,6 +18,14 @@ pub const STATEMENTS: [(&str, &str); 5] = [
     (
         include_str!("../../lattices/elastic-rod.clebsch"),
         elastic_rod::ElasticRod::<f64>::SOURCE,
+    ),
+    (
+        include_str!("../../lattices/hanging-chain.clebsch"),
+        hanging_chain::HangingChain::<f64>::SOURCE,
+    ),
+    (
+        include_str!("../../lattices/kirchhoff-rod.clebsch"),
+        kirchhoff_rod::KirchhoffRod::<f64>::SOURCE,
     ),
     (
         include_str!("../../lattices/shallow-water.clebsch"),

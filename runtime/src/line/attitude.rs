@@ -1,7 +1,8 @@
 //! The attitude of one site: a rotation with its matrix, which the site and its neighbours read.
 
 use crate::saved::{Saved, Words};
-use crate::{Real, Rotation, TurnedRotation};
+use crate::solvers::moser_veselov::Poinsot;
+use crate::{Real, Rotation, TurnedRotation, linalg};
 use nalgebra::Matrix3;
 
 /// A rotation, body to space, and its matrix.
@@ -40,6 +41,25 @@ impl<T: Real> Attitude<T> {
     pub fn matrix(&self) -> Matrix3<T> {
         self.matrix
     }
+}
+
+/// How the attitude at the end of an edge turns, seen from there, by an impulse at its start, seen from there: with
+/// `S = Ω J` and `h` the step, `h Ω^T (tr(S) Id - S)^-1`. Nothing finite where the edge is a fold of its
+/// equation.
+#[inline(always)]
+pub fn turned_by<T: Real>(
+    body: &Poinsot<T>,
+    h: T,
+    from: &Attitude<T>,
+    to: &Attitude<T>,
+) -> Matrix3<T> {
+    let turn = from.matrix.tr_mul(&to.matrix);
+    let factor = linalg::trace_complement(&(turn * body.matrix()));
+    // The inverse by its adjugate: three columns that are cross products, over the determinant.
+    let [a, b, c] = [0, 1, 2].map(|i| factor.row(i).transpose());
+    let columns = [b.cross(&c), c.cross(&a), a.cross(&b)];
+    let scale = h / a.dot(&columns[0]);
+    turn.tr_mul(&Matrix3::from_columns(&columns)) * scale
 }
 
 impl Saved for Attitude<f64> {

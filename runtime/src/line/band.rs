@@ -121,7 +121,7 @@ where
 
     #[inline(always)]
     fn factor(&mut self) -> bool {
-        self.blocks.factor(N)
+        self.blocks.factor(N, 0.0).is_ok()
     }
 
     #[inline(always)]

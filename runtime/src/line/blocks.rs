@@ -29,6 +29,8 @@ pub(super) struct Blocks<T> {
     /// Of a ring: what the last site does to each other one.
     border: Vec<T>,
     scratch: Vec<T>,
+    /// The site whose block had no pivot.
+    without_pivot: Option<usize>,
 }
 
 /// `out -= a x`, matrices of `n` rows, `x` and `out` of as many columns as they have.
@@ -62,6 +64,7 @@ impl<T: Real> Blocks<T> {
             onward: list(),
             border: if closed { list() } else { Vec::new() },
             scratch: vec![T::zero(); n],
+            without_pivot: None,
         }
     }
 
@@ -117,14 +120,60 @@ impl<T: Real> Blocks<T> {
         }
     }
 
+    /// The same of one component of a site.
+    pub fn hold_component(&mut self, site: usize, k: usize) {
+        let (n, last) = (self.n, self.sites - 1);
+        let size = n * n;
+        let (before, after) = (
+            if site > 0 { site - 1 } else { last },
+            if site < last { site + 1 } else { 0 },
+        );
+        for j in 0..n {
+            for list in [&mut self.own, &mut self.before, &mut self.after] {
+                list[size * site + n * j + k] = T::zero();
+            }
+            self.own[size * site + n * k + j] = T::zero();
+            self.after[size * before + n * k + j] = T::zero();
+            self.before[size * after + n * k + j] = T::zero();
+        }
+        self.own[size * site + n * k + k] = T::one();
+    }
+
+    /// The site whose block had no pivot when the matrix was factored last.
+    pub fn without_pivot(&self) -> Option<usize> {
+        self.without_pivot
+    }
+
     /// How many sites the open line has that is eliminated first.
     fn open(&self) -> usize {
         self.sites - usize::from(self.closed)
     }
 
-    /// Factors; false where a block has no pivot.
+    /// Whether the pivots of a site are more than this part of the columns of its own block.
     #[inline(always)]
-    pub fn factor(&mut self, n: usize) -> bool {
+    fn is_above(&self, n: usize, site: usize, floor: f64) -> bool {
+        let size = n * n;
+        let (own, left) = (
+            &self.own[size * site..size * (site + 1)],
+            &self.left[size * site..size * (site + 1)],
+        );
+        let mut columns = (0..n).map(|k| (k, &own[n * k..n * (k + 1)]));
+        columns.all(|(k, column)| {
+            let largest = crate::scalar::largest(column.iter().map(|x| x.magnitude()));
+            left[n * k + k].magnitude() > floor * largest
+        })
+    }
+
+    /// Factors; where a block has no pivot, or none above `floor` times its own columns, the site.
+    #[inline(always)]
+    pub fn factor(&mut self, n: usize, floor: f64) -> Result<(), usize> {
+        let done = self.factor_all(n, floor);
+        self.without_pivot = done.err();
+        done
+    }
+
+    #[inline(always)]
+    fn factor_all(&mut self, n: usize, floor: f64) -> Result<(), usize> {
         let size = n * n;
         let open = self.open();
         self.left.copy_from_slice(&self.own);
@@ -144,7 +193,7 @@ impl<T: Real> Blocks<T> {
                 &mut self.pivots[n * i..n * (i + 1)],
             );
             if !pivots::factor(n, left, own) {
-                return false;
+                return Err(i);
             }
             if i + 1 < open {
                 self.onward[here.clone()].copy_from_slice(&self.after[here.clone()]);
@@ -152,8 +201,14 @@ impl<T: Real> Blocks<T> {
                     pivots::solve(n, left, own, column);
                 }
             }
+            if floor > 0.0 && !self.is_above(n, i, floor) {
+                return Err(i);
+            }
         }
-        !self.closed || self.factor_border(n)
+        match !self.closed || self.factor_border(n) {
+            true if floor <= 0.0 || self.is_above(n, self.sites - 1, floor) => Ok(()),
+            _ => Err(self.sites - 1),
+        }
     }
 
     /// What the last site of a ring and the others do to one another.

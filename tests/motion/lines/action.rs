@@ -2,7 +2,7 @@
 //! nothing here is known to the engine.
 
 use super::models::Line;
-use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use clebsch::{Dual, Real};
 
 /// A number with one derivative.
@@ -58,19 +58,49 @@ pub fn trace<T: Real>(a: &Matrix3<T>, b: &Matrix3<T>) -> T {
 pub fn stationarity(line: &dyn Line, [a, b, c]: &[Configuration<f64>; 3]) -> f64 {
     let (before, after) = (a.lifted(), c.lifted());
     let (mut worst, mut scale) = (0.0_f64, 1e-300_f64);
+    let mut sums = Vec::new();
     for at in 0..b.coordinates() {
         if line.held(at) {
+            sums.push(0.0);
             continue;
         }
         let here = b.varied(at);
         let (into, out) = (line.action(&before, &here), line.action(&here, &after));
+        sums.push(into.dual[0] + out.dual[0]);
         worst = worst.max((into.dual[0] + out.dual[0]).abs());
         scale = scale.max(into.dual[0].abs()).max(out.dual[0].abs());
     }
     assert!(worst.is_finite() && scale.is_finite());
+    if !line.constraints(&before).is_empty() {
+        let left = without_reactions(line, b, &sums);
+        worst = clebsch::scalar::largest(left.into_iter().map(f64::abs));
+    }
     let far = b.x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let rounded = 2.0 * f64::EPSILON * far * line.mass_by_step();
     (worst - rounded).max(0.0) / scale
+}
+
+/// A covector less the combination of the derivatives of constraints that is nearest to it: what reactions cannot
+/// balance.
+pub fn without_reactions(line: &dyn Line, q: &Configuration<f64>, of: &[f64]) -> Vec<f64> {
+    let free: Vec<usize> = (0..q.coordinates()).filter(|at| !line.held(*at)).collect();
+    let columns = free.iter().map(|at| line.constraints(&q.varied(*at)));
+    let columns: Vec<Vec<D>> = columns.collect();
+    let count = columns.first().map_or(0, Vec::len);
+    let all = DMatrix::from_fn(free.len(), count, |i, j| columns[i][j].dual[0]);
+    let mut left = DVector::from_iterator(free.len(), free.iter().map(|at| of[*at]));
+    let basis = all.qr().q();
+    // Twice, so that rounding of the first is taken away.
+    for _ in 0..2 {
+        left -= &basis * (basis.transpose() * &left);
+    }
+    left.iter().copied().collect()
+}
+
+/// By how much the largest constraint differs between two configurations.
+pub fn off_constraints(line: &dyn Line, a: &Configuration<f64>, b: &Configuration<f64>) -> f64 {
+    let (a, b) = (line.constraints(&a.lifted()), line.constraints(&b.lifted()));
+    clebsch::scalar::largest(a.iter().zip(&b).map(|(x, y)| (x.value() - y.value()).abs()))
 }
 
 /// The momentum at the first node of an edge: minus the derivative of the action there.

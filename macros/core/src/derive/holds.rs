@@ -118,7 +118,7 @@ pub(crate) fn rate_paired(d: &Derivation, which: usize) -> Expr {
 
 /// The reaction of one constraint on configuration `i`, a covector in the frame of its side, for this
 /// letter as the multiplier.
-fn reaction(
+pub(crate) fn reaction(
     spec: &Spec,
     letters: &Letters,
     variations: &[Variation],

@@ -49,6 +49,17 @@ pub struct Summand {
     pub of_functionals: bool,
 }
 
+/// A held constraint as stated, and the sites that it has a multiplier at.
+#[derive(Clone, Debug)]
+pub struct StatedHold {
+    /// The name of its multiplier.
+    pub name: String,
+    /// The indices of its copies.
+    pub range: Range,
+    /// Kind of sites and offset of its letters, seen from its index.
+    pub letters: Vec<(Sites, isize)>,
+}
+
 /// A model written out.
 #[derive(Clone, Debug)]
 pub struct Unfolded {
@@ -62,6 +73,8 @@ pub struct Unfolded {
     pub given: Vec<String>,
     /// The terms of the Lagrangian.
     pub summands: Vec<Summand>,
+    /// The constraints that are held at sites.
+    pub holds: Vec<StatedHold>,
     /// Terms that are hardly meant.
     pub warnings: Vec<Warning>,
 }
@@ -105,6 +118,7 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfol
             end_parameters: Vec::new(),
             given: Vec::new(),
             summands: Vec::new(),
+            holds: Vec::new(),
             warnings: Vec::new(),
         },
     };

@@ -420,7 +420,11 @@ fn velocity(d: &Derivation, j: usize) -> Letter {
 
 /// The momentum of the edge that leaves a node, in the place at the node and the velocities, and its
 /// derivative by each component of each velocity of a block.
-fn momentum(d: &Derivation, i: usize, block: &[usize]) -> Result<(Expr, Vec<Expr>), Refused> {
+pub(super) fn momentum(
+    d: &Derivation,
+    i: usize,
+    block: &[usize],
+) -> Result<(Expr, Vec<Expr>), Refused> {
     let s = &d.letters.symbols;
     let momentum = expr::substitute(s, &d.balances[i].outgoing, &d.spec.end_of_edge());
     let mut columns = Vec::new();

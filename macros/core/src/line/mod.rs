@@ -3,6 +3,7 @@
 //! proves that these are all of its equations. Takes a model with labels; gives the parts that a
 //! stepper with loops over sites is made of, or why it has to be written out.
 
+mod held;
 mod lone;
 mod meshed;
 mod proof;
@@ -13,6 +14,7 @@ mod tests;
 mod tie;
 mod total;
 
+pub use held::{Held, Matrix, Reach, Unit};
 pub use lone::{How, Lone, Mover};
 pub use meshed::Meshed;
 pub use pull::{EndTerm, Force, Pull};
@@ -41,6 +43,10 @@ pub struct Line {
     pub pulls: Vec<Pull>,
     /// What terms of neighbours in which velocities stand add to momenta.
     pub ties: Vec<Tie>,
+    /// Constraints that are held.
+    pub holds: Vec<Held>,
+    /// What impulses do to what is held, for each kind of sites.
+    pub units: Vec<Vec<Unit>>,
     /// What end conditions add.
     pub ends: Vec<EndTerm>,
     /// What terms with functionals of all sites add.
@@ -90,7 +96,14 @@ impl Line {
         let (pulls, ties) = pull::pulls(&lattice, &representative)?;
         let lone = lone::lone(model, &lattice, &representative, &ties)?;
         let meshed = meshed::meshed(&lattice, &representative)?;
+        let holds = held::held(&lattice, &representative, &lone)?;
+        let units = lone.iter().map(|l| held::units(l, &holds));
+        let units = units.collect::<Result<Vec<_>, Refused>>()?;
         let ends = pull::ends(model, &lattice, &representative.choice)?;
+        let mut pulls = pulls;
+        if !holds.is_empty() {
+            pulls.extend(pull::collecting(&lattice, &pulls, &ends));
+        }
         let mut totals = total::totals(model, &lattice, &representative)?;
         if let Some(m) = &meshed {
             totals.extend(total::beside_functionals(
@@ -113,12 +126,15 @@ impl Line {
             lone,
             pulls,
             ties,
+            holds,
+            units,
             ends,
             meshed,
             totals,
             shares,
         };
         line.ends_are_collected()?;
+        line.holds_are_alone()?;
         line.prove()?;
         Ok(line)
     }
@@ -150,6 +166,28 @@ impl Line {
         Ok(())
     }
 
+    /// Multipliers are found beside velocities of sites alone.
+    fn holds_are_alone(&self) -> Result<(), Refused> {
+        let refused = |words: &str| Err(Refused::Form(words.to_owned()));
+        if self.holds.is_empty() {
+            return Ok(());
+        }
+        if !self.ties.is_empty() {
+            return refused(
+                "a constraint is held, and velocities of neighbours stand in one term: which are found together \
+                 with all multipliers",
+            );
+        }
+        if self.meshed.is_some() {
+            return refused("a constraint is held beside functionals of all sites");
+        }
+        let domains = self.lattice.quantities.iter();
+        match domains.into_iter().any(|q| q.domain.is_some()) {
+            true => refused("a constraint is held of particles in a domain"),
+            false => Ok(()),
+        }
+    }
+
     /// Whether velocities of neighbours stand in the momentum of a configuration.
     pub fn is_tied(&self, name: &str) -> bool {
         let mut parts = self.ties.iter().flat_map(|t| &t.parts);
@@ -167,7 +205,8 @@ impl Line {
     pub fn beyond(&self) -> usize {
         let tied = self.ties.iter().map(|t| t.width);
         let pulled = self.pulls.iter().map(|p| p.width);
-        pulled.chain(tied).max().unwrap_or(0)
+        let held = self.holds.iter().map(|h| h.width);
+        pulled.chain(tied).chain(held).max().unwrap_or(0)
     }
 }
 
@@ -201,9 +240,6 @@ fn stands_alone(model: &Model, lattice: &Lattice) -> Result<(), Refused> {
             Statement::Group { name, .. } => lattice.find(&name.text).is_none(),
             Statement::Field { names, .. } | Statement::Advected { names, .. } => {
                 names.iter().any(|n| lattice.find(&n.text).is_none())
-            }
-            Statement::Hold { .. } => {
-                return refused("a constraint is held, which ties what its sites solve");
             }
             Statement::Scale(_) => return refused("the action is scaled"),
             Statement::Assume { left, right, .. } => {

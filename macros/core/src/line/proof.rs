@@ -62,8 +62,13 @@ impl Line {
         let out = expr::sub(whole.outgoing.clone(), here(&own.outgoing)?);
         let into = expr::sub(whole.incoming.clone(), here(&own.incoming)?);
         let (out, into) = (without(out, 0), without(into, 1));
+        let reacted = self.reacted(&mover.name, site).ok_or_else(refused)?;
+        let mut written = super::held::written_out(part, i);
+        written.push(expr::neg(reacted));
+        let reactions = expr::sum(written, whole.outgoing.shape());
         let equal = zero(expr::add(out, expr::scale(leaving, pulled)))
-            && zero(expr::sub(into, expr::scale(arriving, next)));
+            && zero(expr::sub(into, expr::scale(arriving, next)))
+            && zero(reactions);
         equal.then_some(()).ok_or_else(refused)
     }
 
@@ -88,6 +93,26 @@ impl Line {
             });
         }
         Some(out)
+    }
+
+    /// What constraints add at a site of the representative, for their multipliers there.
+    fn reacted(&self, name: &str, site: usize) -> Option<Expr> {
+        let part = &self.representative;
+        let mut terms = Vec::new();
+        let (lone, mover) = self.mover(name)?;
+        let shape = lone.d.balances[mover.index].outgoing.shape();
+        for held in &self.holds {
+            for r in held.reaches.iter().filter(|r| r.on == name) {
+                let index = site.checked_sub(r.site);
+                if index.is_none_or(|i| part.copy(&held.name, i).is_none()) {
+                    continue;
+                }
+                let by = isize::try_from(site).ok()?
+                    - isize::try_from(r.site + super::site::BASE).ok()?;
+                terms.push(part.moved(&r.reaction, by)?);
+            }
+        }
+        Some(expr::sum(terms, shape))
     }
 
     /// What neighbours add at a site of the representative.

@@ -236,7 +236,7 @@ pub(super) fn elaborated(part: &Written, summand: &Summand) -> Result<Expr, Refu
 }
 
 /// Advected quantities by the configurations that carry them.
-fn defined(part: &Written, term: &Expr) -> Result<Expr, Refused> {
+pub(super) fn defined(part: &Written, term: &Expr) -> Result<Expr, Refused> {
     let d = &part.d;
     let s = &d.letters.symbols;
     let mut list: Vec<(Letter, Expr)> = Vec::new();
@@ -290,6 +290,37 @@ pub(super) fn forces(part: &Written, term: &Expr) -> Vec<Force> {
             on: at.of,
             site: at.site,
             value,
+        });
+    }
+    out
+}
+
+/// What ends add is put beside what neighbours add: of what no neighbour acts on, places where nothing is added else.
+pub(super) fn collecting(lattice: &Lattice, pulls: &[Pull], ends: &[EndTerm]) -> Vec<Pull> {
+    let mut out: Vec<Pull> = Vec::new();
+    for f in ends.iter().flat_map(|e| &e.forces) {
+        let collected = |all: &[Pull]| all.iter().flat_map(|p| &p.forces).any(|x| x.on == f.on);
+        if collected(pulls) || collected(&out) {
+            continue;
+        }
+        let Some(q) = lattice.find(&f.on) else {
+            continue;
+        };
+        let none = Force {
+            on: f.on.clone(),
+            site: 0,
+            value: expr::zero(f.value.shape()),
+        };
+        out.push(Pull {
+            label: q.label,
+            from: 0,
+            to: match q.sites {
+                Sites::Nodes => 0,
+                Sites::Segments | Sites::Members => -1,
+            },
+            width: 0,
+            forces: vec![none],
+            terms: expr::zero(Shape::SCALAR),
         });
     }
     out

@@ -20,6 +20,9 @@ fn shipped_lattices_are_programs() {
         ("sine-gordon", 1, 1),
         ("coupled-tops", 1, 1),
         ("elastic-rod", 2, 2),
+        ("hanging-chain", 0, 1),
+        // Between sections, and where an end pushes.
+        ("kirchhoff-rod", 2, 2),
     ] {
         let line = match line(&shipped(name)) {
             Ok(line) => line,
@@ -65,5 +68,60 @@ fn a_charge_at_a_site_is_one_system() {
     match line(text) {
         Ok(line) => assert!(matches!(line.lone[0].movers[0].how, How::System { .. })),
         Err(refused) => panic!("{refused:?}"),
+    }
+}
+
+#[test]
+fn what_is_held_reaches_its_site_and_the_next() {
+    let rod = line(&shipped("kirchhoff-rod")).unwrap_or_else(|e| panic!("{e:?}"));
+    let [held] = rod.holds.as_slice() else {
+        panic!("one constraint");
+    };
+    assert_eq!((held.components, held.width, held.to), (3, 1, -1));
+    let reached: Vec<(&str, usize)> = held
+        .reaches
+        .iter()
+        .map(|r| (r.on.as_str(), r.site))
+        .collect();
+    assert_eq!(reached, [("φ", 0), ("φ", 1), ("Λ", 0)]);
+    let multiple = |r: &super::Reach| matches!(r.columns, super::Matrix::Multiple(_));
+    let multiples: Vec<bool> = held.reaches.iter().map(multiple).collect();
+    assert_eq!(multiples, [true, true, false]);
+}
+
+/// A model of numbers at nodes with this constraint, and why it is refused.
+fn held(statement: &str) -> String {
+    let text = format!(
+        "model Beads {{ label i in 0..N; param m, a: Real; field X: Vec<2> at nodes; field Y: Mat<2> at nodes; {statement}
+        lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + m*tr((next(Y) - Y)^T*(next(Y) - Y))/(2*h); }}"
+    );
+    match line(&text) {
+        Err(Refused::Form(why)) => why,
+        Ok(_) => String::new(),
+        Err(other) => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn constraints_that_loops_do_not_take_are_refused_with_their_names() {
+    assert_eq!(
+        held("hold k: dot(next(X, i) - X, next(X, i) - X) = a^2;"),
+        ""
+    );
+    assert_eq!(held("hold k: dot(X, X) = a^2;"), "");
+    let far = "hold k: dot(next(next(X, i), i) - X, next(next(X, i), i) - X) = a^2;";
+    for (statement, part) in [
+        (far, "no neighbours"),
+        (
+            "hold k: dot(X - prev(X, i), X - prev(X, i)) = a^2;",
+            "count it from that one",
+        ),
+        ("hold k: det(Y) = 1;", "numbers, vectors and rotations"),
+    ] {
+        let why = held(statement);
+        assert!(
+            why.contains(part) && why.contains("`k`"),
+            "{statement}: {why}"
+        );
     }
 }

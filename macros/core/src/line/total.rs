@@ -4,7 +4,7 @@
 use super::site::BASE;
 use super::{Lone, Meshed, Refused, Written};
 use crate::algebra::Algebra;
-use crate::derive::invariants::Invariant;
+use crate::derive::invariants::{Family, Invariant};
 use crate::document::default_choice;
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
@@ -155,7 +155,8 @@ fn of_part(
     };
     let each = invariants.iter().filter_map(|v| {
         let value = v.value.as_ref()?;
-        if !v.exact {
+        // Constraints are told for all sites together.
+        if !v.exact || v.family == Family::Held {
             return None;
         }
         let densities = densities(lattice, part, value)?;

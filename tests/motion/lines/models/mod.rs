@@ -7,10 +7,12 @@ use clebsch::nalgebra::{Matrix3, Vector3};
 mod bent;
 mod beta;
 mod cells;
+mod chain;
 mod charges;
 pub mod cloud;
 mod dense;
 pub mod grid;
+mod kirchhoff;
 mod linked;
 mod named;
 mod quartic;
@@ -23,9 +25,11 @@ mod water;
 pub use bent::Bent;
 pub use beta::Beta;
 pub use cells::{Cells, Smoothed};
+pub use chain::Chain;
 pub use charges::Charges;
 pub use cloud::Cloud;
 pub use grid::{Basin, Plane};
+pub use kirchhoff::{Ends, Kirchhoff};
 pub use linked::{Linked, LinkedChainState, Woven};
 pub use named::Named;
 pub use quartic::Quartic;
@@ -62,6 +66,11 @@ pub trait Line {
     fn energy_ratio(&self) -> f64;
     /// The largest mass over the step, by which the rounding of places shows in momenta.
     fn mass_by_step(&self) -> f64;
+
+    /// What is held at a node, less constants.
+    fn constraints(&self, _: &Configuration<D>) -> Vec<D> {
+        Vec::new()
+    }
 
     /// Whether its potential has two derivatives everywhere. Those of cells jump where neighbours change, and
     /// particles with nothing between them pair: no bound of the energy is promised then.
@@ -114,6 +123,9 @@ impl Line for Flipped<'_> {
     fn mass_by_step(&self) -> f64 {
         self.0.mass_by_step()
     }
+    fn constraints(&self, q: &Configuration<D>) -> Vec<D> {
+        self.0.constraints(q)
+    }
 }
 
 /// Every line of this size, with every end.
@@ -148,6 +160,13 @@ pub fn all(n: usize) -> Vec<Box<dyn Line>> {
     out.push(Box::new(Named { n, end: true }));
     let sine = (0..5).filter(|ends| n > 1 || *ends < 4);
     out.extend(sine.map(|ends| Box::new(Sine::new(n, ends)) as Box<dyn Line>));
+    let chains = (0..5).filter(|ends| n > 2 || *ends < 3);
+    out.extend(chains.map(|ends| Box::new(Chain { n, ends }) as Box<dyn Line>));
+    out.extend(
+        kirchhoff::all(n)
+            .into_iter()
+            .map(|line| Box::new(line) as Box<dyn Line>),
+    );
     let rods = (0..9).filter(|ends| n > 1 || *ends == 0);
     out.extend(rods.map(|ends| Box::new(Rod::new(n, ends)) as Box<dyn Line>));
     out

@@ -208,7 +208,7 @@ fn momenta_of_velocities(l: &Lines) -> Option<TokenStream> {
 }
 
 /// The momentum of a site in the frame of its side.
-fn momentum(m: &Moving, site: &TokenStream) -> TokenStream {
+pub(super) fn momentum(m: &Moving, site: &TokenStream) -> TokenStream {
     let name = m.name();
     match m.is_rotation() {
         true => quote!(at.#name[#site].matrix().tr_mul(&momenta.#name[#site])),

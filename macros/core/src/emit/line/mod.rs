@@ -3,15 +3,20 @@
 //! Takes a [`Line`]; gives Rust items.
 
 mod acting;
+mod constraints;
 mod domain;
 mod ends;
 mod energy;
 mod forms;
 mod given;
+mod held;
 mod items;
 mod locals;
 mod meshes;
 mod pulls;
+mod reactions;
+mod responses;
+mod rows;
 mod solved;
 mod state;
 mod step;
@@ -60,6 +65,8 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
         solved::solved(&l),
         tied::tied(&l),
         acting::acting(&l),
+        held::held(&l),
+        constraints::told(&l),
         energy::energy(&l, of_meshes),
         of_meshes.map(|m| m.items.clone()).unwrap_or_default(),
         walls.map(|w| w.items).unwrap_or_default(),

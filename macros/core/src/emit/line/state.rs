@@ -95,6 +95,16 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
     });
     let (p, v): (Vec<_>, Vec<_>) = (pull_fields.collect(), velocities.collect());
     let band = super::tied::band_field(l);
+    let held = super::reactions::fields(l);
+    let (multipliers, told) = super::reactions::state(l);
+    let multiplier_names = super::reactions::names(l);
+    let kept_multipliers = l.is_held().then(|| {
+        let ty = l.item("Multipliers");
+        quote!(multipliers: #ty<T>,)
+    });
+    let same_multipliers = l
+        .is_held()
+        .then(|| quote!(&&self.multipliers == other.multipliers));
     let of_functionals = of_meshes.map(|m| &m.fields);
     let meshes = of_meshes.map(|_| {
         let meshes = l.item("Meshes");
@@ -133,11 +143,14 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
         #[derive(Clone, Debug)]
         struct #pulls<T> { #(#p,)* #of_functionals #no_pulls }
 
+        #multipliers
+
         /// What moves, at one node in time.
         #[derive(Clone, Debug)]
         pub struct #state<T = f64> {
             places: #places<T>,
             momenta: #momenta<T>,
+            #kept_multipliers
             node: u64,
             stamp: line::Stamp,
             #(#counts,)*
@@ -145,15 +158,16 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
 
         impl<T: Real> #state<T> {
             #(#access)*
+            #told
             /// The number of the node.
             pub fn node(&self) -> u64 { self.node }
         }
 
-        ::clebsch::saved_line! { #state { #(#names),* } }
+        ::clebsch::saved_line! { #state { #(#names),* } #(#multiplier_names)* }
 
         impl<T: Real> PartialEq for #state<T> {
             fn eq(&self, other: &Self) -> bool {
-                self.places == other.places && self.momenta == other.momenta && self.node == other.node
+                self.places == other.places && self.momenta == other.momenta && self.node == other.node #same_multipliers
             }
         }
 
@@ -171,6 +185,7 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
             #reflections
             #(#v,)*
             #band
+            #held
         }
 
         #counted

@@ -2,7 +2,7 @@
 //! neighbours add at the new places, then all momenta; the state changes when everything has worked.
 
 use super::acting::{self, Acting};
-use super::{Lines, Moving, OfMeshes, number, solved, tied};
+use super::{Lines, Moving, OfMeshes, number, reactions, solved, tied};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -35,14 +35,37 @@ pub(super) fn step(
     let checks = moving.iter().map(|m| check(l, m));
     let beyond = number(l.line.beyond());
     let around = around(l, &moving);
-    let solves = moving.iter().map(|m| solve(l, m));
     let systems = l.systems();
-    let of_systems = systems
+    let (is_kicked, apart): (Vec<_>, Vec<_>) = moving
         .iter()
-        .map(|(field, _, members)| match tied::is_tied(l, members) {
-            true => tied::solve(l, field, members),
-            false => solve_system(field, members),
-        });
+        .partition(|m| l.body_of(&m.mover.name).is_some());
+    let solves = found(l, &apart, &systems, &format_ident!("edges"));
+    let searched = l.is_held().then(|| {
+        let solved = found(l, &is_kicked, &systems, &format_ident!("kicked"));
+        reactions::search(l, &solved)
+    });
+    let with_reactions = reactions::edges(l);
+    let projected = l.is_held().then(|| reactions::project(l));
+    let momenta_swapped = match l.is_held() {
+        true => TokenStream::new(),
+        false => quote!(::core::mem::swap(&mut state.momenta, &mut work.momenta);),
+    };
+    let begin_held = l
+        .is_held()
+        .then(|| quote!(self.reached(&state.places, &mut work.here);));
+    let no_multipliers = l.is_held().then(|| {
+        let none = reactions::no_multipliers(l);
+        quote!(multipliers: #none,)
+    });
+    let mutable = l.is_held().then(|| quote!(mut));
+    let admitted = l.is_held().then(|| {
+        let admitted = reactions::admitted(l);
+        quote! {
+            #admitted
+            self.begin(&state, &mut work);
+        }
+    });
+    let once = reactions::once(l);
     let arrivals = moving.iter().map(|m| arrive(l, m));
     let beginnings = moving.iter().map(|m| begin(l, m));
     let count_fields: Vec<_> = moving
@@ -108,6 +131,7 @@ pub(super) fn step(
         quote!(#field: ::std::vec![SVector::<T, #n>::zeros(); state.momenta.#own.len()])
     });
     let band = tied::band_value(l);
+    let held = reactions::values(l, &quote!(#edges { #(#names: #edge_values),* }));
     let place_values = moving.iter().map(|m| {
         let own = m.name();
         match m.is_rotation() {
@@ -128,7 +152,6 @@ pub(super) fn step(
             }
         }
     });
-    let solves: Vec<TokenStream> = solves.collect();
     let (domains, inside) = super::domain::domain(l);
     quote! {
         impl<T: Real> #name<T> {
@@ -143,6 +166,7 @@ pub(super) fn step(
                 let mut state = #state {
                     places: #places { #(#names: #place_values),* },
                     momenta: #momenta { #(#names: #momentum_values),* },
+                    #no_multipliers
                     node: 0,
                     stamp: line::Stamp::fresh(),
                     #(#count_fields: #counts,)*
@@ -152,7 +176,8 @@ pub(super) fn step(
                     state.places.#names.resize(#counts + #beyond, last);
                 )*
                 self.around(&mut state.places);
-                let work = self.workspace(&state, h)?;
+                let #mutable work = self.workspace(&state, h)?;
+                #admitted
                 let (mut trial, mut scratch) = (state.clone(), work.clone());
                 self.step(&mut trial, &mut scratch)?;
                 Ok((state, work))
@@ -177,7 +202,9 @@ pub(super) fn step(
                     #none_reflected
                     #(#velocity_values,)*
                     #band
+                    #held
                 };
+                #once
                 self.begin(state, &mut work) #tried;
                 Ok(work)
             }
@@ -195,17 +222,19 @@ pub(super) fn step(
                 } else if work.stamp != state.stamp {
                     self.begin(state, work) #tried;
                 }
-                #(#of_systems)*
-                #(#solves)*
+                #solves
+                #searched
                 self.around(&mut work.places);
                 #walls
                 #inside
                 self.pulled(h, &work.places, &mut work.pulls);
                 #meshed
                 work.stamp = line::Stamp::none();
+                #with_reactions
                 #(#arrivals)*
+                #projected
                 ::core::mem::swap(&mut state.places, &mut work.places);
-                ::core::mem::swap(&mut state.momenta, &mut work.momenta);
+                #momenta_swapped
                 state.node += 1;
                 state.stamp = state.stamp.after(self.stamp, h.value());
                 work.stamp = state.stamp;
@@ -217,6 +246,7 @@ pub(super) fn step(
             fn begin(&self, state: &#state<T>, work: &mut #work<T>) #fallible {
                 let h = work.h;
                 self.pulled(h, &state.places, &mut work.pulls);
+                #begin_held
                 #meshed_at_start
                 #(#beginnings)*
                 work.stamp = state.stamp;
@@ -249,6 +279,25 @@ pub(super) fn step(
 
         #domains
     }
+}
+
+/// What finds the places of these at the next node, from the momenta of their edges in a field of the workspace.
+fn found(
+    l: &Lines,
+    moving: &[&Moving],
+    systems: &[(Ident, usize, Vec<Moving>)],
+    edges: &Ident,
+) -> TokenStream {
+    let is_own = |m: &Moving| moving.iter().any(|o| o.mover.name == m.mover.name);
+    let own = systems
+        .iter()
+        .filter(|(.., members)| members.iter().any(is_own));
+    let of_systems = own.map(|(field, _, members)| match tied::is_tied(l, members) {
+        true => tied::solve(l, field, members),
+        false => solve_system(field, members, edges),
+    });
+    let solves = moving.iter().map(|m| solve(l, m, edges));
+    quote!(#(#of_systems)* #(#solves)*)
 }
 
 /// The name of the function of the sites that move.
@@ -369,14 +418,14 @@ fn check(l: &Lines, m: &Moving) -> TokenStream {
 }
 
 /// The places of one configuration at the next node.
-fn solve(l: &Lines, m: &Moving) -> TokenStream {
+fn solve(l: &Lines, m: &Moving, edges: &Ident) -> TokenStream {
     let (name, text, range) = (m.name(), &m.mover.name, range_name(m));
     let count = l.count_of(text);
     let fill = match m.system() {
         None => {
             let kernel = solved::kernel(m);
             quote! {
-                let (at, edges) = (&state.places, &work.edges.#name);
+                let (at, edges) = (&state.places, &work.#edges.#name);
                 let made = line::try_fill(self.threads, &mut work.places.#name[first..last], |i| {
                     self.#kernel(h, first + i, at, &edges[first + i])
                 });
@@ -418,7 +467,7 @@ fn solve(l: &Lines, m: &Moving) -> TokenStream {
 }
 
 /// The velocities of one block of fields.
-fn solve_system(field: &Ident, members: &[Moving]) -> TokenStream {
+fn solve_system(field: &Ident, members: &[Moving], edges: &Ident) -> TokenStream {
     let Some(first) = members.first() else {
         return TokenStream::new();
     };
@@ -426,7 +475,7 @@ fn solve_system(field: &Ident, members: &[Moving]) -> TokenStream {
     quote! {
         {
             let [first, last] = self.#range();
-            let (at, edges) = (&state.places, &work.edges);
+            let (at, edges) = (&state.places, &work.#edges);
             let made = line::try_fill(self.threads, &mut work.#field[first..last], |i| {
                 self.#kernel(h, first + i, at, edges)
             });

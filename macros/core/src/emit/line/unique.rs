@@ -8,7 +8,7 @@ use quote::format_ident;
 use std::collections::BTreeSet;
 
 /// What kernels and the functions around them call their own.
-const KERNEL: [&str; 50] = [
+const KERNEL: [&str; 60] = [
     "a",
     "acting",
     "after",
@@ -26,7 +26,10 @@ const KERNEL: [&str; 50] = [
     "first",
     "from",
     "h",
+    "held",
+    "here",
     "i",
+    "impulses",
     "index",
     "inertia",
     "inside",
@@ -45,7 +48,11 @@ const KERNEL: [&str; 50] = [
     "parts",
     "pulls",
     "quantity",
+    "rate",
+    "reached",
+    "responses",
     "ring",
+    "row",
     "rows",
     "self",
     "setting",
@@ -53,12 +60,15 @@ const KERNEL: [&str; 50] = [
     "sites",
     "space",
     "state",
+    "still",
+    "there",
     "to",
     "turn",
     "twice",
     "validate",
     "velocities",
     "velocity",
+    "weights",
 ];
 
 /// A name of the model that emitted code has for something else, if so.
@@ -76,6 +86,11 @@ pub(super) fn refusal(line: &Line) -> Option<String> {
         return Some(format!(
             "`{name}` is a name of emitted code: call the number of sites `N`"
         ));
+    }
+    if line.holds.iter().any(|h| h.name == "node") {
+        return Some(
+            "`node` is a name of emitted code: give the multiplier another name".to_owned(),
+        );
     }
     let scalar = line.model.name.text == "T";
     scalar.then(|| "`T` is the scalar of emitted code: give the model another name".to_owned())

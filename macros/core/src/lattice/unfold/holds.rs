@@ -1,7 +1,7 @@
 //! Held constraints at the sites that they have: one with a multiplier of its own at each.
 
-use super::Writer;
 use super::definitions::inlined;
+use super::{StatedHold, Writer};
 use crate::diagnostic::Place;
 use crate::lattice::names::{Copied, copy};
 use crate::lattice::range::reach;
@@ -21,10 +21,11 @@ impl Writer<'_> {
             kind: Kind::Sum(vec![(false, left.clone()), (true, right.clone())]),
             place,
         };
-        let range = match reach(self.lattice, &whole) {
-            Ok(found) => found.range(self.lattice, self.choice),
+        let found = match reach(self.lattice, &whole) {
+            Ok(found) => found,
             Err(d) => return self.errors.push(d),
         };
+        let range = found.range(self.lattice, self.choice);
         let Some(range) = range else {
             let name = name.clone();
             let stated = Statement::Hold {
@@ -35,6 +36,11 @@ impl Writer<'_> {
             };
             return self.push(stated, docs);
         };
+        self.out.holds.push(StatedHold {
+            name: name.text.clone(),
+            range,
+            letters: found.letters,
+        });
         for site in range.indices(self.choice.count(range.label)) {
             let both = self
                 .put(site)

@@ -1,0 +1,119 @@
+//! Lines with held constraints that run from their text: every number equals, to the last bit, that of the stepper which is
+//! compiled, and to rounding that of the bodies written out.
+
+#![allow(missing_docs, mixed_script_confusables)]
+
+#[allow(dead_code)]
+#[path = "lines/beside.rs"]
+mod beside;
+#[allow(dead_code)]
+#[path = "lines/compiled.rs"]
+mod compiled;
+
+use beside::{bits, choice, start};
+use clebsch_interpret::lines::LineModel;
+use compiled::{Case, held};
+
+#[test]
+fn held_lines_equal_the_compiled_ones_to_the_last_bit() {
+    beside::equal_to_the_last_bit(held::all().into_iter());
+}
+
+#[test]
+fn held_lines_move_as_their_bodies_do() {
+    beside::move_as_bodies_do(held::all().into_iter());
+}
+
+#[test]
+fn a_held_line_is_written_down_and_goes_on_to_the_last_bit() {
+    beside::go_on(held::all().into_iter());
+}
+
+#[test]
+fn a_wrong_sign_of_what_is_held_is_seen() {
+    let wrong = [
+        (held::ROD, " + (h/s)*tr(B*Λ^T*next(Λ, i))", ""),
+        (
+            held::CHAIN,
+            "dot(V, V)/2 + dot(g, x)",
+            "dot(V, V)/2 - dot(g, x)",
+        ),
+        // Other beads, the same at the start: the second link of three is held twice as heavily.
+        (
+            held::CHAIN,
+            "dot(next(x, i) - x, next(x, i) - x) = a^2",
+            "dot(next(x, i) - x, next(x, i) - x)^2 = a^4",
+        ),
+    ];
+    for (source, term, rest) in wrong {
+        let mutated = source.replacen(term, rest, 1);
+        assert_ne!(mutated, source, "{term}");
+        let model = LineModel::read(&mutated).expect("is read");
+        let all = held::all();
+        let (_, make, _) = all
+            .iter()
+            .find(|(own, ..)| *own == source)
+            .expect("is here");
+        let case = Case::new(5, Some(["free", "free"]));
+        let (mut built, data) = make(&case);
+        let mut line = start(&model, &mutated, &case, &data);
+        for _ in 0..3 {
+            built.step().expect("steps");
+            line.step().expect("steps");
+        }
+        let differs = model.observers().any(|name| {
+            let read = line.observe(name).expect("is observed");
+            bits(&read) != bits(&built.seen(name))
+        });
+        assert!(differs, "{term}");
+    }
+}
+
+#[test]
+fn data_off_a_constraint_are_refused_at_their_site() {
+    let model = LineModel::read(held::CHAIN).expect("is read");
+    let case = Case::new(50, Some(["pinned", "free"]));
+    let all = held::all();
+    let (_, make, _) = &all[1];
+    let (_, data) = make(&case);
+    let chosen = choice(held::CHAIN, case.n, case.ends);
+    let refused = |data: &compiled::Data| {
+        let started = model.start(&chosen, case.h, &|name| data.get(name));
+        started.map(|_| ()).expect_err("is refused").to_string()
+    };
+    let off = refused(&data.with("a", |a| a[31] *= 1.001));
+    assert!(
+        off.contains("site 31") && off.contains("off the constraint"),
+        "{off}"
+    );
+    let across = refused(&data.with("momentum_x", |p| p[3 * 50 + 2] = -0.4));
+    assert!(
+        across.contains("site 49") && across.contains("would move"),
+        "{across}"
+    );
+}
+
+/// Rows of a long line come from the short one: every multiplier has its place, constraints of all sites are told together.
+#[test]
+fn the_card_of_a_long_held_line_tells_multipliers_and_constraints() {
+    for ((source, ..), multiplier) in held::all().iter().zip(["n", "lambda"]) {
+        let chosen = choice(source, 60, Some(["pinned", "free"]));
+        let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("is read");
+        let own = card.observables.iter().map(|f| f.ascii);
+        let held: Vec<&str> = own
+            .filter(|n| n.rsplit_once('_').is_some_and(|(k, _)| k == multiplier))
+            .collect();
+        assert_eq!(held.len(), 60, "{held:?}");
+        let names: Vec<&str> = card.invariants.iter().map(|i| i.name).collect();
+        for level in ["constraint", "constraint_rate"] {
+            assert!(
+                names.contains(&format!("{level}_{multiplier}").as_str()),
+                "{names:?}"
+            );
+        }
+        let held = names.iter().filter(|n| n.starts_with("constraint"));
+        assert_eq!(held.count(), 2, "{names:?}");
+        assert!(!card.summary.contains("_2, constraint"), "{}", card.summary);
+        assert!(card.summary.contains("loops over them"), "{}", card.summary);
+    }
+}

@@ -1,0 +1,216 @@
+//! Lines that run from their text beside what they must equal: the compiled ones, and their bodies written out.
+
+use crate::compiled::{Case, Compiled, Data, Line};
+use clebsch::card::{Card, Field, Settings, Trajectory};
+use clebsch::saved::{Saved, Words};
+use clebsch_core::expr::symbol::ascii;
+use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::pipeline;
+use clebsch_interpret::lines::{LineModel, LineTrajectory};
+use std::sync::Arc;
+
+pub fn choice(source: &str, n: usize, ends: Option<[&str; 2]>) -> Choice {
+    let model = pipeline::parse_source(source).expect("is a model");
+    let lattice = Lattice::read(&model).expect("has labels");
+    let choice = Choice::representative(&lattice, 1);
+    let choice = choice.with_count(&lattice, "i", n).expect("has sites");
+    match ends {
+        None => choice.with_ring(&lattice).expect("closes"),
+        Some([first, last]) => {
+            let choice = choice.with_end(&lattice, false, first).expect("begins so");
+            choice.with_end(&lattice, true, last).expect("ends so")
+        }
+    }
+}
+
+pub fn start(model: &Arc<LineModel>, source: &str, case: &Case, data: &Data) -> LineTrajectory {
+    let choice = choice(source, case.n, case.ends);
+    model
+        .start(&choice, case.h, &|name| data.get(name))
+        .expect("starts")
+}
+
+pub fn bits(list: &[f64]) -> Vec<u64> {
+    list.iter().map(|x| x.to_bits()).collect()
+}
+
+/// Compares all that both show.
+pub fn same(line: &mut LineTrajectory, built: &dyn Compiled, model: &LineModel, what: &str) {
+    assert_eq!(line.node(), built.node(), "{what}");
+    for name in model.observers() {
+        let read = line.observe(name).expect("is observed");
+        let own = built.seen(name);
+        assert!(!own.is_empty(), "{what}: {name}");
+        assert_eq!(bits(&read), bits(&own), "{what}: {name}");
+    }
+    let energies = line.energies().expect("has energies");
+    assert_eq!(bits(&energies), bits(&built.energies()), "{what}: energies");
+    let totals = built.totals();
+    let names: Vec<&str> = model.totals().collect();
+    assert_eq!(names.len(), totals.len(), "{what}: {names:?}");
+    for (name, total) in totals {
+        let read = line.total(name).expect("is conserved");
+        assert_eq!(bits(&read), bits(&total), "{what}: {name}");
+    }
+}
+
+/// The name of a quantity and its site.
+pub fn split(field: &Field) -> (&str, Option<usize>) {
+    match field.ascii.rsplit_once('_') {
+        Some((key, site)) if site.parse::<usize>().is_ok() => (key, site.parse().ok()),
+        _ => (field.ascii, None),
+    }
+}
+
+/// The values of fields of a card.
+pub fn values(fields: &[Field], data: &Data) -> Vec<Vec<f64>> {
+    let each = fields.iter().map(|field| {
+        let (key, site) = split(field);
+        let list = data.of_ascii(key).expect("is given");
+        let at = match list.len() == field.count() {
+            // The same at every site, or of an end.
+            true => 0,
+            false => site.expect("has a site") * field.count(),
+        };
+        list[at..at + field.count()].to_vec()
+    });
+    each.collect()
+}
+
+/// Every number that a trajectory shows beside what the line has there; of energies what they have changed
+/// since the start, as the bodies leave out what is constant.
+pub fn beside(
+    (card, bodies): (&Card, &dyn Trajectory),
+    line: &mut LineTrajectory,
+    model: &LineModel,
+    energies: [f64; 2],
+) -> Vec<[f64; 2]> {
+    let mut all = vec![0.0; card.observable_count()];
+    bodies.observe(&mut all);
+    let mut pairs = Vec::new();
+    let mut from = 0;
+    for field in card.observables {
+        let (key, site) = split(field);
+        let own = &all[from..from + field.count()];
+        from += field.count();
+        let Some(name) = model.observers().find(|o| ascii(o) == key) else {
+            continue;
+        };
+        let list = line.observe(name).expect("is observed");
+        let at = site.expect("has a site") * field.count();
+        let pair = own.iter().zip(&list[at..at + field.count()]);
+        pairs.extend(pair.map(|(x, y)| [*x, *y]));
+    }
+    let mut sums = vec![0.0; card.invariant_count()];
+    bodies.invariants(&mut sums);
+    let mut from = 0;
+    for invariant in card.invariants {
+        let own = &sums[from..from + invariant.rows];
+        from += invariant.rows;
+        if invariant.name == "energy" {
+            let [kinetic, potential] = line.energies().expect("has energies");
+            pairs.push([own[0] - energies[0], kinetic + potential - energies[1]]);
+            continue;
+        }
+        let Some(values) = line.total(invariant.name) else {
+            // Of one choice of ends only: no total of every line.
+            continue;
+        };
+        pairs.extend(own.iter().zip(&values).map(|(x, y)| [*x, *y]));
+    }
+    pairs
+}
+
+/// The energies of both at the start.
+pub fn energies(bodies: &dyn Trajectory, line: &mut LineTrajectory) -> [f64; 2] {
+    let card = bodies.card();
+    let mut sums = vec![0.0; card.invariant_count()];
+    bodies.invariants(&mut sums);
+    let before = card.invariants.iter().take_while(|i| i.name != "energy");
+    let at: usize = before.map(|i| i.rows).sum();
+    let [kinetic, potential] = line.energies().expect("has energies");
+    [sums[at], kinetic + potential]
+}
+
+/// Lines from their text equal the compiled ones to the last bit.
+pub fn equal_to_the_last_bit(lines: impl Iterator<Item = Line>) {
+    for (source, make, cases) in lines {
+        let model = LineModel::read(source).expect("is read");
+        for case in cases {
+            let data = make(&case);
+            let (built, numbers) = &data;
+            let mut built = built.clone_box();
+            let what = format!("{} {case:?}", model.name());
+            let mut line = start(&model, source, &case, numbers);
+            same(&mut line, &*built, &model, &what);
+            for step in 1..=200 {
+                let (one, other) = (built.step(), line.step().map_err(|e| e.to_string()));
+                assert_eq!(one, other, "{what} step {step}");
+                one.expect("steps");
+                if step < 4 || step % 50 == 0 {
+                    same(&mut line, &*built, &model, &format!("{what} step {step}"));
+                }
+            }
+        }
+    }
+}
+
+/// Lines move as their bodies do, written out.
+pub fn move_as_bodies_do(lines: impl Iterator<Item = Line>) {
+    for (source, make, cases) in lines {
+        let model = LineModel::read(source).expect("is read");
+        for case in cases.iter().filter(|c| c.n == 5) {
+            let (_, data) = make(case);
+            let chosen = choice(source, case.n, case.ends);
+            let (card, _) =
+                clebsch_interpret::card_on_lattice(source, &chosen).expect("is written out");
+            let (parameters, initial) =
+                (values(card.parameters, &data), values(card.initial, &data));
+            let settings = Settings::step(case.h);
+            let mut bodies = (card.open)(&parameters, &initial, settings).expect("starts");
+            let mut line = start(&model, source, case, &data);
+            let energies = energies(&*bodies, &mut line);
+            for _ in 0..20 {
+                bodies.step().expect("steps");
+                line.step().expect("steps");
+            }
+            let pairs = beside((&card, &*bodies), &mut line, &model, energies);
+            assert!(pairs.len() > 8, "{case:?}");
+            for [x, y] in pairs {
+                // Twenty steps of a few roundings each, of numbers up to ten.
+                assert!(
+                    (x - y).abs() < 1e-12 * x.abs().max(10.0),
+                    "{case:?}: {x} {y}"
+                );
+            }
+        }
+    }
+}
+
+/// Lines are written down and go on to the last bit.
+pub fn go_on(lines: impl Iterator<Item = Line>) {
+    for (source, make, cases) in lines {
+        let model = LineModel::read(source).expect("is read");
+        let case = cases.last().expect("has cases");
+        let (_, data) = make(case);
+        let mut whole = start(&model, source, case, &data);
+        for _ in 0..20 {
+            whole.step().expect("steps");
+        }
+        let mut words = Words::gathered();
+        whole.words(&mut words);
+        let list = words.into_list().expect("is written down");
+        let mut again = start(&model, source, case, &data);
+        again.words(&mut Words::given(list));
+        assert_eq!(again.node(), 20);
+        for _ in 0..20 {
+            whole.step().expect("steps");
+            again.step().expect("steps");
+        }
+        for name in model.observers() {
+            let (one, other) = (whole.observe(name), again.observe(name));
+            let (one, other) = (one.expect("is there"), other.expect("is there"));
+            assert_eq!(bits(&one), bits(&other), "{}: {name}", model.name());
+        }
+    }
+}

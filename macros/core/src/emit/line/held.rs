@@ -1,0 +1,429 @@
+//! Kernels of constraints that are held: what one of them holds and its derivatives, and what impulses give to a
+//! configuration.
+
+use super::locals::Places;
+use super::pulls::{known, range_of};
+use super::{Lines, Moving, number, responses, rows};
+use crate::emit::expression::Bindings;
+use crate::expr::symbol::Role;
+use crate::expr::{Expr, Letter};
+use crate::line::{Held, Matrix, Reach, Unit};
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+/// Configurations of a site whose velocities are found together.
+pub(super) struct Bodies<'a> {
+    pub members: Vec<Moving<'a>>,
+    pub unit: &'a Unit,
+    /// How many components their velocities have.
+    pub n: usize,
+    /// Whether they answer to an impulse by a multiple of it.
+    pub scalar: bool,
+}
+
+impl Bodies<'_> {
+    /// The field of what is kept of them, and the end of the names of their kernels.
+    pub(super) fn field(&self) -> Ident {
+        self.members
+            .first()
+            .map_or_else(|| format_ident!("none"), Moving::name)
+    }
+
+    /// The first of them.
+    pub(super) fn first(&self) -> Option<&Moving<'_>> {
+        self.members.first()
+    }
+
+    /// The type of how they answer to an impulse.
+    pub(super) fn response(&self) -> TokenStream {
+        let n = number(self.n);
+        match self.scalar {
+            true => quote!(T),
+            false => quote!(SMatrix<T, #n, #n>),
+        }
+    }
+
+    /// No answer.
+    pub(super) fn none(&self) -> TokenStream {
+        let n = number(self.n);
+        match self.scalar {
+            true => quote!(T::zero()),
+            false => quote!(SMatrix::<T, #n, #n>::zeros()),
+        }
+    }
+
+    /// Whether it takes velocities to know how they answer in a step.
+    pub(super) fn takes_velocities(&self) -> bool {
+        self.members.iter().any(|m| m.system().is_some())
+    }
+
+    /// Whether they answer in a step, or at a node, as parameters say alone.
+    pub(super) fn is_steady(&self, at_node: bool) -> bool {
+        let Some(m) = self.first() else { return false };
+        let s = &m.outline().letters.symbols;
+        let of = match (at_node, &self.unit.of_edge) {
+            (true, _) => &self.unit.of_node,
+            (false, Some(list)) => list,
+            (false, None) => return false,
+        };
+        let parameter = |l: &Letter| matches!(s.get(l.symbol).role, Role::Parameter | Role::Step);
+        of.iter().flat_map(Matrix::expressions).all(|e| {
+            crate::expr::letters(&m.outline().defined(e))
+                .iter()
+                .all(parameter)
+        })
+    }
+
+    /// The row at which the velocity of a member begins, and how many it has.
+    pub(super) fn rows(&self, on: &str) -> Option<[usize; 2]> {
+        let mut row = 0;
+        for m in &self.members {
+            if m.mover.name == on {
+                return Some([row, m.components()]);
+            }
+            row += m.components();
+        }
+        None
+    }
+}
+
+impl Lines<'_> {
+    /// Whether constraints are held.
+    pub(super) fn is_held(&self) -> bool {
+        !self.line.holds.is_empty()
+    }
+
+    /// What constraints reach.
+    pub(super) fn bodies(&self) -> Vec<Bodies<'_>> {
+        let mut out = Vec::new();
+        for (lone, units) in self.line.lone.iter().zip(&self.line.units) {
+            for unit in units {
+                let own = |i: &usize| {
+                    let mover = lone.movers.iter().find(|m| m.index == *i)?;
+                    Some(Moving { lone, mover })
+                };
+                let members: Vec<Moving> = unit.members.iter().filter_map(own).collect();
+                let multiple = |list: &[Matrix]| matches!(list, [Matrix::Multiple(_)]);
+                let of_edge = unit.of_edge.as_ref().is_some_and(|list| multiple(list));
+                out.push(Bodies {
+                    n: members.iter().map(Moving::components).sum(),
+                    scalar: of_edge && multiple(&unit.of_node),
+                    members,
+                    unit,
+                });
+            }
+        }
+        out
+    }
+
+    /// The bodies that a configuration is one of, where impulses move it.
+    pub(super) fn body_of(&self, name: &str) -> Option<Bodies<'_>> {
+        let mut all = self.bodies().into_iter();
+        all.find(|b| b.members.iter().any(|m| m.mover.name == name))
+    }
+
+    /// Whether a constraint acts on a configuration.
+    pub(super) fn is_reached(&self, name: &str) -> bool {
+        let mut all = self.line.holds.iter().flat_map(|h| &h.reaches);
+        all.any(|r| r.on == name)
+    }
+
+    /// How many multipliers a site has.
+    pub(super) fn held_components(&self) -> usize {
+        self.line.holds.iter().map(|h| h.components).sum()
+    }
+
+    /// Where those of a constraint begin among them.
+    pub(super) fn held_row(&self, held: &Held) -> usize {
+        let before = self.line.holds.iter().take_while(|h| h.name != held.name);
+        before.map(|h| h.components).sum()
+    }
+
+    /// Constraints with their numbers.
+    pub(super) fn holds(&self) -> impl Iterator<Item = (usize, &Held)> {
+        (1..).zip(&self.line.holds)
+    }
+}
+
+/// A derivative as it is kept.
+pub(super) enum Kept {
+    /// A number that stands where it is used.
+    Fixed(TokenStream),
+    /// A number of each site.
+    Number,
+    /// A matrix of each site.
+    Matrix,
+}
+
+/// The field of a derivative.
+pub(super) fn field(r: &Reach) -> Ident {
+    format_ident!("{}_{}", r.on, r.site)
+}
+
+pub(super) fn kept(l: &Lines, r: &Reach) -> Kept {
+    match &r.columns {
+        Matrix::Columns(_) => Kept::Matrix,
+        Matrix::Multiple(e) if crate::expr::letters(e).is_empty() => {
+            let s = &l.line.representative.d.letters.symbols;
+            let (_, value) = l.program(s, std::slice::from_ref(e), &Bindings::new());
+            Kept::Fixed(value.into_iter().next().unwrap_or_default())
+        }
+        Matrix::Multiple(_) => Kept::Number,
+    }
+}
+
+/// The size of a derivative, in the list of what is held at a site.
+pub(super) fn size_of(l: &Lines, r: &Reach, list: &Ident) -> TokenStream {
+    let own = field(r);
+    let number = match kept(l, r) {
+        Kept::Matrix => return quote!(length(&reached.#list[site + 1].#own)),
+        Kept::Fixed(c) => quote!((#c)),
+        Kept::Number => quote!(reached.#list[site + 1].#own),
+    };
+    quote!((#number * #number).sqrt())
+}
+
+/// A matrix of the columns that were computed; those that vanish are left out.
+pub(super) fn filled(
+    (rows, cols): (usize, usize),
+    columns: &[(usize, usize, usize, TokenStream)],
+) -> TokenStream {
+    let (r, c) = (number(rows), number(cols));
+    let each = columns.iter().map(|(row, count, column, value)| {
+        let (row, count, column) = (number(*row), number(*count), number(*column));
+        quote!(a.fixed_view_mut::<#count, 1>(#row, #column).copy_from(&(#value));)
+    });
+    quote!({
+        let mut a = SMatrix::<T, #r, #c>::zeros();
+        #(#each)*
+        a
+    })
+}
+
+/// Structures and kernels.
+pub(super) fn held(l: &Lines) -> TokenStream {
+    if !l.is_held() {
+        return TokenStream::new();
+    }
+    let name = l.item("");
+    let [reached, responses, velocities] =
+        ["Reached", "Responses", "Velocities"].map(|x| l.item(x));
+    let (mut structs, mut kernels) = (TokenStream::new(), TokenStream::new());
+    for (k, h) in l.holds() {
+        let (structure, kernel) = of_hold(l, k, h);
+        structs.extend(structure);
+        kernels.extend(kernel);
+    }
+    let lists = l.holds().map(|(k, _)| {
+        let (field, ty) = (format_ident!("held_{k}"), l.item(&format!("Held{k}")));
+        quote!(#field: Vec<#ty<T>>)
+    });
+    let bodies = l.bodies();
+    let of_bodies = bodies.iter().map(|b| {
+        let (field, ty) = (b.field(), b.response());
+        quote!(#field: Vec<#ty>)
+    });
+    let of_velocities = bodies.iter().map(|b| {
+        let (field, n) = (b.field(), number(b.n));
+        quote!(#field: Vec<SVector<T, #n>>)
+    });
+    let each: Vec<TokenStream> = bodies.iter().map(|b| responses::kernels(l, b)).collect();
+    let reacted: Vec<TokenStream> = l
+        .moving()
+        .filter(|m| l.is_reached(&m.mover.name))
+        .map(|m| reacted(l, &m))
+        .collect();
+    let rows = rows::rows(l, &bodies);
+    let all = sweep(l);
+    quote! {
+        #structs
+
+        /// What is held at all sites, with a place more before the first and two behind the last.
+        #[derive(Clone, Debug)]
+        struct #reached<T> { #(#lists),* }
+
+        /// How what moves answers to impulses.
+        #[derive(Clone, Debug)]
+        struct #responses<T> { #(#of_bodies),* }
+
+        /// Velocities in the limit of small steps.
+        #[derive(Clone, Debug)]
+        struct #velocities<T> { #(#of_velocities),* }
+
+        impl<T: Real> #name<T> {
+            #kernels
+            #(#each)*
+            #(#reacted)*
+            #rows
+            #all
+        }
+    }
+}
+
+/// What is held at one index and its derivatives.
+fn of_hold(l: &Lines, k: usize, h: &Held) -> (TokenStream, TokenStream) {
+    let part = &l.line.representative;
+    let s = &part.d.letters.symbols;
+    let (ty, places) = (l.item(&format!("Held{k}")), l.item("Places"));
+    let r = number(h.components);
+    let (mut fields, mut zeros) = (TokenStream::new(), TokenStream::new());
+    let mut values: Vec<Expr> = vec![h.value.clone(), h.scale.clone()];
+    for reach in &h.reaches {
+        let name = field(reach);
+        match kept(l, reach) {
+            Kept::Fixed(_) => continue,
+            Kept::Number => {
+                fields.extend(quote!(#name: T,));
+                zeros.extend(quote!(#name: T::zero(),));
+            }
+            Kept::Matrix => {
+                let c = number(components(l, &reach.on));
+                fields.extend(quote!(#name: SMatrix<T, #c, #r>,));
+                zeros.extend(quote!(#name: SMatrix::<T, #c, #r>::zeros(),));
+            }
+        }
+        values.extend(reach.columns.expressions().iter().cloned());
+    }
+    let letters = known(l, &values);
+    let (locals, bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
+    let (lets, results) = l.program(s, &values, &bindings);
+    let mut results = results.into_iter();
+    let value = array(h, results.next().unwrap_or_default());
+    let size = results.next().unwrap_or_default();
+    let mut made = TokenStream::new();
+    for reach in &h.reaches {
+        let (name, c) = (field(reach), components(l, &reach.on));
+        match (kept(l, reach), &reach.columns) {
+            (Kept::Fixed(_), _) => {}
+            (Kept::Number, _) => {
+                let value = results.next().unwrap_or_default();
+                made.extend(quote!(#name: #value,));
+            }
+            (Kept::Matrix, of) => {
+                let is_number = is_number(l, &reach.on);
+                let columns = of.expressions().iter().enumerate().filter_map(|(j, e)| {
+                    let value = results.next().unwrap_or_default();
+                    let value = match is_number {
+                        true => quote!(SMatrix::<T, 1, 1>::new(#value)),
+                        false => value,
+                    };
+                    (!e.is_zero()).then_some((0, c, j, value))
+                });
+                let value = filled((c, h.components), &columns.collect::<Vec<_>>());
+                made.extend(quote!(#name: #value,));
+            }
+        }
+    }
+    let kernel = format_ident!("held_{k}");
+    let doc = format!(
+        " What `{}` holds, the size of its terms, and what the multiplier gives to each momentum.",
+        h.name
+    );
+    let structure = quote! {
+        #[doc = #doc]
+        #[derive(Clone, Copy, Debug)]
+        struct #ty<T> { value: SMatrix<T, #r, 1>, size: T, #fields }
+        impl<T: Real> #ty<T> {
+            /// Nothing.
+            fn none() -> Self { Self { value: SMatrix::<T, #r, 1>::zeros(), size: T::zero(), #zeros } }
+        }
+    };
+    let kernel = quote! {
+        #[doc = #doc]
+        #[inline(always)]
+        fn #kernel(&self, site: usize, at: &#places<T>) -> #ty<T> {
+            let _ = (site, at);
+            #locals
+            #lets
+            #ty { value: #value, size: #size, #made }
+        }
+    };
+    (structure, kernel)
+}
+
+/// What is held as an array.
+fn array(h: &Held, value: TokenStream) -> TokenStream {
+    match h.value.shape().is_scalar() {
+        true => quote!(SMatrix::<T, 1, 1>::new(#value)),
+        false => value,
+    }
+}
+
+fn is_number(l: &Lines, on: &str) -> bool {
+    l.moving().any(|m| m.mover.name == on && m.is_number())
+}
+
+fn components(l: &Lines, on: &str) -> usize {
+    let own = l.moving().find(|m| m.mover.name == on);
+    own.map_or(0, |m| m.components())
+}
+
+/// What the impulses around a site give to the momentum of one configuration.
+fn reacted(l: &Lines, m: &Moving) -> TokenStream {
+    let name = &m.mover.name;
+    let (kernel, t, reached) = (
+        format_ident!("reacted_{name}"),
+        m.covector(),
+        l.item("Reached"),
+    );
+    let size = number(l.held_components());
+    let mut terms = Vec::new();
+    for (k, h) in l.holds() {
+        let list = format_ident!("held_{k}");
+        let (row, r) = (number(l.held_row(h)), number(h.components));
+        for reach in h.reaches.iter().filter(|r| r.on == *name) {
+            let (own, by) = (field(reach), number(1 - reach.site));
+            let impulse = quote!(impulses[site + #by].fixed_rows::<#r>(#row).into_owned());
+            terms.push(match kept(l, reach) {
+                Kept::Fixed(c) => quote!(#impulse * (#c)),
+                Kept::Number => quote!(#impulse * reached.#list[site + #by].#own),
+                Kept::Matrix => quote!(reached.#list[site + #by].#own * #impulse),
+            });
+        }
+    }
+    let doc = format!(" What impulses of constraints give to the momentum of `{name}`.");
+    quote! {
+        #[doc = #doc]
+        #[inline(always)]
+        fn #kernel(&self, site: usize, reached: &#reached<T>, impulses: &[SVector<T, #size>]) -> #t {
+            let _ = reached;
+            #(#terms)+*
+        }
+    }
+}
+
+/// The sweep over all that is held, and the repetition along a ring.
+fn sweep(l: &Lines) -> TokenStream {
+    let (places, reached) = (l.item("Places"), l.item("Reached"));
+    let each = l.holds().map(|(k, h)| {
+        let list = format_ident!("held_{k}");
+        let range = range_of(l, h.label, 0, h.to);
+        let count = l.count_field(h.label);
+        let closed = l.line.lattice.line == Some(h.label) && l.line.lattice.periodic.is_some();
+        let around = closed.then(|| {
+            quote! {
+                if self.is_ring() {
+                    reached.#list[0] = reached.#list[self.sites.#count];
+                    reached.#list[self.sites.#count + 1] = reached.#list[1];
+                }
+            }
+        });
+        quote! {
+            {
+                #range
+                line::fill(self.threads, &mut reached.#list[first + 1..last + 1], |i| {
+                    self.#list(first + i, at)
+                });
+                #around
+            }
+        }
+    });
+    let each: Vec<TokenStream> = each.collect();
+    quote! {
+        /// What is held at these places, and its derivatives.
+        #[inline]
+        fn reached(&self, at: &#places<T>, reached: &mut #reached<T>) {
+            #(#each)*
+        }
+    }
+}

@@ -1,0 +1,337 @@
+//! Constraints that are held at the sites of a line: their derivatives by what moves, and how what moves answers to an
+//! impulse, in a step and at a node. Takes the lattice that is written out and the models of its sites; gives what a
+//! block-tridiagonal system for the multipliers of all sites is made of.
+
+use super::pull::{defined, forces};
+use super::site::BASE;
+use super::{How, Lone, Mover, Refused, Written};
+use crate::algebra::Algebra;
+use crate::check::spec::Hold;
+use crate::derive::balance::{pairing, shorter};
+use crate::derive::{Derivation, holds};
+use crate::expr::{self, Expr, Letter, Shift};
+use crate::groups::Kept;
+use crate::lattice::{Lattice, StatedHold};
+
+/// A constraint as stated: one at every index of a range, from the first site on.
+#[derive(Clone, Debug)]
+pub struct Held {
+    /// The name of its multiplier.
+    pub name: String,
+    /// The label.
+    pub label: usize,
+    /// The last index of an open line, less the number of segments.
+    pub to: isize,
+    /// How far its letters stand apart: neighbours at most.
+    pub width: usize,
+    /// Its multiplier, at the base of the representative.
+    pub multiplier: Letter,
+    /// Of how many numbers it is.
+    pub components: usize,
+    /// What vanishes.
+    pub value: Expr,
+    /// The size of its terms.
+    pub scale: Expr,
+    /// The equation, in the letters of the base.
+    pub sides: [Expr; 2],
+    /// Its derivatives.
+    pub reaches: Vec<Reach>,
+}
+
+/// How a constraint reaches one configuration.
+#[derive(Clone, Debug)]
+pub struct Reach {
+    /// The configuration as stated.
+    pub on: String,
+    /// Its site, from the index of the constraint.
+    pub site: usize,
+    /// The reaction, a covector, for the multiplier.
+    pub reaction: Expr,
+    /// The same for each component of it.
+    pub columns: Matrix,
+}
+
+/// A matrix by its columns.
+#[derive(Clone, Debug)]
+pub enum Matrix {
+    /// So many times the identity.
+    Multiple(Expr),
+    /// Any other.
+    Columns(Vec<Expr>),
+}
+
+/// Configurations of a site whose velocities are found together, and what an impulse does to them.
+#[derive(Clone, Debug)]
+pub struct Unit {
+    /// Their numbers in the model of the site.
+    pub members: Vec<usize>,
+    /// The derivative of the momenta of an edge by the velocities, member after member; none for a rotation.
+    pub of_edge: Option<Vec<Matrix>>,
+    /// The same of the limit of small steps.
+    pub of_node: Vec<Matrix>,
+    /// The momenta of that limit where nothing moves.
+    pub at_rest: Vec<Expr>,
+}
+
+impl Matrix {
+    /// The matrix of these columns; a multiple of the identity is seen.
+    fn of(algebra: &Algebra, columns: Vec<Expr>) -> Matrix {
+        let columns: Vec<Expr> = columns
+            .into_iter()
+            .map(|c| match c.is_zero() {
+                true => c,
+                false => shorter(algebra, c),
+            })
+            .collect();
+        let Some(first) = columns.first() else {
+            return Matrix::Columns(columns);
+        };
+        let axes = match expr::axes(first.shape()) {
+            Some(axes) if axes.len() == columns.len() => axes,
+            _ => return Matrix::Columns(columns),
+        };
+        let factor = match first.shape().is_scalar() {
+            true => first.clone(),
+            false => expr::dot(axes[0].clone(), first.clone()),
+        };
+        let factor = algebra.shortest(&factor);
+        let equal = axes.iter().zip(&columns).all(|(axis, column)| {
+            let own = expr::mul(factor.clone(), axis.clone());
+            algebra.is_zero(&expr::sub(column.clone(), own))
+        });
+        match equal {
+            true => Matrix::Multiple(factor),
+            false => Matrix::Columns(columns),
+        }
+    }
+
+    /// Its expressions.
+    pub fn expressions(&self) -> &[Expr] {
+        match self {
+            Matrix::Multiple(e) => std::slice::from_ref(e),
+            Matrix::Columns(list) => list,
+        }
+    }
+}
+
+fn refused<T>(words: String) -> Result<T, Refused> {
+    Err(Refused::Form(words))
+}
+
+/// The constraints of a line.
+pub(super) fn held(lattice: &Lattice, part: &Written, lone: &[Lone]) -> Result<Vec<Held>, Refused> {
+    let mut out: Vec<Held> = Vec::new();
+    for stated in &part.unfolded.holds {
+        let found = one(part, stated)?;
+        if let Some(first) = out.first()
+            && first.label != found.label
+        {
+            return refused(format!(
+                "`{}` and `{}` hold sites of two labels",
+                first.name, found.name
+            ));
+        }
+        for reach in &found.reaches {
+            admitted(lattice, lone, &found, reach)?;
+        }
+        out.push(found);
+    }
+    match out.is_empty() && !part.d.spec.holds.is_empty() {
+        true => refused("a constraint is held that belongs to no site".to_owned()),
+        false => Ok(out),
+    }
+}
+
+/// What is reached stands on the line, and moves in a way that impulses are put into.
+fn admitted(lattice: &Lattice, lone: &[Lone], held: &Held, reach: &Reach) -> Result<(), Refused> {
+    let name = &held.name;
+    if lattice.find(&reach.on).map(|q| q.label) != Some(held.label) {
+        return refused(format!(
+            "`{name}` holds what belongs to no site of its line"
+        ));
+    }
+    let mut movers = lone
+        .iter()
+        .flat_map(|l| l.movers.iter().map(move |m| (l, m)));
+    let Some((own, mover)) = movers.find(|(_, m)| m.name == reach.on) else {
+        return refused(format!(
+            "`{name}` holds `{}`, which does not move",
+            reach.on
+        ));
+    };
+    let c = &own.d.spec.configurations[mover.index];
+    match c.group.kept() {
+        Kept::Rotation => Ok(()),
+        Kept::Field(shape) if shape.is_scalar() || shape.is_vector() => Ok(()),
+        _ => refused(format!(
+            "`{name}` holds `{}`: along lines numbers, vectors and rotations are held",
+            reach.on
+        )),
+    }
+}
+
+fn one(part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
+    let (d, name) = (&part.d, &stated.name);
+    let s = &d.letters.symbols;
+    let algebra = Algebra::new(s);
+    let first = stated.letters.iter().map(|(_, o)| *o).min().unwrap_or(0);
+    let last = stated.letters.iter().map(|(_, o)| *o).max().unwrap_or(0);
+    if first != 0 || stated.range.from != 0 {
+        return refused(format!(
+            "`{name}` is held from a site on that it does not hold: count it from that one, with `next(x, i)`"
+        ));
+    }
+    let width = usize::try_from(last).unwrap_or(0);
+    if width > 1 {
+        return refused(format!("`{name}` holds sites that are no neighbours"));
+    }
+    let multiplier = part.copy(name, BASE);
+    let mut holds = d.spec.holds.iter();
+    let Some(hold) = holds.find(|h| Some(h.multiplier) == multiplier) else {
+        return refused(format!(
+            "`{name}` is held at no site with all its neighbours"
+        ));
+    };
+    let shape = s.get(hold.multiplier).shape;
+    let letter = Letter {
+        symbol: hold.multiplier,
+        shift: Shift::HERE,
+    };
+    let own = expr::here(s, hold.multiplier);
+    let value = defined(part, &hold.value)?;
+    let step = Letter {
+        symbol: d.spec.step,
+        shift: Shift::HERE,
+    };
+    if expr::contains(&value, step) {
+        return refused(format!("`{name}` holds something that depends on the step"));
+    }
+    let axes = expr::axes(shape).unwrap_or_default();
+    let reaches = forces(part, &pairing(&d.letters, &own, &value));
+    let reaches = reaches.into_iter().map(|f| {
+        let along = |axis: &Expr| expr::substitute(s, &f.value, &[(letter, axis.clone())]);
+        Reach {
+            columns: Matrix::of(&algebra, axes.iter().map(along).collect()),
+            on: f.on,
+            site: f.site - BASE,
+            reaction: f.value,
+        }
+    });
+    let reaches: Vec<Reach> = reaches.collect();
+    if reaches.iter().any(|r| r.site > 1) {
+        return refused(format!("`{name}` holds sites that are no neighbours"));
+    }
+    let by_definition = Hold {
+        value: value.clone(),
+        ..hold.clone()
+    };
+    Ok(Held {
+        name: name.clone(),
+        label: stated.range.label,
+        to: stated.range.to,
+        width,
+        multiplier: letter,
+        components: axes.len(),
+        scale: holds::scale(s, &by_definition),
+        value,
+        sides: [hold.left.clone(), hold.right.clone()],
+        reaches,
+    })
+}
+
+/// What impulses do to the configurations that constraints reach, in the models of their sites.
+pub(super) fn units(lone: &Lone, held: &[Held]) -> Result<Vec<Unit>, Refused> {
+    let reached = |m: &Mover| held.iter().flat_map(|h| &h.reaches).any(|r| r.on == m.name);
+    let mut out = Vec::new();
+    for members in &lone.blocks {
+        let own = |i: &usize| lone.movers.iter().find(|m| m.index == *i);
+        let movers: Vec<&Mover> = members.iter().filter_map(own).collect();
+        // A block that is held in part moves as a whole.
+        if movers.iter().any(|m| reached(m)) {
+            out.push(unit(lone, members, &movers)?);
+        }
+    }
+    Ok(out)
+}
+
+fn unit(lone: &Lone, members: &[usize], movers: &[&Mover]) -> Result<Unit, Refused> {
+    let d = &lone.d;
+    let s = &d.letters.symbols;
+    let algebra = Algebra::new(s);
+    let name = movers.first().map_or("", |m| m.name.as_str());
+    let Ok(limit) = &d.limit else {
+        return refused(format!(
+            "`{name}` is held, and its momentum is that of no limit of small steps"
+        ));
+    };
+    let variation = |i: usize| Letter {
+        symbol: d.letters.variation[i],
+        shift: Shift::HERE,
+    };
+    let gradient = |of: &Expr, i: usize| {
+        let y = expr::gradient(s, of, variation(i));
+        d.spec.configurations[i].group.of_gradient(s, y)
+    };
+    let mut of_node = Vec::new();
+    for i in members {
+        let momentum = gradient(&limit.kinetic, *i);
+        let others = (0..d.spec.configurations.len()).filter(|j| !members.contains(j));
+        if others
+            .into_iter()
+            .any(|j| expr::contains(&momentum, variation(j)))
+        {
+            return refused(format!(
+                "`{name}` is held, and shares its kinetic energy with what is found apart from it"
+            ));
+        }
+        let mut columns = Vec::new();
+        for j in members {
+            for direction in directions(d, *j) {
+                columns.push(expr::directional(
+                    s,
+                    &momentum,
+                    &[(variation(*j), direction)],
+                ));
+            }
+        }
+        of_node.push(Matrix::of(&algebra, columns));
+    }
+    let mut of_edge = None;
+    if !movers.iter().any(|m| matches!(m.how, How::Rotation { .. })) {
+        let mut all = Vec::new();
+        for i in members {
+            let (_, columns) = super::lone::momentum(d, *i, members)?;
+            all.push(Matrix::of(&algebra, columns));
+        }
+        of_edge = Some(all);
+    }
+    Ok(Unit {
+        members: members.to_vec(),
+        of_edge,
+        of_node,
+        at_rest: members
+            .iter()
+            .map(|i| gradient(&limit.linear, *i))
+            .collect(),
+    })
+}
+
+/// The velocities along the axes of a configuration.
+fn directions(d: &Derivation, i: usize) -> Vec<Expr> {
+    let shape = d.letters.symbols.get(d.letters.variation[i]).shape;
+    if d.spec.configurations[i].group.is_additive() {
+        return expr::axes(shape).unwrap_or_default();
+    }
+    let axes = 0..3;
+    axes.map(|axis| expr::hat(expr::unit(shape.rows, axis)))
+        .collect()
+}
+
+/// The reactions of all copies of all constraints on a configuration of the lattice that is written out, per unit
+/// time: what a line must give.
+pub(super) fn written_out(part: &Written, i: usize) -> Vec<Expr> {
+    let d = &part.d;
+    let each = d.spec.holds.iter();
+    let each = each.map(|h| holds::reaction(&d.spec, &d.letters, &d.variations, i, h));
+    each.map(|e| d.defined(&e)).collect()
+}

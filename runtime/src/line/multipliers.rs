@@ -1,0 +1,532 @@
+//! The impulses with which constraints are held along a line: those for which what is held vanishes at the end of a step,
+//! followed from none by Newton's method with block-tridiagonal derivatives, and those that a momentum is projected with,
+//! from one such system. Takes what is held and its derivatives, site by site; gives impulses, or the site at which they
+//! cannot be found.
+//!
+//! The search asks for its values rather than calling for them: places are found between its steps, by what a model knows.
+//! Impulses `y` are followed along `c(y) = (1 - τ) c(0)` in stages, mostly one, by Newton's method: a stage is taken where
+//! its second correction is at most a quarter of the first (Deuflhard, Newton Methods for Nonlinear Problems, 2011,
+//! sections 2.1 and 5.1). That is a test at points, not a proof.
+
+// Several lists run along one index.
+#![allow(clippy::needless_range_loop)]
+
+use super::blocks::Blocks;
+use super::root::scales_of;
+use crate::Real;
+use core::fmt;
+use nalgebra::{SMatrix, SVector};
+
+/// By how much the second correction of a stage is smaller than the first.
+const FALLS: f64 = 0.25;
+
+/// Shortest stage, as a part of the way.
+const SHORTEST: f64 = 1e-12;
+
+/// Most evaluations of a search.
+const MOST: usize = 1000;
+
+/// A correction so small, of the impulses, leaves rounding when the next would be its square.
+const LAST: f64 = 1e-8;
+
+/// The part of a stage that is tried where corrections do not fall.
+const WORSE: f64 = 0.2;
+
+/// What is held vanishes where it is so many roundings of its terms.
+const ROUNDINGS: f64 = 32.0;
+
+/// Rotations and places are made with roundings of their own: where corrections no longer fall, so many are none.
+const STALLED: f64 = 4096.0;
+
+/// A pivot that is so small beside the derivatives of its constraint is what rounding leaves of none.
+const FLOOR: f64 = 64.0 * f64::EPSILON;
+
+/// No reactions hold the constraints of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NoReaction {
+    /// The part of the way from no reactions to the constraints up to which they were found; 1 where they were, and the
+    /// momentum there cannot be projected.
+    pub share: f64,
+}
+
+impl fmt::Display for NoReaction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.share >= 1.0 {
+            return write!(
+                f,
+                "the constraints are not independent there: their derivatives vanish, or one is a combination of others, \
+                 and the reactions are not determined; leave out a constraint that follows from others, or hold less at \
+                 the ends"
+            );
+        }
+        let percent = 100.0 * self.share;
+        write!(
+            f,
+            "no reactions hold the constraints at the end of the step: they could be followed for {percent:.1} percent of \
+             the way from the motion without any, beyond which the constraints are not independent or turn too fast to be \
+             followed; take a shorter step, or leave out a constraint that follows from others"
+        )
+    }
+}
+
+impl std::error::Error for NoReaction {}
+
+/// Where a search is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
+    /// Before the first correction of a stage.
+    Begin,
+    /// Before the second.
+    Second,
+    /// Before another one.
+    Later,
+    /// Derivatives of the solution are exact to one order more after each further correction.
+    Further,
+    /// Places are wanted for the last time.
+    Last,
+    Found,
+    Lost,
+}
+
+/// The search, and room for the constraints of a line.
+#[derive(Clone, Debug)]
+pub struct Multipliers<T> {
+    n: usize,
+    sites: usize,
+    ring: bool,
+    /// Of each component at how many sites it is held.
+    counts: Vec<usize>,
+    blocks: Blocks<T>,
+    impulses: Vec<T>,
+    /// Where a stage began.
+    from: Vec<T>,
+    correction: Vec<T>,
+    /// What is held where there are no impulses.
+    whole: Vec<T>,
+    scales: Vec<f64>,
+    phase: Phase,
+    share: f64,
+    length: f64,
+    before: f64,
+    passes: usize,
+    further: u32,
+    /// The largest of what is held, in roundings of its terms.
+    roundings: f64,
+    /// Whether that was corrected by derivatives that were known.
+    corrected: bool,
+}
+
+/// Puts a value at each site of a list that has one place more on either side, which repeat a ring.
+fn put<T: Real, const N: usize>(all: &Multipliers<T>, out: &mut [SVector<T, N>]) {
+    let n = all.sites;
+    for site in 0..n {
+        out[site + 1] = SVector::from_column_slice(&all.impulses[N * site..N * (site + 1)]);
+    }
+    if all.ring {
+        out[0] = out[n];
+        out[n + 1] = out[1];
+    }
+}
+
+impl<T: Real> Multipliers<T> {
+    /// Room for the constraints of a line, open or a ring: at how many of its first sites each component is held.
+    #[must_use]
+    pub fn new(counts: &[usize], ring: bool) -> Self {
+        let (n, sites) = (counts.len(), counts.iter().copied().max().unwrap_or(0));
+        let list = || vec![T::zero(); n * sites];
+        Self {
+            n,
+            sites,
+            ring,
+            counts: counts.to_vec(),
+            blocks: Blocks::new(n, sites, ring),
+            impulses: list(),
+            from: list(),
+            correction: list(),
+            whole: list(),
+            scales: vec![1.0; n * sites],
+            phase: Phase::Lost,
+            share: 0.0,
+            length: 1.0,
+            before: 0.0,
+            passes: 0,
+            further: 0,
+            roundings: 0.0,
+            corrected: false,
+        }
+    }
+
+    /// At how many sites constraints are held.
+    #[must_use]
+    pub fn sites(&self) -> usize {
+        self.sites
+    }
+
+    /// Whether the first site and the last are neighbours.
+    #[must_use]
+    pub fn is_ring(&self) -> bool {
+        self.ring
+    }
+
+    /// Begins a search: no impulses.
+    #[inline]
+    pub fn begin_search<const N: usize>(&mut self, out: &mut [SVector<T, N>]) {
+        self.begin();
+        put(self, out);
+    }
+
+    /// The same, nothing put anywhere.
+    pub fn begin(&mut self) {
+        self.impulses.fill(T::zero());
+        self.from.fill(T::zero());
+        (self.phase, self.share, self.length) = (Phase::Begin, 0.0, 1.0);
+        (self.passes, self.further) = (0, T::ORDER);
+    }
+
+    /// Whether places are wanted for the impulses that are put out.
+    #[inline]
+    #[must_use]
+    pub fn goes_on(&self) -> bool {
+        !matches!(self.phase, Phase::Found | Phase::Lost)
+    }
+
+    /// Takes what is held at these places, with the sizes of its terms beside it; whether derivatives are wanted. Where those
+    /// known do for the last correction, impulses are corrected by them.
+    #[inline]
+    pub fn wants_derivatives<const N: usize>(
+        &mut self,
+        held: &[SMatrix<T, N, 2>],
+        out: &mut [SVector<T, N>],
+    ) -> bool {
+        let wants = self.wants(N, |site| held[site].as_slice());
+        if self.corrected {
+            put(self, out);
+        }
+        wants
+    }
+
+    /// The same, by the numbers of a site: values, then sizes.
+    #[inline(always)]
+    pub fn wants<'a>(&mut self, n: usize, held: impl Fn(usize) -> &'a [T]) -> bool
+    where
+        T: 'a,
+    {
+        self.corrected = false;
+        if self.phase == Phase::Last {
+            self.phase = Phase::Found;
+            return false;
+        }
+        if self.passes == 0 {
+            for site in 0..self.sites {
+                self.whole[n * site..n * (site + 1)].copy_from_slice(&held(site)[..n]);
+            }
+        }
+        self.passes += 1;
+        if self.passes > MOST {
+            self.phase = Phase::Lost;
+            return false;
+        }
+        let left = self.left();
+        let mut worst = 0.0_f64;
+        for site in 0..self.sites {
+            let own = held(site);
+            for k in 0..n {
+                let at = n * site + k;
+                if site >= self.counts[k] {
+                    self.correction[at] = T::zero();
+                    continue;
+                }
+                let aim = match left {
+                    0.0 => T::zero(),
+                    left => T::from_f64(left) * self.whole[at],
+                };
+                let r = aim - own[k];
+                self.correction[at] = r;
+                let size = r.magnitude() / (T::EPSILON * own[n + k].magnitude());
+                // What is no number stays the worst; zero of terms of no size is none.
+                if size > worst || size.is_nan() && r.magnitude() != 0.0 {
+                    worst = if size.is_nan() { f64::INFINITY } else { size };
+                }
+            }
+        }
+        let before = core::mem::replace(&mut self.roundings, worst);
+        if worst <= ROUNDINGS && left == 0.0 && self.phase != Phase::Further {
+            if self.further == 0 {
+                self.phase = Phase::Found;
+                return false;
+            }
+            self.phase = Phase::Further;
+        }
+        // The tangent of the correction before leaves as small a part of what is held as it did then.
+        let falls = worst * (worst / before) <= ROUNDINGS;
+        let again = matches!(self.phase, Phase::Second | Phase::Later);
+        if again && falls && left == 0.0 && self.further == 0 {
+            self.blocks.solve(n, &mut self.correction);
+            for (x, d) in self.impulses.iter_mut().zip(&self.correction) {
+                *x += *d;
+            }
+            self.phase = Phase::Later;
+            self.corrected = true;
+            return false;
+        }
+        true
+    }
+
+    /// Whether impulses were corrected when what is held was taken last.
+    #[must_use]
+    pub fn is_corrected(&self) -> bool {
+        self.corrected
+    }
+
+    /// What is left of the constraints at the end of the stage.
+    #[inline(always)]
+    fn left(&self) -> f64 {
+        match self.length >= 1.0 - self.share {
+            true => 0.0,
+            false => 1.0 - (self.share + self.length),
+        }
+    }
+
+    /// Corrects the impulses by the derivatives of what is held: of each site by those of the one before, of itself, and of
+    /// the one after, side by side.
+    #[inline]
+    pub fn correct<const N: usize, const W: usize>(
+        &mut self,
+        rows: &[SMatrix<T, N, W>],
+        out: &mut [SVector<T, N>],
+    ) {
+        self.correct_by(N, |site| rows[site].as_slice());
+        put(self, out);
+    }
+
+    /// The same, by the numbers of a site, column after column.
+    #[inline(always)]
+    pub fn correct_by<'a>(&mut self, n: usize, rows: impl Fn(usize) -> &'a [T])
+    where
+        T: 'a,
+    {
+        self.load(n, rows);
+        if self.phase == Phase::Begin {
+            for site in 0..self.sites {
+                scales_of(
+                    n,
+                    self.blocks.own(site),
+                    &mut self.scales[n * site..n * (site + 1)],
+                );
+            }
+        }
+        if self.blocks.factor(n, FLOOR).is_err() {
+            return match self.phase {
+                Phase::Begin => self.phase = Phase::Lost,
+                _ => self.shorter(WORSE),
+            };
+        }
+        self.blocks.solve(n, &mut self.correction);
+        let own = self.largest(&self.correction);
+        if !own.is_finite() {
+            return self.shorter(WORSE);
+        }
+        match self.phase {
+            Phase::Second if own > FALLS * self.before && self.roundings > STALLED => {
+                return self.shorter((0.8 * FALLS * self.before / own).clamp(0.1, 0.8));
+            }
+            Phase::Later if own > 0.5 * self.before && self.roundings > STALLED => {
+                return self.shorter(WORSE);
+            }
+            _ => {}
+        }
+        for (x, d) in self.impulses.iter_mut().zip(&self.correction) {
+            *x += *d;
+        }
+        let stalled = own > 0.5 * self.before && self.roundings <= STALLED;
+        let small = own <= LAST * self.largest(&self.impulses) || stalled;
+        let begun = self.phase == Phase::Begin;
+        self.phase = match self.phase {
+            Phase::Begin => Phase::Second,
+            Phase::Further => return self.further_one(),
+            _ => Phase::Later,
+        };
+        self.before = own;
+        if small && !begun {
+            self.arrive();
+        }
+    }
+
+    /// At the end of a stage.
+    fn arrive(&mut self) {
+        if self.left() == 0.0 {
+            self.phase = match self.further {
+                0 => Phase::Last,
+                _ => Phase::Further,
+            };
+            return;
+        }
+        self.share += self.length;
+        self.length *= 2.0;
+        self.from.copy_from_slice(&self.impulses);
+        self.phase = Phase::Begin;
+    }
+
+    fn further_one(&mut self) {
+        self.further = self.further.saturating_sub(1);
+        if self.further == 0 {
+            self.phase = Phase::Last;
+        }
+    }
+
+    /// Another stage from where this one began.
+    #[cold]
+    fn shorter(&mut self, part: f64) {
+        self.length = self.length.min(1.0 - self.share) * part;
+        self.impulses.copy_from_slice(&self.from);
+        self.phase = match self.length < SHORTEST || self.phase == Phase::Further {
+            true => Phase::Lost,
+            false => Phase::Begin,
+        };
+    }
+
+    /// Puts the derivatives of all sites into blocks; what is not held at a site stays without an impulse.
+    #[inline(always)]
+    fn load<'a>(&mut self, n: usize, rows: impl Fn(usize) -> &'a [T])
+    where
+        T: 'a,
+    {
+        self.blocks.clear();
+        let (last, size) = (self.sites.saturating_sub(1), n * n);
+        for site in 0..self.sites {
+            let own = rows(site);
+            let before = if site > 0 { site - 1 } else { last };
+            let after = if site < last { site + 1 } else { 0 };
+            if self.ring || site > 0 {
+                self.blocks.add(site, before, &own[..size]);
+            }
+            self.blocks.add(site, site, &own[size..2 * size]);
+            if self.ring || site < last {
+                self.blocks.add(site, after, &own[2 * size..]);
+            }
+        }
+        for k in 0..n {
+            for site in self.counts[k]..self.sites {
+                self.blocks.hold_component(site, k);
+            }
+        }
+    }
+
+    /// The largest entry in units of scales; NaN if any is.
+    #[inline(always)]
+    fn largest(&self, list: &[T]) -> f64 {
+        let mut most = 0.0;
+        for (x, scale) in list.iter().zip(&self.scales) {
+            let size = x.greatest().abs().max(x.least().abs()) * scale;
+            if x.magnitude().is_nan() || size.is_nan() {
+                return f64::NAN;
+            }
+            if size > most {
+                most = size;
+            }
+        }
+        most
+    }
+
+    /// Whether impulses were found.
+    ///
+    /// # Errors
+    /// [`NoReaction`], and the site where that shows most.
+    pub fn root_found(&self) -> Result<(), (usize, NoReaction)> {
+        match self.phase {
+            Phase::Found => Ok(()),
+            _ => Err((self.worst(), NoReaction { share: self.share })),
+        }
+    }
+
+    /// The impulses that take rates of change away: with derivatives as [`Multipliers::correct`] takes them.
+    ///
+    /// # Errors
+    /// [`NoReaction`] where constraints are not independent, and the site.
+    #[inline]
+    pub fn projected<const N: usize, const W: usize>(
+        &mut self,
+        rows: &[SMatrix<T, N, W>],
+        rates: &[SVector<T, N>],
+        out: &mut [SVector<T, N>],
+    ) -> Result<(), (usize, NoReaction)> {
+        self.project(
+            N,
+            |site| rows[site].as_slice(),
+            |site| rates[site].as_slice(),
+        )?;
+        put(self, out);
+        Ok(())
+    }
+
+    /// The same, by the numbers of a site.
+    ///
+    /// # Errors
+    /// As [`Multipliers::projected`].
+    #[inline(always)]
+    pub fn project<'a>(
+        &mut self,
+        n: usize,
+        rows: impl Fn(usize) -> &'a [T],
+        rates: impl Fn(usize) -> &'a [T],
+    ) -> Result<(), (usize, NoReaction)>
+    where
+        T: 'a,
+    {
+        self.load(n, rows);
+        for site in 0..self.sites {
+            let own = rates(site);
+            for k in 0..n {
+                self.impulses[n * site + k] = match site < self.counts[k] {
+                    true => own[k],
+                    false => T::zero(),
+                };
+            }
+        }
+        let none = NoReaction { share: 1.0 };
+        self.blocks.factor(n, FLOOR).map_err(|site| (site, none))?;
+        self.blocks.solve(n, &mut self.impulses);
+        let lost = self.impulses.iter().position(|x| !x.is_finite());
+        match lost {
+            None => Ok(()),
+            Some(at) => Err((at / n.max(1), none)),
+        }
+    }
+
+    /// The site of the largest impulse.
+    #[must_use]
+    pub fn largest_impulse(&self) -> usize {
+        let mut most = (0, -1.0);
+        for (at, x) in self.impulses.iter().enumerate() {
+            if x.magnitude() > most.1 {
+                most = (at, x.magnitude());
+            }
+        }
+        most.0 / self.n.max(1)
+    }
+
+    /// The impulses, site by site.
+    #[must_use]
+    pub fn impulses(&self) -> &[T] {
+        &self.impulses
+    }
+
+    /// The site of the largest impulse or correction, or of the first that is no number, or where the blocks have no pivot.
+    #[cold]
+    fn worst(&self) -> usize {
+        if let Some(site) = self.blocks.without_pivot() {
+            return site;
+        }
+        let mut worst = (0, -1.0);
+        for (at, (x, scale)) in self.correction.iter().zip(&self.scales).enumerate() {
+            let size = x.magnitude() * scale;
+            if size.is_nan() {
+                return at / self.n.max(1);
+            }
+            if size > worst.1 {
+                worst = (at, size);
+            }
+        }
+        worst.0 / self.n.max(1)
+    }
+}
