@@ -76,7 +76,7 @@ fn every_shipped_case_runs_by_its_name() {
         "2",
     ]);
     assert_eq!(done.code, 0, "{}", done.err);
-    assert!(done.out.contains("constraint_n"), "{}", done.out);
+    assert!(done.out.contains("constraint_lambda"), "{}", done.out);
 }
 
 #[test]
