@@ -7,7 +7,7 @@ use crate::opened::{Opened, Text};
 use clebsch::card::{Card, Invariant, Open, OpenError, Settings, Trajectory};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::lattice::{Choice, Lattice};
-use clebsch_core::syntax::ast::Model;
+use clebsch_core::syntax::ast::{Model, Statement};
 use clebsch_core::{document, pipeline};
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -28,6 +28,22 @@ enum Known {
 /// Most segments or sites of a label for which a lattice is derived body by body: the work of that grows
 /// with the square of their number, a second or two here.
 pub const MOST_BODY_BY_BODY: usize = 32;
+
+/// The same where constraints are held: a step body by body solves for all velocities and multipliers at once, with work that grows
+/// with the cube of their number.
+pub const MOST_HELD_BODY_BY_BODY: usize = 4;
+
+/// Most sites that are derived body by body.
+fn most_body_by_body(model: &Model) -> usize {
+    let is_held = model
+        .statements
+        .iter()
+        .any(|s| matches!(s, Statement::Hold { .. }));
+    match is_held {
+        true => MOST_HELD_BODY_BY_BODY,
+        false => MOST_BODY_BY_BODY,
+    }
+}
 
 type Sized = fn(&[usize]) -> Option<Card>;
 
@@ -112,7 +128,8 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
             Err(NoLine::Refused(refused)) => Err(refused),
         };
     }
-    if choice.counts.iter().any(|n| *n > MOST_BODY_BY_BODY) {
+    let most = most_body_by_body(&model);
+    if choice.counts.iter().any(|n| *n > most) {
         match LineModel::read(source) {
             Ok(line) => return card_of_line((&model, &lattice), choice, line, source),
             Err(NoLine::Form(why)) => written_out = Some(why),

@@ -138,11 +138,9 @@ fn texts(value: &Spanned<DeValue<'_>>) -> Option<Vec<String>> {
 /// The parameters of a model that are one number.
 fn parameters(model: &Model) -> Vec<String> {
     let of = |s: &Statement| match s {
-        Statement::Param {
-            names,
-            shape,
-            at: None,
-        } if shape.components() == Some(1) => names.iter().map(|n: &Name| n.text.clone()).collect(),
+        Statement::Param { names, shape, .. } if shape.components() == Some(1) => {
+            names.iter().map(|n: &Name| n.text.clone()).collect()
+        }
         _ => Vec::new(),
     };
     model.statements.iter().flat_map(of).collect()

@@ -14,7 +14,7 @@ use crate::algebra::Rational;
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::{self, Expr};
-use crate::syntax::ast::{Expression, Kind, Name};
+use crate::syntax::ast::{Expression, Kind, Kindred, Name};
 
 /// Elaborates the expressions of one model.
 pub struct Elaborator<'a> {
@@ -36,6 +36,7 @@ pub fn terms(e: &Expression) -> Vec<&Expression> {
         | Kind::Transpose(_)
         | Kind::Power(..)
         | Kind::Component(..)
+        | Kind::Shaped(..)
         | Kind::Call(..) => vec![e],
     }
 }
@@ -145,6 +146,12 @@ impl<'a> Elaborator<'a> {
         }
     }
 
+    /// A shape by its name, of numbers and vectors.
+    fn stated_shape(&self, shape: &Kindred) -> Option<Shape> {
+        let found = super::parameter_shape(&self.names.symbols, shape);
+        found.map(|(shape, _)| shape)
+    }
+
     /// The shape of what takes it from a context that there is not.
     fn unhinted(&self, e: &Expression) -> Shape {
         self.elaborate(e, None)
@@ -216,6 +223,7 @@ impl<'a> Elaborator<'a> {
                 }
             }
             Kind::Component(..) => Some(Shape::SCALAR),
+            Kind::Shaped(_, shape) => self.stated_shape(shape),
         }
     }
 
@@ -275,6 +283,10 @@ impl<'a> Elaborator<'a> {
             }
             Kind::Call(name, args) => self.call(name, args, e.place, expected),
             Kind::Component(a, indices) => self.component(a, indices, e.place),
+            Kind::Shaped(a, shape) => match self.stated_shape(shape) {
+                Some(shape) => self.of_shape(a, shape),
+                None => self.elaborate(a, expected),
+            },
         }
     }
 }

@@ -56,7 +56,11 @@ fn names(e: &Expression) -> Vec<&str> {
         Kind::Sum(terms) => terms.iter().flat_map(|(_, t)| names(t)).collect(),
         Kind::Product(list) | Kind::Call(_, list) => list.iter().flat_map(names).collect(),
         Kind::Quotient(a, b) => [names(a), names(b)].concat(),
-        Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) | Kind::Component(a, _) => names(a),
+        Kind::Neg(a)
+        | Kind::Transpose(a)
+        | Kind::Power(a, _)
+        | Kind::Component(a, _)
+        | Kind::Shaped(a, _) => names(a),
     }
 }
 

@@ -108,6 +108,12 @@ fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
                 place,
             } => match elaborator.pair(left, right) {
                 Ok((l, r)) => {
+                    if *relation != crate::syntax::ast::Comparison::Equal && !l.shape().is_scalar() {
+                        errors.push(
+                            Diagnostic::new(*place, "what is larger is decided between numbers")
+                                .help("state it of a number made of both, such as `det(J) > 0` or `J[1, 1] > 0`"),
+                        );
+                    }
                     if [&l, &r].iter().any(|e| !is_constant(&names, e)) {
                         errors.push(messages::assumption_not_constant(*place));
                     }

@@ -61,6 +61,7 @@ impl Put<'_> {
                 let each = terms.iter().map(|(minus, t)| Ok((*minus, self.at(t, by)?)));
                 Kind::Sum(each.collect::<Result<_, Box<Diagnostic>>>()?)
             }
+            Kind::Shaped(a, shape) => Kind::Shaped(one(a)?, shape.clone()),
             Kind::Product(list) => Kind::Product(all(list)?),
             Kind::Quotient(a, b) => Kind::Quotient(one(a)?, one(b)?),
             Kind::Neg(a) => Kind::Neg(one(a)?),

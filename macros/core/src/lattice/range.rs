@@ -70,6 +70,7 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
                 Ok(())
             }
         },
+        Kind::Shaped(a, _) => walk(lattice, a, by, found),
         Kind::Sum(terms) => terms
             .iter()
             .try_for_each(|(_, t)| walk(lattice, t, by, found)),

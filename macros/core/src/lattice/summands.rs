@@ -76,6 +76,7 @@ fn is_number(lattice: &Lattice, e: &Expression) -> bool {
     match &e.kind {
         Kind::Number(_) | Kind::Constant(_) | Kind::Component(..) => true,
         Kind::Name(n) => lattice.numbers.contains(n),
+        Kind::Shaped(_, shape) => shape.name.text == "Real",
         Kind::Sum(terms) => terms.iter().all(|(_, t)| is_number(lattice, t)),
         Kind::Product(list) => list.iter().all(|f| is_number(lattice, f)),
         Kind::Quotient(a, _) | Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) => {

@@ -43,6 +43,7 @@ fn value(e: &Expression, of: &dyn Fn(&str) -> Option<f64>) -> Result<f64, String
         Kind::Constant(c) => c.value(),
         Kind::Name(n) if crate::syntax::is_circle(n) => std::f64::consts::PI,
         Kind::Name(n) => of(n).ok_or_else(|| format!("`{n}` has no value here"))?,
+        Kind::Shaped(a, _) => value(a, of)?,
         Kind::Sum(terms) => {
             let mut total = 0.0;
             for (minus, t) in terms {

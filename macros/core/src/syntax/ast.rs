@@ -41,6 +41,8 @@ pub enum Kind {
     Constant(Constant),
     /// A name.
     Name(String),
+    /// What must be of a shape: an argument or a value of a function that is written out.
+    Shaped(Box<Expression>, Kindred),
     /// A sum of signed terms: `true` marks a term that is subtracted.
     Sum(Vec<(bool, Expression)>),
     /// A product in order.

@@ -11,6 +11,7 @@ use std::cell::Cell;
 struct Formula {
     name: Name,
     argument: Kindred,
+    value: Kindred,
     components: Vec<Expression>,
 }
 
@@ -19,6 +20,11 @@ impl Formula {
     fn called(&self, argument: &Expression) -> Expression {
         let names = names(&self.argument);
         let place = argument.place;
+        let shaped = |e: Expression, shape: &Kindred| Expression {
+            kind: Kind::Shaped(Box::new(e), shape.clone()),
+            place,
+        };
+        let argument = &shaped(argument.clone(), &self.argument);
         let component = |i: usize| match self.argument.name.text == "Real" {
             true => argument.clone(),
             false => Expression {
@@ -35,7 +41,7 @@ impl Formula {
                 _ => None,
             })
         };
-        match self.components.as_slice() {
+        let value = match self.components.as_slice() {
             [only] => put(only),
             all => Expression {
                 kind: Kind::Sum(
@@ -53,7 +59,8 @@ impl Formula {
                 ),
                 place,
             },
-        }
+        };
+        shaped(value, &self.value)
     }
 }
 
@@ -128,6 +135,7 @@ fn formulas(model: &Model) -> Result<Vec<Formula>, Errors> {
         found.push(Formula {
             name: name.clone(),
             argument: argument.clone(),
+            value: value.clone(),
             components: components.clone(),
         });
     }

@@ -173,6 +173,12 @@ pub fn open(model: &Model) -> Result<Vec<Open>, Diagnostic> {
 /// What cannot be read, or the first name that is not known.
 pub fn check(text: &str, argument: &Kindred, known: &dyn Fn(&str) -> bool) -> Result<(), String> {
     let parsed = read(text).map_err(|wrong| wrong.text())?;
+    if let Some(name) = parsed.call_that(&|n| !super::FUNCTIONS.contains(&n)) {
+        return Err(format!(
+            "`{name}` is no function that stands here; functions: {}",
+            super::AVAILABLE
+        ));
+    }
     match foreign(&parsed, argument, known) {
         None => Ok(()),
         Some(wrong) => Err(wrong),

@@ -10,7 +10,11 @@ impl Expression {
             Kind::Sum(terms) => terms.iter().map(|(_, t)| t).collect(),
             Kind::Product(list) | Kind::Call(_, list) => list.iter().collect(),
             Kind::Quotient(a, b) => vec![a, b],
-            Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) | Kind::Component(a, _) => {
+            Kind::Neg(a)
+            | Kind::Transpose(a)
+            | Kind::Power(a, _)
+            | Kind::Component(a, _)
+            | Kind::Shaped(a, _) => {
                 vec![a]
             }
         }
@@ -23,7 +27,11 @@ impl Expression {
             Kind::Sum(terms) => terms.iter_mut().map(|(_, t)| t).collect(),
             Kind::Product(list) | Kind::Call(_, list) => list.iter_mut().collect(),
             Kind::Quotient(a, b) => vec![a, b],
-            Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) | Kind::Component(a, _) => {
+            Kind::Neg(a)
+            | Kind::Transpose(a)
+            | Kind::Power(a, _)
+            | Kind::Component(a, _)
+            | Kind::Shaped(a, _) => {
                 vec![a]
             }
         }
@@ -39,9 +47,14 @@ impl Expression {
 
     /// The first function of these that is called.
     pub(crate) fn call_of(&self, of: &[&str]) -> Option<&str> {
+        self.call_that(&|name| of.contains(&name))
+    }
+
+    /// The first function that is called and is such a one.
+    pub(crate) fn call_that(&self, is: &dyn Fn(&str) -> bool) -> Option<&str> {
         match &self.kind {
-            Kind::Call(name, _) if of.contains(&name.text.as_str()) => Some(&name.text),
-            _ => self.parts().into_iter().find_map(|part| part.call_of(of)),
+            Kind::Call(name, _) if is(&name.text) => Some(&name.text),
+            _ => self.parts().into_iter().find_map(|part| part.call_that(is)),
         }
     }
 

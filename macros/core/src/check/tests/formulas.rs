@@ -165,6 +165,12 @@ fn what_is_no_such_function_is_refused() {
             "`b` is a function, which stands with its argument",
         ),
         (
+            "given b(Vec<3>): Real = \"x + y\";",
+            "b(X)",
+            "this is a vector of length 2, but a vector of length 3 is needed here",
+        ),
+        ("given b(Real): Real = \"3*x\";", "b(X)", "is needed here"),
+        (
             "given b(Real): Real = \"u*x\";",
             "b(u)",
             "`u` is not known here",
