@@ -47,8 +47,10 @@ fn samples_of_held_models_lie_on_their_constraints() {
         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) + m*dot(next(y) - y, next(y) - y)/(2*h) - h*m*g*(x[3] + y[3]); }";
     let turned = "model Turned { param J: Sym<3>; group A: SO<3> velocity W; constraint next(A) = A*W; \
         hold n: dot(A*E3, E2) = 0; lagrangian = -tr(J*W)/h; }";
+    let still = "model Still { param m, l: Real; field x: Vec<3>; hold a: dot(x, x) = l^2; \
+        lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h); }";
     let pendulum = std::fs::read_to_string(shipped("spherical-pendulum.clebsch")).expect("reads");
-    for text in [linked, turned, &pendulum] {
+    for text in [linked, turned, still, &pendulum] {
         std::fs::write(&model, text).expect("writes");
         let sample = clebsch(&["case", &model]);
         assert_eq!(sample.code, 0, "{text}: {}", sample.err);
@@ -56,6 +58,27 @@ fn samples_of_held_models_lie_on_their_constraints() {
         let done = clebsch(&["run", &model, "--case", &case, "--steps", "10"]);
         assert_eq!(done.code, 0, "{text}: {}{}", done.out, done.err);
     }
+}
+
+/// A chain that hangs at rest moves by its rounding, of which the rate of change of what is held is a part: it is no drift.
+#[test]
+fn a_chain_at_rest_is_within_its_bounds() {
+    let folder = Folder::new("chain-at-rest");
+    let lattice = |file: &str| {
+        format!(
+            "{}/../models/lattices/hanging-chain.{file}",
+            env!("CARGO_MANIFEST_DIR")
+        )
+    };
+    let text = std::fs::read_to_string(lattice("toml")).expect("reads");
+    let slanting = "x = [\"0.015*i\", 0.0, \"-0.02*i\"]";
+    assert!(text.contains(slanting), "{text}");
+    let case = folder.path("case.toml");
+    let vertical = text.replace(slanting, "x = [0.0, 0.0, \"-0.025*i\"]");
+    std::fs::write(&case, vertical).expect("writes");
+    let done = clebsch(&["run", &lattice("clebsch"), "--case", &case, "--steps", "200"]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    assert!(!done.out.contains("EXCEEDED"), "{}", done.out);
 }
 
 /// Columns of a table by their names, row by row.

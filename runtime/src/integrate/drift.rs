@@ -1,6 +1,7 @@
 //! How far an invariant has moved: relative to its natural scale, absolute where that scale is zero.
 //! Takes its value and its scale at every step; gives the largest and the last deviation.
 
+use crate::card::Card;
 use crate::saved::{Saved, Words};
 use crate::scalar::larger;
 use nalgebra::SMatrix;
@@ -77,6 +78,53 @@ pub fn not_less<const R: usize, const C: usize>(
 pub fn filled(sizes: impl Iterator<Item = f64>, impulse: f64) -> Option<f64> {
     let most = sizes.fold(0.0, larger);
     (impulse.is_finite() && most > 0.0 && SHARE * most < impulse).then_some(impulse)
+}
+
+/// A rate at which a constraint would be left by less than this part of its terms in a step is measured by that: a bound of
+/// 1e-12 then lies at a few roundings of what is held, which a place cannot be nearer to.
+const PART: f64 = 1e-3;
+
+/// Where the rate of change of a held constraint stands among the components of invariants, and the constraint itself.
+#[derive(Clone, Debug)]
+pub(super) struct HeldRate {
+    rate: usize,
+    held: usize,
+    count: usize,
+}
+
+impl HeldRate {
+    /// Those of a model.
+    pub(super) fn all(card: &Card) -> Vec<HeldRate> {
+        let mut starts = Vec::new();
+        let mut at = 0;
+        for v in card.invariants {
+            starts.push((v.name, at, v.rows));
+            at += v.rows;
+        }
+        let of = |(name, rate, count): &(&str, usize, usize)| {
+            let multiplier = name.strip_prefix("constraint_rate_")?;
+            let held = format!("constraint_{multiplier}");
+            let (_, held, _) = starts
+                .iter()
+                .find(|(n, _, rows)| *n == held && rows == count)?;
+            Some(HeldRate {
+                rate: *rate,
+                held: *held,
+                count: *count,
+            })
+        };
+        starts.iter().filter_map(of).collect()
+    }
+
+    /// The scales of the rate, not less than the part of what is held, where the step is `h`.
+    pub(super) fn not_less(&self, scales: &mut [f64], h: f64) {
+        for i in 0..self.count {
+            let held = scales.get(self.held + i).copied();
+            if let (Some(held), Some(rate)) = (held, scales.get_mut(self.rate + i)) {
+                *rate = larger(*rate, PART * held / h.abs());
+            }
+        }
+    }
 }
 
 /// What was seen of one component so far: its scale is known when the run is over.

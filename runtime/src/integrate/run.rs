@@ -2,7 +2,7 @@
 //! Takes a trajectory, a number of steps and an observer; gives a [`Summary`], and the error of the
 //! step that failed or of the number that is none.
 
-use super::drift::Deviation;
+use super::drift::{Deviation, HeldRate};
 use super::{Drift, NotFinite, RunError, Watched};
 use crate::card::Trajectory;
 use crate::saved::{Saved, Words, optional};
@@ -117,6 +117,8 @@ pub struct Watch {
     observables: Vec<f64>,
     invariants: Vec<f64>,
     scales: Vec<f64>,
+    /// Where among them the rates of held constraints stand.
+    rates: Vec<HeldRate>,
     seen: Vec<Deviation>,
     /// The node sampled last.
     sampled: u64,
@@ -136,6 +138,7 @@ impl Watch {
             observables: vec![0.0; card.observable_count()],
             invariants: vec![0.0; card.invariant_count()],
             scales: vec![0.0; card.invariant_count()],
+            rates: HeldRate::all(card),
             seen: Vec::with_capacity(card.invariant_count()),
             sampled: trajectory.node(),
             summary: Summary {
@@ -240,6 +243,12 @@ impl Watch {
         trajectory.invariants(&mut self.invariants);
         finite(trajectory, Watched::Invariant, &self.invariants)?;
         trajectory.scales(&mut self.scales);
+        if trajectory.node() > 0 {
+            let h = trajectory.time() / trajectory.node() as f64;
+            self.rates
+                .iter()
+                .for_each(|rate| rate.not_less(&mut self.scales, h));
+        }
         finite(trajectory, Watched::Scale, &self.scales)?;
         if sampled {
             trajectory.observe(&mut self.observables);
@@ -268,6 +277,7 @@ impl Saved for Watch {
             observables: _,
             invariants: _,
             scales: _,
+            rates: _,
             seen,
             sampled,
             summary,

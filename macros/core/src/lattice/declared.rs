@@ -92,6 +92,9 @@ pub struct Lattice {
 /// The name of the end condition of a line for which none is stated.
 const NATURAL: &str = "free";
 
+/// Names of ends at which something is held, which a natural end does not bear.
+const HOLDING: [&str; 6] = ["clamped", "closed", "fixed", "held", "pinned", "wall"];
+
 impl Lattice {
     /// The end conditions at the first or the last site, by name.
     pub fn alternatives(&self, last: bool) -> Vec<String> {
@@ -486,6 +489,18 @@ impl Lattice {
     /// What is given at an end is a configuration there.
     fn check_ends(&self, errors: &mut Errors) {
         for alternative in self.ends.iter().flatten() {
+            let name = &alternative.name;
+            let states = !alternative.given.is_empty() || !alternative.terms.is_empty();
+            if !states && HOLDING.contains(&name.text.as_str()) {
+                let message = format!(
+                    "`{}` states nothing, and an end at which nothing is stated is free",
+                    name.text
+                );
+                errors.push(Diagnostic::new(name.place, message).help(format!(
+                    "say what is given there, `{} {{ q = given; }}`, or call it `free`",
+                    name.text
+                )));
+            }
             for name in &alternative.given {
                 let kind = self.find(&name.text).map(|q| (q.kind, q.sites));
                 let message = match kind {

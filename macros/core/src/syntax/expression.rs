@@ -221,7 +221,7 @@ fn signed_exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
         Some(Token::Glued(number, name)) => return Err(ambiguous::glued(c, number, name)),
         _ => {
             return Err(c.unexpected("`T`, `-1` or a number after `^`").help(
-                "`x^T` is the transpose, `x^-1` the inverse, `x^2` and `x^(1/2)` are powers",
+                "`x^T` is the transpose, `x^-1` the inverse, `x^2` and `x^(1/2)` are powers; others are `exp(a*log(x))`, and `exp(x)`",
             ));
         }
     };

@@ -333,7 +333,7 @@ impl Cursor {
             Some(Token::Punct('.', _)) => COMPONENT,
             Some(Token::Open('(')) => SIZES,
             Some(Token::Punct('^', _)) => {
-                "a vector of three components is `Vec<3>`, a matrix `Mat<3>`"
+                "of a function the expression stands in quotes, `= \"x^2\"`; a vector of three components is `Vec<3>`"
             }
             Some(Token::Punct('=', _)) => "values stand in the case, not in the model",
             Some(Token::Punct('#', _)) => "remarks begin with `//`",

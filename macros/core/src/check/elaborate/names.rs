@@ -11,7 +11,7 @@ use crate::expr::symbol::{Role, Symbols};
 use crate::syntax::FUNCTIONS;
 
 /// What the functions of the language are called elsewhere.
-const OTHERWISE: [(&str, &str); 13] = [
+const OTHERWISE: [(&str, &str); 25] = [
     ("trace", "tr(A)"),
     ("determinant", "det(A)"),
     ("inverse", "inv(A)"),
@@ -25,6 +25,18 @@ const OTHERWISE: [(&str, &str); 13] = [
     ("sq", "a^2"),
     ("fabs", "abs(a)"),
     ("transposed", "A^T"),
+    ("PI", "pi"),
+    ("Pi", "pi"),
+    ("M_PI", "pi"),
+    ("e1", "E1"),
+    ("e2", "E2"),
+    ("e3", "E3"),
+    ("e_1", "E1"),
+    ("e_2", "E2"),
+    ("e_3", "E3"),
+    ("e_x", "E1"),
+    ("e_y", "E2"),
+    ("e_z", "E3"),
 ];
 
 /// What the time step is called elsewhere.

@@ -32,6 +32,14 @@ fn notation_of_papers_is_told_with_what_to_write() {
             "a vector of three components is `Vec<3>`",
         ),
         ("param l: Scalar;", "q", "write `Real`"),
+        ("", "M_PI*q", "the language writes `pi`"),
+        ("", "dot(e_z, x)", "the language writes `E3`"),
+        ("", "q^m", "`exp(a*log(x))`"),
+        (
+            "given f(Real): Real = x^2;",
+            "f(q)",
+            "the expression stands in quotes",
+        ),
         ("let u: Real = q;", "u", "write `=` before an expression"),
         ("hamiltonian = q;", "q", "the discrete Lagrangian of a step"),
     ] {
