@@ -76,7 +76,14 @@ fn a_chain_at_rest_is_within_its_bounds() {
     let case = folder.path("case.toml");
     let vertical = text.replace(slanting, "x = [0.0, 0.0, \"-0.025*i\"]");
     std::fs::write(&case, vertical).expect("writes");
-    let done = clebsch(&["run", &lattice("clebsch"), "--case", &case, "--steps", "200"]);
+    let done = clebsch(&[
+        "run",
+        &lattice("clebsch"),
+        "--case",
+        &case,
+        "--steps",
+        "200",
+    ]);
     assert_eq!(done.code, 0, "{}{}", done.out, done.err);
     assert!(!done.out.contains("EXCEEDED"), "{}", done.out);
 }

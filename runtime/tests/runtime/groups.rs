@@ -252,7 +252,7 @@ fn messages_count_from_one() {
                 lower: 2.0,
             }
             .to_string(),
-            "not skew: entry (2, 2) is 2 but (2, 2) is 2",
+            "not skew: entry (2, 2) is 2, not 0",
         ),
         (
             Problem::NotDiagonal {

@@ -122,7 +122,7 @@ fn what_is_no_such_function_is_refused() {
         (
             "given b(Vec<2>): Real = \"A*(x\";",
             "b(X)",
-            "in this expression: this `(` is not closed",
+            "this `(` is not closed",
         ),
         (
             "given b(Vec<2>): Real = \"A x;\";",
