@@ -39,7 +39,7 @@ pub(super) fn named(mut model: Model) -> Model {
     };
     for statement in &mut model.statements {
         for e in statement.expressions_mut() {
-            *e = e.replaced(&put);
+            e.replace(&put);
         }
     }
     model

@@ -73,14 +73,20 @@ impl Expression {
 
     /// The same with what `of` puts in the place of parts, larger ones first; into what is put in it does not look.
     pub(crate) fn replaced(&self, of: &dyn Fn(&Expression) -> Option<Expression>) -> Expression {
-        if let Some(put) = of(self) {
-            return put;
-        }
         let mut out = self.clone();
-        for part in out.parts_mut() {
-            *part = part.replaced(of);
-        }
+        out.replace(of);
         out
+    }
+
+    /// The same in place.
+    pub(crate) fn replace(&mut self, of: &dyn Fn(&Expression) -> Option<Expression>) {
+        match of(self) {
+            Some(put) => *self = put,
+            None => self
+                .parts_mut()
+                .into_iter()
+                .for_each(|part| part.replace(of)),
+        }
     }
 }
 
