@@ -16,6 +16,7 @@ mod equations_of_a_step;
 mod expansion;
 mod generated_fresh;
 mod invariants;
+mod kinetic_analogy;
 mod latex;
 mod lattices;
 mod mutation;
