@@ -58,7 +58,7 @@ pub struct Finished<'a> {
 }
 
 /// Every file name a run can write, so that a folder with anything else is never replaced.
-pub const FILES: [&str; 16] = [
+pub const FILES: [&str; 17] = [
     "trajectory.csv",
     "trajectory.npz",
     "run.json",
@@ -70,6 +70,7 @@ pub const FILES: [&str; 16] = [
     "angles.svg",
     "particles.svg",
     "vorticity.svg",
+    "snapshots.svg",
     "run.html",
     vtk::FOLDER,
     // While it runs, and where it can be gone on with.
@@ -101,6 +102,7 @@ pub fn write(
         angles,
         particles,
         vorticity,
+        snapshots,
         html,
         ..,
     ] = FILES;
@@ -124,6 +126,7 @@ pub fn write(
         (angles, plots::angles(run, samples)),
         (particles, plots::particles(run, record)),
         (vorticity, plots::vorticity(run, record)),
+        (snapshots, plots::snapshots(run, record)),
     ];
     for (name, plot) in drawn {
         let plot = plot.map_err(|error| Failure::Failed(format!("cannot draw {name}: {error}")))?;

@@ -17,6 +17,20 @@ pub(crate) enum Point {
     Held(Vec<f64>),
 }
 
+impl Point {
+    /// Its place in a sample.
+    pub(crate) fn at(&self, row: &[f64]) -> Vec<f64> {
+        match self {
+            Point::Held(place) => place.clone(),
+            Point::Moving(columns, around) => {
+                let own = row.get(columns.clone()).unwrap_or_default().iter();
+                let around = around.iter().copied().chain(std::iter::repeat(0.0));
+                own.zip(around).map(|(x, by)| x + by).collect()
+            }
+        }
+    }
+}
+
 /// The points that bodies at sites are drawn at: a field of places of the same label.
 pub(crate) struct Places<'a> {
     card: &'a Card,

@@ -11,12 +11,14 @@ pub mod map;
 pub(crate) mod particles;
 pub(crate) mod reduce;
 mod sites;
+mod snapshots;
 mod sphere;
 pub(crate) mod window;
 
 pub(crate) use attitude::{angles, attitude};
 pub(crate) use comparison::comparison;
 pub(crate) use particles::{particles, vorticity};
+pub(crate) use snapshots::snapshots;
 
 use crate::output::Finished;
 use crate::output::points::Diagonals;

@@ -148,23 +148,11 @@ impl Drawn {
     fn place(&self, row: &[f64]) -> [f64; 3] {
         match self {
             Drawn::Standing(x) => [*x, 0.0, 0.0],
-            Drawn::At(point) => in_space(&there(point, row)),
+            Drawn::At(point) => in_space(&point.at(row)),
             Drawn::Height(x, point) => {
-                let height = there(point, row).first().copied();
+                let height = point.at(row).first().copied();
                 [*x, height.unwrap_or(f64::NAN), 0.0]
             }
-        }
-    }
-}
-
-/// The place of a point in a sample.
-fn there(point: &Point, row: &[f64]) -> Vec<f64> {
-    match point {
-        Point::Held(place) => place.clone(),
-        Point::Moving(columns, around) => {
-            let own = row.get(columns.clone()).unwrap_or_default().iter();
-            let around = around.iter().copied().chain(std::iter::repeat(0.0));
-            own.zip(around).map(|(x, by)| x + by).collect()
         }
     }
 }
