@@ -14,7 +14,7 @@ clebsch() { cargo run --release --quiet -- "$@" >/dev/null; }
 clebsch run heavy-top --case general --steps 500 --out "$out/top"
 clebsch run kepler --steps 500 --out "$out/kepler"
 clebsch run kirchhoff-body --steps 200 --out "$out/fluid-body"
-for name in toda-chain elastic-rod; do
+for name in toda-chain geometrically-exact-rod; do
   clebsch run "models/lattices/$name.clebsch" --case "models/lattices/$name.toml" --steps 200 --out "$out/$name"
 done
 name=shallow-water-2d-regularised

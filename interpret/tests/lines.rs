@@ -106,7 +106,11 @@ fn a_term_that_is_left_out_is_seen() {
     let without = [
         (compiled::TODA, " + a*r)", ")"),
         (compiled::TODA, "(a/b)*exp(-b*r) + ", ""),
-        (compiled::ROD, "\n        + (h/s)*tr(B*Λ^T*next(Λ, i))", ""),
+        (
+            compiled::ROD,
+            "\n        + (h/s)*tr(B*(Λ^T*next(Λ, i) - Id))",
+            "",
+        ),
     ];
     for (source, term, rest) in without {
         let mutated = source.replacen(term, rest, 1);

@@ -13,6 +13,8 @@
 mod action;
 #[path = "lines/experiments.rs"]
 mod experiments;
+#[path = "lines/flaschka.rs"]
+mod flaschka;
 #[path = "lines/held.rs"]
 mod held;
 #[path = "lines/laws.rs"]
@@ -27,7 +29,7 @@ use clebsch::line::LineError;
 use clebsch::nalgebra::{SMatrix, Vector3};
 use clebsch::{BodyMomentum, Snapshot, SnapshotError};
 use clebsch_models::fluids;
-use clebsch_models::lattices::elastic_rod::ElasticRodState;
+use clebsch_models::lattices::geometrically_exact_rod::GeometricallyExactRodState;
 use clebsch_models::lattices::{STATEMENTS, toda_chain::*};
 use models::{Line, Linked, LinkedChainState, Rod, Toda};
 
@@ -92,8 +94,8 @@ fn the_compiled_statements_are_those_of_the_files() {
 fn threads_change_no_bit() {
     let n = 10_000;
     let start = |threads| {
-        let rod = Rod::new(n, 0).stepper().with_threads(threads);
-        let (mut state, mut work) = rod.start(Rod::new(n, 0).initial(3), 1e-3).expect("starts");
+        let rod = Rod::free(n).stepper().with_threads(threads);
+        let (mut state, mut work) = rod.start(Rod::free(n).initial(3), 1e-3).expect("starts");
         for _ in 0..20 {
             rod.step(&mut state, &mut work).expect("steps");
         }
@@ -152,7 +154,7 @@ fn errors_name_the_site() {
 
 #[test]
 fn a_step_that_is_too_long_names_the_site_and_a_shorter_one() {
-    let rod = Rod::new(8, 0);
+    let rod = Rod::free(8);
     let mut initial = rod.initial(0);
     initial.body_momentum_Λ[5] = BodyMomentum(Vector3::new(0.0, 0.0, 1e3));
     let stepper = rod.stepper();
@@ -220,13 +222,13 @@ fn a_state_is_kept_and_goes_on() {
             assert!(other == before);
         }};
     }
-    let (rod, longer) = (Rod::new(8, 0), Rod::new(9, 0));
+    let (rod, longer) = (Rod::free(8), Rod::free(9));
     kept!(
         rod.stepper(),
         rod.initial(2),
         longer.stepper(),
         longer.initial(2),
-        |a: &ElasticRodState, b: &ElasticRodState| {
+        |a: &GeometricallyExactRodState, b: &GeometricallyExactRodState| {
             let both = a.φ().iter().zip(b.φ());
             clebsch::scalar::largest(both.map(|(x, y)| (x - y).norm()))
         }

@@ -10,8 +10,8 @@ use clebsch::{BodyMomentum, Rotation};
 use clebsch_benches::blocks::computed;
 use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
 use clebsch_models::lattices::{
-    coupled_tops::*, elastic_rod::*, hanging_chain::*, kirchhoff_rod::*, shallow_water::*,
-    toda_chain::*,
+    coupled_tops::*, geometrically_exact_rod::*, hanging_chain::*, kirchhoff_rod::*,
+    shallow_water_1d::*, toda_chain::*,
 };
 use std::hint::black_box;
 use std::time::Instant;
@@ -160,17 +160,17 @@ fn toda_by_hand(n: usize) -> impl FnMut() {
 }
 
 fn water(n: usize) -> impl FnMut() {
-    let sites = ShallowWaterSites {
+    let sites = ShallowWater1DSites {
         N: n,
-        ends: ShallowWaterEnds::Ring { L: n as f64 },
+        ends: ShallowWater1DEnds::Ring { L: n as f64 },
     };
-    let parameters = ShallowWaterParameters {
+    let parameters = ShallowWater1DParameters {
         m: vec![1.0; n],
         g: 1.0,
         f: 0.5,
     };
-    let water = ShallowWater::new(parameters, sites).expect("water");
-    let initial = ShallowWaterInitial {
+    let water = ShallowWater1D::new(parameters, sites).expect("water");
+    let initial = ShallowWater1DInitial {
         X: (0..n)
             .map(|i| number(i as f64 + 0.1 * (0.3 * i as f64).sin()))
             .collect(),
@@ -286,7 +286,7 @@ fn lone(n: usize) -> impl FnMut() {
 
 fn rod(n: usize) -> impl FnMut() {
     let s = 0.1;
-    let parameters = ElasticRodParameters {
+    let parameters = GeometricallyExactRodParameters {
         s,
         m: (0..=n)
             .map(|i| s * if i == 0 || i == n { 0.5 } else { 1.0 })
@@ -296,12 +296,13 @@ fn rod(n: usize) -> impl FnMut() {
         B: diagonal(1.0, 1.0, 2.0),
         g: Vector3::zeros(),
     };
-    let ends = ElasticRodEnds::Open {
-        first: ElasticRodFirst::Free,
-        last: ElasticRodLast::Free,
+    let ends = GeometricallyExactRodEnds::Open {
+        first: GeometricallyExactRodFirst::Free,
+        last: GeometricallyExactRodLast::Free,
     };
-    let rod = ElasticRod::new(parameters, ElasticRodSites { N: n, ends }).expect("a rod");
-    let initial = ElasticRodInitial {
+    let rod = GeometricallyExactRod::new(parameters, GeometricallyExactRodSites { N: n, ends })
+        .expect("a rod");
+    let initial = GeometricallyExactRodInitial {
         φ: (0..=n).map(|i| Vector3::z() * (s * i as f64)).collect(),
         momentum_φ: (0..=n)
             .map(|i| Vector3::x() * (1e-3 * (0.2 * i as f64).sin()))

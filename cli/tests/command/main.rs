@@ -12,6 +12,7 @@ mod figures;
 mod fluids;
 mod functions;
 mod lattices;
+mod longest_step;
 mod model_files;
 mod names;
 mod npz;

@@ -112,7 +112,7 @@ fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
 fn a_rod_is_a_line_with_the_frames_of_its_segments() {
     let folder = Folder::new("vtk-rod");
     let out = folder.path("out");
-    let (model, case) = shipped("lattices/elastic-rod");
+    let (model, case) = shipped("lattices/geometrically-exact-rod");
     run(
         &model,
         Some(&case),

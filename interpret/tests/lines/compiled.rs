@@ -3,8 +3,8 @@
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
 use clebsch::{BodyMomentum, Rotation, emitted};
 use clebsch_models::lattices::coupled_tops::*;
-use clebsch_models::lattices::elastic_rod::*;
-use clebsch_models::lattices::shallow_water::*;
+use clebsch_models::lattices::geometrically_exact_rod::*;
+use clebsch_models::lattices::shallow_water_1d::*;
 use clebsch_models::lattices::sine_gordon::*;
 use clebsch_models::lattices::toda_chain::*;
 use std::collections::BTreeMap;
@@ -12,8 +12,8 @@ use std::collections::BTreeMap;
 pub const TODA: &str = include_str!("../../../models/lattices/toda-chain.clebsch");
 const TOPS: &str = include_str!("../../../models/lattices/coupled-tops.clebsch");
 const SINE: &str = include_str!("../../../models/lattices/sine-gordon.clebsch");
-pub const ROD: &str = include_str!("../../../models/lattices/elastic-rod.clebsch");
-pub const WATER: &str = include_str!("../../../models/lattices/shallow-water.clebsch");
+pub const ROD: &str = include_str!("../../../models/lattices/geometrically-exact-rod.clebsch");
+pub const WATER: &str = include_str!("../../../models/lattices/shallow-water-1d.clebsch");
 
 /// A number of sites and how the line ends; a ring where that is not said.
 #[derive(Clone, Debug)]
@@ -203,9 +203,9 @@ compiled!(
 );
 compiled!(
     WaterLine,
-    ShallowWater,
-    ShallowWaterState,
-    ShallowWaterWorkspace,
+    ShallowWater1D,
+    ShallowWater1DState,
+    ShallowWater1DWorkspace,
     |s, name| match name {
         "X" => flat(s.X()),
         "momentum_X" => flat(s.momentum_X()),
@@ -230,9 +230,9 @@ compiled!(
 );
 compiled!(
     RodLine,
-    ElasticRod,
-    ElasticRodState,
-    ElasticRodWorkspace,
+    GeometricallyExactRod,
+    GeometricallyExactRodState,
+    GeometricallyExactRodWorkspace,
     |s, name| match name {
         "φ" => flat(s.φ()),
         "momentum_φ" => flat(s.momentum_φ()),
@@ -368,19 +368,19 @@ pub fn water(case: &Case) -> Made {
 /// Shallow water of these data.
 pub fn shallow_water(case: &Case, data: &Data) -> Box<dyn Compiled> {
     let ends = match case.ends {
-        None => ShallowWaterEnds::Ring {
+        None => ShallowWater1DEnds::Ring {
             L: data.number("L"),
         },
-        Some(_) => ShallowWaterEnds::Open,
+        Some(_) => ShallowWater1DEnds::Open,
     };
-    let parameters = ShallowWaterParameters {
+    let parameters = ShallowWater1DParameters {
         m: data.numbers("m"),
         g: data.number("g"),
         f: data.number("f"),
     };
     let model =
-        ShallowWater::new(parameters, ShallowWaterSites { N: case.n, ends }).expect("water");
-    let initial = ShallowWaterInitial {
+        ShallowWater1D::new(parameters, ShallowWater1DSites { N: case.n, ends }).expect("water");
+    let initial = ShallowWater1DInitial {
         X: data.arrays("X"),
         momentum_X: data.arrays("momentum_X"),
         Y: data.arrays("Y"),
@@ -422,7 +422,7 @@ fn tops(case: &Case) -> Made {
 }
 
 fn rod(case: &Case) -> Made {
-    let (n, nodes) = (case.n, case.n + 1);
+    let (n, nodes) = (case.n, case.nodes());
     let mut r = Random(5 + n as u64);
     let inertia = |i: usize| 1.0 + 0.1 * (i % 3) as f64;
     let inertia = (0..n).flat_map(|i| {
@@ -437,6 +437,7 @@ fn rod(case: &Case) -> Made {
             x
         }
     });
+    let wall = r.turns(1, 0.2);
     let data = Data(BTreeMap::from([
         ("s", vec![0.5]),
         ("m", r.list(nodes, 0.1).iter().map(|x| 0.5 + x).collect()),
@@ -449,24 +450,34 @@ fn rod(case: &Case) -> Made {
         ("momentum_φ", r.list(3 * nodes, 0.2)),
         ("Λ", r.turns(n, 0.3)),
         ("body_momentum_Λ", r.list(3 * n, 0.2)),
-        ("Λw", r.turns(1, 0.2)),
+        ("Λw", wall.clone()),
+        ("Λw_0", wall.clone()),
+        ("Λw_N", wall),
+        ("X", vec![0.1, 0.05, 0.5 * n as f64]),
     ]));
-    let [first, last] = case.ends.expect("has two ends");
-    let first = match first {
-        "free" => ElasticRodFirst::Free,
-        "pinned" => ElasticRodFirst::Pinned,
-        _ => ElasticRodFirst::Clamped {
-            Λw: data.array("Λw"),
+    let ends = match case.ends {
+        None => GeometricallyExactRodEnds::Ring { X: data.array("X") },
+        Some([first, last]) => GeometricallyExactRodEnds::Open {
+            first: match first {
+                "free" => GeometricallyExactRodFirst::Free,
+                "pinned" => GeometricallyExactRodFirst::Pinned,
+                _ => GeometricallyExactRodFirst::Clamped {
+                    Λw: data.array("Λw"),
+                },
+            },
+            last: match last {
+                "free" => GeometricallyExactRodLast::Free,
+                "pinned" => GeometricallyExactRodLast::Pinned,
+                "clamped" => GeometricallyExactRodLast::Clamped {
+                    Λw: data.array("Λw"),
+                },
+                _ => GeometricallyExactRodLast::Load {
+                    force: data.array("force"),
+                },
+            },
         },
     };
-    let last = match last {
-        "free" => ElasticRodLast::Free,
-        "pinned" => ElasticRodLast::Pinned,
-        _ => ElasticRodLast::Load {
-            force: data.array("force"),
-        },
-    };
-    let parameters = ElasticRodParameters {
+    let parameters = GeometricallyExactRodParameters {
         s: data.number("s"),
         m: data.numbers("m"),
         J: data.arrays("J"),
@@ -474,9 +485,9 @@ fn rod(case: &Case) -> Made {
         B: data.array("B"),
         g: data.array("g"),
     };
-    let ends = ElasticRodEnds::Open { first, last };
-    let model = ElasticRod::new(parameters, ElasticRodSites { N: n, ends }).expect("a rod");
-    let initial = ElasticRodInitial {
+    let model = GeometricallyExactRod::new(parameters, GeometricallyExactRodSites { N: n, ends })
+        .expect("a rod");
+    let initial = GeometricallyExactRodInitial {
         φ: data.arrays("φ"),
         momentum_φ: data.arrays("momentum_φ"),
         Λ: data.rotations("Λ"),
@@ -511,10 +522,10 @@ pub fn all() -> Vec<Line> {
         ["free", "pinned"],
         ["pinned", "pinned"],
     ];
-    let mut of_rod = Vec::new();
+    let mut of_rod = cases(true, &pinned);
     for first in ["free", "pinned", "clamped"] {
-        for last in ["free", "pinned", "load"] {
-            of_rod.push([first, last]);
+        for last in ["free", "clamped", "load"] {
+            of_rod.push(Case::new(5, Some([first, last])));
         }
     }
     // A ring of shallow water has two neighbours on either side.
@@ -523,7 +534,7 @@ pub fn all() -> Vec<Line> {
         (TODA, toda, cases(true, &free)),
         (TOPS, tops, cases(true, &free)),
         (SINE, sine, cases(true, &pinned)),
-        (ROD, rod, cases(false, &of_rod)),
+        (ROD, rod, of_rod),
         (WATER, water, water_cases),
     ]
 }

@@ -2,10 +2,10 @@
 //! the files in `models/lattices/`, which run without a build.
 
 pub mod coupled_tops;
-pub mod elastic_rod;
+pub mod geometrically_exact_rod;
 pub mod hanging_chain;
 pub mod kirchhoff_rod;
-pub mod shallow_water;
+pub mod shallow_water_1d;
 pub mod sine_gordon;
 pub mod toda_chain;
 
@@ -16,8 +16,8 @@ pub const STATEMENTS: [(&str, &str); 7] = [
         coupled_tops::CoupledTops::<f64>::SOURCE,
     ),
     (
-        include_str!("../../lattices/elastic-rod.clebsch"),
-        elastic_rod::ElasticRod::<f64>::SOURCE,
+        include_str!("../../lattices/geometrically-exact-rod.clebsch"),
+        geometrically_exact_rod::GeometricallyExactRod::<f64>::SOURCE,
     ),
     (
         include_str!("../../lattices/hanging-chain.clebsch"),
@@ -28,8 +28,8 @@ pub const STATEMENTS: [(&str, &str); 7] = [
         kirchhoff_rod::KirchhoffRod::<f64>::SOURCE,
     ),
     (
-        include_str!("../../lattices/shallow-water.clebsch"),
-        shallow_water::ShallowWater::<f64>::SOURCE,
+        include_str!("../../lattices/shallow-water-1d.clebsch"),
+        shallow_water_1d::ShallowWater1D::<f64>::SOURCE,
     ),
     (
         include_str!("../../lattices/sine-gordon.clebsch"),

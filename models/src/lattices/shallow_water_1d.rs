@@ -2,7 +2,7 @@
 
 clebsch::model! {
     /// Rotating shallow water in one dimension, as particles on a ring: places along it and across it.
-    pub model ShallowWater {
+    pub model ShallowWater1D {
         time k step dt;
         label i in 0..N;
         periodic;

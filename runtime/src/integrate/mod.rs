@@ -6,6 +6,7 @@ mod composition;
 mod described;
 mod drift;
 mod ensemble;
+mod longest_step;
 mod model;
 mod residual;
 mod run;
@@ -21,6 +22,7 @@ pub use drift::Drift;
 #[doc(hidden)]
 pub use drift::{filled, not_less};
 pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
+pub use longest_step::LongestStep;
 pub use model::Model;
 pub use residual::Residual;
 pub use run::{LargestResidual, Observer, Summary, Watch, run, run_until_stopped};

@@ -4,7 +4,7 @@ use clebsch::mesh::Domain;
 use clebsch::nalgebra::{SMatrix, Vector2};
 use clebsch_models::fluids::particle_mesh_1d::*;
 use clebsch_models::fluids::particle_mesh_2d::*;
-use clebsch_models::lattices::shallow_water::*;
+use clebsch_models::lattices::shallow_water_1d::*;
 use std::f64::consts::{PI, TAU};
 
 fn one(x: f64) -> SMatrix<f64, 1, 1> {
@@ -13,7 +13,7 @@ fn one(x: f64) -> SMatrix<f64, 1, 1> {
 
 /// Experiment 1 of section 4.8: a bump of mass on a ring, at rest, with f = 2 pi and wave speed 2 pi.
 struct Bump {
-    model: ShallowWater,
+    model: ShallowWater1D,
     mass: Vec<f64>,
     x: Vec<f64>,
 }
@@ -26,21 +26,21 @@ impl Bump {
         let x: Vec<f64> = (0..CELLS).map(|i| i as f64 * dx).collect();
         let bump = |x: &f64| 1.0 + 0.1 * (-800.0 * ((x - PI) / TAU).powi(2)).exp();
         let mass: Vec<f64> = x.iter().map(|x| dx * bump(x)).collect();
-        let parameters = ShallowWaterParameters {
+        let parameters = ShallowWater1DParameters {
             m: mass.clone(),
             g: 4.0 * PI * PI,
             f: TAU,
         };
-        let ends = ShallowWaterEnds::Ring { L: TAU };
-        let sites = ShallowWaterSites { N: CELLS, ends };
-        let model = ShallowWater::new(parameters, sites).expect("a ring");
+        let ends = ShallowWater1DEnds::Ring { L: TAU };
+        let sites = ShallowWater1DSites { N: CELLS, ends };
+        let model = ShallowWater1D::new(parameters, sites).expect("a ring");
         Self { model, mass, x }
     }
 
     /// At rest: the momentum across is that of the frame.
-    fn start(&self, dt: f64) -> (ShallowWaterState, ShallowWaterWorkspace) {
+    fn start(&self, dt: f64) -> (ShallowWater1DState, ShallowWater1DWorkspace) {
         let across = self.mass.iter().zip(&self.x).map(|(m, x)| one(m * TAU * x));
-        let initial = ShallowWaterInitial {
+        let initial = ShallowWater1DInitial {
             X: self.x.iter().map(|x| one(*x)).collect(),
             Y: vec![one(0.0); CELLS],
             momentum_X: vec![one(0.0); CELLS],
@@ -92,7 +92,7 @@ fn potential_vorticity_of_each_particle_is_constant_and_the_energy_does_not_drif
     let bump = Bump::new();
     let (mut state, mut work) = bump.start(0.01);
     // q = (zeta + f)/h with zeta = dV/dX: the momentum across by mass is V + f X.
-    let vorticity = |s: &ShallowWaterState, a: usize| {
+    let vorticity = |s: &ShallowWater1DState, a: usize| {
         let c = |i: usize| s.momentum_Y()[i][0] / bump.mass[i];
         (c(a + 1) - c(a - 1)) / (2.0 * bump.mass[a])
     };

@@ -118,11 +118,12 @@ pub fn limit(
         if expr::contains(&value, at(spec.step, Shift::HERE)) {
             return Err(INSIDE.to_owned());
         }
-        if constant || order > Rational::ONE || algebra.is_zero(&value) {
+        if order > Rational::ONE || algebra.is_zero(&value) {
             continue;
         }
+        // What a potential is measured from stays; what an edge has at rest does not.
         if order < Rational::ONE {
-            if is_carried_constant(spec, letters, variations, algebra, &value) {
+            if constant || is_carried_constant(spec, letters, variations, algebra, &value) {
                 continue;
             }
             standing.entry(order).or_default().push(value);

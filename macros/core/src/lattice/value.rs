@@ -42,7 +42,10 @@ fn value(e: &Expression, of: &dyn Fn(&str) -> Option<f64>) -> Result<f64, String
         Kind::Number(q) => q.value(),
         Kind::Constant(c) => c.value(),
         Kind::Name(n) if crate::syntax::is_circle(n) => std::f64::consts::PI,
-        Kind::Name(n) => of(n).ok_or_else(|| format!("`{n}` has no value here"))?,
+        Kind::Name(n) => of(n).ok_or_else(|| match n.as_str() {
+            "t" => "`t` has no value here: data are of the start, and what an end holds stays as it is there".to_owned(),
+            n => format!("`{n}` has no value here"),
+        })?,
         Kind::Shaped(a, _) => value(a, of)?,
         Kind::Sum(terms) => {
             let mut total = 0.0;

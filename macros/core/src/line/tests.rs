@@ -19,7 +19,7 @@ fn shipped_lattices_are_programs() {
         ("toda-chain", 1, 1),
         ("sine-gordon", 1, 1),
         ("coupled-tops", 1, 1),
-        ("elastic-rod", 2, 2),
+        ("geometrically-exact-rod", 2, 2),
         ("hanging-chain", 0, 1),
         // Between sections, and where an end pushes.
         ("kirchhoff-rod", 2, 2),

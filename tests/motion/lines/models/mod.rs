@@ -33,7 +33,7 @@ pub use kirchhoff::{Ends, Kirchhoff};
 pub use linked::{Linked, LinkedChainState, Woven};
 pub use named::Named;
 pub use quartic::Quartic;
-pub use rod::Rod;
+pub use rod::{Held, Rod};
 pub use sine::Sine;
 pub use toda::Toda;
 pub use tops::Tops;
@@ -167,8 +167,14 @@ pub fn all(n: usize) -> Vec<Box<dyn Line>> {
             .into_iter()
             .map(|line| Box::new(line) as Box<dyn Line>),
     );
-    let rods = (0..9).filter(|ends| n > 1 || *ends == 0);
-    out.extend(rods.map(|ends| Box::new(Rod::new(n, ends)) as Box<dyn Line>));
+    out.push(Box::new(Rod::free(n)));
+    if n > 1 {
+        out.push(Box::new(Rod::new(n, None)));
+        let ends = Held::FIRST.iter().flat_map(|f| Held::LAST.map(|l| [*f, l]));
+        for ends in ends.filter(|ends| *ends != [Held::Free; 2]) {
+            out.push(Box::new(Rod::new(n, Some(ends))));
+        }
+    }
     out
 }
 

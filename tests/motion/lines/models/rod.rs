@@ -4,20 +4,48 @@ use super::{Line, Random, c, diagonal, keeping, stepped, vector};
 use crate::action::{Configuration, D, trace};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation};
-use clebsch_models::lattices::elastic_rod::*;
+use clebsch_models::lattices::geometrically_exact_rod::*;
 
-/// An elastic rod: free, pinned, clamped at its first end; free, pinned, loaded at its last.
+/// What holds an end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Held {
+    Free,
+    Pinned,
+    Clamped,
+    Load,
+}
+
+impl Held {
+    pub const FIRST: [Held; 3] = [Held::Free, Held::Pinned, Held::Clamped];
+    pub const LAST: [Held; 4] = [Held::Free, Held::Pinned, Held::Clamped, Held::Load];
+
+    fn holds(self) -> bool {
+        matches!(self, Held::Pinned | Held::Clamped)
+    }
+}
+
+/// An elastic rod, open or closed to a ring on which its centreline grows once around.
 pub struct Rod {
     pub n: usize,
-    ends: usize,
+    ends: Option<[Held; 2]>,
 }
 
 impl Rod {
-    pub fn new(n: usize, ends: usize) -> Self {
+    pub fn free(n: usize) -> Self {
+        Self::new(n, Some([Held::Free; 2]))
+    }
+    pub fn new(n: usize, ends: Option<[Held; 2]>) -> Self {
         Self { n, ends }
     }
+    fn nodes(&self) -> usize {
+        self.n + usize::from(self.ends.is_some())
+    }
+    fn is(&self, end: usize, held: Held) -> bool {
+        self.ends.is_some_and(|ends| ends[end] == held)
+    }
     fn mass(&self, i: usize) -> f64 {
-        0.5 * if i == 0 || i == self.n { 0.5 } else { 1.0 }
+        let last = self.ends.is_some() && (i == 0 || i == self.n);
+        0.5 * if last { 0.5 } else { 1.0 }
     }
     fn inertia(i: usize) -> Matrix3<f64> {
         diagonal(0.3, 0.4, 0.5) * (1.0 + 0.1 * (i % 3) as f64)
@@ -28,44 +56,53 @@ impl Rod {
     fn force() -> Vector3<f64> {
         Vector3::new(0.2, -0.1, 0.3)
     }
+    /// Once around a ring.
+    fn grows(&self) -> Vector3<f64> {
+        Vector3::new(0.05, -0.02, 0.5 * self.n as f64)
+    }
     fn stiffness() -> [Matrix3<f64>; 2] {
         let shear = Matrix3::new(2.0, 0.1, 0.2, 0.1, 2.5, 0.0, 0.2, 0.0, 3.0);
         [shear, diagonal(0.5, 0.4, 0.7)]
     }
-    pub fn stepper(&self) -> ElasticRod {
-        let first = match self.ends / 3 {
-            0 => ElasticRodFirst::Free,
-            1 => ElasticRodFirst::Pinned,
-            _ => ElasticRodFirst::Clamped { Λw: Self::wall() },
-        };
-        let last = match self.ends % 3 {
-            0 => ElasticRodLast::Free,
-            1 => ElasticRodLast::Pinned,
-            _ => ElasticRodLast::Load {
-                force: Self::force(),
+    pub fn stepper(&self) -> GeometricallyExactRod {
+        let ends = match self.ends {
+            None => GeometricallyExactRodEnds::Ring { X: self.grows() },
+            Some([first, last]) => GeometricallyExactRodEnds::Open {
+                first: match first {
+                    Held::Pinned => GeometricallyExactRodFirst::Pinned,
+                    Held::Clamped => GeometricallyExactRodFirst::Clamped { Λw: Self::wall() },
+                    _ => GeometricallyExactRodFirst::Free,
+                },
+                last: match last {
+                    Held::Free => GeometricallyExactRodLast::Free,
+                    Held::Pinned => GeometricallyExactRodLast::Pinned,
+                    Held::Clamped => GeometricallyExactRodLast::Clamped {
+                        Λw: Self::wall().transpose(),
+                    },
+                    Held::Load => GeometricallyExactRodLast::Load {
+                        force: Self::force(),
+                    },
+                },
             },
         };
-        let parameters = ElasticRodParameters {
+        let parameters = GeometricallyExactRodParameters {
             s: 0.5,
-            m: (0..=self.n).map(|i| self.mass(i)).collect(),
+            m: (0..self.nodes()).map(|i| self.mass(i)).collect(),
             J: (0..self.n).map(Self::inertia).collect(),
             S: Self::stiffness()[0],
             B: Self::stiffness()[1],
             g: Vector3::new(0.0, 0.1, -0.3),
         };
-        let sites = ElasticRodSites {
-            N: self.n,
-            ends: ElasticRodEnds::Open { first, last },
-        };
-        ElasticRod::new(parameters, sites).expect("a rod")
+        let sites = GeometricallyExactRodSites { N: self.n, ends };
+        GeometricallyExactRod::new(parameters, sites).expect("a rod")
     }
-    pub fn initial(&self, seed: u64) -> ElasticRodInitial {
+    pub fn initial(&self, seed: u64) -> GeometricallyExactRodInitial {
         let mut r = Random::new(seed);
-        ElasticRodInitial {
-            φ: (0..=self.n)
+        GeometricallyExactRodInitial {
+            φ: (0..self.nodes())
                 .map(|i| Vector3::z() * (0.5 * i as f64) + r.vector() * 0.1)
                 .collect(),
-            momentum_φ: (0..=self.n).map(|_| r.vector() * 0.2).collect(),
+            momentum_φ: (0..self.nodes()).map(|_| r.vector() * 0.2).collect(),
             Λ: (0..self.n)
                 .map(|_| Rotation::exp(&(r.vector() * 0.3)))
                 .collect(),
@@ -74,28 +111,32 @@ impl Rod {
                 .collect(),
         }
     }
-    fn seen(&self, s: &ElasticRodState) -> Configuration<f64> {
+    fn seen(&self, s: &GeometricallyExactRodState) -> Configuration<f64> {
         Configuration {
             x: s.φ().iter().flat_map(|x| [x[0], x[1], x[2]]).collect(),
             r: s.Λ().map(|r| r.matrix()).collect(),
         }
     }
-    keeping!(ElasticRod, |_, _: &ElasticRodState| 0.0);
+    keeping!(
+        GeometricallyExactRod,
+        |_, _: &GeometricallyExactRodState| 0.0
+    );
 }
 
 impl Line for Rod {
     fn name(&self) -> String {
-        format!("rod {} ends {}", self.n, self.ends)
+        format!("rod {} ends {:?}", self.n, self.ends)
     }
     fn terms(&self) -> usize {
-        5 + usize::from(self.ends >= 6) + usize::from(self.ends % 3 == 2)
+        let clamps = (0..2).filter(|end| self.is(*end, Held::Clamped)).count();
+        5 + clamps + usize::from(self.is(1, Held::Load))
     }
     fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {
         let (h, l) = (0.02, 0.5);
         let [shear, bend] = Self::stiffness().map(|m| m.map(c));
         let at = |x: &[D], i: usize| Vector3::new(x[3 * i], x[3 * i + 1], x[3 * i + 2]);
         let mut s = c(0.0);
-        for i in 0..=self.n {
+        for i in 0..self.nodes() {
             let d = at(&b.x, i) - at(&a.x, i);
             s += c(w[0] * self.mass(i) / (2.0 * h)) * d.dot(&d);
         }
@@ -104,33 +145,44 @@ impl Line for Rod {
         }
         for q in [a, b] {
             let half = 0.5 * h;
-            for i in 0..=self.n {
+            for i in 0..self.nodes() {
                 let g = Vector3::new(0.0, 0.1, -0.3);
                 s += c(w[1] * half * self.mass(i)) * vector(&g).dot(&at(&q.x, i));
             }
             for i in 0..self.n {
-                let along = (at(&q.x, i + 1) - at(&q.x, i)) * c(1.0 / l);
+                let next = if i + 1 < self.nodes() {
+                    at(&q.x, i + 1)
+                } else {
+                    at(&q.x, 0) + vector(&self.grows())
+                };
+                let along = (next - at(&q.x, i)) * c(1.0 / l);
                 let strain = q.r[i].transpose() * along - vector(&Vector3::z());
                 s -= c(w[3] * half * l / 2.0) * strain.dot(&(shear * strain));
-                if i + 1 < self.n {
-                    s += c(w[4] * half / l) * trace(&bend, &(q.r[i].transpose() * q.r[i + 1]));
+                if i + 1 < self.n || self.ends.is_none() {
+                    let next = q.r[(i + 1) % self.n];
+                    s += c(w[4] * half / l) * trace(&bend, &(q.r[i].transpose() * next));
                 }
             }
             let mut term = 5;
-            if self.ends >= 6 {
-                let wall = Self::wall().map(c);
-                s += c(w[term] * half * 2.0 / l) * trace(&bend, &(wall.transpose() * q.r[0]));
-                term += 1;
+            for (end, wall) in [Self::wall(), Self::wall().transpose()]
+                .into_iter()
+                .enumerate()
+            {
+                if self.is(end, Held::Clamped) {
+                    let by = wall.map(c).transpose() * q.r[end * (self.n - 1)];
+                    s += c(w[term] * half * 2.0 / l) * trace(&bend, &by);
+                    term += 1;
+                }
             }
-            if self.ends % 3 == 2 {
+            if self.is(1, Held::Load) {
                 s += c(w[term] * half) * vector(&Self::force()).dot(&at(&q.x, self.n));
             }
         }
         s
     }
     fn held(&self, at: usize) -> bool {
-        let (first, last) = (self.ends >= 3, self.ends % 3 == 1);
-        let fields = 3 * (self.n + 1);
+        let [first, last] = self.ends.map_or([false; 2], |ends| ends.map(Held::holds));
+        let fields = 3 * self.nodes();
         first && at < 3 || last && at >= fields - 3 && at < fields
     }
     fn given(&self, seed: u64) -> Vec<f64> {

@@ -3,7 +3,7 @@
 use super::{Line, Random, c, keeping, stepped};
 use crate::action::{Configuration, D};
 use clebsch::nalgebra::SMatrix;
-use clebsch_models::lattices::shallow_water::*;
+use clebsch_models::lattices::shallow_water_1d::*;
 
 /// Shallow water on a ring.
 pub struct Water {
@@ -20,23 +20,23 @@ impl Water {
     fn length(&self) -> f64 {
         self.n as f64
     }
-    pub fn stepper(&self) -> ShallowWater {
-        let parameters = ShallowWaterParameters {
+    pub fn stepper(&self) -> ShallowWater1D {
+        let parameters = ShallowWater1DParameters {
             m: (0..self.n).map(Self::mass).collect(),
             g: 0.9,
             f: 0.6,
         };
-        let ends = ShallowWaterEnds::Ring { L: self.length() };
-        ShallowWater::new(parameters, ShallowWaterSites { N: self.n, ends }).expect("water")
+        let ends = ShallowWater1DEnds::Ring { L: self.length() };
+        ShallowWater1D::new(parameters, ShallowWater1DSites { N: self.n, ends }).expect("water")
     }
-    fn initial(&self, seed: u64) -> ShallowWaterInitial {
+    fn initial(&self, seed: u64) -> ShallowWater1DInitial {
         let mut r = Random::new(seed);
         let mut list = |size: f64| {
             (0..self.n)
                 .map(|_| SMatrix::repeat(size * r.number()))
                 .collect()
         };
-        let mut initial = ShallowWaterInitial {
+        let mut initial = ShallowWater1DInitial {
             X: list(0.2),
             momentum_X: list(0.3),
             Y: list(0.5),
@@ -49,14 +49,14 @@ impl Water {
             .for_each(|(i, x)| x[0] += i as f64);
         initial
     }
-    fn seen(&self, s: &ShallowWaterState) -> Configuration<f64> {
+    fn seen(&self, s: &ShallowWater1DState) -> Configuration<f64> {
         let x = s.X().iter().chain(s.Y()).map(|x| x[0]);
         Configuration {
             x: x.collect(),
             r: Vec::new(),
         }
     }
-    keeping!(ShallowWater, |_, s: &ShallowWaterState| s
+    keeping!(ShallowWater1D, |_, s: &ShallowWater1DState| s
         .momentum_Y()
         .iter()
         .map(|p| p[0])

@@ -1,0 +1,104 @@
+//! The longest step that small motions about the start allow: printed before a run, sharp, and warned of beyond it.
+
+use crate::common::{Folder, program as clebsch};
+
+fn shipped(file: &str) -> String {
+    format!("{}/../models/{file}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The longest step that is printed for a model with a case.
+fn printed(model: &str, case: &str, more: &[&str]) -> f64 {
+    let arguments = ["run", model, "--case", case, "--steps", "1"];
+    let done = clebsch(&[&arguments[..], more].concat());
+    let words = "longest step of small motions about the start, at rest: ";
+    let Some((_, rest)) = done.out.split_once(words) else {
+        panic!("{}{}", done.out, done.err);
+    };
+    let number = rest.split(';').next().expect("a number");
+    number.parse().expect("a number")
+}
+
+/// Of a straight rod, uniform and unloaded, shear and bending swing together: 2/sqrt of the larger eigenvalue of a pair.
+#[test]
+fn a_straight_rod_has_the_limit_of_its_coupled_modes() {
+    let (model, case) = (
+        shipped("lattices/circular-rod.clebsch"),
+        shipped("lattices/circular-rod.toml"),
+    );
+    let (s, mass, inertia, shear, bending) = (0.1, 1.0, 0.01, 100.0, 1.5);
+    let a: f64 = 4.0 * shear / (mass * s * s);
+    let b: f64 = 4.0 * bending / (inertia * s * s) + shear / inertia;
+    let coupled = a * shear / inertia;
+    let largest = 0.5 * (a + b) + (0.25 * (b - a) * (b - a) + coupled).sqrt();
+    let limit = 2.0 / largest.sqrt();
+    let found = printed(&model, &case, &[]);
+    // A line of 40 segments has waves of nearly the shortest length: a part in a thousand.
+    assert!((found / limit - 1.0).abs() < 0.01, "{found} {limit}");
+    // Both limits by themselves are longer.
+    assert!(limit < 0.99 * 2.0 / a.sqrt() && limit < 0.99 * 2.0 / b.sqrt());
+    // Below it the rod goes on, above it is lost within a few steps.
+    let run = |part: f64| {
+        let h = format!("{}", part * limit);
+        clebsch(&["run", &model, "--case", &case, "--h", &h, "--steps", "300"])
+    };
+    let (below, above) = (run(0.97), run(1.15));
+    assert_eq!(below.code, 0, "{}{}", below.out, below.err);
+    assert!(!below.err.contains("longest"), "{}", below.err);
+    assert_eq!(above.code, 1, "{}{}", above.out, above.err);
+    assert!(
+        above.err.contains("1.15 times the longest one"),
+        "{}",
+        above.err
+    );
+}
+
+/// One top that hangs, in rotations and in unit quaternions, has the frequency of a pendulum.
+#[test]
+fn a_hanging_top_has_the_limit_of_a_pendulum() {
+    let folder = Folder::new("hanging-top");
+    let data = "h = 1.3\nsteps = 1\n[parameters]\nJ = { I = [5.0, 4.0, 3.0] }\ngU = [0.0, 0.0, -3.0]\n\
+                z = [0.0, 0.0, 1.0]\n[initial]\n";
+    let rotations = "model Hang { param J: Sym<3>; param gU, z: Vec<3>; group Λ: SO<3> velocity Ω; \
+        advected Γ: Vec<3> = Λ^T*z; constraint next(Λ) = Λ*Ω; constraint next(Γ) = Ω^T*Γ; \
+        lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ); }";
+    let quaternions = rotations
+        .replace("SO<3>", "SU<2>")
+        .replace("Λ^T*z", "rot(Λ)^T*z")
+        .replace("Ω^T*Γ", "rot(Ω)^T*Γ")
+        .replace("J*Ω", "J*rot(Ω)");
+    for (name, text) in [("rotations", rotations), ("quaternions", &quaternions)] {
+        let model = folder.write(&format!("{name}.clebsch"), text);
+        let case = format!(
+            "model = \"hang\"\nname = \"hangs\"\n{data}Lambda = [1.0, 0.0, 0.0, 0.0]\nbody_momentum = [0.1, 0.0, 0.0]\n"
+        );
+        let case = folder.write(&format!("{name}.toml"), &case);
+        let found = printed(&model, &case, &[]);
+        let limit = 2.0 / (3.0_f64 / 4.0).sqrt();
+        assert!(
+            (found / limit - 1.0).abs() < 0.01,
+            "{name}: {found} {limit}"
+        );
+    }
+}
+
+/// With the sign of the thesis's printed Lagrangian the tops of a row drive one another apart.
+#[test]
+fn a_wrong_sign_between_neighbours_is_warned_of() {
+    let folder = Folder::new("wrong-sign");
+    let text = std::fs::read_to_string(shipped("lattices/coupled-tops.clebsch")).expect("reads");
+    let case = std::fs::read_to_string(shipped("lattices/coupled-tops.toml")).expect("reads");
+    let case = case
+        .replace("s = 1.0", "s = 0.1")
+        .replace("i = 6", "i = 20")
+        .replace("h = 0.01", "h = 0.04")
+        .replace("\"3 + 2*exp(-i)\"", "0.1");
+    let wrong = text.replace("+ (h/s)*tr(C", "- (h/s)*tr(C");
+    assert_ne!(wrong, text);
+    let case = folder.write("case.toml", &case);
+    for (text, warned) in [(text, false), (wrong, true)] {
+        let model = folder.write("model.clebsch", &text);
+        let done = clebsch(&["run", &model, "--case", &case, "--steps", "1"]);
+        let said = done.err.contains("is there a sign wrong");
+        assert_eq!(said, warned, "{}{}", done.out, done.err);
+    }
+}

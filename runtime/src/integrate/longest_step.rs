@@ -1,0 +1,404 @@
+//! The longest step with which small motions about the start stay small: 2/ω, ω the frequency of the fastest one.
+//! Takes a model's card with its data; asks single steps from rest for forces and for the inverse of the mass.
+
+use crate::Rotation;
+use crate::card::{Card, Field, Kind, Settings};
+use crate::scalar::largest;
+use nalgebra::{DMatrix, Matrix3, Vector3};
+use std::ops::Range;
+
+/// Most vectors of the Krylov space: the fastest of thousands of motions is found to about a hundredth.
+const VECTORS: usize = 30;
+
+/// A disturbance in parts of what is disturbed, and a momentum likewise: forces and velocities are taken as linear
+/// in them. The square root of rounding and more, since models bend.
+const PART: f64 = 1e-5;
+
+/// Steps of the inquiry in parts of the run's own: with ω h at most about 2, ω² h² of them is 4e-6 at most.
+const SHORT: f64 = 1e-3;
+
+/// Growth in a step of which is warned: that of a body on its head takes many steps.
+const GROWTH: f64 = 0.3;
+
+/// What small motions about the start, at rest, ask of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LongestStep {
+    /// 2/ω, with ω the frequency of the fastest small motion; infinite where there is none that swings.
+    pub step: f64,
+    /// The rate at which the fastest growing one grows, in the inverse unit of time; 0 where none does.
+    pub growth: f64,
+}
+
+impl LongestStep {
+    /// Of a model in these data, each field one vector, row-major; `h` is a step of about the size that is asked of.
+    ///
+    /// `None` for configurations other than fields, rotations of space, and unit quaternions, for models that do
+    /// not start at rest, and where nothing resists a disturbance. A force that is not zero at the start is taken as
+    /// it is; of terms linear in velocities nothing is seen.
+    #[must_use]
+    pub fn of(card: &Card, parameters: &[Vec<f64>], initial: &[Vec<f64>], h: f64) -> Option<Self> {
+        let probe = Probe::new(card, parameters, initial, h * SHORT)?;
+        let mut values = probe.extremes()?;
+        values.retain(|x| x.is_finite());
+        // What does not swing within a hundred thousand steps of this size is the rounding of forces that are none.
+        let rounding = (2.0e-5 / h).powi(2);
+        let largest = values.iter().copied().max_by(f64::total_cmp)?;
+        let least = values.iter().copied().min_by(f64::total_cmp)?;
+        let [largest, least] = [largest, least].map(|x| if x.abs() > rounding { x } else { 0.0 });
+        // What is rounding beside the largest does not grow.
+        let grows = least < -1e-6 * largest.abs();
+        (largest != 0.0 || grows).then_some(Self {
+            step: if largest > 0.0 {
+                2.0 / largest.sqrt()
+            } else {
+                f64::INFINITY
+            },
+            growth: if grows { (-least).sqrt() } else { 0.0 },
+        })
+    }
+}
+
+impl LongestStep {
+    /// What is wrong with steps of `h`, if anything: they are too long, or a motion grows as they go on.
+    #[must_use]
+    pub fn warning(&self, h: f64) -> Option<String> {
+        let h = h.abs();
+        // A tenth is what the fastest motion of a curved start may differ by from that of a straight one.
+        if h > 1.1 * self.step {
+            return Some(format!(
+                "the step h = {h} is {:.2} times the longest one that keeps small motions about the start small, \
+                 {:.3e} (2/ω of the fastest): what is disturbed there grows in every step; take a shorter one",
+                h / self.step,
+                self.step
+            ));
+        }
+        if h * self.growth > GROWTH {
+            return Some(format!(
+                "small motions about the start, at rest, grow with the rate {:.3e}, by a factor of {:.2} a step: is \
+                 there a sign wrong in the potential energy, or in a term that joins neighbours? Where the start \
+                 is so unstable, steps of h = {h} do not resolve how it is left",
+                self.growth,
+                (h * self.growth).exp()
+            ));
+        }
+        None
+    }
+}
+
+/// A configuration and its momentum among the initial values and among what is observed.
+struct Moves {
+    initial: usize,
+    behind: usize,
+    kind: Kind,
+    spatial: bool,
+    place: Range<usize>,
+    momentum: Range<usize>,
+}
+
+impl Moves {
+    /// Its freedoms.
+    fn count(&self) -> usize {
+        self.momentum.len()
+    }
+}
+
+struct Probe<'a> {
+    card: &'a Card,
+    parameters: &'a [Vec<f64>],
+    /// At rest.
+    initial: Vec<Vec<f64>>,
+    moves: Vec<Moves>,
+    h: f64,
+    /// The unit of disturbances of each freedom.
+    units: Vec<f64>,
+    /// What is observed after a step from rest.
+    rest: Vec<f64>,
+}
+
+impl<'a> Probe<'a> {
+    fn new(
+        card: &'a Card,
+        parameters: &'a [Vec<f64>],
+        initial: &[Vec<f64>],
+        h: f64,
+    ) -> Option<Self> {
+        let mut initial = initial.to_vec();
+        let mut moves = Vec::new();
+        for (at, place) in card.initial.iter().enumerate() {
+            if is_momentum(place) {
+                continue;
+            }
+            let behind = momentum_of(card, place)?;
+            let momentum = card.initial.get(behind)?;
+            let spatial = momentum.kind == Kind::SpatialMomentum;
+            let known = match (place.kind, momentum.kind) {
+                (_, Kind::FieldMomentum) => place.count() == momentum.count(),
+                (
+                    Kind::Rotation | Kind::UnitQuaternion,
+                    Kind::BodyMomentum | Kind::SpatialMomentum,
+                ) => momentum.count() == 3,
+                _ => false,
+            };
+            if !known {
+                return None;
+            }
+            moves.push(Moves {
+                initial: at,
+                behind,
+                kind: match momentum.kind {
+                    Kind::FieldMomentum => Kind::FieldMomentum,
+                    _ => place.kind,
+                },
+                spatial,
+                place: columns(card, place)?,
+                momentum: columns(card, momentum)?,
+            });
+            initial.get_mut(behind)?.fill(0.0);
+        }
+        let units = units(&moves, &initial);
+        let mut probe = Probe {
+            card,
+            parameters,
+            initial,
+            moves,
+            h,
+            units,
+            rest: Vec::new(),
+        };
+        probe.rest = probe.after(&probe.initial)?;
+        Some(probe)
+    }
+
+    /// What is observed after one step.
+    fn after(&self, initial: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let settings = Settings::step(self.h);
+        let mut trajectory = (self.card.open)(self.parameters, initial, settings).ok()?;
+        trajectory.step().ok()?;
+        let mut out = vec![0.0; self.card.observable_count()];
+        trajectory.observe(&mut out);
+        out.iter().all(|x| x.is_finite()).then_some(out)
+    }
+
+    /// Of momenta after a step from rest, disturbed by `v`, what the disturbance adds: minus the stiffness times `v`,
+    /// and the step.
+    fn stiffness(&self, v: &[f64]) -> Option<Vec<f64>> {
+        let scale = PART / largest(v.iter().zip(&self.units).map(|(x, unit)| x / unit));
+        let mut moved = self.initial.clone();
+        let mut from = 0;
+        for body in &self.moves {
+            let own: Vec<f64> = v[from..from + body.count()]
+                .iter()
+                .map(|x| x * scale)
+                .collect();
+            from += body.count();
+            disturb(moved.get_mut(body.initial)?, body, &own)?;
+        }
+        let after = self.after(&moved)?;
+        let each = self.moves.iter().flat_map(|body| body.momentum.clone());
+        let change = each.map(|column| (self.rest[column] - after[column]) / (scale * self.h));
+        Some(change.collect())
+    }
+
+    /// The velocity of a momentum `p`: by how much a step with it goes farther than one from rest.
+    fn velocity(&self, p: &[f64]) -> Option<Vec<f64>> {
+        // How far it goes is known once it has gone.
+        let mut scale = PART / largest(p.iter().copied());
+        if !scale.is_finite() {
+            return None;
+        }
+        for _ in 0..12 {
+            let mut moved = self.initial.clone();
+            let mut from = 0;
+            for body in &self.moves {
+                let own = &p[from..from + body.count()];
+                from += body.count();
+                let target = moved.get_mut(body.behind)?;
+                target.clone_from(&own.iter().map(|x| x * scale).collect());
+            }
+            let after = self.after(&moved)?;
+            let mut change = Vec::with_capacity(p.len());
+            for body in &self.moves {
+                let (a, b) = (&self.rest[body.place.clone()], &after[body.place.clone()]);
+                change.extend(difference(body, a, b));
+            }
+            let most = largest(change.iter().zip(&self.units).map(|(x, unit)| x / unit));
+            if (0.01 * PART..=100.0 * PART).contains(&most) {
+                return Some(change.iter().map(|x| x / (scale * self.h)).collect());
+            }
+            scale *= if most > 0.0 { PART / most } else { 1e6 };
+        }
+        None
+    }
+
+    /// Extreme values of ω², by Lanczos' method in the inner product of the mass.
+    fn extremes(&self) -> Option<Vec<f64>> {
+        let count: usize = self.moves.iter().map(Moves::count).sum();
+        let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+        let mut number = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            f64::from(u32::try_from(seed >> 33).unwrap_or(0)) / f64::from(1_u32 << 31) - 0.5
+        };
+        // Momenta that give about equal velocities in parts of what moves.
+        let mut p: Vec<f64> = (0..count).map(|_| number()).collect();
+        let first = self.velocity(&p)?;
+        for ((p, v), unit) in p.iter_mut().zip(&first).zip(&self.units) {
+            let own = (v / unit).abs();
+            *p /= own.max(1e-3);
+        }
+        let (mut velocities, mut momenta) = (Vec::<Vec<f64>>::new(), Vec::<Vec<f64>>::new());
+        let (mut alphas, mut betas) = (Vec::<f64>::new(), Vec::<f64>::new());
+        for _ in 0..VECTORS.min(count) {
+            // Twice is enough.
+            for _ in 0..2 {
+                for (v, q) in velocities.iter().zip(&momenta) {
+                    let part = dot(v, &p);
+                    p.iter_mut().zip(q).for_each(|(p, q)| *p -= part * q);
+                }
+            }
+            let Some(v) = self.velocity(&p) else { break };
+            let square = dot(&v, &p);
+            // The space is exhausted: what is left of it is the rounding of the inquiry.
+            let least = 1e-6 * largest(alphas.iter().copied());
+            if square.is_nan() || square <= 0.0 || (!alphas.is_empty() && square.sqrt() <= least) {
+                break;
+            }
+            let length = square.sqrt();
+            if !alphas.is_empty() {
+                betas.push(length);
+            }
+            let v: Vec<f64> = v.iter().map(|x| x / length).collect();
+            momenta.push(p.iter().map(|x| x / length).collect());
+            p = self.stiffness(&v)?;
+            alphas.push(dot(&v, &p));
+            velocities.push(v);
+        }
+        if alphas.is_empty() {
+            return None;
+        }
+        let at = |i: usize, j: usize| match i.abs_diff(j) {
+            0 => alphas[i],
+            1 => betas[i.min(j)],
+            _ => 0.0,
+        };
+        let small = DMatrix::from_fn(alphas.len(), alphas.len(), at);
+        Some(small.symmetric_eigenvalues().iter().copied().collect())
+    }
+}
+
+fn is_momentum(field: &Field) -> bool {
+    matches!(
+        field.kind,
+        Kind::BodyMomentum | Kind::SpatialMomentum | Kind::FieldMomentum
+    )
+}
+
+/// Which initial value is the momentum of a configuration: that with its name, or the only one.
+fn momentum_of(card: &Card, place: &Field) -> Option<usize> {
+    let behind = format!("momentum_{}", place.ascii);
+    let mut all = card
+        .initial
+        .iter()
+        .enumerate()
+        .filter(|(_, f)| is_momentum(f));
+    let named = all.clone().find(|(_, f)| f.ascii.ends_with(&behind));
+    let (at, _) = named.or_else(|| all.next().filter(|_| card.initial.len() == 2))?;
+    Some(at)
+}
+
+/// The columns of an initial value among the observables.
+fn columns(card: &Card, wanted: &Field) -> Option<Range<usize>> {
+    let mut from = 0;
+    for field in card.observables {
+        let own = from..from + field.count();
+        if field.ascii == wanted.ascii {
+            return (own.len() == wanted.count()).then_some(own);
+        }
+        from = own.end;
+    }
+    None
+}
+
+/// Of an angle one; of a field how far its values at all sites lie apart, that of its largest value if they do not.
+fn units(moves: &[Moves], initial: &[Vec<f64>]) -> Vec<f64> {
+    let fields = moves.iter().filter(|m| m.kind == Kind::FieldMomentum);
+    let all = fields.flat_map(|m| initial.get(m.initial).into_iter().flatten());
+    let all: Vec<f64> = all.copied().collect();
+    let first = all.first().copied().unwrap_or(0.0);
+    let apart = largest(all.iter().map(|x| x - first));
+    let sizes = [apart, largest(all.iter().copied()), 1.0];
+    let unit = sizes.into_iter().find(|x| *x > 0.0).unwrap_or(1.0);
+    let each = moves.iter().flat_map(|m| {
+        let own = if m.kind == Kind::FieldMomentum {
+            unit
+        } else {
+            1.0
+        };
+        vec![own; m.count()]
+    });
+    each.collect()
+}
+
+/// Moves a configuration by a small change: added to a field, a turn in the frame of the momentum for an attitude.
+fn disturb(value: &mut Vec<f64>, body: &Moves, by: &[f64]) -> Option<()> {
+    let turn = || Rotation::exp(&Vector3::new(by[0], by[1], by[2]));
+    match body.kind {
+        Kind::FieldMomentum => value.iter_mut().zip(by).for_each(|(x, by)| *x += by),
+        Kind::Rotation => {
+            let own = Matrix3::from_row_slice(value.get(..9)?);
+            let turn = turn().matrix();
+            let next = if body.spatial { turn * own } else { own * turn };
+            *value = next.transpose().as_slice().to_vec();
+        }
+        _ => {
+            let [a, b] = [value.as_slice().try_into().ok()?, turn().quaternion()];
+            let next = if body.spatial {
+                product(b, a)
+            } else {
+                product(a, b)
+            };
+            *value = next.to_vec();
+        }
+    }
+    Some(())
+}
+
+/// The small change between two configurations.
+fn difference(body: &Moves, a: &[f64], b: &[f64]) -> Vec<f64> {
+    match body.kind {
+        Kind::FieldMomentum => a.iter().zip(b).map(|(a, b)| b - a).collect(),
+        Kind::Rotation => {
+            let [a, b] = [a, b].map(Matrix3::from_row_slice);
+            let turn = if body.spatial {
+                b * a.transpose()
+            } else {
+                a.transpose() * b
+            };
+            let half = |i: usize, j: usize| 0.5 * (turn[(i, j)] - turn[(j, i)]);
+            vec![half(2, 1), half(0, 2), half(1, 0)]
+        }
+        _ => {
+            let of = |q: &[f64]| [q[0], q[1], q[2], q[3]];
+            let (a, b) = (of(a), of(b));
+            let back = [a[0], -a[1], -a[2], -a[3]];
+            let turn = if body.spatial {
+                product(b, back)
+            } else {
+                product(back, b)
+            };
+            turn[1..].iter().map(|x| 2.0 * x).collect()
+        }
+    }
+}
+
+fn product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+    [
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    ]
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
