@@ -22,8 +22,8 @@ BLOCK = 2_000_000
 HERE = pathlib.Path(__file__).resolve().parent
 
 
-def inside(folder):
-    """Runs this file in the environment of `folder`, made if need be."""
+def inside(folder, file=__file__):
+    """Runs a file in the environment of `folder`, made if need be."""
     python = folder / "bin" / "python"
     try:
         if not python.exists():
@@ -33,7 +33,7 @@ def inside(folder):
     except (OSError, subprocess.CalledProcessError) as error:
         print(f"no environment for heyoka, SciPy and PyElastica: {error}", file=sys.stderr)
         sys.exit(3)
-    sys.exit(subprocess.run([str(python), __file__, *sys.argv[1:], "--ready"]).returncode)
+    sys.exit(subprocess.run([str(python), str(file), *sys.argv[1:], "--ready"]).returncode)
 
 
 def euler(w, x, y, z, a, b, c):
