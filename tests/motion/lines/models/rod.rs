@@ -33,6 +33,9 @@ impl Rod {
         [shear, diagonal(0.5, 0.4, 0.7)]
     }
     pub fn stepper(&self) -> ElasticRod {
+        ElasticRod::new(self.parameters(), self.sites()).expect("a rod")
+    }
+    pub fn sites(&self) -> ElasticRodSites {
         let first = match self.ends / 3 {
             0 => ElasticRodFirst::Free,
             1 => ElasticRodFirst::Pinned,
@@ -45,19 +48,20 @@ impl Rod {
                 force: Self::force(),
             },
         };
-        let parameters = ElasticRodParameters {
+        ElasticRodSites {
+            N: self.n,
+            ends: ElasticRodEnds::Open { first, last },
+        }
+    }
+    pub fn parameters(&self) -> ElasticRodParameters {
+        ElasticRodParameters {
             s: 0.5,
             m: (0..=self.n).map(|i| self.mass(i)).collect(),
             J: (0..self.n).map(Self::inertia).collect(),
             S: Self::stiffness()[0],
             B: Self::stiffness()[1],
             g: Vector3::new(0.0, 0.1, -0.3),
-        };
-        let sites = ElasticRodSites {
-            N: self.n,
-            ends: ElasticRodEnds::Open { first, last },
-        };
-        ElasticRod::new(parameters, sites).expect("a rod")
+        }
     }
     pub fn initial(&self, seed: u64) -> ElasticRodInitial {
         let mut r = Random::new(seed);
@@ -78,6 +82,7 @@ impl Rod {
         Configuration {
             x: s.φ().iter().flat_map(|x| [x[0], x[1], x[2]]).collect(),
             r: s.Λ().map(|r| r.matrix()).collect(),
+            q: Vec::new(),
         }
     }
     keeping!(ElasticRod, |_, _: &ElasticRodState| 0.0);

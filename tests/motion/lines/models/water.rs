@@ -54,6 +54,7 @@ impl Water {
         Configuration {
             x: x.collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     keeping!(ShallowWater, |_, s: &ShallowWaterState| s
