@@ -4,11 +4,12 @@
 use crate::common::{Folder, clebsch};
 
 /// The model files that the project ships, each with its case.
-const SHIPPED: [&str; 7] = [
+const SHIPPED: [&str; 8] = [
     "coupled-tops",
     "elastic-rod",
     "hanging-chain",
     "kirchhoff-rod",
+    "quaternion-rod",
     "shallow-water",
     "sine-gordon",
     "toda-chain",
