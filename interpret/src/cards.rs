@@ -4,6 +4,7 @@
 use crate::Refused;
 use crate::lines::{Carded, LineModel, NoLine};
 use crate::opened::{Opened, Text};
+use crate::signs::Agreement;
 use clebsch::card::{Card, Invariant, Open, OpenError, Settings, Trajectory};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::lattice::{Choice, Lattice};
@@ -146,7 +147,13 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
     let text = Text::of_derivation(d)?;
     let card = match known(&key, None) {
         Some(card) => card,
-        None => opened_now(&text, &key, None)?,
+        None => {
+            let mut opened = Opened::read(&text, &key, None)?;
+            // What is not read of a line has none.
+            let signs = clebsch_core::line::signs(&model, &lattice).unwrap_or_default();
+            opened.signs = Agreement::of(signs, &lattice, choice, &opened.card);
+            kept(opened)?
+        }
     };
     let d = &text.derivation;
     let warnings = unfolded.told(choice, &d.warnings);
@@ -242,7 +249,11 @@ fn known(source: &str, sizes: Option<&[usize]>) -> Option<Card> {
 }
 
 fn opened_now(text: &Text, source: &str, sizes: Option<&[usize]>) -> Result<Card, Refused> {
-    let mut model = Opened::read(text, source, sizes)?;
+    kept(Opened::read(text, source, sizes)?)
+}
+
+/// The card of a model that is open from now on.
+fn kept(mut model: Opened) -> Result<Card, Refused> {
     let mut list = OPEN.write().unwrap_or_else(PoisonError::into_inner);
     let most = FUNCTIONS.len();
     let (open, sized) = *FUNCTIONS.get(list.len()).ok_or(Refused::TooMany { most })?;

@@ -16,6 +16,7 @@ mod packed;
 mod program;
 mod running;
 mod saved;
+mod signs;
 mod sites;
 mod value;
 

@@ -5,6 +5,7 @@ use crate::code::{Places, Routine};
 use crate::constants::Constants;
 use crate::lower::{Shared, entry};
 use crate::program::{Program, type_name};
+use crate::signs::Agreement;
 use crate::value::{Layout, Value};
 use clebsch::card::{Card, OpenError};
 use clebsch_core::{Derivation, derive_source, emit};
@@ -88,6 +89,8 @@ pub struct Opened {
     pub parameters: (Arc<Layout>, Vec<Read>),
     /// The struct of the initial values.
     pub initial: (Arc<Layout>, Vec<Read>),
+    /// Signs that are made to agree along a line, where it is one that is written out.
+    pub signs: Vec<Agreement>,
     /// The number of the name of a state's node.
     pub node: u32,
     /// How many places the functions need.
@@ -184,6 +187,7 @@ impl Opened {
             functions,
             parameters,
             initial,
+            signs: Vec::new(),
             node,
             places: places.unwrap_or(at::FIRST),
         })

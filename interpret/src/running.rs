@@ -57,7 +57,12 @@ impl Opened {
         put(&mut places, at::GIVEN, given);
         let model = run(&f.new, &mut places).map_err(Failure::open)?;
         put(&mut places, at::MODEL, model);
-        let given = collected(&self.initial, card.initial, initial)?;
+        let mut initial = initial.to_vec();
+        for signs in &self.signs {
+            let made = signs.make(parameters, &mut initial);
+            made.map_err(|e| OpenError::Start(StartError::Initial(e)))?;
+        }
+        let given = collected(&self.initial, card.initial, &initial)?;
         put(&mut places, at::GIVEN, given);
         let state = run(&f.begin, &mut places).map_err(Failure::start)?;
         put(&mut places, at::STATE, state.clone());

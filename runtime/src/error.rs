@@ -133,6 +133,8 @@ pub enum Problem {
         /// One of them.
         equation: &'static str,
     },
+    /// Unit quaternions around a ring come back with the opposite sign, and a term of neighbours sees it.
+    SignAroundRing,
     /// A function of parameters is not defined there.
     OutsideDomain {
         /// The function.
@@ -232,6 +234,12 @@ impl fmt::Display for Problem {
                 f,
                 "the reaction of `{equation}` is not determined: at the initial configuration its derivative vanishes \
                  or is a combination of those of other constraints"
+            ),
+            Self::SignAroundRing => write!(
+                f,
+                "around the ring these attitudes make an odd number of turns: unit quaternions that agree from site to \
+                 site come back with the opposite sign, and a term of neighbours would store a whole turn between the \
+                 last site and the first"
             ),
             Self::OutsideDomain {
                 function,

@@ -1,17 +1,17 @@
 //! Time per site and step of lines that are compiled for every number of sites: Toda's chain and shallow water beside plain
-//! loops, coupled tops and an elastic rod beside the lone heavy top, lines with held constraints beside the elastic rod. Takes no arguments; prints a table.
+//! loops, coupled tops and an elastic rod beside the lone heavy top, the rod in quaternions beside the one in rotations, lines with held constraints beside the elastic rod. Takes no arguments; prints a table.
 //! `cargo run --release --manifest-path benches/Cargo.toml --bin lines`, a minute.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables, non_snake_case)]
 
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
-use clebsch::{BodyMomentum, Rotation};
+use clebsch::{BodyMomentum, Rotation, UnitQuaternion};
 use clebsch_benches::blocks::computed;
 use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
 use clebsch_models::lattices::{
     coupled_tops::*, geometrically_exact_rod::*, hanging_chain::*, kirchhoff_rod::*,
-    shallow_water_1d::*, toda_chain::*,
+    quaternion_rod::*, shallow_water_1d::*, toda_chain::*,
 };
 use std::hint::black_box;
 use std::time::Instant;
@@ -46,6 +46,15 @@ fn main() {
     for n in SIZES {
         let (one, other) = both(&mut rod(n), &mut lone(n));
         row("elastic rod, beside the lone heavy top", n, one, other);
+    }
+    for n in SIZES {
+        let (one, other) = both(&mut in_quaternions(n), &mut rod(n));
+        row(
+            "elastic rod in quaternions, beside the one in rotations",
+            n,
+            one,
+            other,
+        );
     }
     for n in SIZES {
         let (one, other) = both(&mut inextensible(n), &mut rod(n));
@@ -309,6 +318,40 @@ fn rod(n: usize) -> impl FnMut() {
             .collect(),
         Λ: vec![Rotation::identity(); n],
         body_momentum_Λ: vec![BodyMomentum(Vector3::new(0.0, 1e-5, 1e-4)); n],
+    };
+    let (mut state, mut work) = rod.start(initial, 0.001).expect("starts");
+    move || {
+        for _ in 0..WORK / n {
+            rod.step(&mut state, &mut work).expect("steps");
+        }
+        black_box(&state);
+    }
+}
+
+/// The same rod in unit quaternions: stiffnesses and moments of inertia are those of the second moments there.
+fn in_quaternions(n: usize) -> impl FnMut() {
+    let s = 0.1;
+    let mass = |i: usize| s * if i == 0 || i == n { 0.5 } else { 1.0 };
+    let parameters = QuaternionRodParameters {
+        s,
+        m: (0..=n).map(mass).collect(),
+        I: vec![diagonal(0.03, 0.03, 0.02); n],
+        S: diagonal(100.0, 100.0, 200.0),
+        K: diagonal(3.0, 3.0, 2.0),
+        g: Vector3::zeros(),
+    };
+    let ends = QuaternionRodEnds::Open {
+        first: QuaternionRodFirst::Free,
+        last: QuaternionRodLast::Free,
+    };
+    let rod = QuaternionRod::new(parameters, QuaternionRodSites { N: n, ends }).expect("a rod");
+    let initial = QuaternionRodInitial {
+        φ: (0..=n).map(|i| Vector3::z() * (s * i as f64)).collect(),
+        momentum_φ: (0..=n)
+            .map(|i| Vector3::x() * (1e-3 * (0.2 * i as f64).sin()))
+            .collect(),
+        q: vec![UnitQuaternion::identity(); n],
+        body_momentum_q: vec![BodyMomentum(Vector3::new(0.0, 1e-5, 1e-4)); n],
     };
     let (mut state, mut work) = rod.start(initial, 0.001).expect("starts");
     move || {

@@ -4,13 +4,14 @@
 use crate::common::{Folder, clebsch};
 
 /// The model files that the project ships, each with its case.
-const SHIPPED: [&str; 9] = [
+const SHIPPED: [&str; 10] = [
     "circular-rod",
     "coupled-body-chain",
     "coupled-tops",
     "geometrically-exact-rod",
     "hanging-chain",
     "kirchhoff-rod",
+    "quaternion-rod",
     "shallow-water-1d",
     "sine-gordon",
     "toda-chain",

@@ -245,6 +245,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         ("unit_quaternion", 1) => |a, _| match a.first()? {
             Value::Turned(r) => Some(Value::Quaternion(r.unit_quaternion())),
+            Value::Attitude(x) => Some(Value::Quaternion(x.unit_quaternion())),
             _ => None,
         },
         ("real", 1) => |a, _| match a.first()? {

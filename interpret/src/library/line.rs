@@ -7,6 +7,7 @@ use crate::value::Value;
 use clebsch::linalg::Dense;
 use clebsch::line::{self, Attitude, LineError, Place, Stamp};
 use clebsch::{Real, StepCause};
+use nalgebra::Matrix4;
 use std::cell::RefCell;
 
 type Done<T> = Result<Value<T>, Exit<T>>;
@@ -75,6 +76,16 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         ("Attitude::new", 1) => |a, _| match a.first()? {
             Value::Rotation(r) => Some(Value::Attitude(Box::new(Attitude::new(*r)))),
+            _ => None,
+        },
+        ("line::between", 2) => |a, _| match (a.first()?, a.get(1)?) {
+            (Value::Quaternion(p), Value::Quaternion(q)) => {
+                Some(Value::Quaternion(line::between(p, q)))
+            }
+            _ => None,
+        },
+        ("Attitude::of_quaternion", 1) => |a, _| match a.first()? {
+            Value::Quaternion(q) => Some(Value::Attitude(Box::new(Attitude::of_quaternion(*q)))),
             _ => None,
         },
         ("Attitude::turned", 1) => |a, _| match a.first()? {
@@ -220,6 +231,49 @@ fn each<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
         }
     }
     Ok(Value::Sites(unfit(Column::of(made))?))
+}
+
+/// `line::agree(&mut list)`
+fn agree<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
+    let [list] = a else {
+        return Err(missing());
+    };
+    match list.place_mut(places) {
+        Some(Value::Sites(Column::Attitudes(all))) => line::agree(all),
+        _ => return Err(missing()),
+    }
+    Ok(Value::Unit)
+}
+
+/// `line::turn_towards(&mut list, site, &wall)`
+fn turn_towards<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
+    let [list, site, wall] = a else {
+        return Err(missing());
+    };
+    let (site, wall) = (unfit(site.run(places)?.count())?, wall.run(places)?);
+    let wall = unfit(wall.dense())?;
+    let wall = Matrix4::from_fn(|i, j| wall.at(i, j));
+    match list.place_mut(places) {
+        Some(Value::Sites(Column::Attitudes(all))) => line::turn_towards(all, site, &wall),
+        _ => return Err(missing()),
+    }
+    Ok(Value::Unit)
+}
+
+/// `line::closes("q", &list)`
+fn closes<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
+    let [quantity, list] = a else {
+        return Err(missing());
+    };
+    let Value::Text(quantity) = quantity.run(places)? else {
+        return Err(missing());
+    };
+    match list.place(places) {
+        Some(Value::Sites(Column::Attitudes(all))) => Ok(Value::result(
+            line::closes(quantity, all).map(|()| Value::Unit),
+        )),
+        _ => Err(missing()),
+    }
 }
 
 /// `line::shorter(h, |h| ...)`
@@ -412,6 +466,9 @@ fn put_block<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
 pub(super) fn special<T: Real>(name: &str) -> Option<Special<T>> {
     Some(match name {
         "line::each" => each,
+        "line::agree" => agree,
+        "line::turn_towards" => turn_towards,
+        "line::closes" => closes,
         "line::shorter" => shorter,
         "line::root" => root,
         "slice" => slice,

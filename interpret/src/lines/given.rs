@@ -31,6 +31,8 @@ enum Read {
     Number,
     /// A rotation, from its matrix.
     Rotation,
+    /// A unit quaternion, from its components.
+    Quaternion,
     /// A momentum of three components in the body.
     Momentum,
     /// The same of every site.
@@ -94,6 +96,7 @@ fn read(ty: &syn::Type) -> Option<Read> {
         ("SMatrix", [rows, cols]) => Read::Array(*rows, *cols),
         ("SVector", [rows]) => Read::Array(*rows, 1),
         ("Rotation", _) => Read::Rotation,
+        ("UnitQuaternion", _) => Read::Quaternion,
         ("BodyMomentum", _) => Read::Momentum,
         ("usize", _) => Read::Count,
         ("PhantomData", _) => Read::Marker,
@@ -125,11 +128,25 @@ fn extent(lengths: &[f64], walls: &[f64]) -> Option<Extent> {
     })
 }
 
+/// What has been read of a value.
+fn opened<X>(
+    name: &'static str,
+    read: Result<X, OpenError>,
+    told: fn(X) -> Value<f64>,
+) -> Result<Value<f64>, ParameterError> {
+    match read {
+        Ok(x) => Ok(told(x)),
+        Err(OpenError::Start(StartError::Initial(e)) | OpenError::Parameter(e)) => Err(e),
+        Err(_) => clebsch::validate::finite(name, &[f64::NAN]).map(|()| Value::Unit),
+    }
+}
+
 impl Read {
     fn count(&self) -> usize {
         match self {
             Read::Array(rows, cols) => rows * cols,
             Read::Rotation => 9,
+            Read::Quaternion => 4,
             Read::Momentum => 3,
             Read::Doubles(size) | Read::Cells(size) => *size,
             Read::Box(size) => 2 * size,
@@ -146,13 +163,15 @@ impl Read {
         Ok(match self {
             Read::Array(rows, cols) => matrix(*rows, *cols),
             Read::Number => Value::Real(list.first().copied().unwrap_or(f64::NAN)),
-            Read::Rotation => match e::rotation_of(name, Some(&list.to_vec())) {
-                Ok(rotation) => Value::Rotation(rotation),
-                Err(OpenError::Start(StartError::Initial(e)) | OpenError::Parameter(e)) => {
-                    return Err(e);
-                }
-                Err(_) => clebsch::validate::finite(name, &[f64::NAN]).map(|()| Value::Unit)?,
-            },
+            Read::Rotation => opened(
+                name,
+                e::rotation_of(name, Some(&list.to_vec())),
+                Value::Rotation,
+            )?,
+            Read::Quaternion => {
+                let read = e::quaternion_of(name, Some(&list.to_vec()));
+                opened(name, read, Value::Quaternion)?
+            }
             Read::Momentum => {
                 let v = nalgebra::Vector3::from_fn(|i, _| list.get(i).copied().unwrap_or(f64::NAN));
                 Value::Momentum(Frame::Body, v)

@@ -554,12 +554,14 @@ fn columns(value: &Value<f64>) -> Option<Vec<f64>> {
     Some(all)
 }
 
-/// The numbers of a value, matrices row after row; of rotations those of their matrices.
+/// The numbers of a value, matrices row after row; of rotations those of their matrices,
+/// of unit quaternions their components.
 fn numbers(value: &Value<f64>) -> Option<Vec<f64>> {
     Some(match value {
         Value::Real(x) => vec![*x],
         Value::Momentum(_, v) => v.as_slice().to_vec(),
         Value::Rotation(r) => r.matrix().transpose().as_slice().to_vec(),
+        Value::Quaternion(q) => q.components().to_vec(),
         other => other.dense()?.transpose().data,
     })
 }

@@ -167,6 +167,8 @@ macro_rules! compiled {
 pub mod held;
 #[path = "newton.rs"]
 pub mod newton;
+#[path = "quaternions.rs"]
+pub mod quaternions;
 
 fn flat<const R: usize>(list: &[SMatrix<f64, R, 1>]) -> Vec<f64> {
     list.iter().flat_map(|x| x.as_slice().to_vec()).collect()

@@ -1,12 +1,14 @@
-//! A chain of unit quaternions runs from its file.
+//! A chain of rigid motions runs from its file.
 
 clebsch::model! {
     model Chain {
         label i in 0..N;
-        param c, w: Real;
-        group q: SU<2> at nodes velocity v;
-        constraint next(q) = q*v;
-        lagrangian = -2*w*re(v)/h - h*c*re(q^T*next(q, i));
+        param J: Sym<3>;
+        param m, c: Real;
+        group G: SE<3> at nodes velocity V;
+        constraint next(G) = G*V;
+        let d = pos(next(G, i)) - pos(G);
+        lagrangian = -tr(J*rot(V))/h + m*dot(pos(V), pos(V))/(2*h) - h*c*dot(d, d)/2;
     }
 }
 

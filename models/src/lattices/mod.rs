@@ -5,12 +5,13 @@ pub mod coupled_tops;
 pub mod geometrically_exact_rod;
 pub mod hanging_chain;
 pub mod kirchhoff_rod;
+pub mod quaternion_rod;
 pub mod shallow_water_1d;
 pub mod sine_gordon;
 pub mod toda_chain;
 
 /// The files and the statements that are compiled.
-pub const STATEMENTS: [(&str, &str); 7] = [
+pub const STATEMENTS: [(&str, &str); 8] = [
     (
         include_str!("../../lattices/coupled-tops.clebsch"),
         coupled_tops::CoupledTops::<f64>::SOURCE,
@@ -26,6 +27,10 @@ pub const STATEMENTS: [(&str, &str); 7] = [
     (
         include_str!("../../lattices/kirchhoff-rod.clebsch"),
         kirchhoff_rod::KirchhoffRod::<f64>::SOURCE,
+    ),
+    (
+        include_str!("../../lattices/quaternion-rod.clebsch"),
+        quaternion_rod::QuaternionRod::<f64>::SOURCE,
     ),
     (
         include_str!("../../lattices/shallow-water-1d.clebsch"),

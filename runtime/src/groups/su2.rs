@@ -1,6 +1,7 @@
 //! Unit quaternions, the group SU(2): rotations that remember by which way round they came.
 //! Takes four numbers; gives elements that multiply, and the rotations they cover.
 
+use super::so3::hamilton;
 use super::{Coadjoint, Group, NotARotation, Rotation};
 use crate::Real;
 use crate::linalg::left_multiplication;
@@ -74,8 +75,16 @@ impl<T: Real> UnitQuaternion<T> {
 
     /// The element that the rotation is kept by.
     #[inline(always)]
-    pub(super) fn covering(rotation: Rotation<T>) -> Self {
+    pub(crate) fn covering(rotation: Rotation<T>) -> Self {
         Self(rotation)
+    }
+
+    /// `self* . other`, of unit length to the rounding of both.
+    #[inline(always)]
+    pub(crate) fn to(&self, other: &Self) -> Self {
+        let [w, x, y, z] = self.components();
+        let product = hamilton([w, -x, -y, -z], other.components());
+        Self(Rotation::from_unit(product))
     }
 
     /// The inverse, which is the conjugate.

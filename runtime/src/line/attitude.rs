@@ -1,11 +1,13 @@
-//! The attitude of one site: a rotation with its matrix, which the site and its neighbours read.
+//! The attitude of one site: a rotation, or a unit quaternion over it, with the matrix of the rotation, which
+//! the site and its neighbours read.
 
 use crate::saved::{Saved, Words};
 use crate::solvers::moser_veselov::Poinsot;
-use crate::{Real, Rotation, TurnedRotation, linalg};
+use crate::{Real, Rotation, TurnedRotation, UnitQuaternion, linalg};
 use nalgebra::Matrix3;
 
-/// A rotation, body to space, and its matrix.
+/// A rotation, body to space, and its matrix. The quaternion that it is kept by has a sign, which stays what
+/// it is along a motion: read as a unit quaternion it is an element of SU(2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attitude<T = f64> {
     rotation: Rotation<T>,
@@ -19,6 +21,11 @@ impl<T: Real> Attitude<T> {
             matrix: rotation.matrix(),
             rotation,
         }
+    }
+
+    /// The attitude of a unit quaternion.
+    pub fn of_quaternion(element: UnitQuaternion<T>) -> Self {
+        Self::new(element.rotation())
     }
 
     /// The attitude at the end of an edge.
@@ -36,11 +43,32 @@ impl<T: Real> Attitude<T> {
         self.rotation
     }
 
-    /// Its matrix.
+    /// The same attitude, its quaternion times 1 or -1.
+    pub(crate) fn of_sign(&self, sign: T) -> Self {
+        let q = self.rotation.quaternion().map(|x| x * sign);
+        Self {
+            rotation: Rotation::from_unit(q),
+            matrix: self.matrix,
+        }
+    }
+
+    /// The unit quaternion, of the sign that it has come with.
+    #[inline(always)]
+    pub fn unit_quaternion(&self) -> UnitQuaternion<T> {
+        UnitQuaternion::covering(self.rotation)
+    }
+
+    /// The matrix of the rotation.
     #[inline(always)]
     pub fn matrix(&self) -> Matrix3<T> {
         self.matrix
     }
+}
+
+/// The quaternion from one to another, `q* p`: the frame of the second seen from that of the first.
+#[inline(always)]
+pub fn between<T: Real>(from: &UnitQuaternion<T>, to: &UnitQuaternion<T>) -> UnitQuaternion<T> {
+    from.to(to)
 }
 
 /// How the attitude at the end of an edge turns, seen from there, by an impulse at its start, seen from there: with

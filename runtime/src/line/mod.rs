@@ -10,14 +10,16 @@ mod error;
 mod multipliers;
 mod pivots;
 mod root;
+mod signs;
 mod stamp;
 mod sweep;
 
-pub use attitude::{Attitude, turned_by};
+pub use attitude::{Attitude, between, turned_by};
 pub use band::{Band, Rows, Velocities};
 pub use check::{count_of, each, length_of, repeated, shorter};
 pub use error::{LineError, Place};
 pub use multipliers::{Multipliers, NoReaction};
 pub use root::{NoRoot, root, root_of};
+pub use signs::{agree, closes, turn_towards};
 pub use stamp::Stamp;
 pub use sweep::{Threads, fill, sum, total, try_each, try_fill, update};

@@ -15,6 +15,34 @@ pub struct Configuration<T> {
     pub x: Vec<T>,
     /// Rotations, body to space.
     pub r: Vec<Matrix3<T>>,
+    /// Unit quaternions, real part first.
+    pub q: Vec<[T; 4]>,
+}
+
+/// Hamilton's product.
+pub fn hamilton<T: Real>(a: [T; 4], b: [T; 4]) -> [T; 4] {
+    [
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    ]
+}
+
+/// The conjugate.
+pub fn conjugate<T: Real>([w, x, y, z]: [T; 4]) -> [T; 4] {
+    [w, -x, -y, -z]
+}
+
+/// The imaginary part.
+pub fn imaginary<T: Real>([_, x, y, z]: [T; 4]) -> Vector3<T> {
+    Vector3::new(x, y, z)
+}
+
+/// `q* v q`: a vector of space seen from the body.
+pub fn seen_from_body<T: Real>(q: [T; 4], v: &Vector3<T>) -> Vector3<T> {
+    let v = [T::zero(), v[0], v[1], v[2]];
+    imaginary(hamilton(hamilton(conjugate(q), v), q))
 }
 
 impl Configuration<f64> {
@@ -23,6 +51,7 @@ impl Configuration<f64> {
         Configuration {
             x: self.x.iter().map(|x| D::constant(*x)).collect(),
             r: self.r.iter().map(|r| r.map(D::constant)).collect(),
+            q: self.q.iter().map(|q| q.map(D::constant)).collect(),
         }
     }
 
@@ -34,6 +63,13 @@ impl Configuration<f64> {
             return out;
         }
         let (i, axis) = ((at - self.x.len()) / 3, (at - self.x.len()) % 3);
+        if let Some(i) = i.checked_sub(self.r.len()) {
+            // The coordinates of the algebra are those of the angular velocity: half a quaternion.
+            let mut turn = [1.0, 0.0, 0.0, 0.0].map(D::constant);
+            turn[axis + 1] = D::variable(0.0, 0) * D::constant(0.5);
+            out.q[i] = hamilton(out.q[i], turn);
+            return out;
+        }
         let mut v = Vector3::repeat(D::constant(0.0));
         v[axis] = D::variable(0.0, 0);
         let zero = D::constant(0.0);
@@ -44,7 +80,7 @@ impl Configuration<f64> {
 
     /// How many derivatives there are.
     pub fn coordinates(&self) -> usize {
-        self.x.len() + 3 * self.r.len()
+        self.x.len() + 3 * (self.r.len() + self.q.len())
     }
 }
 

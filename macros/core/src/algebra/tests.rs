@@ -150,3 +150,74 @@ fn rigid_motions_are_decided_in_blocks() {
         Some(Known::NormalForm)
     );
 }
+
+#[test]
+fn products_of_quaternions_are_taken_apart() {
+    let l = Letters::new();
+    let (q, p, u, v) = (l.at("q"), l.at("p"), l.at("u"), l.at("v"));
+    let rot = |e: &Expr| expr::rotation(&l.symbols, e.clone());
+    let pure = |e: &Expr| expr::pure(e.clone());
+    let between = expr::mul(l.t(q.clone()), p.clone());
+    let back = expr::mul(l.t(p.clone()), q.clone());
+    let seen = |x: &Expr, by: &Expr| expr::mul(l.t(rot(by)), x.clone());
+    let words = [
+        between.clone(),
+        back.clone(),
+        expr::product([between.clone(), pure(&v)]),
+        expr::product([back.clone(), pure(&u), between.clone()]),
+        // What turns a vector that is turned back goes behind it.
+        expr::product([
+            between.clone(),
+            pure(&seen(&expr::mul(rot(&q), u.clone()), &p)),
+        ]),
+        expr::product([l.t(q.clone()), q.clone(), pure(&v)]),
+        expr::mul(
+            l.t(q.clone()),
+            expr::sub(
+                expr::product([q.clone(), pure(&u)]),
+                expr::product([expr::integer(3), p.clone(), pure(&v)]),
+            ),
+        ),
+        expr::quotient(
+            expr::neg(expr::mul(between.clone(), between)),
+            expr::integer(5),
+        ),
+    ];
+    for word in words {
+        for e in [
+            expr::imaginary(word.clone()),
+            expr::real(word.clone()),
+            expr::trace(word.clone()),
+        ] {
+            let parted = expr::parted(&l.symbols, &e);
+            assert!(l.known(parted.clone(), e.clone()).is_some(), "{e:?}");
+            assert!(is_parted(&parted), "{parted:?}");
+            if !e.is_zero() {
+                let twice = expr::scale(crate::algebra::Rational::integer(2), parted);
+                assert_eq!(l.known(twice, e.clone()).is_some(), parts_vanish(&l, &e));
+            }
+        }
+    }
+    // A rigid motion is none.
+    let motion = expr::trace(l.at("G"));
+    assert_eq!(expr::parted(&l.symbols, &motion), motion);
+}
+
+fn parts_vanish(l: &Letters, e: &Expr) -> bool {
+    l.known(e.clone(), expr::zero(e.shape())).is_some()
+}
+
+/// Whether parts are taken of single quaternions, and of quaternions from one to another, alone.
+fn is_parted(e: &Expr) -> bool {
+    match e.node() {
+        expr::Node::Map(expr::Map::Real | expr::Map::Imaginary, a) => match a.node() {
+            expr::Node::Letter(_) => true,
+            expr::Node::Product(two) => {
+                two.len() == 2 && two.iter().all(|f| expr::letters(f).len() == 1)
+            }
+            _ => false,
+        },
+        expr::Node::Trace(_) => false,
+        _ => e.children().into_iter().all(is_parted),
+    }
+}

@@ -41,13 +41,26 @@ pub(super) fn form(
         configurations: vec![spec.configurations[i].clone()],
         ..spec.clone()
     };
-    read(&own, letters, b, algebra).ok_or_else(|| format!("{refused} of {name}"))
+    let s = &letters.symbols;
+    let whole = read(&own, letters, &b.outgoing, algebra).map(|(a, real, rest)| {
+        let is_own = algebra.equal(&b.node_out, &rest);
+        (a, real, if is_own { b.node_out.clone() } else { rest })
+    });
+    // What acts at the node may hold the quaternion itself, which the parts of the velocity do not take apart.
+    let without_node = || {
+        let (a, real, rest) = read(&own, letters, &b.edge_out, algebra)?;
+        let known = !expr::contains_role(s, &b.node_out, Role::Velocity);
+        (known && rest.is_zero()).then(|| (a, real, b.node_out.clone()))
+    };
+    whole
+        .or_else(without_node)
+        .ok_or_else(|| format!("{refused} of {name}"))
 }
 
 fn read(
     spec: &Spec,
     letters: &Letters,
-    b: &Balance,
+    outgoing: &Expr,
     algebra: &Algebra,
 ) -> Option<(Expr, Expr, Expr)> {
     let parts = Parts::of(spec, letters)?;
@@ -55,7 +68,7 @@ fn read(
         return None;
     };
     let s = &parts.symbols;
-    let outgoing = expr::substitute(&letters.symbols, &b.outgoing, &spec.end_of_edge());
+    let outgoing = expr::substitute(&letters.symbols, outgoing, &spec.end_of_edge());
     let momentum = parts.write(&outgoing)?;
     let inner = algebra.over(s);
     let (w, v) = (expr::here(s, re), expr::here(s, im));
@@ -103,7 +116,5 @@ fn read(
     };
     let (a, real) = (scaled(a), scaled(real));
     let constant = |l: &expr::Letter| letters.symbols.get(l.symbol).role == Role::Parameter;
-    let own = algebra.equal(&b.node_out, &rest);
-    let rest = if own { b.node_out.clone() } else { rest };
     (proved && expr::letters(&real).iter().all(constant)).then_some((a, real, rest))
 }

@@ -15,6 +15,7 @@ use quote::{format_ident, quote};
 pub struct Bindings {
     list: Vec<(Letter, Ident)>,
     rotations: Vec<(Letter, Ident)>,
+    quaternions: Vec<(Letter, Ident)>,
 }
 
 impl Bindings {
@@ -38,6 +39,18 @@ impl Bindings {
     /// The same, if it is.
     pub fn rotation(&self, letter: Letter) -> Option<&Ident> {
         let found = self.rotations.iter().find(|(l, _)| *l == letter);
+        found.map(|(_, local)| local)
+    }
+
+    /// Where a unit quaternion is found as four numbers, by its real and its imaginary part.
+    pub fn bind_quaternion(&mut self, letter: Letter, local: Ident) {
+        self.quaternions.retain(|(l, _)| *l != letter);
+        self.quaternions.push((letter, local));
+    }
+
+    /// The same, if it is.
+    pub fn quaternion(&self, letter: Letter) -> Option<&Ident> {
+        let found = self.quaternions.iter().find(|(l, _)| *l == letter);
         found.map(|(_, local)| local)
     }
 
@@ -228,6 +241,14 @@ impl Writer<'_> {
                 let local = self.turn(a);
                 quote!(#local)
             }
+            Node::Map(Map::Real, a) if self.unit(a).is_some() => {
+                let unit = self.unit(a);
+                quote!(#unit.real())
+            }
+            Node::Map(Map::Imaginary, a) if self.unit(a).is_some() => {
+                let unit = self.unit(a);
+                quote!(#unit.imaginary())
+            }
             Node::Map(map, a) => self.function(
                 match map {
                     Map::Rotation if expr::is_motion(self.symbols, a) => "motion_rotation",
@@ -244,6 +265,30 @@ impl Writer<'_> {
             ),
             Node::Given(a) => self.functional(a, None),
             Node::PullBack(a, which, seed) => self.functional(a, Some((*which, seed))),
+        }
+    }
+
+    /// A unit quaternion as four numbers, or the one from such a quaternion to another.
+    pub(super) fn unit(&self, a: &Expr) -> Option<TokenStream> {
+        let bound = |e: &Expr| match e.node() {
+            Node::Letter(l) => self.bindings.quaternion(*l),
+            _ => None,
+        };
+        if let Some(local) = bound(a) {
+            return Some(quote!(#local));
+        }
+        let Node::Product(two) = a.node() else {
+            return None;
+        };
+        match two.as_slice() {
+            [from, to] => match from.node() {
+                Node::Transpose(from) => {
+                    let (from, to) = (bound(from)?, bound(to)?);
+                    Some(quote!(line::between(&#from, &#to)))
+                }
+                _ => None,
+            },
+            _ => None,
         }
     }
 

@@ -11,6 +11,7 @@ mod function;
 pub(crate) mod functional;
 mod gradient;
 mod magnitude;
+mod parted;
 pub(crate) mod places;
 mod presence;
 mod projection;
@@ -45,6 +46,7 @@ pub use functional::{
 pub(crate) use functional::{kind, pairing};
 pub use gradient::gradient;
 pub(crate) use magnitude::{length, magnitude, magnitude_between};
+pub use parted::parted;
 pub use projection::projected;
 pub use quaternion::{imaginary, pure, real, rotation};
 pub use rigid::{

@@ -45,10 +45,13 @@ pub struct Mover {
 
 /// How a velocity is found from the momentum that leaves the node.
 pub enum How {
-    /// A rotation by the Moser-Veselov equation with a factor of parameters.
+    /// A rotation by the Moser-Veselov equation with a factor of parameters, or a unit quaternion by its
+    /// like on SU(2).
     Rotation {
         /// The factor.
         factor: Expr,
+        /// Of a unit quaternion the number that goes with it, made of parameters as well.
+        real: Option<Expr>,
         /// What acts at the start of the edge, and at its end, both seen from the body.
         leave: Expr,
         /// The same at its end.
@@ -324,32 +327,40 @@ fn how(
                     "the velocity of `{name}` is found by Newton's method: loops over sites do that for fields"
                 )
             }
-            (Kept::Rotation, _) => format!(
+            (Kept::Rotation | Kept::Quaternion, Side::Spatial) => format!(
                 "`{name}` turns seen from space, `next({name}) = ω*{name}`: loops over sites take rotations seen from the body"
             ),
+            (Kept::Quaternion, Side::Body) => format!(
+                "the velocity of `{name}` is found by Newton's method: loops over sites take unit quaternions whose kinetic \
+                 energy is a quadratic form of im and a multiple of re, made of parameters"
+            ),
             _ => format!(
-                "`{name}` is in {group}: loops over sites take fields and rotations of SO<3> seen from the body"
+                "`{name}` is in {group}: loops over sites take fields, rotations of SO<3> and unit quaternions of SU<2> seen \
+                 from the body"
             ),
         }))
     };
-    match (c.group.kept(), &d.solve.riccati[i]) {
-        (Kept::Rotation, Riccati::Exact(mv)) if c.side == Side::Body && block.len() == 1 => {
-            let Carry::Through { leave, arrive, .. } = &d.carries[i] else {
-                return together();
-            };
-            let constant = |l: &Letter| s.get(l.symbol).role == Role::Parameter;
-            let free = !moving(leave) && !moving(arrive);
-            let known =
-                |mv: &MoserVeselov| mv.symmetric && expr::letters(&mv.factor).iter().all(constant);
-            match free && known(mv) {
-                true => Ok(How::Rotation {
-                    factor: mv.factor.clone(),
-                    leave: leave.clone(),
-                    arrive: arrive.clone(),
-                }),
-                false => together(),
-            }
+    let turning = |mv: &MoserVeselov, real: Option<&Expr>| {
+        let Carry::Through { leave, arrive, .. } = &d.carries[i] else {
+            return together();
+        };
+        let constant = |l: &Letter| s.get(l.symbol).role == Role::Parameter;
+        let free = !moving(leave) && !moving(arrive);
+        let known = mv.symmetric && expr::letters(&mv.factor).iter().all(constant);
+        match free && known {
+            true => Ok(How::Rotation {
+                factor: mv.factor.clone(),
+                real: real.cloned(),
+                leave: leave.clone(),
+                arrive: arrive.clone(),
+            }),
+            false => together(),
         }
+    };
+    let alone = c.side == Side::Body && block.len() == 1;
+    match (c.group.kept(), &d.solve.riccati[i]) {
+        (Kept::Rotation, Riccati::Exact(mv)) if alone => turning(mv, None),
+        (Kept::Quaternion, Riccati::Quaternionic(q)) if alone => turning(&q.edge, Some(&q.real)),
         (Kept::Field(_), Riccati::Linear(form)) if block.len() == 1 => {
             let b = &d.balances[i];
             let straight = expr::sub(b.edge_in.clone(), b.edge_out.clone());

@@ -8,6 +8,7 @@ mod lone;
 mod meshed;
 mod proof;
 mod pull;
+mod signs;
 mod site;
 #[cfg(test)]
 mod tests;
@@ -18,6 +19,7 @@ pub use held::{Held, Matrix, Reach, Unit};
 pub use lone::{How, Lone, Mover};
 pub use meshed::Meshed;
 pub use pull::{EndTerm, Force, Pull};
+pub use signs::{Signs, Wall, signs};
 pub use site::{BASE, Sited};
 pub use tie::{Part, Tie};
 pub use total::Total;
@@ -49,6 +51,8 @@ pub struct Line {
     pub units: Vec<Vec<Unit>>,
     /// What end conditions add.
     pub ends: Vec<EndTerm>,
+    /// Unit quaternions that meet their neighbours.
+    pub signs: Vec<Signs>,
     /// What terms with functionals of all sites add.
     pub meshed: Option<Meshed>,
     /// Conserved totals.
@@ -100,6 +104,7 @@ impl Line {
         let units = lone.iter().map(|l| held::units(l, &holds));
         let units = units.collect::<Result<Vec<_>, Refused>>()?;
         let ends = pull::ends(model, &lattice, &representative.choice)?;
+        let signs = signs::of_parts(&lattice, &representative, &ends)?;
         let mut pulls = pulls;
         if !holds.is_empty() {
             pulls.extend(pull::collecting(&lattice, &pulls, &ends));
@@ -129,6 +134,7 @@ impl Line {
             holds,
             units,
             ends,
+            signs,
             meshed,
             totals,
             shares,

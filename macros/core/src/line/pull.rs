@@ -213,7 +213,7 @@ fn keeps(lattice: &Lattice, part: &Written, term: &Expr) -> bool {
 }
 
 /// A summand as it is shown: its part that stands on the edge, and the one at a node.
-fn in_two(part: &Written, summand: &Summand) -> Result<[Expr; 2], Refused> {
+pub(super) fn in_two(part: &Written, summand: &Summand) -> Result<[Expr; 2], Refused> {
     let found = check::numbers(&part.unfolded.model, &[&summand.shown]);
     let Some(Some(term)) = found.into_iter().next() else {
         return Err(Refused::Form("a term of neighbours is not read".to_owned()));

@@ -20,6 +20,7 @@ fn shipped_lattices_are_programs() {
         ("sine-gordon", 1, 1),
         ("coupled-tops", 1, 1),
         ("geometrically-exact-rod", 2, 2),
+        ("quaternion-rod", 2, 2),
         ("hanging-chain", 0, 1),
         // Between sections, and where an end pushes.
         ("kirchhoff-rod", 2, 2),
@@ -87,6 +88,55 @@ fn what_is_held_reaches_its_site_and_the_next() {
     let multiple = |r: &super::Reach| matches!(r.columns, super::Matrix::Multiple(_));
     let multiples: Vec<bool> = held.reaches.iter().map(multiple).collect();
     assert_eq!(multiples, [true, true, false]);
+}
+
+/// Quaternions along a line with this kinetic energy and this coupling.
+fn quaternions(kinetic: &str, coupling: &str) -> Result<Line, Refused> {
+    line(&format!(
+        "model Spins {{ label i in 0..N; periodic; param A, K: Sym<3>; param b, c: Real;
+        group q: SU<2> at nodes velocity W; constraint next(q) = q*W;
+        lagrangian = {kinetic} + h*{coupling};
+        end i = 0 {{ free; held {{ param p: SU<2>; term h*c*re(p^T*q); }} }} }}"
+    ))
+}
+
+const QUADRATIC: &str = "(2/h)*dot(im(W), A*im(W)) - (4*b/h)*re(W)";
+
+#[test]
+fn the_sign_of_a_quaternion_is_seen_by_real_parts() {
+    let even = "dot(im(q^T*next(q, i)), K*im(q^T*next(q, i)))";
+    for (coupling, seen) in [
+        (even, false),
+        ("c*re(q^T*next(q, i))", true),
+        ("c*re(q^T*next(q, i))^2", false),
+        ("dot(im(q), K*im(next(q, i)))", true),
+        ("tr(K*rot(q)^T*rot(next(q, i)))", false),
+    ] {
+        let line = quaternions(QUADRATIC, coupling).unwrap_or_else(|e| panic!("{e:?}"));
+        let [signs] = line.signs.as_slice() else {
+            panic!("{coupling}: {:?}", line.signs);
+        };
+        assert_eq!((signs.of.as_str(), signs.seen), ("q", seen), "{coupling}");
+        let [first, last] = &signs.walls;
+        assert!(last.is_empty());
+        let first: Vec<_> = first
+            .iter()
+            .map(|w| (w.parameter.as_str(), w.site))
+            .collect();
+        assert_eq!(first, [("p", 0)]);
+    }
+    let rod = line(&shipped("geometrically-exact-rod")).unwrap_or_else(|e| panic!("{e:?}"));
+    assert!(rod.signs.is_empty());
+}
+
+#[test]
+fn quaternions_with_another_kinetic_energy_are_refused() {
+    let coupling = "c*re(q^T*next(q, i))";
+    let told = quaternions("-(4*b/h)*re(W)^3", coupling).err();
+    let Some(Refused::Form(why)) = told else {
+        panic!("{told:?}");
+    };
+    assert!(why.contains("a quadratic form of im"), "{why}");
 }
 
 /// A model of numbers at nodes with this constraint, and why it is refused.

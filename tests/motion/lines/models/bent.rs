@@ -70,6 +70,7 @@ impl Bent {
         Configuration {
             x: q.chain(s.X().iter().flat_map(|x| [x[0], x[1]])).collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     keeping!(BentChain, |_, s: &BentChainState| {

@@ -155,6 +155,7 @@ pub(super) fn seen(x: &[Vector2<f64>]) -> Configuration<f64> {
     Configuration {
         x: x.iter().flat_map(|x| [x[0], x[1]]).collect(),
         r: Vec::new(),
+        q: Vec::new(),
     }
 }
 

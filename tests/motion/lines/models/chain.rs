@@ -102,6 +102,7 @@ impl Chain {
         Configuration {
             x: s.x().iter().flat_map(|x| [x[0], x[1], x[2]]).collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     keeping!(HangingChain, |_, _: &HangingChainState| 0.0);

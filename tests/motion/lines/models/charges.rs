@@ -58,6 +58,7 @@ impl Charges {
         Configuration {
             x: s.X().iter().flat_map(|x| [x[0], x[1]]).collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     // With half of the field's impulse: what translations keep.

@@ -157,6 +157,7 @@ impl Cloud {
         Configuration {
             x: s.X().iter().flat_map(|x| [x[0], x[1]]).collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     // Neither translations nor turns leave the functionals as they are.

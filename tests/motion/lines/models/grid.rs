@@ -205,7 +205,11 @@ impl Basin {
     }
     fn seen(&self, s: &ParticleMesh1DState) -> Configuration<f64> {
         let x = s.X().iter().map(|x| x[0]).collect();
-        Configuration { x, r: Vec::new() }
+        Configuration {
+            x,
+            r: Vec::new(),
+            q: Vec::new(),
+        }
     }
     // On a grid no momentum is kept.
     keeping!(ParticleMesh1D, |_, _: &ParticleMesh1DState| 0.0);
@@ -299,6 +303,7 @@ impl Plane {
         Configuration {
             x: s.X().iter().flat_map(|x| [x[0], x[1]]).collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     keeping!(ParticleMesh2D, |_, _: &ParticleMesh2DState| 0.0);

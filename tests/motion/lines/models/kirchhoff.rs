@@ -139,6 +139,7 @@ impl Kirchhoff {
         Configuration {
             x: s.φ().iter().flat_map(|x| [x[0], x[1], x[2]]).collect(),
             r: s.Λ().map(|r| r.matrix()).collect(),
+            q: Vec::new(),
         }
     }
     keeping!(KirchhoffRod, |_, _: &KirchhoffRodState| 0.0);

@@ -116,6 +116,7 @@ impl Linked {
         Configuration {
             x: s.q().iter().map(|q| q[0]).collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     /// By how much the neighbour of a link is farther than it is stored.
@@ -239,6 +240,7 @@ impl Woven {
         Configuration {
             x: q.chain(s.X().iter().flat_map(|x| [x[0], x[1]])).collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     fn kept_with(&self, h: f64, steps: u64) -> [f64; 2] {

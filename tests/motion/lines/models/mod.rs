@@ -16,6 +16,7 @@ mod kirchhoff;
 mod linked;
 mod named;
 mod quartic;
+mod quaternions;
 mod rod;
 mod sine;
 mod toda;
@@ -33,6 +34,7 @@ pub use kirchhoff::{Ends, Kirchhoff};
 pub use linked::{Linked, LinkedChainState, Woven};
 pub use named::Named;
 pub use quartic::Quartic;
+pub use quaternions::{QRod, Spins, TwistedSpinsOf, turn};
 pub use rod::{Held, Rod};
 pub use sine::Sine;
 pub use toda::Toda;
@@ -175,6 +177,11 @@ pub fn all(n: usize) -> Vec<Box<dyn Line>> {
             out.push(Box::new(Rod::new(n, Some(ends))));
         }
     }
+    let rods = (0..10).filter(|ends| n > 1 || *ends == 0 || *ends == 9);
+    out.extend(rods.map(|ends| Box::new(QRod { n, ends }) as Box<dyn Line>));
+    for ring in [false, true] {
+        out.push(Box::new(Spins { n, ring }));
+    }
     out
 }
 
@@ -231,7 +238,9 @@ macro_rules! stepped {
             let to = self.seen(&state);
             let x = from.x.iter().zip(&to.x).map(|(a, b)| (a - b).abs());
             let r = from.r.iter().zip(&to.r).map(|(a, b)| (a - b).amax());
-            clebsch::scalar::largest(x.chain(r))
+            let q = from.q.iter().flatten().zip(to.q.iter().flatten());
+            let q = q.map(|(a, b)| (a - b).abs());
+            clebsch::scalar::largest(x.chain(r).chain(q))
         }
         fn kept(&self, steps: u64) -> [f64; 2] {
             self.kept_with($h, steps)

@@ -70,6 +70,7 @@ impl Named {
         Configuration {
             x: both.flat_map(|x| [x[0], x[1]]).collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     keeping!(NamedLikeLocals, |_, _: &NamedLikeLocalsState| 0.0);

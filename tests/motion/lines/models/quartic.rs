@@ -89,6 +89,7 @@ impl Quartic {
         Configuration {
             x: s.q().iter().map(|q| q[0]).collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     fn springs(&self) -> bool {

@@ -65,6 +65,9 @@ impl Rod {
         [shear, diagonal(0.5, 0.4, 0.7)]
     }
     pub fn stepper(&self) -> GeometricallyExactRod {
+        GeometricallyExactRod::new(self.parameters(), self.sites()).expect("a rod")
+    }
+    pub fn sites(&self) -> GeometricallyExactRodSites {
         let ends = match self.ends {
             None => GeometricallyExactRodEnds::Ring { X: self.grows() },
             Some([first, last]) => GeometricallyExactRodEnds::Open {
@@ -85,16 +88,17 @@ impl Rod {
                 },
             },
         };
-        let parameters = GeometricallyExactRodParameters {
+        GeometricallyExactRodSites { N: self.n, ends }
+    }
+    pub fn parameters(&self) -> GeometricallyExactRodParameters {
+        GeometricallyExactRodParameters {
             s: 0.5,
             m: (0..self.nodes()).map(|i| self.mass(i)).collect(),
             J: (0..self.n).map(Self::inertia).collect(),
             S: Self::stiffness()[0],
             B: Self::stiffness()[1],
             g: Vector3::new(0.0, 0.1, -0.3),
-        };
-        let sites = GeometricallyExactRodSites { N: self.n, ends };
-        GeometricallyExactRod::new(parameters, sites).expect("a rod")
+        }
     }
     pub fn initial(&self, seed: u64) -> GeometricallyExactRodInitial {
         let mut r = Random::new(seed);
@@ -115,6 +119,7 @@ impl Rod {
         Configuration {
             x: s.φ().iter().flat_map(|x| [x[0], x[1], x[2]]).collect(),
             r: s.Λ().map(|r| r.matrix()).collect(),
+            q: Vec::new(),
         }
     }
     keeping!(

@@ -72,6 +72,7 @@ impl Sine {
         Configuration {
             x: s.u().iter().map(|u| u[0]).collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     keeping!(SineGordon, |_, _: &SineGordonState| 0.0);

@@ -57,6 +57,7 @@ impl Toda {
         Configuration {
             x: s.q().iter().map(|q| q[0]).collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     keeping!(TodaChain, |m, s: &TodaChainState| m.total_momentum(s));

@@ -51,6 +51,7 @@ impl Tops {
         Configuration {
             x: Vec::new(),
             r: s.Λ().map(|r| r.matrix()).collect(),
+            q: Vec::new(),
         }
     }
     keeping!(CoupledTops, |_, s: &CoupledTopsState| {

@@ -54,6 +54,7 @@ impl Water {
         Configuration {
             x: x.collect(),
             r: Vec::new(),
+            q: Vec::new(),
         }
     }
     keeping!(ShallowWater1D, |_, s: &ShallowWater1DState| s

@@ -99,6 +99,7 @@ fn one(l: &Lines, m: Moving) -> TokenStream {
         true => vec![crate::emit::forced::doubled(s, &leave)],
         false => vec![arrive, leave],
     };
+    let wanted: Vec<Expr> = wanted.iter().map(|e| expr::parted(s, e)).collect();
     let (lets, results) = l.computed(s, &l.of_site(d, &wanted), &wanted);
     let collected = l.collected(&m.mover.name);
     let shared = |value: &TokenStream, e: &Expr, share: Rational| -> TokenStream {

@@ -1,7 +1,7 @@
 //! What end conditions add: put where a site at the end collects what its neighbours add.
 
 use super::items::End;
-use super::locals::{Known, Places};
+use super::locals::{Known, Places, Stands};
 use super::pulls::{computed, field, front};
 use super::{Lines, number};
 use crate::algebra::Algebra;
@@ -100,9 +100,9 @@ pub(super) fn energies(l: &Lines) -> Option<TokenStream> {
 }
 
 /// The site of a quantity so far from the end.
-fn place(l: &Lines, end: &EndTerm, of: &str, from_end: usize) -> TokenStream {
+pub(super) fn place(l: &Lines, last: bool, of: &str, from_end: usize) -> TokenStream {
     let n = number(from_end);
-    match end.last {
+    match last {
         false => quote!(#n),
         true => {
             let count = l.count_of(of);
@@ -114,6 +114,8 @@ fn place(l: &Lines, end: &EndTerm, of: &str, from_end: usize) -> TokenStream {
 /// Expressions of an end: what stands before them, and their values.
 fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenStream>) {
     let s = &end.symbols;
+    let values: Vec<Expr> = values.iter().map(|e| expr::parted(s, e)).collect();
+    let values = values.as_slice();
     let mut locals = TokenStream::new();
     let mut bindings = Bindings::new();
     for letter in &letters_of(values) {
@@ -126,13 +128,34 @@ fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenS
             Some((_, of, None)) => bindings.bind(*letter, end_local(of)),
             Some((_, of, Some(site))) => {
                 let local = format_ident!("__{of}_{site}");
-                let one = [Known {
-                    letter: *letter,
-                    of: of.clone(),
-                    on: Some(0),
-                }];
-                let site = place(l, end, of, *site);
-                let (lets, inner) = l.locals(s, &one, &Places::of_node(), &site);
+                let at = place(l, end.last, of, *site);
+                let bound = |stands: Stands| {
+                    let one = [Known {
+                        letter: *letter,
+                        of: of.clone(),
+                        on: Some(0),
+                        stands,
+                    }];
+                    l.locals(s, &one, &Places::of_node(), &at)
+                };
+                let stands = Stands::of(s, *letter, values);
+                let alone = stands.alone || stands.parted;
+                let (lets, inner) = bound(Stands {
+                    turned: stands.turned,
+                    ..Stands::default()
+                });
+                if let Some(turn) = inner.rotation(*letter) {
+                    let local = format_ident!("__{of}_{site}_turn");
+                    locals.extend(quote!(let #local = { #lets #turn };));
+                    bindings.bind_rotation(*letter, local);
+                    if !alone {
+                        continue;
+                    }
+                }
+                let (lets, inner) = bound(Stands {
+                    alone: true,
+                    ..Stands::default()
+                });
                 let name = inner.local(s, *letter);
                 locals.extend(quote!(let #local = { #lets #name };));
                 bindings.bind(*letter, local);
@@ -168,7 +191,7 @@ fn added(l: &Lines, end: &EndTerm) -> TokenStream {
         let Some((array, before, site)) = slots.next() else {
             return TokenStream::new();
         };
-        let index = place(l, end, &f.on, f.site);
+        let index = place(l, end.last, &f.on, f.site);
         let (before, name) = (number(before), field(&f.on, site));
         quote!(pulls.#array[#index + #before].#name += #value;)
     });

@@ -48,8 +48,9 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
         kinetic.push(quote!(line::sum(#count, |i| self.#kernel(i, at, momenta))));
         if !limit.potential.is_zero() {
             let kernel = format_ident!("own_potential_{}", n + 1);
-            let (d, values) = (&lone.outline, [lone.outline.defined(&limit.potential)]);
-            let (lets, results) = l.computed(&d.letters.symbols, &l.of_site(d, &values), &values);
+            let (d, s) = (&lone.outline, &lone.outline.letters.symbols);
+            let values = [expr::parted(s, &d.defined(&limit.potential))];
+            let (lets, results) = l.computed(s, &l.of_site(d, &values), &values);
             kernels.extend(quote! {
                 /// The potential energy of one site by itself.
                 fn #kernel(&self, site: usize, at: &#places<T>) -> T {
@@ -68,7 +69,7 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
         let energy = expr::neg(expr::quotient(pull.terms.clone(), h.clone()));
         let energy = without_step(&algebra, &energy, &h)?;
         let kernel = format_ident!("potential_{}", n + 1);
-        let values = [energy];
+        let values = [expr::parted(s, &energy)];
         let (lets, results) = l.computed(s, &known(l, &values), &values);
         kernels.extend(quote! {
             /// The potential energy of one term of neighbours.

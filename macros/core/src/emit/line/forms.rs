@@ -1,5 +1,5 @@
 //! The form in which a kernel of neighbours is computed: numbers gathered, common factors taken out,
-//! the rotation from one site to the next made once.
+//! the rotation or the quaternion from one site to the next made once.
 
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
@@ -10,13 +10,13 @@ use std::collections::BTreeMap;
 pub(super) struct Forms {
     /// The symbols, those of relative rotations among them.
     pub symbols: Symbols,
-    /// Rotations from the frame of one letter to that of another, with their values.
+    /// Rotations or quaternions from the frame of one letter to that of another, with their values.
     pub relative: Vec<(SymbolId, Expr)>,
     /// The expressions.
     pub values: Vec<Expr>,
 }
 
-/// The pair `X^T Y` of two rotations in one order, and whether that is transposed.
+/// The pair `X^T Y` of two rotations or quaternions in one order, and whether that is transposed.
 type Pair = ((Letter, Letter), bool);
 
 /// The form of several expressions that are computed together.
@@ -31,23 +31,33 @@ pub(super) fn forms(s: &Symbols, values: &[Expr], prefix: &str) -> Forms {
     let mut symbols = s.clone();
     let mut names: BTreeMap<(Letter, Letter), SymbolId> = BTreeMap::new();
     let mut relative = Vec::new();
-    for (pair, _) in met.into_iter().filter(|(_, n)| *n > 1) {
+    let kept = |pair: &(Letter, Letter), n: usize| n > 1 || is_quaternion(s, &pair.0);
+    for (pair, _) in met.into_iter().filter(|(pair, n)| kept(pair, *n)) {
         let [x, y] = [pair.0, pair.1].map(|l| expr::letter(s, l.symbol, l.shift));
         let value = expr::mul(expr::transpose(s, x.clone()), y);
         let name = symbols.fresh_name(&format!("{prefix}{}", relative.len() + 1));
-        let id = symbols.add(&name, x.shape(), Structure::Orthogonal, Role::Derived);
+        let structure = s.get(pair.0.symbol).structure;
+        let id = symbols.add(&name, x.shape(), structure, Role::Derived);
         names.insert(pair, id);
         relative.push((id, value));
     }
     let values = match names.is_empty() {
         true => values,
-        false => values.iter().map(|e| put(&symbols, e, &names)).collect(),
+        false => {
+            let put = |e: &Expr| expr::parted(&symbols, &put(&symbols, e, &names));
+            values.iter().map(put).collect()
+        }
     };
     Forms {
         symbols,
         relative,
         values,
     }
+}
+
+/// Whether it is a unit quaternion, whose product with another is no product of matrices.
+fn is_quaternion(s: &Symbols, l: &Letter) -> bool {
+    s.get(l.symbol).structure == Structure::UnitQuaternion
 }
 
 /// Whether two factors side by side are such a pair.
@@ -58,8 +68,9 @@ fn pair(s: &Symbols, a: &Expr, b: &Expr) -> Option<Pair> {
     let (Node::Letter(x), Node::Letter(y)) = (x.node(), b.node()) else {
         return None;
     };
-    let turns = |l: &Letter| s.get(l.symbol).structure == Structure::Orthogonal;
-    let both = turns(x) && turns(y) && x != y;
+    let [one, other] = [x, y].map(|l| s.get(l.symbol).structure);
+    let turns = matches!(one, Structure::Orthogonal | Structure::UnitQuaternion);
+    let both = turns && one == other && x != y;
     both.then(|| match x < y {
         true => ((*x, *y), false),
         false => ((*y, *x), true),

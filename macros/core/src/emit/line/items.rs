@@ -4,7 +4,6 @@ use super::{Lines, Moving, number};
 use crate::check::parameter_shape;
 use crate::emit::expression::{Bindings, Writer, ty};
 use crate::emit::items::admitted;
-use crate::expr;
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, Symbol};
 use crate::lattice::{Kind, Sites};
@@ -408,22 +407,27 @@ pub(super) fn model(l: &Lines) -> TokenStream {
     }
 }
 
-/// The factors of rotations: one, or one for each site where a parameter of sites stands in it.
+/// The factors of rotations and of unit quaternions: one, or one for each site where a parameter of sites stands in it.
 fn factors(l: &Lines, fields: &mut TokenStream, init: &mut TokenStream, made: &mut TokenStream) {
     for m in l.moving() {
-        let How::Rotation { factor, .. } = &m.mover.how else {
+        let How::Rotation { factor, real, .. } = &m.mover.how else {
             continue;
         };
         let d = m.d();
         let s = &d.letters.symbols;
         let name = format_ident!("factor_{}", m.mover.name);
-        fields.extend(quote!(#name: Vec<Poinsot<T>>,));
+        let kind = match real {
+            Some(_) => quote!(QuaternionBody<T>),
+            None => quote!(Poinsot<T>),
+        };
+        fields.extend(quote!(#name: Vec<#kind>,));
         init.extend(quote!(#name: Vec::new(),));
-        let letters = expr::letters(factor);
+        let letters = crate::emit::items::letters_of([factor].into_iter().chain(real));
         let varies = letters
             .iter()
             .any(|x| l.is_site_parameter(&s.get(x.symbol).name));
-        let label = crate::emit::items::text(d, factor);
+        let told = real.as_ref().filter(|_| factor.is_zero());
+        let label = crate::emit::items::text(d, told.unwrap_or(factor));
         let mut bindings = Bindings::new();
         let mut used = Vec::new();
         let locals = letters.iter().map(|x| {
@@ -438,11 +442,15 @@ fn factors(l: &Lines, fields: &mut TokenStream, init: &mut TokenStream, made: &m
             }
         });
         let locals: Vec<TokenStream> = locals.collect();
-        let value = Writer {
+        let writer = Writer {
             symbols: s,
             bindings: &bindings,
-        }
-        .write(factor);
+        };
+        let value = writer.write(factor);
+        let body = match real.as_ref().map(|e| writer.write(e)) {
+            Some(real) => quote!(QuaternionBody::new(#label, #value, #real)),
+            None => quote!(Poinsot::new(#value).map_err(|e| e.in_field(#label))),
+        };
         let count = match varies {
             true => l.count_in(quote!(model), m.lone.label, m.lone.sites),
             false => quote!(1),
@@ -451,7 +459,7 @@ fn factors(l: &Lines, fields: &mut TokenStream, init: &mut TokenStream, made: &m
         made.extend(quote! {
             for site in 0..#count {
                 #(#locals)*
-                let made = Poinsot::new(#value).map_err(|e| e.in_field(#label));
+                let made = #body;
                 model.#name.push(made.map_err(|error| match #count {
                     1 => LineError::Parameter(error),
                     _ => LineError::Site { at: line::Place { quantity: #quantity, site }, error },

@@ -4,8 +4,9 @@ use super::{Lines, number};
 use crate::derive::Outline;
 use crate::emit::expression::{Bindings, program};
 use crate::emit::names::{local_name, variable};
+use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, Symbols};
-use crate::expr::{Expr, Letter};
+use crate::expr::{self, Expr, Letter, Map, Node};
 use crate::lattice::Kind;
 use crate::schedule;
 use proc_macro2::TokenStream;
@@ -16,6 +17,61 @@ pub(super) struct Known {
     pub letter: Letter,
     pub of: String,
     pub on: Option<usize>,
+    pub stands: Stands,
+}
+
+/// How a unit quaternion stands in expressions.
+#[derive(Clone, Copy, Default, Debug)]
+pub(super) struct Stands {
+    /// By itself, as a matrix of four rows.
+    pub alone: bool,
+    /// By the rotation that it covers.
+    pub turned: bool,
+    /// By its parts, or by those of the quaternion from it to another.
+    pub parted: bool,
+}
+
+impl Stands {
+    /// How a letter stands in these.
+    pub(super) fn of(s: &Symbols, letter: Letter, list: &[Expr]) -> Stands {
+        let mut out = Stands::default();
+        list.iter().for_each(|e| out.look(s, letter, e));
+        out
+    }
+
+    fn look(&mut self, s: &Symbols, letter: Letter, e: &Expr) {
+        let is_own = |e: &Expr| matches!(e.node(), Node::Letter(l) if *l == letter);
+        match e.node() {
+            Node::Letter(_) => self.alone |= is_own(e),
+            Node::Map(Map::Rotation, a) if is_own(a) => self.turned = true,
+            Node::Map(Map::Real | Map::Imaginary, a) if is_own(a) => self.parted = true,
+            Node::Map(Map::Real | Map::Imaginary, a) if is_between(s, a) => {
+                self.parted |= expr::contains(a, letter);
+            }
+            _ => e.children().iter().for_each(|c| self.look(s, letter, c)),
+        }
+    }
+}
+
+/// Whether it is the quaternion from one that moves to another, `q^T p`.
+pub(super) fn is_between(s: &Symbols, e: &Expr) -> bool {
+    let Node::Product(two) = e.node() else {
+        return false;
+    };
+    let [a, b] = two.as_slice() else {
+        return false;
+    };
+    let Node::Transpose(a) = a.node() else {
+        return false;
+    };
+    let moves = |e: &Expr| match e.node() {
+        Node::Letter(l) => {
+            let symbol = s.get(l.symbol);
+            symbol.structure == Structure::UnitQuaternion && symbol.role == Role::Element
+        }
+        _ => false,
+    };
+    moves(a) && moves(b) && a != b
 }
 
 /// Where places at the node and at the next one are found.
@@ -95,10 +151,25 @@ impl Lines<'_> {
                         0 => &places.here,
                         _ => &places.next,
                     };
-                    let rotation = self
-                        .moving()
-                        .any(|m| m.mover.name == known.of && m.is_rotation());
+                    let is_own = |m: &super::Moving| m.mover.name == known.of;
+                    let own = self.moving().find(is_own);
+                    let quaternion = own.is_some_and(|m| m.is_quaternion());
+                    if quaternion && known.stands.turned {
+                        let turn = self.unique(&known.of, &format!("{base}_turn"), &mut used);
+                        out.extend(quote!(let #turn = #at.#field[#index].matrix();));
+                        bindings.bind_rotation(known.letter, turn);
+                    }
+                    if quaternion && known.stands.parted {
+                        let unit = self.unique(&known.of, &format!("{base}_unit"), &mut used);
+                        out.extend(quote!(let #unit = #at.#field[#index].unit_quaternion();));
+                        bindings.bind_quaternion(known.letter, unit);
+                    }
+                    if quaternion && !known.stands.alone {
+                        continue;
+                    }
+                    let rotation = own.is_some_and(|m| m.is_rotation());
                     match (rotation, symbol.shape.is_scalar()) {
+                        _ if quaternion => quote!(#at.#field[#index].unit_quaternion().matrix()),
                         (true, _) => quote!(#at.#field[#index].matrix()),
                         (_, true) => quote!(#at.#field[#index][0]),
                         _ => quote!(#at.#field[#index]),
@@ -120,7 +191,13 @@ impl Lines<'_> {
         let known = letters.into_iter().map(|letter| {
             let of = s.get(letter.symbol).name.clone();
             let on = self.line.lattice.find(&of).map(|_| 0);
-            Known { letter, of, on }
+            let stands = Stands::of(s, letter, list);
+            Known {
+                letter,
+                of,
+                on,
+                stands,
+            }
         });
         known.collect()
     }

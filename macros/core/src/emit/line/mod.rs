@@ -112,8 +112,14 @@ impl Moving<'_> {
         format_ident!("{}", self.mover.name)
     }
 
+    /// Whether it turns: a rotation or a unit quaternion.
     fn is_rotation(&self) -> bool {
         matches!(self.mover.how, How::Rotation { .. })
+    }
+
+    /// Whether it is a unit quaternion.
+    fn is_quaternion(&self) -> bool {
+        matches!(self.mover.how, How::Rotation { real: Some(_), .. })
     }
 
     /// Rows and columns of a field; of a rotation those of its momentum.
@@ -144,6 +150,14 @@ impl Moving<'_> {
         match self.is_rotation() {
             true => quote!(line::Attitude<T>),
             false => self.covector(),
+        }
+    }
+
+    /// The type of what turns, as users give it.
+    fn element(&self) -> TokenStream {
+        match self.is_quaternion() {
+            true => quote!(UnitQuaternion<T>),
+            false => quote!(Rotation<T>),
         }
     }
 

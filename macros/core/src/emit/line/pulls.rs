@@ -2,13 +2,13 @@
 //! all of them, and the loop over all terms.
 
 use super::forms::forms;
-use super::locals::{Known, Places};
+use super::locals::{Known, Places, Stands};
 use super::{Lines, number};
-use crate::emit::expression::Bindings;
+use crate::emit::expression::{Bindings, Writer};
 use crate::emit::items::letters_of;
 use crate::emit::names::variable;
-use crate::expr::Expr;
 use crate::expr::symbol::Symbols;
+use crate::expr::{self, Expr, Letter, Shift};
 use crate::line::Pull;
 use crate::print::{Format, Style, expression};
 use proc_macro2::{Ident, TokenStream};
@@ -61,7 +61,8 @@ fn of_pull(l: &Lines, n: usize, pull: &Pull) -> (TokenStream, TokenStream) {
         fields.extend(quote!(#name: #covector,));
         zeros.extend(quote!(#name: SMatrix::zeros(),));
     }
-    let values: Vec<_> = pull.forces.iter().map(|f| f.value.clone()).collect();
+    let values = pull.forces.iter().map(|f| expr::parted(s, &f.value));
+    let values: Vec<_> = values.collect();
     let letters = known(l, &values);
     let (locals, bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
     let (lets, results) = computed(l, s, &values, &bindings);
@@ -106,12 +107,26 @@ pub(super) fn computed(
 ) -> (TokenStream, Vec<TokenStream>) {
     let forms = forms(s, values, &l.relative);
     let mut lets = TokenStream::new();
+    let mut all = bindings.clone();
     for (id, value) in &forms.relative {
-        let (_, made) = l.program(&forms.symbols, std::slice::from_ref(value), bindings);
         let name = variable(&forms.symbols, *id);
+        let writer = Writer {
+            symbols: &forms.symbols,
+            bindings,
+        };
+        if let Some(unit) = writer.unit(value) {
+            lets.extend(quote!(let #name = #unit;));
+            let letter = Letter {
+                symbol: *id,
+                shift: Shift::HERE,
+            };
+            all.bind_quaternion(letter, name);
+            continue;
+        }
+        let (_, made) = l.program(&forms.symbols, std::slice::from_ref(value), bindings);
         lets.extend(quote!(let #name = #(#made)*;));
     }
-    let (more, results) = l.program(&forms.symbols, &forms.values, bindings);
+    let (more, results) = l.program(&forms.symbols, &forms.values, &all);
     lets.extend(more);
     (lets, results)
 }
@@ -133,11 +148,13 @@ pub(super) fn known(l: &Lines, values: &[Expr]) -> Vec<Known> {
                 letter,
                 of: at.of,
                 on: Some(at.site.saturating_sub(crate::line::BASE)),
+                stands: Stands::of(&part.d.letters.symbols, letter, values),
             },
             None => Known {
                 letter,
                 of: part.d.letters.symbols.get(letter.symbol).name.clone(),
                 on: None,
+                stands: Stands::default(),
             },
         })
         .collect()

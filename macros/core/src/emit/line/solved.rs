@@ -78,12 +78,16 @@ fn rotation(l: &Lines, m: Moving) -> TokenStream {
         " `{}` where the edge that leaves a site ends.",
         m.mover.name
     );
+    let turn = match m.is_quaternion() {
+        true => quote!(edge.turn_in_quaternions(factor, #h, &at.#name[site].unit_quaternion())),
+        false => quote!(edge.turn(factor, #h, &at.#name[site].rotation())),
+    };
     quote! {
         #[doc = #doc]
         #[inline(always)]
         fn #kernel(&self, #h: T, site: usize, at: &#places<T>, edge: &Edge<T>) -> Result<line::Attitude<T>, StepCause> {
             let factor = &self.#factor[site.min(self.#factor.len() - 1)];
-            match edge.turn(factor, #h, &at.#name[site].rotation()) {
+            match #turn {
                 Ok(turned) => Ok(line::Attitude::turned(&turned)),
                 Err(e) => Err(StepCause::from(e)),
             }

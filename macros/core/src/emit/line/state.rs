@@ -26,8 +26,9 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
         match m.is_rotation() {
             true => {
                 let body = format_ident!("body_momentum_{}", m.mover.name);
+                let element = m.element();
                 quote! {
-                    #[doc = #doc] pub #name: Vec<Rotation<T>>,
+                    #[doc = #doc] pub #name: Vec<#element>,
                     /// Its momenta at node 0, in body frames.
                     pub #body: Vec<BodyMomentum<T>>
                 }
@@ -61,10 +62,15 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
             true => {
                 let [spatial, body] = ["spatial_momentum", "body_momentum"]
                     .map(|x| format_ident!("{x}_{}", m.mover.name));
+                let element = m.element();
+                let told = match m.is_quaternion() {
+                    true => quote!(unit_quaternion),
+                    false => quote!(rotation),
+                };
                 quote! {
                     #[doc = #doc]
-                    pub fn #name(&self) -> impl ExactSizeIterator<Item = Rotation<T>> {
-                        self.places.#name[..self.#count].iter().map(|x| x.rotation())
+                    pub fn #name(&self) -> impl ExactSizeIterator<Item = #element> {
+                        self.places.#name[..self.#count].iter().map(|x| x.#told())
                     }
                     /// Its momenta at this node, in the space frame.
                     pub fn #spatial(&self) -> impl ExactSizeIterator<Item = SpatialMomentum<T>> {

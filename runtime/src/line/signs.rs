@@ -1,0 +1,124 @@
+//! Signs of unit quaternions along a line. `q` and `-q` are one attitude; from one site to the next they differ by a
+//! whole turn, which a term that holds the real part of `q* p` stores as energy. Where a trajectory starts the signs
+//! are therefore made to agree. Takes attitudes in order along the line; changes signs, or tells that around a ring
+//! they cannot agree.
+
+use super::Attitude;
+use crate::error::Problem;
+use crate::linalg::{quaternion_imaginary, quaternion_real};
+use crate::{ParameterError, Real};
+use nalgebra::Matrix4;
+
+/// The scalar product.
+fn pairing<T: Real>(a: [T; 4], b: [T; 4]) -> T {
+    let [a0, a1, a2, a3] = a;
+    let [b0, b1, b2, b3] = b;
+    (a0 * b0 + a1 * b1) + (a2 * b2 + a3 * b3)
+}
+
+/// -1 where the number is negative, else 1; in each lane.
+fn sign<T: Real>(x: T) -> T {
+    let sign = x.sign();
+    sign + (T::one() - sign * sign)
+}
+
+/// Replaces each unit quaternion by its opposite where its scalar product with the one before is negative.
+pub fn agree<T: Real>(list: &mut [Attitude<T>]) {
+    let mut before: Option<[T; 4]> = None;
+    for x in list {
+        let own = x.unit_quaternion().components();
+        if let Some(before) = before {
+            *x = x.of_sign(sign(pairing(before, own)));
+        }
+        before = Some(x.unit_quaternion().components());
+    }
+}
+
+/// Replaces all of them by their opposites where the one of a site disagrees with a quaternion that an end gives, as
+/// the matrix of its left multiplication.
+pub fn turn_towards<T: Real>(list: &mut [Attitude<T>], site: usize, wall: &Matrix4<T>) {
+    let v = quaternion_imaginary(wall);
+    let wall = [quaternion_real(wall), v.x, v.y, v.z];
+    if let Some(own) = list.get(site) {
+        let sign = sign(pairing(wall, own.unit_quaternion().components()));
+        list.iter_mut().for_each(|x| *x = x.of_sign(sign));
+    }
+}
+
+/// Whether the last of them agrees with the first.
+///
+/// # Errors
+/// Where it does not: around the ring they make an odd number of turns.
+pub fn closes<T: Real>(quantity: &'static str, list: &[Attitude<T>]) -> Result<(), ParameterError> {
+    let (Some(first), Some(last)) = (list.first(), list.last()) else {
+        return Ok(());
+    };
+    let [first, last] = [first, last].map(|x| x.unit_quaternion().components());
+    match pairing(first, last).least() < 0.0 {
+        true => Err(ParameterError {
+            field: quantity,
+            problem: Problem::SignAroundRing,
+            remedy: "state terms of neighbours so that the sign of one of them leaves them as they are, by products of two \
+                     components of im(q^T*next(q, i)), or give attitudes that make an even number of turns",
+        }),
+        false => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{agree, closes, turn_towards};
+    use crate::line::Attitude;
+    use crate::{Rotation, UnitQuaternion};
+    use nalgebra::Vector3;
+
+    /// Attitudes that make so many turns over the whole of a list, with signs that are given at random.
+    fn turning(turns: f64, count: usize) -> Vec<Attitude> {
+        let each = (0..count).map(|i| {
+            let half = std::f64::consts::PI * turns * i as f64 / count as f64;
+            let sign = if i * i % 7 < 3 { 1.0 } else { -1.0 };
+            let q = [half.cos(), half.sin(), 0.0, 0.0].map(|x| x * sign);
+            Attitude::of_quaternion(UnitQuaternion::from_components(q).expect("of unit length"))
+        });
+        each.collect()
+    }
+
+    #[test]
+    fn signs_agree_from_site_to_site_and_attitudes_stay() {
+        for turns in [0.3, 1.0, 2.0, 5.0] {
+            let given = turning(turns, 40);
+            let mut list = given.clone();
+            agree(&mut list);
+            for (two, x) in list.windows(2).zip(&given) {
+                let [a, b] = [two[0], two[1]].map(|x| x.unit_quaternion());
+                assert!((a.inverse() * b).real() > 0.0);
+                assert_eq!(two[0].matrix(), x.matrix());
+            }
+            let before = list.clone();
+            agree(&mut list);
+            assert_eq!(list, before);
+        }
+    }
+
+    #[test]
+    fn an_odd_number_of_turns_around_a_ring_is_told() {
+        for (turns, is_odd) in [(0.0, false), (1.0, true), (2.0, false), (3.0, true)] {
+            let mut list = turning(turns, 40);
+            agree(&mut list);
+            let told = closes("q", &list);
+            assert_eq!(told.is_err(), is_odd, "{turns} turns: {told:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_turns_towards_what_an_end_gives() {
+        let wall = Rotation::exp(&Vector3::new(0.1, 0.2, -0.1)).quaternion();
+        for sign in [1.0, -1.0] {
+            let wall = UnitQuaternion::from_components(wall.map(|x| x * sign)).expect("a wall");
+            let mut list = turning(0.2, 5);
+            agree(&mut list);
+            turn_towards(&mut list, 0, &wall.matrix());
+            assert!((wall.inverse() * list[0].unit_quaternion()).real() > 0.0);
+        }
+    }
+}
