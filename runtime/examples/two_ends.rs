@@ -40,10 +40,9 @@ fn shot<T: Real>(
     sought: &SVector<T, 6>,
     mut seen: impl FnMut(&Vector3<T>),
 ) -> Result<End<T>, Error> {
-    let [K1, K3] = [T::from_f64(1.0), T::from_f64(0.8)];
     let rod = Rod::new(RodParameters {
-        K1,
-        K3,
+        K1: T::from_f64(1.0),
+        K3: T::from_f64(0.8),
         n: sought.fixed_rows::<3>(3).into_owned(),
     })?;
     let initial = RodInitial {
