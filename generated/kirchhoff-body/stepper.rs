@@ -28,6 +28,7 @@ pub mod kirchhoff_body {
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct KirchhoffBody<T = f64> {
         parameters: KirchhoffBodyParameters<T>,
+        inverse_1: SMatrix<T, 3, 3>,
     }
     impl<T: Real> KirchhoffBody<T> {
         /// The model as it was stated.
@@ -49,7 +50,9 @@ pub mod kirchhoff_body {
             validate::finite_entries("D", &parameters.D)?;
             validate::finite("b", parameters.b.as_slice())?;
             validate::finite("Z", parameters.Z.as_slice())?;
-            Ok(Self { parameters })
+            let KirchhoffBodyParameters { M, .. } = parameters;
+            let inverse_1 = inverse_or_nan(&(M));
+            Ok(Self { parameters, inverse_1 })
         }
         /// The parameters.
         pub fn parameters(&self) -> &KirchhoffBodyParameters<T> {
@@ -95,7 +98,14 @@ pub mod kirchhoff_body {
     #[derive(Clone, Copy, Debug)]
     pub struct KirchhoffBodyWorkspace<T = f64> {
         h: T,
-        search: newton::Search<T, [RigidMotion<T>; 1], KirchhoffBodyNode<T>, 6>,
+        search: newton::Search<
+            T,
+            [Rotation<T>; 1],
+            KirchhoffBodyNode<T>,
+            3,
+            [RigidMotion<T>; 1],
+            6,
+        >,
     }
     ::clebsch::saved! {
         [] KirchhoffBodyWorkspace { h, search }
@@ -148,13 +158,25 @@ pub mod kirchhoff_body {
                     rows_from::<T, 6, 3, 1>(&momenta_six, 0),
                     rows_from::<T, 6, 3, 1>(&momenta_six, 3),
                 ];
+                let V_pos_momentum = momenta[1];
+                let k3 = self.inverse_1;
                 let k1 = h.powi(-1);
                 let k2 = (rows_from::<T, 4, 3, 1>(&b, 0))
                     .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * (T::from_f64(0.5) * h);
-                let k3 = rows_from::<T, 4, 3, 1>(&P, 0) * (T::from_f64(0.5) * h * b[3]);
+                let k4 = V_pos_momentum * (T::from_f64(4.0) * h)
+                    - rows_from::<T, 4, 3, 1>(&P, 0)
+                        * (T::from_f64(2.0) * (h * h) * b[3]);
                 let mut iteration = work.search.begin(state.node, []);
                 loop {
-                    let trial = iteration.trial();
+                    let turned = iteration.trial();
+                    let V_rot = turned[0].matrix();
+                    let V_rot_turn = turned[0].rodrigues();
+                    let V_pos_1 = (k4 - V_rot_turn.cross(&k4)) * T::from_f64(0.5)
+                        - D.tr_mul(&vee(&V_rot)) * T::from_f64(2.0);
+                    let V_pos_2 = k3 * V_pos_1;
+                    let V_pos = (V_pos_2 + V_rot_turn.cross(&V_pos_2))
+                        * T::from_f64(0.5);
+                    let trial = [rigid_motion(turned[0], V_pos)];
                     if iteration.wants_scale() {
                         iteration
                             .set_scale(move |lane| {
@@ -165,68 +187,51 @@ pub mod kirchhoff_body {
                         trial[0].rotation.matrix(),
                         trial[0].translation,
                     );
-                    if iteration
-                        .assess({
-                            let t1 = V_rot.tr_mul(&V_pos) + V_pos;
-                            let t2 = M * t1 * T::from_f64(0.25);
-                            let t3 = D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5);
-                            let t4 = t2 + t3;
-                            joined::<
-                                T,
-                                2,
-                                6,
-                            >(
-                                &[
-                                    ((V_pos.cross(&t4)
-                                        + vee(
-                                            &(crossing(&V_rot, &(D * t1)) * T::from_f64(0.5)
-                                                + V_rot * J * T::from_f64(2.0)),
-                                        )) * k1 + k2) - momenta[0],
-                                    ((V_rot * t4 + t2 + t3) * k1 + k3) - momenta[1],
-                                ],
-                            )
-                        })
+                    if iteration.wants_residual()
+                        && iteration
+                            .assess({
+                                ((V_pos
+                                    .cross(
+                                        &(V_pos_1 * T::from_f64(0.25)
+                                            + D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5)),
+                                    )
+                                    + vee(
+                                        &(crossing(&V_rot, &(D * V_pos_2)) * T::from_f64(0.5)
+                                            + V_rot * J * T::from_f64(2.0)),
+                                    )) * k1 + k2) - momenta[0]
+                            })
                     {
                         iteration
                             .set_tangent_times(
                                 &{
-                                    let t1 = V_rot.tr_mul(&V_pos) + V_pos;
-                                    let t2 = M * t1 * T::from_f64(0.25)
+                                    let t1 = V_pos_1 * T::from_f64(0.25)
                                         + D.tr_mul(&vee(&V_rot)) * T::from_f64(0.5);
-                                    let t3 = SMatrix::<T, 3, 3>::identity() * V_rot.trace();
-                                    let t4 = D.tr_mul(&(t3 - V_rot)) - crossing(&M, &V_pos);
-                                    let t5 = V_rot.transpose() + SMatrix::<T, 3, 3>::identity();
-                                    let t6 = t4.tr_mul(&t5) * T::from_f64(0.25);
-                                    assembled::<
-                                        T,
-                                        2,
-                                        6,
-                                    >(
-                                        &[
-                                            [
-                                                crossing(
-                                                    &(hat(&t2)
-                                                        - (t3 - V_rot.transpose()) * D * T::from_f64(0.25)),
-                                                    &V_pos,
-                                                ) + V_rot * ((-(hat(&(D * t1)) * T::from_f64(0.25))) - J)
-                                                    + crossed(&V_pos, &t4) * T::from_f64(0.25)
-                                                    + SMatrix::<T, 3, 3>::identity()
-                                                        * (T::from_f64(0.25) * (crossing(&V_rot, &(D * t1))).trace()
-                                                            + (V_rot * J).trace()),
-                                                t6 - hat(&t2),
-                                            ],
-                                            [
-                                                t6.transpose() - hat(&(V_rot * t2)),
-                                                (V_rot + SMatrix::<T, 3, 3>::identity()) * (M * t5)
-                                                    * T::from_f64(0.25),
-                                            ],
-                                        ],
+                                    let t2 = SMatrix::<T, 3, 3>::identity() * V_rot.trace();
+                                    let t3 = D.tr_mul(&(t2 - V_rot)) - crossing(&M, &V_pos);
+                                    crossing(
+                                        &(hat(&t1)
+                                            - (t2 - V_rot.transpose()) * D * T::from_f64(0.25)),
+                                        &V_pos,
                                     )
+                                        + V_rot * ((-(hat(&(D * V_pos_2)) * T::from_f64(0.25))) - J)
+                                        + crossed(&V_pos, &t3) * T::from_f64(0.25)
+                                        + SMatrix::<T, 3, 3>::identity()
+                                            * (T::from_f64(0.25)
+                                                * (crossing(&V_rot, &(D * V_pos_2))).trace()
+                                                + (V_rot * J).trace())
+                                        - (t3.transpose() * T::from_f64(0.25)
+                                            + ((-hat(&t1)) - crossed(&t1, &hat(&V_rot_turn)))
+                                                * T::from_f64(0.5))
+                                            * (k3
+                                                * (t3 * T::from_f64(0.25)
+                                                    + (crossed(&V_rot_turn, &hat(&(V_rot * t1)))
+                                                        - hat(&(V_rot * t1))) * T::from_f64(0.5)))
+                                            * T::from_f64(4.0)
                                 },
                                 h,
                             );
                     }
-                    match iteration.correct_from_left() {
+                    match iteration.correct_part_from_left(trial) {
                         newton::Progress::Continue => {}
                         newton::Progress::Solved(
                             solved,
@@ -330,8 +335,10 @@ pub mod kirchhoff_body {
             iteration: &mut newton::Newton<
                 '_,
                 T,
-                [RigidMotion<T>; 1],
+                [Rotation<T>; 1],
                 KirchhoffBodyNode<T>,
+                3,
+                [RigidMotion<T>; 1],
                 6,
             >,
             ended: newton::Progress<[RigidMotion<T>; 1]>,
@@ -379,6 +386,33 @@ pub mod kirchhoff_body {
                     },
                 );
             StepCause::from(e).at_node(state.node)
+        }
+        /// The trial with these rotations, its translations found.
+        #[cold]
+        #[inline(never)]
+        #[allow(unused_variables)]
+        fn completed_at(
+            parameters: &KirchhoffBodyParameters<T>,
+            h: T,
+            given: &(SVector<T, 4>, [T; 0]),
+            momenta: &[SVector<T, 3>; 2],
+            turned: &[Rotation<T>; 1],
+        ) -> [RigidMotion<T>; 1] {
+            let KirchhoffBodyParameters { J, M, D, b, Z, .. } = *parameters;
+            let P = given.0;
+            let V_pos_momentum = momenta[1];
+            let V_rot = turned[0].matrix();
+            let V_rot_turn = turned[0].rodrigues();
+            let V_pos_1 = {
+                let t1 = V_pos_momentum * (T::from_f64(4.0) * h);
+                let t2 = -(rows_from::<T, 4, 3, 1>(&P, 0)
+                    * (T::from_f64(2.0) * (h * h) * b[3]));
+                (t1 + t2 - V_rot_turn.cross(&(t1 + t2))) * T::from_f64(0.5)
+                    - D.tr_mul(&vee(&V_rot)) * T::from_f64(2.0)
+            };
+            let V_pos_2 = inverse_or_nan(&(M)) * V_pos_1;
+            let V_pos = (V_pos_2 + V_rot_turn.cross(&V_pos_2)) * T::from_f64(0.5);
+            [rigid_motion(turned[0], V_pos)]
         }
         /// The residual of the equations of a step.
         #[cold]
@@ -479,7 +513,7 @@ pub mod kirchhoff_body {
             momenta: &[SVector<T, 3>; 2],
             trial: &[RigidMotion<T>; 1],
             lane: usize,
-        ) -> SVector<f64, 6> {
+        ) -> SVector<f64, 3> {
             let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
             let parameters = self.parameters.over(change);
             let (step, given, momenta) = (
@@ -489,10 +523,22 @@ pub mod kirchhoff_body {
             );
             let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
             let trial = [trial[0].over(change)];
-            KirchhoffBody::<
+            let trial = KirchhoffBody::<
                 newton::Enclosure<0>,
-            >::residual_at(&parameters, step, &given, &momenta, &trial)
-                .map(|x| x.rest())
+            >::completed_at(
+                &parameters,
+                step,
+                &given,
+                &momenta,
+                &newton::Found::within(&trial),
+            );
+            {
+                let all = KirchhoffBody::<
+                    newton::Enclosure<0>,
+                >::residual_at(&parameters, step, &given, &momenta, &trial)
+                    .map(|x| x.rest());
+                SVector::from([all[0], all[1], all[2]])
+            }
         }
         /// Finds the principal root, or shows that the solution is.
         #[cold]

@@ -181,7 +181,14 @@ pub mod mixed_four {
     pub struct MixedFourWorkspace<T = f64> {
         h: T,
         method: Method,
-        search_2: newton::Search<T, [RigidMotion<T>; 1], MixedFourNode2<T>, 6>,
+        search_2: newton::Search<
+            T,
+            [Rotation<T>; 1],
+            MixedFourNode2<T>,
+            3,
+            [RigidMotion<T>; 1],
+            6,
+        >,
         search_4: newton::Search<T, [Additive<3, 1, T>; 1], MixedFourNode4<T>, 3>,
     }
     ::clebsch::saved! {
@@ -259,17 +266,20 @@ pub mod mixed_four {
                     rows_from::<T, 6, 3, 1>(&momenta_six, 0),
                     rows_from::<T, 6, 3, 1>(&momenta_six, 3),
                 ];
-                let s1 = h.powi(-1);
-                let s2 = motion_rotation(&G);
-                let s3 = s2.transpose();
-                let s4 = motion_translation(&G);
-                let k2 = s.cross(&(s3 * (s4 - X))) * (T::from_f64(0.5) * h * k);
-                let k3 = M * s1;
-                let k4 = s3 * (s4 - X + s2 * s) * (T::from_f64(0.5) * h * k);
-                let k5 = SMatrix::<T, 3, 3>::identity() * M;
+                let W_pos_momentum = momenta[1];
+                let s1 = motion_rotation(&G);
+                let s2 = s1.transpose();
+                let s3 = motion_translation(&G);
+                let s4 = M.powi(-1);
+                let k1 = h.powi(-1);
+                let k2 = s.cross(&(s2 * (s3 - X))) * (T::from_f64(0.5) * h * k);
+                let k3 = W_pos_momentum * (h * s4)
+                    - s2 * (s3 - X + s1 * s) * (T::from_f64(0.5) * (h * h) * k * s4);
                 let mut iteration = work.search_2.begin(state.node, []);
                 loop {
-                    let trial = iteration.trial();
+                    let turned = iteration.trial();
+                    let W_pos = k3;
+                    let trial = [rigid_motion(turned[0], W_pos)];
                     if iteration.wants_scale() {
                         iteration
                             .set_scale(move |lane| {
@@ -280,39 +290,22 @@ pub mod mixed_four {
                         trial[0].rotation.matrix(),
                         trial[0].translation,
                     );
-                    if iteration
-                        .assess({
-                            joined::<
-                                T,
-                                2,
-                                6,
-                            >(
-                                &[
-                                    (axial_of_difference(&(W_rot * A)) * s1 + k2) - momenta[0],
-                                    (W_pos * k3 + k4) - momenta[1],
-                                ],
-                            )
-                        })
+                    if iteration.wants_residual()
+                        && iteration
+                            .assess({
+                                (axial_of_difference(&(W_rot * A)) * k1 + k2) - momenta[0]
+                            })
                     {
                         iteration
                             .set_tangent_times(
                                 &{
                                     let t1 = W_rot * A;
-                                    assembled::<
-                                        T,
-                                        2,
-                                        6,
-                                    >(
-                                        &[
-                                            [trace_complement(&t1), SMatrix::<T, 3, 3>::zeros()],
-                                            [-(hat(&W_pos) * M), k5],
-                                        ],
-                                    )
+                                    trace_complement(&t1)
                                 },
                                 h,
                             );
                     }
-                    match iteration.correct_from_left() {
+                    match iteration.correct_part_from_left(trial) {
                         newton::Progress::Continue => {}
                         newton::Progress::Solved(
                             solved,
@@ -578,8 +571,10 @@ pub mod mixed_four {
             iteration: &mut newton::Newton<
                 '_,
                 T,
-                [RigidMotion<T>; 1],
+                [Rotation<T>; 1],
                 MixedFourNode2<T>,
+                3,
+                [RigidMotion<T>; 1],
                 6,
             >,
             ended: newton::Progress<[RigidMotion<T>; 1]>,
@@ -638,6 +633,30 @@ pub mod mixed_four {
                     },
                 );
             StepCause::from(e).at_node(state.node)
+        }
+        /// The trial with these rotations, its translations found.
+        #[cold]
+        #[inline(never)]
+        #[allow(unused_variables)]
+        fn completed_at_2(
+            parameters: &MixedFourParameters<T>,
+            h: T,
+            given: &(SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
+            momenta: &[SVector<T, 3>; 2],
+            turned: &[Rotation<T>; 1],
+        ) -> [RigidMotion<T>; 1] {
+            let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
+            let G = given.0;
+            let X = given.1.0;
+            let W_pos_momentum = momenta[1];
+            let W_pos = {
+                let t1 = M.powi(-1);
+                let t2 = motion_rotation(&G);
+                W_pos_momentum * (h * t1)
+                    - t2.tr_mul(&(motion_translation(&G) - X + t2 * s))
+                        * (T::from_f64(0.5) * (h * h) * k * t1)
+            };
+            [rigid_motion(turned[0], W_pos)]
         }
         /// The residual of the equations of a step.
         #[cold]
@@ -708,7 +727,7 @@ pub mod mixed_four {
             momenta: &[SVector<T, 3>; 2],
             trial: &[RigidMotion<T>; 1],
             lane: usize,
-        ) -> SVector<f64, 6> {
+        ) -> SVector<f64, 3> {
             let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
             let parameters = self.parameters.over(change);
             let (step, given, momenta) = (
@@ -718,10 +737,22 @@ pub mod mixed_four {
             );
             let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
             let trial = [trial[0].over(change)];
-            MixedFour::<
+            let trial = MixedFour::<
                 newton::Enclosure<0>,
-            >::residual_at_2(&parameters, step, &given, &momenta, &trial)
-                .map(|x| x.rest())
+            >::completed_at_2(
+                &parameters,
+                step,
+                &given,
+                &momenta,
+                &newton::Found::within(&trial),
+            );
+            {
+                let all = MixedFour::<
+                    newton::Enclosure<0>,
+                >::residual_at_2(&parameters, step, &given, &momenta, &trial)
+                    .map(|x| x.rest());
+                SVector::from([all[0], all[1], all[2]])
+            }
         }
         /// Finds the principal root, or shows that the solution is.
         #[cold]

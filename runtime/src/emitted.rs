@@ -109,6 +109,16 @@ pub fn size_of<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) ->
     a.iter().fold(0.0, |sum, x| sum + x.magnitude())
 }
 
+/// The rigid motion of a rotation and a translation.
+#[inline(always)]
+#[must_use]
+pub fn rigid_motion<T: Real>(rotation: Rotation<T>, translation: SVector<T, 3>) -> RigidMotion<T> {
+    RigidMotion {
+        rotation,
+        translation,
+    }
+}
+
 /// Vectors of three components on top of each other.
 #[inline(always)]
 #[must_use]

@@ -302,6 +302,29 @@ fn kirchhoff_body_is_of_second_order() {
     }
 }
 
+/// Translations are solved for, and the tangent is the whole derivative of what is left: from rest each correction squares
+/// what is left. With a term missing or wrong in it corrections shrink by a factor, and there are several times as many.
+#[test]
+fn rotations_in_a_fluid_are_found_by_the_whole_derivative() {
+    for case in [neutral(), heavy()] {
+        for h in [0.05, 0.2] {
+            let (model, mut state, mut work) = case.start::<f64>(h);
+            model.step(&mut state, &mut work).expect("solvable");
+            let first = work.solved();
+            println!("{first:?}");
+            assert!(first.tangents <= 4 && first.corrections <= 5, "{first:?}");
+            let (mut tangents, mut corrections) = (0, 0);
+            for _ in 0..1000 {
+                model.step(&mut state, &mut work).expect("solvable");
+                tangents += work.solved().tangents;
+                corrections += work.solved().corrections;
+            }
+            println!("{tangents} tangents, {corrections} corrections");
+            assert!(corrections <= 2000, "{corrections}");
+        }
+    }
+}
+
 #[test]
 fn kirchhoff_body_keeps_its_momenta_and_bounds_its_energy() {
     // In a fluid of the same density the whole impulse is kept.

@@ -229,6 +229,17 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             };
             Some(Value::List(vec![of(sums), of(left)]))
         },
+        ("rodrigues", 1) => |a, _| match a.first()? {
+            Value::Rotation(r) => Some(Value::Vector(r.rodrigues())),
+            _ => None,
+        },
+        ("rigid_motion", 2) => |a, _| match a {
+            [Value::Rotation(rotation), Value::Vector(translation)] => {
+                let g = clebsch::emitted::rigid_motion(*rotation, *translation);
+                Some(Value::Motion(Box::new(g)))
+            }
+            _ => None,
+        },
         ("quaternion", 1) => |a, _| match a.first()? {
             Value::Rotation(r) => Some(list(r.quaternion())),
             _ => None,

@@ -5,7 +5,7 @@ use super::{Binding, Lower, Lowered, Shared, refuse};
 use crate::Refused;
 use crate::code::{Code, Native, Routine};
 use crate::library;
-use crate::newton::{Bound, Held, Kept, Kind, Settled, Shape, Solve, Sought};
+use crate::newton::{Bound, Held, Kept, Kind, Rest, Settled, Shape, Solve, Sought};
 use crate::program::type_name;
 use crate::value::Value;
 use clebsch::solvers::newton::Purpose;
@@ -52,6 +52,7 @@ fn called<'e>(
         syn::Expr::Paren(p) => called(&p.expr, wanted),
         syn::Expr::Reference(r) => called(&r.expr, wanted),
         syn::Expr::Try(t) => called(&t.expr, wanted),
+        syn::Expr::Binary(b) => called(&b.left, wanted).or_else(|| called(&b.right, wanted)),
         syn::Expr::Let(l) => called(&l.expr, wanted),
         syn::Expr::Call(c) => c.args.iter().find_map(|a| called(a, wanted)),
         syn::Expr::If(i) => called(&i.cond, wanted).or_else(|| in_block(&i.then_branch, wanted)),
@@ -109,12 +110,18 @@ impl<T: Lowered> Lower<'_, '_, T> {
     /// What a search of a declared type is for.
     pub(super) fn sought(&self, ty: &syn::Type) -> Result<&'static Sought, Refused> {
         let generics = arguments(ty).ok_or_else(|| refuse(ty))?;
-        let [_, elements, node, ..] = generics.as_slice() else {
+        let [_, elements, node, whole @ ..] = generics.as_slice() else {
             return Err(refuse(ty));
         };
         let unknowns =
             |what: &str| Refused::Construct(format!("{what} in {}", ty.to_token_stream()));
         let kinds = self.kinds(elements).ok_or_else(|| unknowns("a group"))?;
+        let whole = match whole.first() {
+            Some(ty) => Some(Shape::new(
+                self.kinds(ty).ok_or_else(|| unknowns("a group"))?,
+            )),
+            None => None,
+        };
         let mut kept = Vec::new();
         self.node(node, &mut kept)
             .ok_or_else(|| unknowns("a value"))?;
@@ -122,6 +129,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         // Searches keep what they are for as long as they live; a model has a few.
         Ok(Box::leak(Box::new(Sought {
             shape: Shape::new(kinds),
+            whole,
             node: kept,
             capacity,
         })))
@@ -296,8 +304,16 @@ impl<'a> Lower<'a, '_, f64> {
             <[Code<f64>; 2]>::try_from(self.all(of.begin.args.iter())?).map_err(|_| unknown())?;
         let ty = self.field_type(&of.begin.receiver).ok_or_else(unknown)?;
         self.sought(&ty)?;
-        let [syn::Stmt::Local(first), scale, at_trial @ .., assess, ended] =
-            of.body.stmts.as_slice()
+        let is_scale = |s: &syn::Stmt| matches!(s, syn::Stmt::Expr(syn::Expr::If(_), _));
+        let scale = of
+            .body
+            .stmts
+            .iter()
+            .position(is_scale)
+            .ok_or_else(unknown)?;
+        let (before, after) = of.body.stmts.split_at(scale);
+        let ([syn::Stmt::Local(first), rest @ ..], [scale, at_trial @ .., assess, ended]) =
+            (before, after)
         else {
             return Err(unknown());
         };
@@ -310,9 +326,20 @@ impl<'a> Lower<'a, '_, f64> {
         else {
             return Err(unknown());
         };
-        let trial = self.fresh();
-        let trial_name = name.ident.to_string();
+        let mut trial = self.fresh();
+        let mut trial_name = name.ident.to_string();
         self.bind(trial_name.clone(), Binding::Place(Code::Place(trial), None));
+        let (part, rest_code) = (trial, self.statements(rest)?);
+        if let Some(syn::Stmt::Local(whole)) = rest.last() {
+            let syn::Pat::Ident(name) = &whole.pat else {
+                return Err(unknown());
+            };
+            trial_name = name.ident.to_string();
+            let Some(Binding::Place(Code::Place(at), _)) = self.find(&trial_name) else {
+                return Err(unknown());
+            };
+            trial = *at;
+        }
         let starts = |beginning: &'static str| {
             move |name: &syn::Ident| name.to_string().starts_with(beginning)
         };
@@ -351,6 +378,7 @@ impl<'a> Lower<'a, '_, f64> {
             function: function("residual_at", &rounding.method.to_string()).ok_or_else(unknown)?,
             velocities: None,
         };
+        let completed_at = function("completed_at", &rounding.method.to_string());
         let tangent_at = Alone {
             function: function("tangent_at", &principal).ok_or_else(unknown)?,
             velocities: Some((at_trial, &trial_name)),
@@ -360,17 +388,30 @@ impl<'a> Lower<'a, '_, f64> {
         let mut bounds = self.shared.over::<Bound>();
         let rounded_at = residual_at.lowered(&mut bounds, &own)?;
         let bounded_at = tangent_at.lowered(&mut bounds, &own)?;
+        let rest = match completed_at.filter(|_| !rest.is_empty()) {
+            Some(function) => Some(Rest {
+                part,
+                code: rest_code,
+                rounded_at: Alone {
+                    function,
+                    velocities: None,
+                }
+                .lowered(&mut bounds, &own)?,
+            }),
+            None => None,
+        };
         Ok(Solve {
             search,
             node,
             values,
             trial,
+            rest,
             known,
             at_trial: at_trial_code,
             residual,
             tangent,
             unit,
-            from_left: correct.method == "correct_from_left",
+            from_left: correct.method.to_string().ends_with("from_left"),
             convex,
             settled,
             residual_at: residual_at.lowered(self.shared, &own)?,

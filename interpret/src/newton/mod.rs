@@ -13,7 +13,7 @@ pub use bound::Bound;
 pub use node::Kept;
 pub use search::{Held, Sought, remember};
 pub use shape::{Kind, Shape};
-pub use solve::{Settled, Solve};
+pub use solve::{Rest, Settled, Solve};
 
 use crate::value::{Struct, Value};
 use clebsch::{OfScalars, Real};

@@ -14,12 +14,21 @@ use std::sync::{Arc, OnceLock};
 /// What a search is for.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Sought {
-    /// The groups of the velocities.
+    /// The groups of the velocities that are searched for.
     pub shape: Shape,
+    /// Those of all velocities, where others are solved for beforehand.
+    pub whole: Option<Shape>,
     /// What the tangent asks of a node.
     pub node: Vec<Kept>,
     /// How many coordinates the emitted code has places for.
     pub capacity: usize,
+}
+
+impl Sought {
+    /// The groups of all velocities.
+    pub fn all(&self) -> &Shape {
+        self.whole.as_ref().unwrap_or(&self.shape)
+    }
 }
 
 /// A search, as a value.
@@ -70,7 +79,8 @@ impl Held {
         places: &mut Places<f64>,
     ) -> Result<Value<f64>, Exit<f64>> {
         let values = unfit(node::read(values, &self.sought.node))?;
-        let mut iteration = self.search.begin(&self.sought.shape, node, values);
+        let charts = [&self.sought.shape, self.sought.all()];
+        let mut iteration = self.search.begin(charts, node, values);
         let solved = solve::by(&mut iteration, equations, self.sought, places)?;
         Ok(told(solved))
     }
@@ -110,6 +120,7 @@ pub fn remember<T: Real>(search: &mut Value<T>, node: &Value<T>, found: &Value<T
         return None;
     };
     let node = u64::try_from(node.count()?).ok()?;
+    let element = held.sought.shape.part(&element);
     held.search.remember(node, element);
     Some(())
 }

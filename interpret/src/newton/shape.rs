@@ -301,6 +301,16 @@ impl Shape {
         Shape { kinds, parts }
     }
 
+    /// Which coordinates of all unknowns those of this part of them are.
+    pub fn within(&self, whole: &Shape) -> Vec<usize> {
+        let (mut first, mut all) = (0, Vec::new());
+        for (own, kind) in self.kinds.iter().zip(&whole.kinds) {
+            all.extend(first..first + own.dimension());
+            first += kind.dimension();
+        }
+        all
+    }
+
     /// Each group with a list of its own lengths and the first variable of its region.
     fn each<'a>(&'a self, radii: &'a [f64]) -> impl Iterator<Item = (Kind, &'a [f64], usize)> {
         let (mut part, mut next) = (0, 0);
@@ -352,6 +362,16 @@ impl Chart for Shape {
 
     fn parts(&self) -> &Parts {
         &self.parts
+    }
+
+    fn part(&self, whole: &Vec<Value<f64>>) -> Vec<Value<f64>> {
+        let pairs = self.kinds.iter().zip(whole);
+        pairs
+            .map(|(kind, value)| match (kind, value) {
+                (Kind::Rotation, Value::Motion(g)) => Value::Rotation(g.rotation),
+                _ => value.clone(),
+            })
+            .collect()
     }
 
     fn coordinate(&self, index: usize) -> Coordinate {

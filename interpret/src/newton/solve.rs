@@ -32,6 +32,18 @@ pub struct Settled {
     pub configurations: &'static &'static [&'static str],
 }
 
+/// What is solved for beforehand.
+#[derive(Debug)]
+pub struct Rest {
+    /// Where the part that is searched for stands.
+    pub part: usize,
+    /// What makes the whole trial of it.
+    pub code: Vec<Code<f64>>,
+    /// The same by itself, over numbers with their rounding: of parameters, step, what is asked of the node,
+    /// momenta, part.
+    pub rounded_at: Bounded,
+}
+
 /// The equations of a step.
 #[derive(Debug)]
 pub struct Solve {
@@ -43,6 +55,8 @@ pub struct Solve {
     pub values: Code<f64>,
     /// Where the trial stands.
     pub trial: usize,
+    /// What finds the rest of it, where a part is searched for.
+    pub rest: Option<Rest>,
     /// The parameters, the step, what the residual asks of the node and its momenta.
     pub known: [Code<f64>; 4],
     /// What both need of the trial.
@@ -134,16 +148,17 @@ pub fn by(
     let size = sought.shape.parts().dimension();
     loop {
         let trial = Value::List(iteration.trial().clone());
+        let trial = with.whole(trial, places)?;
         if iteration.wants_scale() {
-            let rounding = with.rounding(&trial, size, places)?;
+            let rounding = with.rounding(&trial, sought, places)?;
             iteration.set_scale(&rounding);
         }
-        *unfit(places.get_mut(with.trial))? = trial;
+        *unfit(places.get_mut(with.trial))? = trial.clone();
         for code in &with.at_trial {
             code.run(places)?;
         }
-        let residual = with.residual.run(places)?;
-        if iteration.assess(unfit(vector(&residual, size))?) {
+        let wanted = with.rest.is_none() || iteration.wants_residual();
+        if wanted && iteration.assess(with.residual(size, places)?) {
             let tangent = with.tangent.run(places)?;
             let tangent = unfit(matrix(&tangent, size))?;
             match &with.unit {
@@ -154,7 +169,11 @@ pub fn by(
                 None => iteration.set_tangent_times(tangent, 1.0),
             }
         }
-        match iteration.correct(with.from_left) {
+        let progress = match (&with.rest, trial) {
+            (Some(_), Value::List(whole)) => iteration.correct_part(whole, with.from_left),
+            _ => iteration.correct(with.from_left),
+        };
+        match progress {
             Progress::Continue => {}
             Progress::Solved(solved)
                 if with.is_convex(places)? || iteration.is_principal(&solved.element) =>
@@ -171,6 +190,23 @@ pub fn by(
 }
 
 impl Solve {
+    fn residual(&self, size: usize, places: &mut Places<f64>) -> Result<Vec<f64>, Exit<f64>> {
+        let residual = self.residual.run(places)?;
+        unfit(vector(&residual, size))
+    }
+
+    /// The whole trial.
+    fn whole(&self, trial: Value<f64>, places: &mut Places<f64>) -> Result<Value<f64>, Exit<f64>> {
+        let Some(rest) = &self.rest else {
+            return Ok(trial);
+        };
+        *unfit(places.get_mut(rest.part))? = trial;
+        for code in &rest.code {
+            code.run(places)?;
+        }
+        Ok(unfit(places.get(self.trial))?.clone())
+    }
+
     fn is_convex(&self, places: &mut Places<f64>) -> Result<bool, Exit<f64>> {
         match &self.convex {
             Some(code) => Ok(matches!(code.run(places)?, Value::Bool(true))),
@@ -192,7 +228,7 @@ impl Solve {
     fn rounding(
         &self,
         trial: &Value<f64>,
-        size: usize,
+        sought: &Sought,
         places: &mut Places<f64>,
     ) -> Result<Vec<f64>, Exit<f64>> {
         let known = self.known(places)?;
@@ -201,10 +237,23 @@ impl Solve {
         for value in &known {
             given.push(unfit(over(value, exactly))?);
         }
-        given.push(unfit(over(trial, &mut Bound::rounded))?);
+        let mut trial = unfit(over(trial, &mut Bound::rounded))?;
+        if let (Some(rest), Value::List(list)) = (&self.rest, &trial) {
+            let rotation = |value: &Value<Bound>| match value {
+                Value::Motion(g) => Value::Rotation(g.rotation),
+                other => other.clone(),
+            };
+            let mut known = given.clone();
+            known.push(Value::List(list.iter().map(rotation).collect()));
+            trial = unfit(run(&rest.rounded_at, known))?;
+        }
+        given.push(trial);
         let residual = unfit(run(&self.rounded_at, given))?;
         let rest = unfit(over(&residual, &mut |x: Bound| x.rest()))?;
-        unfit(vector(&rest, size))
+        let whole = sought.all();
+        let all = unfit(vector(&rest, whole.parts().dimension()))?;
+        let rows = sought.shape.within(whole).into_iter();
+        Ok(rows.filter_map(|i| all.get(i).copied()).collect())
     }
 
     /// The solution to be taken where the one found is not known to be principal, or none was found.
@@ -261,7 +310,7 @@ impl Solve {
         then: impl FnOnce(&Lane<Shape>) -> R,
     ) -> R {
         let [parameters, step, given, momenta] = known;
-        let (shape, kept) = (&sought.shape, sought.node.as_slice());
+        let (shape, kept) = (sought.all(), sought.node.as_slice());
         let (size, width) = (shape.parts().dimension(), self.width);
         let exactly = &mut Bound::exactly;
         let bounds = (over(parameters, exactly), over(step, exactly));

@@ -108,6 +108,15 @@ impl<T: Real> Rotation<T> {
         }
     }
 
+    /// Its Rodrigues vector, along the axis and as long as the tangent of half the angle: of a rotation
+    /// `Q` with this vector `c`, `(1 + Q)^-1` is `(1 - hat(c))/2`.
+    #[inline(always)]
+    pub fn rodrigues(&self) -> Vector3<T> {
+        let [w, x, y, z] = self.q;
+        let scale = T::one() / w;
+        Vector3::new(x * scale, y * scale, z * scale)
+    }
+
     /// The rotation of the unit quaternion `(w, x, y, z)`.
     ///
     /// # Errors
@@ -374,13 +383,13 @@ impl<T: Real> Group<T> for Rotation<T> {
 
     /// `self . cay(hat(xi))`, the Cayley map `(1 - hat(xi)/2)^-1 (1 + hat(xi)/2)`: it agrees with
     /// the exponential to second order and needs no trigonometry.
-    #[inline]
+    #[inline(always)]
     fn retract(&self, xi: &[T]) -> Self {
         turned_by(xi, |cayley| hamilton(self.q, cayley))
     }
 
     /// `cay(hat(xi)) . self`.
-    #[inline]
+    #[inline(always)]
     fn retract_from_left(&self, xi: &[T]) -> Self {
         turned_by(xi, |cayley| hamilton(cayley, self.q))
     }

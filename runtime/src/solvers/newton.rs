@@ -9,6 +9,7 @@ mod failure;
 mod lasting;
 mod node;
 mod principal;
+mod reduced;
 mod region;
 mod saved;
 mod stage;
@@ -25,10 +26,12 @@ pub use certificate::{Anchor, Certificate, Numbers, Purpose, Verdict};
 pub use failure::{NewtonError, NewtonFailure};
 pub use node::{NodeValues, Spread, Turn};
 pub use principal::{Care, Equations, Fold, Traced, trace};
+pub use reduced::Found;
 
 use crate::groups::Group;
 use crate::linalg::Factors;
 use crate::scalar::Real;
+use core::marker::PhantomData;
 use nalgebra::{SMatrix, SVector};
 
 /// Iterations after which the method gives up; quadratic convergence needs fewer than ten.
@@ -105,9 +108,10 @@ const REMEMBERED: usize = 6;
 /// in which the next one is foreseen to sixth order in the step.
 ///
 /// What it remembers decides how many iterations a step takes, and rounding; not which equations
-/// are solved.
+/// are solved. Where other unknowns are solved for beforehand, `W` is the group of all of them and `E`
+/// their number.
 #[derive(Clone, Copy, Debug)]
-pub struct Search<T, G, V, const D: usize> {
+pub struct Search<T, G, V, const D: usize, W = G, const E: usize = D> {
     /// A ring, twice in a row, the newest at `newest`.
     past: [G; 2 * REMEMBERED],
     newest: usize,
@@ -119,7 +123,8 @@ pub struct Search<T, G, V, const D: usize> {
     /// How many steps ago they were asked for.
     weighed: u32,
     /// Which solutions are principal roots.
-    certificate: Certificate<V, D>,
+    certificate: Certificate<V, E>,
+    whole: PhantomData<W>,
     /// The tangent factored last, times `unit`.
     factors: Factors<T, D>,
     unit: T,
@@ -140,7 +145,11 @@ pub struct Summary {
     pub residual: f64,
 }
 
-impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, G, V, D> {
+impl<T: Real, G, V: NodeValues<Scalar = T>, const D: usize, W: Group<T>, const E: usize>
+    Search<T, G, V, D, W, E>
+where
+    G: Group<T> + Found<W>,
+{
     /// Nothing known: the first guess is the neutral element.
     #[must_use]
     pub fn from_rest() -> Self {
@@ -152,6 +161,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
             weights: SVector::zeros(),
             weighed: OLDEST_SCALE,
             certificate: Certificate::none(),
+            whole: PhantomData,
             factors: Factors::none(),
             unit: T::one(),
             age: OLDEST_TANGENT,
@@ -187,9 +197,14 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
     /// A search for other velocities of the same step, with the same purpose.
     #[cold]
     #[must_use]
-    pub fn alike<G2: Group<T>, V2: NodeValues<Scalar = T>, const E: usize>(
+    pub fn alike<G2, V2, const D2: usize, W2, const E2: usize>(
         &self,
-    ) -> Search<T, G2, V2, E> {
+    ) -> Search<T, G2, V2, D2, W2, E2>
+    where
+        G2: Group<T> + Found<W2>,
+        V2: NodeValues<Scalar = T>,
+        W2: Group<T>,
+    {
         Search {
             certificate: self.certificate.alike(),
             ..Search::from_rest()
@@ -212,7 +227,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
     /// first trial is foreseen from the past; if that leads nowhere, the last solution is tried, then
     /// the neutral element.
     #[inline(always)]
-    pub fn begin(&mut self, node: u64, values: V) -> Newton<'_, T, G, V, D> {
+    pub fn begin(&mut self, node: u64, values: V) -> Newton<'_, T, G, V, D, W, E> {
         if node != self.next {
             self.known = 0;
             self.age = OLDEST_TANGENT;
@@ -242,6 +257,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
             size: f64::NAN,
             previous: f64::INFINITY,
             iteration: 0,
+            found: None,
         }
     }
 
@@ -270,13 +286,13 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
 
     /// Remembers the solution of the step that began at `node`.
     #[inline(always)]
-    pub fn remember(&mut self, node: u64, solution: &Solved<G>) {
+    pub fn remember(&mut self, node: u64, solution: &Solved<W>) {
         self.last = Summary {
             corrections: solution.iterations,
             residual: solution.residual,
             ..self.last
         };
-        let solution = solution.element;
+        let solution = G::within(&solution.element);
         self.newest = match self.newest {
             0 => REMEMBERED - 1,
             i => i - 1,
@@ -314,16 +330,18 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Search<T, 
 /// Of the `D` components the first [`Group::DIMENSION`] are looked at, so that one `D` can serve
 /// several sizes of a group.
 #[derive(Debug)]
-pub struct Newton<'a, T, G, V, const D: usize> {
-    search: &'a mut Search<T, G, V, D>,
+pub struct Newton<'a, T, G, V, const D: usize, W = G, const E: usize = D> {
+    search: &'a mut Search<T, G, V, D, W, E>,
     values: V,
     trial: G,
     attempt: u32,
-    anchor: Option<Anchor<G, D>>,
+    anchor: Option<Anchor<W, E>>,
     residual: SVector<T, D>,
     size: f64,
     previous: f64,
     iteration: usize,
+    /// The iterations of a solution whose rest is wanted.
+    found: Option<usize>,
 }
 
 /// What became of a correction.
@@ -337,7 +355,11 @@ pub enum Progress<G> {
     Failed(NewtonError),
 }
 
-impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_, T, G, V, D> {
+impl<T: Real, G, V: NodeValues<Scalar = T>, const D: usize, W: Group<T>, const E: usize>
+    Newton<'_, T, G, V, D, W, E>
+where
+    G: Group<T> + Found<W>,
+{
     /// The element at which the equations are wanted.
     #[inline(always)]
     pub fn trial(&self) -> G {
@@ -390,7 +412,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
     /// Whether the solution found is the principal root: by a proof that still holds, or because
     /// this is where it was looked for.
     #[inline(always)]
-    pub fn is_principal(&self, solution: &G) -> bool {
+    pub fn is_principal(&self, solution: &W) -> bool {
         let certificate = &self.search.certificate;
         certificate.holds(solution, &self.values)
             || self
@@ -400,20 +422,20 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
 
     /// What a proof begins with.
     #[cold]
-    pub fn certificate(&mut self) -> &mut Certificate<V, D> {
+    pub fn certificate(&mut self) -> &mut Certificate<V, E> {
         let search = &mut *self.search;
-        search.certificate.ask::<T, G>(&search.factors);
+        search.certificate.ask::<T, G, D>(&search.factors);
         &mut search.certificate
     }
 
     /// Begins again at the principal root. False where that has been done: it cannot be polished.
     #[cold]
-    pub fn restart(&mut self, anchor: Anchor<G, D>) -> bool {
+    pub fn restart(&mut self, anchor: Anchor<W, E>) -> bool {
         if self.anchor.is_some() {
             return false;
         }
         self.attempt = LAST_ATTEMPT;
-        self.begin_at(anchor.root);
+        self.begin_at(G::within(&anchor.root));
         self.anchor = Some(anchor);
         true
     }
@@ -424,6 +446,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
         self.search.age = OLDEST_TANGENT;
         self.previous = f64::INFINITY;
         self.iteration = 0;
+        self.found = None;
     }
 
     /// Takes the residual at the trial; says whether the tangent there is wanted.
@@ -468,18 +491,18 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
     /// Moves the trial by Newton's correction, or ends.
     #[inline(always)]
     pub fn correct(&mut self) -> Progress<G> {
-        self.correct_by(|trial, step| trial.retract(step))
+        self.correct_by::<false>()
     }
 
     /// The same where the tangent is the derivative along the coordinates of
     /// [`Group::retract_from_left`].
     #[inline(always)]
     pub fn correct_from_left(&mut self) -> Progress<G> {
-        self.correct_by(|trial, step| trial.retract_from_left(step))
+        self.correct_by::<true>()
     }
 
     #[inline(always)]
-    fn correct_by(&mut self, moved: impl Fn(&G, &[T]) -> G) -> Progress<G> {
+    fn correct_by<const FROM_LEFT: bool>(&mut self) -> Progress<G> {
         if self.polished() {
             return self.solved(self.iteration);
         }
@@ -495,7 +518,10 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
             return self.failed();
         };
         let step = -correction;
-        self.trial = moved(&self.trial, step.as_slice());
+        self.trial = match FROM_LEFT {
+            true => self.trial.retract_from_left(step.as_slice()),
+            false => self.trial.retract(step.as_slice()),
+        };
         if done {
             return self.solved(self.iteration + 1);
         }
@@ -531,7 +557,7 @@ pub fn solve<T: Real, G: Group<T>, const D: usize>(
     mut residual: impl FnMut(&G) -> SVector<T, D>,
     mut tangent: impl FnMut(&G) -> SMatrix<T, D, D>,
 ) -> Result<Solved<G>, NewtonError> {
-    let mut search = Search::<T, G, [T; 0], D>::from_rest();
+    let mut search = Search::<T, G, [T; 0], D, G, D>::from_rest();
     search.past = [guess; 2 * REMEMBERED];
     (search.known, search.next) = (1, 1);
     let mut newton = search.begin(1, []);

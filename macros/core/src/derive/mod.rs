@@ -14,6 +14,7 @@ pub mod clebsch;
 pub mod continuous;
 pub mod convex;
 pub mod displaced;
+pub mod eliminated;
 pub mod explicit;
 mod far;
 #[cfg(test)]

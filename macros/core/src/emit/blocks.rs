@@ -94,9 +94,13 @@ pub(super) struct Inverse {
 
 /// The inverses that the model keeps.
 pub(super) fn kept_inverses(d: &Derivation) -> Vec<Inverse> {
-    if !matches!(d.solve.method, Method::Blocks) {
-        return Vec::new();
+    let names = &Names::new(d);
+    match d.solve.method {
+        Method::Blocks => {}
+        Method::Newton => return super::newton::kept_inverses(d, names),
+        _ => return Vec::new(),
     }
+    let beforehand = each_newton(d, names, |_, t| super::newton::inverses(t));
     let forms = all_displaced(d);
     let of_block = |(n, b): (usize, &Block)| {
         let form = changed(d, b, &forms)?;
@@ -104,7 +108,8 @@ pub(super) fn kept_inverses(d: &Derivation) -> Vec<Inverse> {
         let named = inverses(n).into_iter().zip(factors);
         Some(named.map(|(name, of)| Inverse { name, of }))
     };
-    numbered(d).filter_map(of_block).flatten().collect()
+    let own = numbered(d).filter_map(of_block).flatten();
+    own.chain(beforehand.into_iter().flatten()).collect()
 }
 
 /// The configuration and the equation of a block in unit quaternions.

@@ -8,10 +8,11 @@ use super::items::letters_of;
 use super::names::{Names, variable};
 use super::step::at;
 use crate::check::spec::Side;
+use crate::derive::eliminated::Eliminated;
 use crate::derive::parts::{Parts, Velocity};
 use crate::derive::tangent::Direction;
 use crate::derive::{Derivation, lie};
-use crate::expr::symbol::{Role, Symbols};
+use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 use crate::schedule;
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -29,6 +30,8 @@ pub(super) struct Equations<'a> {
     pub trial: &'a Ident,
     /// The local that holds the momenta of the node.
     pub momenta: &'a Ident,
+    /// What is solved for beforehand, and where the model keeps the inverses for it.
+    pub eliminated: Option<&'a (Eliminated, Vec<(Expr, Ident)>)>,
 }
 
 /// The equations as code.
@@ -51,6 +54,68 @@ pub(super) struct Written {
     pub momenta: TokenStream,
     /// Those momenta with `change` made to every number.
     pub momenta_over: TokenStream,
+    /// How the rest of a trial is found, where the residual and the tangent are of a part of it.
+    pub part: Option<Part>,
+}
+
+/// A trial whose translations are solved for.
+pub(super) struct Part {
+    /// What binds the velocities and the trial, given its rotations.
+    pub at_trial: TokenStream,
+    /// The whole trial as a function of its own: the body.
+    pub alone: TokenStream,
+    /// Which components of the whole residual are left.
+    pub rows: Vec<usize>,
+}
+
+/// The rotations of a trial whose translations are solved for.
+pub(super) const TURNED: &str = "turned";
+
+/// The equations by parts of three components, if the groups are those of space.
+fn by_parts(d: &Derivation, list: &[Expr]) -> Option<(Parts, Vec<Expr>)> {
+    let parts = Parts::of(&d.spec, &d.letters)?;
+    let s = &parts.symbols;
+    let list: Option<Vec<Expr>> = parts
+        .covectors(list)
+        .iter()
+        .map(|e| parts.write(&schedule::by_imaginary(s, &schedule::displaced(s, e))))
+        .collect();
+    let list = list?.iter().map(|e| expr::factored(s, e)).collect();
+    Some((parts, list))
+}
+
+/// The blocks of the tangent, row by row, with every velocity moved from one side, times a number.
+fn blocks_of(parts: &Parts, list: &[Expr], side: Side, unit: &Expr) -> Option<Vec<Expr>> {
+    let s = &parts.symbols;
+    let direction = Direction {
+        symbols: s,
+        letter: parts.direction,
+    };
+    let mut blocks: Vec<Expr> = Vec::new();
+    for e in list {
+        for change in parts.changes(side) {
+            let derivative = expr::directional(s, e, &change);
+            let derivative = expr::mul(unit.clone(), derivative);
+            let derivative = expr::collect(s, &derivative);
+            blocks.push(expr::factored(s, &direction.matrix(&derivative)?));
+        }
+    }
+    Some(blocks)
+}
+
+/// What can be solved for before the rest of the equations `list`: where the tangent is the same at every
+/// node, so that a proof that the root is principal asks for no other.
+pub(super) fn eliminated(d: &Derivation, list: &[Expr]) -> Option<Eliminated> {
+    let moves = |c: &crate::check::spec::Configuration| c.group.rigid().is_some();
+    if !d.spec.configurations.iter().any(moves) {
+        return None;
+    }
+    let (parts, list) = by_parts(d, list)?;
+    let found = Eliminated::of(&parts, &list)?;
+    let blocks = blocks_of(&parts, &list, Side::Body, &expr::integer(1))?;
+    at_the_node(&parts.symbols, &blocks)
+        .is_empty()
+        .then_some(found)
 }
 
 /// Residual and tangent as functions of their own, and what they ask of the node.
@@ -76,32 +141,20 @@ impl Equations<'_> {
     /// Blocks of three; nothing where a group has other coordinates, or no rule gives the tangent.
     fn in_blocks(&self, list: &[Expr], node: &[TokenStream]) -> Option<(TokenStream, Written)> {
         let (d, trial, mu) = (self.d, self.trial, self.momenta);
-        let parts = Parts::of(&d.spec, &d.letters)?;
-        let s = &parts.symbols;
-        let list: Option<Vec<Expr>> = parts
-            .covectors(list)
-            .iter()
-            .map(|e| parts.write(&schedule::by_imaginary(s, &schedule::displaced(s, e))))
-            .collect();
-        let list = list?;
-        let direction = Direction {
-            symbols: s,
-            letter: parts.direction,
-        };
-        let list: Vec<Expr> = list.iter().map(|e| expr::factored(s, e)).collect();
+        let (parts, list) = by_parts(d, list)?;
+        let eliminated = self.eliminated.map(|(found, _)| found);
+        let s = eliminated.map_or(&parts.symbols, |found| &found.symbols);
         let one = expr::integer(1);
+        let simpler =
+            |list: &[Expr]| -> Vec<Expr> { list.iter().map(|e| expr::simpler(s, e)).collect() };
+        let whole = simpler(&blocks_of(&parts, &list, Side::Body, &one)?);
         let blocks_from = |side: Side, unit: &Expr| {
-            let mut blocks: Vec<Expr> = Vec::new();
-            for e in &list {
-                for change in parts.changes(side) {
-                    let derivative = expr::directional(s, e, &change);
-                    let derivative = expr::mul(unit.clone(), derivative);
-                    let derivative = expr::collect(s, &derivative);
-                    let matrix = expr::factored(s, &direction.matrix(&derivative)?);
-                    blocks.push(expr::simpler(s, &matrix));
-                }
-            }
-            Some(blocks)
+            let blocks = blocks_of(&parts, &list, side, unit)?;
+            let Some(found) = eliminated else {
+                return Some(simpler(&blocks));
+            };
+            let along = blocks_of(&parts, &list, Side::Spatial, unit)?;
+            Some(found.tangent(&blocks, &along, side))
         };
         let blocks = blocks_from(Side::Body, &one)?;
         let step = expr::here(s, d.spec.step);
@@ -120,7 +173,6 @@ impl Equations<'_> {
             let unit = if times_step { &step } else { &one };
             Some((side, times_step, blocks_from(side, unit)?))
         });
-        let list: Vec<Expr> = list.iter().map(|e| expr::simpler(s, e)).collect();
         let bundle = Bundle::of(d);
         let mut velocities = TokenStream::new();
         let mut bound = Vec::new();
@@ -162,44 +214,55 @@ impl Equations<'_> {
             }
         }
         let count = Literal::usize_unsuffixed(given.len());
-        let total = Literal::usize_unsuffixed(3 * given.len());
         known.extend(quote!(let #mu: [SVector<T, 3>; #count] = [#(#given),*];));
+        let mut before = std::mem::take(&mut known);
         let momenta: Vec<TokenStream> = (0..given.len())
             .map(|i| {
                 let i = Literal::usize_unsuffixed(i);
                 quote!(#mu[#i])
             })
             .collect();
-        let residual_of =
-            |values: &[TokenStream], lets: TokenStream| match (values, momenta.as_slice()) {
-                ([value], [own]) => quote!(#lets (#value) - #own),
-                _ => {
-                    let rows = values.iter().zip(&momenta);
-                    let rows = rows.map(|(value, own)| quote!((#value) - #own));
-                    quote!(#lets joined::<T, #count, #total>(&[#(#rows),*]))
-                }
-            };
+        let all: Vec<usize> = (0..given.len()).collect();
+        let sizes = |n: usize| [n, 3 * n].map(Literal::usize_unsuffixed);
+        let residual_of = |values: &[TokenStream], rows: &[usize], lets: TokenStream| {
+            let own = rows.iter().map(|i| &momenta[*i]);
+            let rows: Vec<TokenStream> = (values.iter().zip(own))
+                .map(|(value, own)| quote!((#value) - #own))
+                .collect();
+            let [count, total] = sizes(rows.len());
+            match rows.as_slice() {
+                [only] => quote!(#lets #only),
+                rows => quote!(#lets joined::<T, #count, #total>(&[#(#rows),*])),
+            }
+        };
         let tangent_of = |values: &[TokenStream], lets: TokenStream| match values {
             [only] => quote!(#lets #only),
             _ => {
-                let rows = values.chunks(given.len()).map(|row| quote!([#(#row),*]));
+                let n = values.len().isqrt();
+                let [count, total] = sizes(n);
+                let rows = values.chunks(n).map(|row| quote!([#(#row),*]));
                 quote!(#lets assembled::<T, #count, #total>(&[#(#rows),*]))
             }
         };
         let alone = {
+            let list = simpler(&list);
             let p = schedule::program(s, &list, "t");
             let (lets, values) = program(&p, self.bindings);
-            let residual = residual_of(&values, lets);
-            let p = schedule::program(s, &blocks, "t");
+            let residual = residual_of(&values, &all, lets);
+            let p = schedule::program(s, &whole, "t");
             let (lets, values) = program(&p, self.bindings);
             Alone {
                 residual,
                 tangent: tangent_of(&values, lets),
                 given: at_the_node(s, &list),
-                values: at_the_node(s, &blocks),
+                values: at_the_node(s, &whole),
             }
         };
-        let varies = |l| parts.varies(l);
+        let left = eliminated.map_or(all.clone(), |found| found.left(all.len()));
+        let written = |e: &Expr| eliminated.map_or(e.clone(), |found| found.written(e));
+        let list: Vec<Expr> = left.iter().map(|i| written(&list[*i])).collect();
+        let list = simpler(&list);
+        let varies = |l| parts.varies(l) || eliminated.is_some_and(|found| found.varies(l));
         let mut at_node = schedule::Known::new(s, &varies, "k");
         let (side, times_step, blocks) = {
             // What is known before the loop costs little.
@@ -221,6 +284,27 @@ impl Equations<'_> {
         };
         let list: Vec<Expr> = list.iter().map(|e| at_node.apart(e)).collect();
         let blocks: Vec<Expr> = blocks.iter().map(|e| at_node.apart(e)).collect();
+        let steps = eliminated.map_or_else(Vec::new, |found| found.steps());
+        let apart = steps.iter().map(|(id, e)| (*id, at_node.apart(e)));
+        let apart: Vec<(SymbolId, Expr)> = apart.collect();
+        // The model keeps inverses of constants.
+        let kept = |e: &Expr| {
+            let Node::Inverse(a) = e.node() else {
+                return None;
+            };
+            let (_, fields) = self.eliminated?;
+            fields
+                .iter()
+                .find(|(of, _)| of == a)
+                .map(|(_, field)| field)
+        };
+        for (name, value) in &at_node.values {
+            if let Some(field) = kept(value) {
+                let name = variable(&at_node.symbols, *name);
+                known.extend(quote!(let #name = self.#field;));
+            }
+        }
+        at_node.values.retain(|(_, value)| kept(value).is_none());
         let (names, values): (Vec<_>, Vec<Expr>) = at_node.values.into_iter().unzip();
         let s = &at_node.symbols;
         let p = schedule::program(s, &values, "s");
@@ -241,10 +325,28 @@ impl Equations<'_> {
         }
         let p = schedule::program(s, &list, "t");
         let (lets, values) = program(&p, &bindings);
-        let residual = residual_of(&values, lets);
+        let residual = residual_of(&values, &left, lets);
         let p = schedule::program(s, &blocks, "t");
         let (lets, values) = program(&p, &bindings);
         let tangent = tangent_of(&values, lets);
+        let part = eliminated.map(|found| {
+            let here = self.completed(found, s, &apart, &blocks, &bindings);
+            let alone = self.completed(found, s, &steps, &[], self.bindings);
+            let trial_is = bundle.value(&self.wholes(found));
+            let momenta = found.places.iter().map(|p| {
+                let (name, own) = (variable(s, p.momentum), &momenta[p.block]);
+                quote!(let #name = #own;)
+            });
+            let momenta: TokenStream = momenta.collect();
+            before.extend(momenta.clone());
+            Part {
+                at_trial: quote!(#here let #trial = #trial_is;),
+                alone: quote!(#momenta #alone #trial_is),
+                rows: left.iter().flat_map(|i| 3 * i..3 * i + 3).collect(),
+            }
+        });
+        before.extend(known);
+        let known = before;
         Some((
             known,
             Written {
@@ -257,8 +359,64 @@ impl Equations<'_> {
                 alone,
                 momenta: quote!([SVector<T, 3>; #count]),
                 momenta_over: quote!(#mu.map(|part| part.over(change))),
+                part,
             },
         ))
+    }
+
+    /// The translations of a trial of which the rotations are given; `others` ask for Rodrigues vectors too.
+    fn completed(
+        &self,
+        found: &Eliminated,
+        s: &Symbols,
+        steps: &[(SymbolId, Expr)],
+        others: &[Expr],
+        bindings: &Bindings,
+    ) -> TokenStream {
+        let turned = Ident::new(TURNED, proc_macro2::Span::call_site());
+        let mut out = TokenStream::new();
+        let asked = |id: SymbolId, others: &[Expr]| {
+            let letter = at(id, Shift::HERE);
+            let mut all = steps.iter().map(|(_, e)| e).chain(others);
+            all.any(|e| expr::contains(e, letter))
+        };
+        for (i, (w, turn)) in found.rotations.iter().zip(&found.turns).enumerate() {
+            let i = Literal::usize_unsuffixed(i);
+            if asked(*w, &[]) {
+                let w = variable(s, *w);
+                out.extend(quote!(let #w = #turned[#i].matrix();));
+            }
+            if asked(*turn, others) {
+                let turn = variable(s, *turn);
+                out.extend(quote!(let #turn = #turned[#i].rodrigues();));
+            }
+        }
+        for (name, value) in steps {
+            let name = variable(s, *name);
+            let p = schedule::program(s, &[value.clone()], "t");
+            let (lets, values) = program(&p, bindings);
+            out.extend(match lets.is_empty() {
+                true => quote!(#(let #name = #values;)*),
+                false => quote!(let #name = { #lets #(#values)* };),
+            });
+        }
+        out
+    }
+
+    /// The velocities of a trial, translations found.
+    fn wholes(&self, found: &Eliminated) -> Vec<TokenStream> {
+        let turned = Ident::new(TURNED, proc_macro2::Span::call_site());
+        let each = (0..found.rotations.len()).map(|i| {
+            let at = Literal::usize_unsuffixed(i);
+            match found.places.iter().find(|p| p.velocity == i) {
+                Some(p) => {
+                    let x = p.steps.last().map(|(x, _)| variable(&found.symbols, *x));
+                    quote!(rigid_motion(#turned[#at], #x))
+                }
+                None => quote!(#turned[#at]),
+            }
+        });
+        each.collect()
     }
 
     /// Coordinates one after the other; the tangent by the derivative along each of them.
@@ -362,6 +520,7 @@ impl Equations<'_> {
                 alone,
                 momenta: covectors,
                 momenta_over: bundle.value(&over),
+                part: None,
             },
         )
     }

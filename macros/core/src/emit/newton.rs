@@ -2,8 +2,9 @@
 //! both derived. Takes the derivation and what is solved together, the whole model or a block of
 //! it; gives the loop that solves, the functions beside it, and the step where that is all.
 
+use super::blocks::Inverse;
 use super::element::{self, Bundle, Family, family};
-use super::equations::Equations;
+use super::equations::{self, Equations, TURNED};
 use super::expression::{Bindings, program};
 use super::items::{advanced, letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, own, tagged, variable};
@@ -14,10 +15,11 @@ use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::convex::convexity;
 use crate::derive::displaced::Displaced;
+use crate::derive::eliminated::Eliminated;
 use crate::derive::seen_from_body::outgoing;
 use crate::expr::{Expr, Letter, Shift};
 use crate::schedule;
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 /// What is solved together.
@@ -67,12 +69,42 @@ impl Together<'_> {
         Bundle::of(d).ty(&types)
     }
 
-    /// The type of the search of one solution after the other.
-    pub fn search_type(&self) -> TokenStream {
+    /// What is solved for beforehand, and where the model keeps the inverses for it.
+    pub fn eliminated(&self) -> Option<(Eliminated, Vec<(Expr, Ident)>)> {
+        let found = equations::eliminated(self.block, &self.momenta())?;
+        let mut constants: Vec<Expr> = Vec::new();
+        for a in found.places.iter().flat_map(|p| p.constants()) {
+            if !constants.contains(a) {
+                constants.push(a.clone());
+            }
+        }
+        let named = constants.into_iter().enumerate();
+        let named = named.map(|(i, a)| (a, self.name(&format!("inverse_{}", i + 1))));
+        let named = named.collect();
+        Some((found, named))
+    }
+
+    /// The type of what Newton's method finds and of all velocities, with the numbers of their coordinates:
+    /// what a search has behind its scalar.
+    fn kinds(&self, eliminated: Option<&Eliminated>) -> TokenStream {
         let used = Generics::of(self.whole).used();
         let (elements, values) = (self.elements(), self.node_type_name());
         let dimension = element::total(self.block);
-        quote!(newton::Search<T, #elements, #values #used, #dimension>)
+        match eliminated {
+            Some(found) => {
+                let count = found.rotations.len();
+                let [count, part] = [count, 3 * count].map(Literal::usize_unsuffixed);
+                quote!([Rotation<T>; #count], #values #used, #part, #elements, #dimension)
+            }
+            None => quote!(#elements, #values #used, #dimension),
+        }
+    }
+
+    /// The type of the search of one solution after the other.
+    pub fn search_type(&self) -> TokenStream {
+        let eliminated = self.eliminated();
+        let kinds = self.kinds(eliminated.as_ref().map(|(found, _)| found));
+        quote!(newton::Search<T, #kinds>)
     }
 
     /// The side on which a velocity is found.
@@ -170,7 +202,7 @@ impl Together<'_> {
         let [lane, ended, solved] = ["lane", "ended", "solved"].map(|base| names.local(base));
         let [residual_at, settled, principal, refused, rounding] =
             ["residual_at", "settled", "principal", "refused", "rounding"].map(|f| self.name(f));
-        let tangent_at = self.name("tangent_at");
+        let [tangent_at, completed_at] = ["tangent_at", "completed_at"].map(|f| self.name(f));
         let node_momenta: Vec<TokenStream> = (0..d.spec.configurations.len())
             .map(|i| match self.members.get(i) {
                 Some(member) => node_momentum(self.whole, *member, self.side(i)),
@@ -178,16 +210,18 @@ impl Together<'_> {
                 None => element::nothing(d, i),
             })
             .collect();
+        let eliminated = self.eliminated();
+        let kinds = self.kinds(eliminated.as_ref().map(|(found, _)| found));
         let solved_for = Equations {
             d,
             names,
             bindings,
             trial: &trial,
             momenta: &mu,
+            eliminated: eliminated.as_ref(),
         };
         let (known, equations) = solved_for.write(&self.momenta(), &node_momenta);
-        let (at_trial, residual_body, tangent_body) =
-            (&equations.at_trial, &equations.residual, &equations.tangent);
+        let (residual_body, tangent_body) = (&equations.residual, &equations.tangent);
         let principal_root = Principal {
             d,
             bindings,
@@ -198,6 +232,7 @@ impl Together<'_> {
             tangent_at: &tangent_at,
             rounding: &rounding,
             principal: &principal,
+            completed_at: &completed_at,
         };
         let (given, values) = (
             principal_root.packed(&equations.alone.given),
@@ -205,7 +240,6 @@ impl Together<'_> {
         );
         let given_type = Principal::packed_type(d, &equations.alone.given);
         let momenta_type = &equations.momenta;
-        let dimension = element::total(d);
         let values_type = self.node_type_name();
         let functions = principal_root.functions();
         let configurations = d.spec.configurations.iter().map(|c| &s.get(c.element).name);
@@ -217,10 +251,30 @@ impl Together<'_> {
         };
         let of_work = chosen.map(|_| quote!(, work.method));
         let (decided, only_root) = self.convex(bindings);
-        let correct = match equations.side {
-            Side::Body => quote!(correct),
-            Side::Spatial => quote!(correct_from_left),
+        let at_whole = &equations.at_trial;
+        let (at_trial, wants, correct) = match &equations.part {
+            Some(part) => {
+                let (turned, at_trial) = (format_ident!("{TURNED}"), &part.at_trial);
+                let correct = match equations.side {
+                    Side::Body => quote!(correct_part(#trial)),
+                    Side::Spatial => quote!(correct_part_from_left(#trial)),
+                };
+                let at_trial = [
+                    quote!(let #turned = #newton.trial(); #at_trial),
+                    quote!(#at_whole),
+                ];
+                (at_trial, quote!(#newton.wants_residual() &&), correct)
+            }
+            None => {
+                let correct = match equations.side {
+                    Side::Body => quote!(correct()),
+                    Side::Spatial => quote!(correct_from_left()),
+                };
+                let at_trial = [quote!(let #trial = #newton.trial();), quote!(#at_whole)];
+                (at_trial, quote!(), correct)
+            }
         };
+        let [begins, at_trial] = at_trial;
         let set_tangent = match equations.times_step {
             true => quote!(#newton.set_tangent_times(&{ #tangent_body }, #step);),
             false => quote!(#newton.set_tangent(&{ #tangent_body });),
@@ -230,15 +284,15 @@ impl Together<'_> {
             #decided
             let mut #newton = work.#search.begin(state.#node, #values);
             loop {
-                let #trial = #newton.trial();
+                #begins
                 if #newton.wants_scale() {
                     #newton.set_scale(move |#lane| self.#rounding(#step, &#given, &#mu, &#trial, #lane));
                 }
                 #at_trial
-                if #newton.assess({ #residual_body }) {
+                if #wants #newton.assess({ #residual_body }) {
                     #set_tangent
                 }
-                match #newton.#correct() {
+                match #newton.#correct {
                     newton::Progress::Continue => {}
                     newton::Progress::Solved(#solved) if #only_root #newton.is_principal(&#solved.element) => break #solved,
                     #ended => {
@@ -262,7 +316,7 @@ impl Together<'_> {
                 state: #state #used,
                 given: #given_type,
                 #mu: #momenta_type,
-                #newton: &mut newton::Newton<'_, T, #elements, #values_type #used, #dimension>,
+                #newton: &mut newton::Newton<'_, T, #kinds>,
                 #ended: newton::Progress<#elements>,
                 #method
             ) -> Result<Option<newton::Solved<#elements>>, StepError> {
@@ -397,6 +451,23 @@ fn with_all_multipliers(d: &Derivation) -> Derivation {
 pub(super) fn search_of_all(d: &Derivation, names: &Names) -> TokenStream {
     let members: Vec<usize> = (0..d.spec.configurations.len()).collect();
     all(d, &with_all_multipliers(d), names, &members).search_type()
+}
+
+/// The inverses that the model keeps for what is solved for beforehand, where all velocities are found together.
+pub(super) fn kept_inverses(d: &Derivation, names: &Names) -> Vec<Inverse> {
+    let members: Vec<usize> = (0..d.spec.configurations.len()).collect();
+    inverses(&all(d, &with_all_multipliers(d), names, &members))
+}
+
+/// The same of what is solved together.
+pub(super) fn inverses(together: &Together) -> Vec<Inverse> {
+    let fields = together
+        .eliminated()
+        .map_or_else(Vec::new, |(_, fields)| fields);
+    fields
+        .into_iter()
+        .map(|(of, name)| Inverse { name, of })
+        .collect()
 }
 
 /// The type of what the tangent asks of a node, and `step`, where all velocities are found together.

@@ -3,7 +3,7 @@
 //! Takes the equations; gives the functions.
 
 use super::element::{self, Bundle};
-use super::equations::Written;
+use super::equations::{TURNED, Written};
 use super::expression::{Bindings, ty};
 use super::items::parameter_locals;
 use super::names::{item, variable};
@@ -37,6 +37,8 @@ pub(super) struct Principal<'a> {
     pub rounding: &'a Ident,
     /// The search for the principal root.
     pub principal: &'a Ident,
+    /// What finds the rest of a trial of which a part is given.
+    pub completed_at: &'a Ident,
 }
 
 impl Principal<'_> {
@@ -121,6 +123,7 @@ impl Principal<'_> {
             tangent_at,
             rounding,
             principal,
+            completed_at,
             ..
         } = *self;
         let s = &d.letters.symbols;
@@ -197,7 +200,42 @@ impl Principal<'_> {
             let (to, from) = (bundle.part(quote!(all), i), bundle.part(quote!(root), i));
             quote!(#to = #to.over(&mut newton::Numbers::of(&#from).put(lane));)
         });
+        let part = equations.part.as_ref();
+        // What a part is completed by rounds as well.
+        let completed = part.map(|part| {
+            let (turned, body, count) = (format_ident!("{TURNED}"), &part.alone, part.rows.len() / 3);
+            let count = Literal::usize_unsuffixed(count);
+            quote! {
+                /// The trial with these rotations, its translations found.
+                #[cold]
+                #[inline(never)]
+                #[allow(unused_variables)]
+                fn #completed_at(parameters: &#given_parameters #used, #step: T, #given: &#given_type, #momenta: &#momenta_type, #turned: &[Rotation<T>; #count]) -> #elements {
+                    #parameters
+                    #open_given
+                    #body
+                }
+            }
+        });
+        let completing = part.map(|_| {
+            let within = quote!(newton::Found::within(&#trial));
+            quote!(let #trial = #model_rounded::#completed_at(&parameters, step, &given, &momenta, &#within);)
+        });
+        let rounded_rows = |all: TokenStream| match part {
+            Some(part) => {
+                let rows = part.rows.iter().map(|i| Literal::usize_unsuffixed(*i));
+                quote!({ let all = #all; SVector::from([#(all[#rows]),*]) })
+            }
+            None => all,
+        };
+        let all_rows = quote!(#model_rounded::#residual_at(&parameters, step, &given, &momenta, &trial).map(|x| x.rest()));
+        let rows = part.map_or(dimension.clone(), |part| {
+            Literal::usize_unsuffixed(part.rows.len())
+        });
+        let rounded_rows = rounded_rows(all_rows);
         quote! {
+            #completed
+
             /// The residual of the equations of a step.
             #[cold]
             #[inline(never)]
@@ -222,13 +260,14 @@ impl Principal<'_> {
             /// Bounds of the rounding of the residual, in one lane.
             #[cold]
             #[inline(never)]
-            fn #rounding(&self, #step: T, #given: &#given_type, #momenta: &#momenta_type, #trial: &#elements, lane: usize) -> SVector<f64, #dimension> {
+            fn #rounding(&self, #step: T, #given: &#given_type, #momenta: &#momenta_type, #trial: &#elements, lane: usize) -> SVector<f64, #rows> {
                 let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
                 let parameters = self.parameters.over(change);
                 let (step, given, momenta) = (#step.over(change), #given.over(change), #momenta_over);
                 let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
                 let trial = #trial_over;
-                #model_rounded::#residual_at(&parameters, step, &given, &momenta, &trial).map(|x| x.rest())
+                #completing
+                #rounded_rows
             }
 
             /// Finds the principal root, or shows that the solution is.

@@ -27,6 +27,7 @@ mod terms;
 #[cfg(test)]
 mod tests;
 mod turned;
+mod undone;
 
 use crate::algebra::Rational;
 use shape::{Dim, Shape};
@@ -59,6 +60,7 @@ pub use substitute::{
 };
 pub use terms::{Change, changes};
 pub use turned::turned;
+pub use undone::Undone;
 
 /// Offset of a letter from the node or edge of an equation, in time and along the labels.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug, Default)]

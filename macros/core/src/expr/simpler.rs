@@ -62,7 +62,7 @@ fn product_of(symbols: &Symbols, factors: &[Expr]) -> Option<Expr> {
 }
 
 /// `x` and the sign of `Id` in a sum of the two.
-fn identity_and(e: &Expr) -> Option<(Rational, Expr)> {
+pub(super) fn identity_and(e: &Expr) -> Option<(Rational, Expr)> {
     let Node::Sum(terms) = e.node() else {
         return None;
     };

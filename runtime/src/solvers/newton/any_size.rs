@@ -244,7 +244,13 @@ impl<C: Chart> AnySearch<C> {
     }
 
     /// Begins the solution of the step that leaves `node`: see [`Search::begin`](super::Search::begin).
-    pub fn begin<'a>(&'a mut self, chart: &'a C, node: u64, values: NodeList) -> AnyNewton<'a, C> {
+    /// `whole` is the chart of all unknowns, where some are solved for beforehand.
+    pub fn begin<'a>(
+        &'a mut self,
+        [chart, whole]: [&'a C; 2],
+        node: u64,
+        values: NodeList,
+    ) -> AnyNewton<'a, C> {
         if node != self.next {
             self.past.clear();
             self.age = OLDEST_TANGENT;
@@ -265,6 +271,7 @@ impl<C: Chart> AnySearch<C> {
         AnyNewton {
             search: self,
             chart,
+            whole,
             values,
             trial,
             attempt,
@@ -273,6 +280,7 @@ impl<C: Chart> AnySearch<C> {
             size: f64::NAN,
             previous: f64::INFINITY,
             iteration: 0,
+            found: None,
         }
     }
 
@@ -311,6 +319,7 @@ impl<C: Chart> AnySearch<C> {
 pub struct AnyNewton<'a, C: Chart> {
     search: &'a mut AnySearch<C>,
     chart: &'a C,
+    whole: &'a C,
     values: NodeList,
     trial: C::Element,
     attempt: u32,
@@ -319,6 +328,7 @@ pub struct AnyNewton<'a, C: Chart> {
     size: f64,
     previous: f64,
     iteration: usize,
+    found: Option<usize>,
 }
 
 impl<C: Chart> AnyNewton<'_, C> {
@@ -369,10 +379,10 @@ impl<C: Chart> AnyNewton<'_, C> {
     #[must_use]
     pub fn is_principal(&self, solution: &C::Element) -> bool {
         let certificate = &self.search.certificate;
-        certificate.holds(self.chart, solution, &self.values)
+        certificate.holds(self.whole, solution, &self.values)
             || self.anchor.as_ref().is_some_and(|anchor| {
-                let from = self.chart.between(&anchor.root, solution);
-                self.chart.is_within(&from, &anchor.reach)
+                let from = self.whole.between(&anchor.root, solution);
+                self.whole.is_within(&from, &anchor.reach)
             })
     }
 
@@ -401,7 +411,7 @@ impl<C: Chart> AnyNewton<'_, C> {
                     return Ok(Settled::Unpolished);
                 }
                 self.attempt = LAST_ATTEMPT;
-                self.begin_at(root.clone());
+                self.begin_at(self.chart.part(&root));
                 self.anchor = Some(Anchor { root, reach });
                 Ok(Settled::Again)
             }
@@ -414,6 +424,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         self.search.age = OLDEST_TANGENT;
         self.previous = f64::INFINITY;
         self.iteration = 0;
+        self.found = None;
     }
 
     /// Takes the residual at the trial; says whether the tangent there is wanted.
@@ -446,6 +457,34 @@ impl<C: Chart> AnyNewton<'_, C> {
         let (factors, trial) = (&search.factors, &self.trial);
         (search.certificate).note(self.chart, factors, trial, &self.values);
         search.age = 0;
+    }
+
+    /// Whether the residual is wanted: not at the last trial, whose rest alone is.
+    #[must_use]
+    pub fn wants_residual(&self) -> bool {
+        self.found.is_none()
+    }
+
+    /// The same as [`correct`](Self::correct) where `whole` is the trial with what is solved for beforehand.
+    pub fn correct_part(&mut self, element: C::Element, from_left: bool) -> Progress<C::Element> {
+        let found = match self.polished() {
+            true => Some(self.iteration),
+            false => self.found,
+        };
+        if let Some(iterations) = found {
+            return Progress::Solved(Solved {
+                element,
+                iterations,
+                residual: self.size,
+            });
+        }
+        match self.correct(from_left) {
+            Progress::Solved(solved) => {
+                self.found = Some(solved.iterations);
+                Progress::Continue
+            }
+            other => other,
+        }
     }
 
     /// Moves the trial by Newton's correction, or ends.
@@ -541,7 +580,7 @@ impl<C: Chart> AnyNewton<'_, C> {
             Some(e) if fold.share == 0.0 => e,
             _ => NewtonError {
                 tried: self.tries(),
-                ..NewtonError::at_fold(fold, self.chart.coordinate(fold.fastest))
+                ..NewtonError::at_fold(fold, self.whole.coordinate(fold.fastest))
             },
         }
     }

@@ -155,8 +155,9 @@ impl<V: NodeValues, const D: usize> Certificate<V, D> {
 
     /// Before a proof with this tangent: until there is one, nothing holds.
     #[cold]
-    pub(super) fn ask<T: Real, G: Group<T>>(&mut self, factors: &Factors<T, D>) {
-        if !V::ANY {
+    pub(super) fn ask<T: Real, G: Group<T>, const K: usize>(&mut self, factors: &Factors<T, K>) {
+        // Where some unknowns are solved for beforehand the tangent is the same at every node.
+        if !V::ANY || K != D {
             return;
         }
         let now = factors.inverse_bounds(G::part_of);
@@ -174,9 +175,9 @@ impl<V: NodeValues, const D: usize> Certificate<V, D> {
 
     /// Takes note of a tangent that was factored at a trial, where the one noted last does not serve.
     #[inline(always)]
-    pub(super) fn note<T: Real, G: Group<T>>(
+    pub(super) fn note<T: Real, G: Group<T>, const K: usize>(
         &mut self,
-        factors: &Factors<T, D>,
+        factors: &Factors<T, K>,
         trial: &G,
         values: &V,
     ) {

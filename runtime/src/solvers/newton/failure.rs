@@ -2,7 +2,7 @@
 //! step could have been made from the same state.
 //! Takes the last residual and a way to try other steps; gives the error.
 
-use super::{Fold, LAST_ATTEMPT, MOST_ITERATIONS, Newton, NodeValues, Progress, Search};
+use super::{Fold, Found, LAST_ATTEMPT, MOST_ITERATIONS, Newton, NodeValues, Progress, Search};
 use crate::groups::{Coordinate, Group};
 use crate::said::{AtMost, Plain, Times, in_lane, instead};
 use crate::scalar::Real;
@@ -130,12 +130,18 @@ impl NewtonError {
     #[cold]
     #[inline(never)]
     #[must_use]
-    pub fn explained<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize>(
+    pub fn explained<T, G, V, const D: usize, W, const E: usize>(
         self,
         h: T,
         configurations: &'static &'static [&'static str],
-        step: impl Fn(T, Search<T, G, V, D>) -> Result<(), StepError>,
-    ) -> Self {
+        step: impl Fn(T, Search<T, G, V, D, W, E>) -> Result<(), StepError>,
+    ) -> Self
+    where
+        T: Real,
+        G: Group<T> + Found<W>,
+        V: NodeValues<Scalar = T>,
+        W: Group<T>,
+    {
         self.explained_by(h, configurations, &|h, offers| match offers {
             true => step(h, Search::to_offer()),
             false => step(h, Search::to_try()),
@@ -249,7 +255,11 @@ impl fmt::Display for NewtonError {
 
 impl std::error::Error for NewtonError {}
 
-impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_, T, G, V, D> {
+impl<T: Real, G, V: NodeValues<Scalar = T>, const D: usize, W: Group<T>, const E: usize>
+    Newton<'_, T, G, V, D, W, E>
+where
+    G: Group<T> + Found<W>,
+{
     /// Another attempt, or what was wrong with the last.
     #[cold]
     #[inline(never)]
@@ -308,7 +318,7 @@ impl<T: Real, G: Group<T>, V: NodeValues<Scalar = T>, const D: usize> Newton<'_,
             Some(e) if fold.share == 0.0 => e,
             _ => NewtonError {
                 tried: self.search.tries(),
-                ..NewtonError::at_fold(fold, G::coordinate(fold.fastest))
+                ..NewtonError::at_fold(fold, W::coordinate(fold.fastest))
             },
         }
     }

@@ -5,7 +5,9 @@ use super::{Search, Summary};
 use crate::groups::Group;
 use crate::saved::{Saved, Words};
 
-impl<G: Group<f64> + Saved, V: NodeValues + Saved, const D: usize> Saved for Search<f64, G, V, D> {
+impl<G: Group<f64> + Saved, V: NodeValues + Saved, const D: usize, W, const E: usize> Saved
+    for Search<f64, G, V, D, W, E>
+{
     fn words(&mut self, words: &mut Words) {
         let Self {
             past,
@@ -15,6 +17,7 @@ impl<G: Group<f64> + Saved, V: NodeValues + Saved, const D: usize> Saved for Sea
             weights,
             weighed,
             certificate,
+            whole: _,
             factors,
             unit,
             age,

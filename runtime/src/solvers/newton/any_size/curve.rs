@@ -62,6 +62,9 @@ pub trait Chart {
     /// Its coordinates.
     fn parts(&self) -> &Parts;
 
+    /// The part of an element that is searched for, where the rest follows from it.
+    fn part(&self, whole: &Self::Element) -> Self::Element;
+
     /// What a coordinate stands for.
     fn coordinate(&self, index: usize) -> Coordinate;
 
