@@ -303,7 +303,7 @@ fn kirchhoff_body_is_of_second_order() {
 }
 
 /// Translations are solved for, and the tangent is the whole derivative of what is left: from rest each correction squares
-/// what is left. With a term missing or wrong in it corrections shrink by a factor, and there are several times as many.
+/// what is left, and along a motion one or two corrections a step do. With a term missing each would leave a share of it.
 #[test]
 fn rotations_in_a_fluid_are_found_by_the_whole_derivative() {
     for case in [neutral(), heavy()] {
@@ -320,7 +320,8 @@ fn rotations_in_a_fluid_are_found_by_the_whole_derivative() {
                 corrections += work.solved().corrections;
             }
             println!("{tangents} tangents, {corrections} corrections");
-            assert!(corrections <= 2000, "{corrections}");
+            // Of the longer step a few are foreseen worse and take a third.
+            assert!(corrections < 2500, "{corrections}");
         }
     }
 }
