@@ -393,7 +393,7 @@ impl Equations<'_> {
         }
         for (name, value) in steps {
             let name = variable(s, *name);
-            let p = schedule::program(s, &[value.clone()], "t");
+            let p = schedule::program(s, std::slice::from_ref(value), "t");
             let (lets, values) = program(&p, bindings);
             out.extend(match lets.is_empty() {
                 true => quote!(#(let #name = #values;)*),
