@@ -17,6 +17,7 @@ mod pulls;
 mod reactions;
 mod responses;
 mod rows;
+mod signs;
 mod solved;
 mod state;
 mod step;

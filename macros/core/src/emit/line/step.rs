@@ -155,7 +155,7 @@ pub(super) fn step(
             }
         }
     });
-    let agreed = agreed(l);
+    let agreed = super::signs::agreed(l);
     let (domains, inside) = super::domain::domain(l);
     quote! {
         impl<T: Real> #name<T> {
@@ -424,44 +424,6 @@ fn check(l: &Lines, m: &Moving) -> TokenStream {
         line::length_of(#momentum, &initial.#field, #count, #words)?;
         #finite
     }
-}
-
-/// Signs of unit quaternions that meet their neighbours, made to agree from site to site and with what an end gives,
-/// the first one before the last.
-fn agreed(l: &Lines) -> TokenStream {
-    let ends = l.item("Ends");
-    let mut out = TokenStream::new();
-    for signs in &l.line.signs {
-        let (name, text) = (format_ident!("{}", signs.of), &signs.of);
-        out.extend(quote!(line::agree(&mut state.places.#name);));
-        for last in [true, false] {
-            let Some((ty, alternatives)) = l.alternatives(last) else {
-                continue;
-            };
-            let field = if last { quote!(last) } else { quote!(first) };
-            for wall in &signs.walls[usize::from(last)] {
-                let Some(end) = alternatives.get(wall.which) else {
-                    continue;
-                };
-                let pattern = super::ends::pattern(&ty, end);
-                let site = super::ends::place(l, last, text, wall.site);
-                let given = super::ends::end_local(&wall.parameter);
-                out.extend(quote! {
-                    if let #ends::Open { #field: #pattern, .. } = self.sites.ends {
-                        line::turn_towards(&mut state.places.#name, #site, &#given);
-                    }
-                });
-            }
-        }
-        if signs.seen && l.line.lattice.periodic.is_some() {
-            out.extend(quote! {
-                if self.is_ring() {
-                    line::closes(#text, &state.places.#name)?;
-                }
-            });
-        }
-    }
-    out
 }
 
 /// The places of one configuration at the next node.
