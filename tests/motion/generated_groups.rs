@@ -311,15 +311,12 @@ fn rotations_in_a_fluid_are_found_by_the_whole_derivative() {
         let (model, mut state, mut work) = case.start::<f64>(h);
         model.step(&mut state, &mut work).expect("solvable");
         let first = work.solved();
-        println!("{first:?}");
         assert!(first.tangents <= 4 && first.corrections <= 5, "{first:?}");
-        let (mut tangents, mut corrections) = (0, 0);
+        let mut corrections = 0;
         for _ in 0..1000 {
             model.step(&mut state, &mut work).expect("solvable");
-            tangents += work.solved().tangents;
             corrections += work.solved().corrections;
         }
-        println!("{tangents} tangents, {corrections} corrections");
         // A few are foreseen worse and take a third.
         assert!(corrections < 2500, "{corrections}");
     }
