@@ -108,7 +108,7 @@ fn main() -> Result<(), Error> {
             attitude: bent.attitude * turn,
         };
         sought = joined(sought, &wanted).expect("twenty parts are small enough");
-        if (part * 20.0).round() as u32 % 5 == 0 {
+        if ((part * 20.0).round() as u32).is_multiple_of(5) {
             let mut height: f64 = 0.0;
             let end = shot(&sought, |place| height = height.max(place[1].abs()))?;
             let [m, n] = [0, 3].map(|at| sought.fixed_rows::<3>(at).into_owned());
