@@ -2,6 +2,7 @@
 //! expressions in the label, or lists. Gives the same case with a key for every copy, which is read
 //! like any other, and the line that each of its lines came from.
 
+use super::attitudes;
 use super::copies::Copies;
 use super::fluid::Fluid;
 use super::inertia::{self, Taken};
@@ -483,7 +484,9 @@ impl Writer<'_> {
                 false => None,
             },
         };
-        sites::at(&at, value.get_ref(), &|n| self.number(n, Some(base)))
+        let numbers = |n: &str| self.number(n, Some(base));
+        let held = attitudes::at(self.stated, base, &at, value.get_ref(), &numbers);
+        held.map_or_else(|| sites::at(&at, value.get_ref(), &numbers), Ok)
     }
 
     fn missing(&self, table: &str, field: &Field, base: &Base) -> Failure {

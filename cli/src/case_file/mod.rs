@@ -2,6 +2,7 @@
 //! Keys: `model`, `name`, `doc`, `h`, `steps`, tables `[parameters]`, `[initial]`, `[bounds]`,
 //! and of models with labels `[labels]` and `[ends]`.
 
+mod attitudes;
 mod copies;
 mod fluid;
 pub(crate) mod functions;

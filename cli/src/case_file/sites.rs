@@ -18,7 +18,7 @@ pub(super) struct Site<'a> {
     pub moving: Option<(usize, usize)>,
 }
 
-type Numbers<'a> = dyn Fn(&str) -> Option<f64> + 'a;
+pub(super) type Numbers<'a> = dyn Fn(&str) -> Option<f64> + 'a;
 
 /// The numbers that expressions may hold: parameters of the case that are numbers, and its step.
 pub(super) fn numbers(top: &DeTable<'_>, parameters: Option<&DeTable<'_>>) -> Vec<(String, f64)> {
@@ -57,7 +57,7 @@ pub(super) fn plain(value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, Str
 }
 
 /// A number as TOML reads it back.
-fn spelt(value: f64) -> String {
+pub(super) fn spelt(value: f64) -> String {
     match value {
         v if v.is_nan() => "nan".to_owned(),
         v if v.is_infinite() => if v > 0.0 { "inf" } else { "-inf" }.to_owned(),

@@ -9,6 +9,7 @@ use crate::output::Finished;
 use crate::output::sites::{AtSites, at_sites};
 use crate::page::places::{Places, Point};
 use clebsch::record::Record;
+use clebsch::scalar::largest;
 use clebsch_core::lattice::Sites;
 use plotters::prelude::{
     Circle, Color, IntoDrawingArea, PathElement, RGBColor, Rectangle, SVGBackend, WHITE,
@@ -133,7 +134,7 @@ impl Strip {
             2 => Seen::Plane([0, 1]),
             _ => {
                 let widths = [0, 1, 2].map(|d| range(d).1 - range(d).0);
-                let widest = widths.iter().fold(0.0, |a: f64, b| a.max(*b));
+                let widest = largest(widths);
                 let flat = (0..3).find(|d| widths[*d] <= 1e-6 * widest);
                 match flat {
                     Some(0) => Seen::Plane([1, 2]),
@@ -164,7 +165,7 @@ impl Strip {
                 high[d] = high[d].max(point[d]);
             }
         }
-        let widest = (0..2).map(|d| high[d] - low[d]).fold(0.0, f64::max);
+        let widest = largest((0..2).map(|d| high[d] - low[d]));
         if !widest.is_finite() || widest <= 0.0 {
             return None;
         }

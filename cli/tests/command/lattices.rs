@@ -120,6 +120,76 @@ fn the_periodic_rod_of_the_thesis_is_that_of_the_reference_run() {
     }
 }
 
+/// A rod clamped at both ends, by matrices and by quaternions, written out and in loops over sites.
+#[test]
+fn both_ends_have_parameters_of_one_name() {
+    let folder = Folder::new("both-ends");
+    let model = shipped("circular-rod.clebsch");
+    let base =
+        text("circular-rod.toml").replace("[\"free\", \"free\"]", "[\"clamped\", \"clamped\"]");
+    let matrix = "[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]";
+    for sites in [20, 40] {
+        let energy = |name: &str, wall: &str| {
+            let walls = format!("[parameters]\nLambdaw_0 = {wall}\nLambdaw_N = {wall}\n");
+            let case = base
+                .replace("i = 40", &format!("i = {sites}"))
+                .replace("[parameters]\n", &walls);
+            let case = folder.write(&format!("{name}.toml"), &case);
+            let done = clebsch(&["run", &model, "--case", &case, "--steps", "20"]);
+            assert_eq!(done.code, 0, "{sites} {name}: {}{}", done.out, done.err);
+            let mut lines = done.out.lines().map(str::to_owned);
+            lines.find(|l| l.starts_with("energy ")).expect("an energy")
+        };
+        let by_matrix = energy("matrix", matrix);
+        assert_eq!(by_matrix, energy("quaternion", "[1.0, 0.0, 0.0, 0.0]"));
+        // Turned walls bend the rod.
+        assert_ne!(by_matrix, energy("turned", "[0.6, 0.8, 0.0, 0.0]"));
+    }
+}
+
+/// Quaternions that an end holds are given as those that move.
+#[test]
+fn an_end_holds_a_quaternion() {
+    let folder = Folder::new("held-quaternion");
+    let model = folder.write(
+        "spins.clebsch",
+        "model Spins { label i in 0..N; param I: Sym<3>; param c: Real; group q: SU<2> at nodes velocity W;
+        constraint next(q) = q*W; lagrangian = (2/h)*dot(im(W), I*im(W)) + 4*h*c*re(q^T*next(q, i));
+        end i = 0 { free; pinned { q = given; } } }",
+    );
+    let mut energies = Vec::new();
+    for sites in [3, 6, 40] {
+        let case = format!(
+            "model = \"spins\"\nname = \"own\"\nh = 0.05\nsteps = 40\n[labels]\ni = {sites}\n[ends]\ni = [\"pinned\", \"free\"]\n\
+             [parameters]\nI = [[1.0, 0.0, 0.0], [0.0, 1.2, 0.0], [0.0, 0.0, 1.5]]\nc = 1.0\n[initial]\n\
+             q = [\"cos(0.1*i)\", \"sin(0.1*i)\", 0.0, 0.0]\nbody_momentum_q = [0.0, 0.1, 0.0]\n"
+        );
+        let case = folder.write("own.toml", &case);
+        let done = clebsch(&["run", &model, "--case", &case]);
+        assert_eq!(done.code, 0, "{sites}: {}{}", done.out, done.err);
+        let energy = done
+            .out
+            .lines()
+            .find(|l| l.starts_with("energy "))
+            .expect("an energy");
+        let scale: f64 = energy
+            .split_whitespace()
+            .nth(1)
+            .expect("a scale")
+            .parse()
+            .expect("a number");
+        energies.push((sites, scale));
+    }
+    // Neighbours are a tenth apart, the held one among them: about four for each of the segments.
+    for (sites, scale) in energies {
+        let of_segments = 4.0 * f64::from(sites) * 0.1_f64.cos();
+        assert!(
+            (scale / of_segments - 1.0).abs() < 0.02,
+            "{sites}: {scale} {of_segments}"
+        );
+    }
+}
+
 #[test]
 fn every_model_is_derived_and_runs_its_case() {
     for name in SHIPPED {

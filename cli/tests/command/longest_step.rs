@@ -102,3 +102,43 @@ fn a_wrong_sign_between_neighbours_is_warned_of() {
         assert_eq!(said, warned, "{}{}", done.out, done.err);
     }
 }
+
+/// Where steps are of another kind nothing is said: a charge that a magnetic field turns, a potential in the middle of the
+/// step, a kink, all of which long steps leave as they are.
+#[test]
+fn of_steps_of_another_kind_nothing_is_said() {
+    let folder = Folder::new("other-steps");
+    let silent = |done: crate::common::Done| {
+        assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+        assert!(!done.err.contains("longest"), "{}", done.err);
+        assert!(!done.out.contains("longest"), "{}", done.out);
+    };
+    silent(clebsch(&[
+        "run",
+        "charged-particle",
+        "--h",
+        "5",
+        "--steps",
+        "20",
+    ]));
+    let of = |name: &str, potential: &str, h: &str| {
+        let text = format!(
+            "model Spring {{ param m, k: Real; field q: Real; lagrangian = m*(next(q) - q)^2/(2*h) - {potential}; }}"
+        );
+        let model = folder.write(&format!("{name}.clebsch"), &text);
+        let case = format!(
+            "model = \"spring\"\nname = \"own\"\nh = {h}\nsteps = 20\n[parameters]\nm = 1.0\nk = 1.0\n[initial]\nq = 0.0\nmomentum_q = 0.1\n"
+        );
+        let case = folder.write(&format!("{name}.toml"), &case);
+        clebsch(&["run", &model, "--case", &case])
+    };
+    silent(of("middle", "h*(k/2)*((q + next(q))/2)^2", "5.0"));
+    // The same spring at the node has the limit 2.
+    let at_node = of("node", "h*(k/2)*q^2", "2.05");
+    assert!(
+        at_node.err.contains("1.02 times the longest one"),
+        "{}",
+        at_node.err
+    );
+    silent(of("node", "h*(k/2)*q^2", "0.5"));
+}

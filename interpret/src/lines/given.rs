@@ -337,7 +337,12 @@ impl Ends {
         let chosen = |at: usize| -> Result<Value<f64>, Unstarted> {
             let given = self.alternatives[at].get(choice.ends[at]);
             let given = given.ok_or_else(|| missing(["the first end", "the last end"][at]))?;
-            given.value(numbers, &|_| None)
+            // What both ends have has the name of its end, `F_0` and `F_N`.
+            let own = |name: &str| {
+                let of_end = format!("{name}_{}", ["0", "N"][at]);
+                numbers(&of_end).or_else(|| numbers(name))
+            };
+            given.value(&own, &|_| None)
         };
         let open = self.open.as_ref().ok_or_else(|| missing("ends"))?;
         let mut values = Vec::new();

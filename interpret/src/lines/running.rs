@@ -73,9 +73,43 @@ impl Carded {
                 own.push((place.site.unwrap_or(0), list));
             }
         }
+        // An attitude that an end holds is the matrix of a quaternion; its first column is the quaternion.
+        let is_quaternion = |all: &Sites<'_>| all.iter().any(|(_, list)| list.len() == 4);
+        let held = |list: &Vec<f64>| -> Vec<f64> { list.iter().step_by(4).copied().collect() };
+        let read: BTreeMap<&str, Vec<(usize, Vec<f64>)>> = given
+            .iter()
+            .filter(|(_, all)| is_quaternion(all))
+            .map(|(key, all)| {
+                let of = |(site, list): &(usize, &Vec<f64>)| match list.len() {
+                    16 => (*site, held(list)),
+                    _ => (*site, (*list).clone()),
+                };
+                (*key, all.iter().map(of).collect())
+            })
+            .collect();
+        for (key, all) in &read {
+            given.insert(key, all.iter().map(|(site, list)| (*site, list)).collect());
+        }
         let numbers = |name: &str| {
-            let all = given.get(ascii(name).as_str())?;
-            self.numbers(name, all)
+            let own = ascii(name);
+            if let Some(all) = given.get(own.as_str()) {
+                return self.numbers(name, all);
+            }
+            // Of what both ends have, that of one.
+            let (key, end) = own.rsplit_once('_')?;
+            let [first, last] = given.get(key)?.as_slice() else {
+                return None;
+            };
+            let (first, last) = if first.0 < last.0 {
+                (first, last)
+            } else {
+                (last, first)
+            };
+            match end {
+                "0" => Some(first.1.clone()),
+                "N" => Some(last.1.clone()),
+                _ => None,
+            }
         };
         let started = self.model.start(&self.choice, settings.h, &numbers);
         let line = started.map_err(|e| self.refused(e))?;

@@ -4,7 +4,7 @@
 use crate::Rotation;
 use crate::card::{Card, Field, Kind, Settings};
 use crate::scalar::largest;
-use nalgebra::{DMatrix, Matrix3, Vector3};
+use nalgebra::{DMatrix, Matrix3, SymmetricEigen, Vector3};
 use std::ops::Range;
 
 /// Most vectors of the Krylov space: the fastest of thousands of motions is found to about a hundredth.
@@ -32,29 +32,31 @@ pub struct LongestStep {
 impl LongestStep {
     /// Of a model in these data, each field one vector, row-major; `h` is a step of about the size that is asked of.
     ///
-    /// `None` for configurations other than fields, rotations of space, and unit quaternions, for models that do
-    /// not start at rest, and where nothing resists a disturbance. A force that is not zero at the start is taken as
-    /// it is; of terms linear in velocities nothing is seen.
+    /// `None` for configurations other than fields, rotations of space, and unit quaternions, where nothing resists a
+    /// disturbance, and where a step does not move what swings fastest as steps with the potential at the nodes do: with
+    /// a potential in the middle of steps, with strong terms linear in velocities, at a kink, all steps may be stable.
     #[must_use]
     pub fn of(card: &Card, parameters: &[Vec<f64>], initial: &[Vec<f64>], h: f64) -> Option<Self> {
         let probe = Probe::new(card, parameters, initial, h * SHORT)?;
-        let mut values = probe.extremes()?;
-        values.retain(|x| x.is_finite());
-        // What does not swing within a hundred thousand steps of this size is the rounding of forces that are none.
+        let [least, largest] = probe.extremes()?;
+        // What does not swing within a hundred thousand steps of this size is the rounding of forces that are none, as
+        // what is rounding beside the other.
         let rounding = (2.0e-5 / h).powi(2);
-        let largest = values.iter().copied().max_by(f64::total_cmp)?;
-        let least = values.iter().copied().min_by(f64::total_cmp)?;
-        let [largest, least] = [largest, least].map(|x| if x.abs() > rounding { x } else { 0.0 });
-        // What is rounding beside the largest does not grow.
-        let grows = least < -1e-6 * largest.abs();
-        (largest != 0.0 || grows).then_some(Self {
-            step: if largest > 0.0 {
-                2.0 / largest.sqrt()
-            } else {
-                f64::INFINITY
-            },
-            growth: if grows { (-least).sqrt() } else { 0.0 },
-        })
+        let seen = |x: f64, beside: f64| x.abs() > rounding && x.abs() > 1e-6 * beside.abs();
+        let swings = largest.square > 0.0 && seen(largest.square, least.square);
+        let grows = least.square < 0.0 && seen(least.square, largest.square);
+        let step = match swings {
+            true => 2.0 / largest.square.sqrt(),
+            false => f64::INFINITY,
+        };
+        let growth = match grows {
+            true => (-least.square).sqrt(),
+            false => 0.0,
+        };
+        // A step of the model must move what it is told of as steps of this kind do.
+        let moved = (!swings || probe.is_left(&largest, step))
+            && (!grows || probe.is_left(&least, 1.0 / growth));
+        (moved && (swings || grows)).then_some(Self { step, growth })
     }
 }
 
@@ -63,8 +65,7 @@ impl LongestStep {
     #[must_use]
     pub fn warning(&self, h: f64) -> Option<String> {
         let h = h.abs();
-        // A tenth is what the fastest motion of a curved start may differ by from that of a straight one.
-        if h > 1.1 * self.step {
+        if h > self.step {
             return Some(format!(
                 "the step h = {h} is {:.2} times the longest one that keeps small motions about the start small, \
                  {:.3e} (2/ω of the fastest): what is disturbed there grows in every step; take a shorter one",
@@ -85,7 +86,15 @@ impl LongestStep {
     }
 }
 
+/// A small motion: its ω², and what moves with the kinetic energy one half.
+struct Motion {
+    square: f64,
+    velocity: Vec<f64>,
+    momentum: Vec<f64>,
+}
+
 /// A configuration and its momentum among the initial values and among what is observed.
+#[derive(Clone)]
 struct Moves {
     initial: usize,
     behind: usize,
@@ -183,17 +192,7 @@ impl<'a> Probe<'a> {
     /// and the step.
     fn stiffness(&self, v: &[f64]) -> Option<Vec<f64>> {
         let scale = PART / largest(v.iter().zip(&self.units).map(|(x, unit)| x / unit));
-        let mut moved = self.initial.clone();
-        let mut from = 0;
-        for body in &self.moves {
-            let own: Vec<f64> = v[from..from + body.count()]
-                .iter()
-                .map(|x| x * scale)
-                .collect();
-            from += body.count();
-            disturb(moved.get_mut(body.initial)?, body, &own)?;
-        }
-        let after = self.after(&moved)?;
+        let after = self.after(&self.disturbed(v, scale)?)?;
         let each = self.moves.iter().flat_map(|body| body.momentum.clone());
         let change = each.map(|column| (self.rest[column] - after[column]) / (scale * self.h));
         Some(change.collect())
@@ -230,8 +229,58 @@ impl<'a> Probe<'a> {
         None
     }
 
-    /// Extreme values of ω², by Lanczos' method in the inner product of the mass.
-    fn extremes(&self) -> Option<Vec<f64>> {
+    /// Whether a step of `h` from rest, disturbed by this motion, leaves `1 - h² ω²/2` of it, as steps with the potential
+    /// at the nodes do: one with it in the middle leaves `(4 - h² ω²)/(4 + h² ω²)`. Half a step where one cannot be made.
+    fn is_left(&self, motion: &Motion, h: f64) -> bool {
+        [h, 0.5 * h]
+            .into_iter()
+            .find_map(|h| self.left(motion, h))
+            .is_some_and(|(h, left)| {
+                let square = h * h * motion.square;
+                (left - (1.0 - 0.5 * square)).abs() < 0.1 * square.abs()
+            })
+    }
+
+    /// The part of a motion that a step leaves, and the step; `None` where it cannot be made.
+    fn left(&self, motion: &Motion, h: f64) -> Option<(f64, f64)> {
+        let longer = Probe {
+            h,
+            initial: self.initial.clone(),
+            moves: self.moves.clone(),
+            units: self.units.clone(),
+            rest: Vec::new(),
+            ..*self
+        };
+        let rest = longer.after(&longer.initial)?;
+        let v = &motion.velocity;
+        let scale = PART / largest(v.iter().zip(&self.units).map(|(x, unit)| x / unit));
+        let moved = self.disturbed(v, scale)?;
+        let after = longer.after(&moved)?;
+        let mut change = Vec::with_capacity(v.len());
+        for body in &self.moves {
+            let (a, b) = (&rest[body.place.clone()], &after[body.place.clone()]);
+            change.extend(difference(body, a, b));
+        }
+        Some((h, dot(&motion.momentum, &change) / scale))
+    }
+
+    /// The start with a disturbance `scale` times `v`.
+    fn disturbed(&self, v: &[f64], scale: f64) -> Option<Vec<Vec<f64>>> {
+        let mut moved = self.initial.clone();
+        let mut from = 0;
+        for body in &self.moves {
+            let own: Vec<f64> = v[from..from + body.count()]
+                .iter()
+                .map(|x| x * scale)
+                .collect();
+            from += body.count();
+            disturb(moved.get_mut(body.initial)?, body, &own)?;
+        }
+        Some(moved)
+    }
+
+    /// The motions of least and of largest ω², by Lanczos' method in the inner product of the mass.
+    fn extremes(&self) -> Option<[Motion; 2]> {
         let count: usize = self.moves.iter().map(Moves::count).sum();
         let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
         let mut number = || {
@@ -280,8 +329,24 @@ impl<'a> Probe<'a> {
             1 => betas[i.min(j)],
             _ => 0.0,
         };
-        let small = DMatrix::from_fn(alphas.len(), alphas.len(), at);
-        Some(small.symmetric_eigenvalues().iter().copied().collect())
+        let small = SymmetricEigen::new(DMatrix::from_fn(alphas.len(), alphas.len(), at));
+        let motion = |k: usize| {
+            let of = |all: &[Vec<f64>]| {
+                let mut sum = vec![0.0; count];
+                for (part, own) in small.eigenvectors.column(k).iter().zip(all) {
+                    sum.iter_mut().zip(own).for_each(|(s, x)| *s += part * x);
+                }
+                sum
+            };
+            Motion {
+                square: small.eigenvalues[k],
+                velocity: of(&velocities),
+                momentum: of(&momenta),
+            }
+        };
+        let by = |a: &usize, b: &usize| small.eigenvalues[*a].total_cmp(&small.eigenvalues[*b]);
+        let (least, largest) = ((0..alphas.len()).min_by(by)?, (0..alphas.len()).max_by(by)?);
+        Some([motion(least), motion(largest)])
     }
 }
 
@@ -318,14 +383,14 @@ fn columns(card: &Card, wanted: &Field) -> Option<Range<usize>> {
     None
 }
 
-/// Of an angle one; of a field how far its values at all sites lie apart, that of its largest value if they do not.
+/// Of an angle one; of a field how far its values at all sites lie apart, if they do not the size of its values, at most one.
 fn units(moves: &[Moves], initial: &[Vec<f64>]) -> Vec<f64> {
     let fields = moves.iter().filter(|m| m.kind == Kind::FieldMomentum);
     let all = fields.flat_map(|m| initial.get(m.initial).into_iter().flatten());
     let all: Vec<f64> = all.copied().collect();
     let first = all.first().copied().unwrap_or(0.0);
     let apart = largest(all.iter().map(|x| x - first));
-    let sizes = [apart, largest(all.iter().copied()), 1.0];
+    let sizes = [apart, largest(all.iter().copied()).min(1.0), 1.0];
     let unit = sizes.into_iter().find(|x| *x > 0.0).unwrap_or(1.0);
     let each = moves.iter().flat_map(|m| {
         let own = if m.kind == Kind::FieldMomentum {
