@@ -406,6 +406,7 @@ impl Writer<'_> {
             let line = self.file.line(&value.span());
             let text = match (&base, site) {
                 (Some(base), true) => self.at_site(field, base, value),
+                (Some(base), false) => self.by_own_name(field, base, value),
                 _ => sites::plain(value.get_ref(), &|n| self.number(n, None)),
             };
             let text = text.map_err(|message| {
@@ -487,6 +488,24 @@ impl Writer<'_> {
         let numbers = |n: &str| self.number(n, Some(base));
         let held = attitudes::at(self.stated, base, &at, value.get_ref(), &numbers);
         held.map_or_else(|| sites::at(&at, value.get_ref(), &numbers), Ok)
+    }
+
+    /// A value under the name with its site.
+    fn by_own_name(
+        &self,
+        field: &Field,
+        base: &Base,
+        value: &Spanned<DeValue<'_>>,
+    ) -> Result<String, String> {
+        let only = Site {
+            field,
+            place: 0,
+            count: 1,
+            moving: None,
+        };
+        let numbers = |n: &str| self.number(n, None);
+        let held = attitudes::at(self.stated, base, &only, value.get_ref(), &numbers);
+        held.map_or_else(|| sites::plain(value.get_ref(), &numbers), Ok)
     }
 
     fn missing(&self, table: &str, field: &Field, base: &Base) -> Failure {

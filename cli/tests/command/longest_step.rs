@@ -127,7 +127,7 @@ fn of_steps_of_another_kind_nothing_is_said() {
         );
         let model = folder.write(&format!("{name}.clebsch"), &text);
         let case = format!(
-            "model = \"spring\"\nname = \"own\"\nh = {h}\nsteps = 20\n[parameters]\nm = 1.0\nk = 1.0\n[initial]\nq = 0.0\nmomentum_q = 0.1\n"
+            "model = \"spring\"\nname = \"own\"\nh = {h}\nsteps = 20\n[parameters]\nm = 1.0\nk = 1.0\n[initial]\nq = 0.0\nmomentum = 0.1\n"
         );
         let case = folder.write(&format!("{name}.toml"), &case);
         clebsch(&["run", &model, "--case", &case])
