@@ -1,7 +1,7 @@
 //! Models with labels on the command line: derived, run from cases with site data, wrong cases told by
 //! line and site.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Folder, program as clebsch};
 
 /// The model files that the project ships, each with its case.
 const SHIPPED: [&str; 10] = [
