@@ -189,6 +189,11 @@ pub(crate) fn plain(number: f64) -> String {
     format!("{short:e}")
 }
 
+/// A number with at most four digits, enough beside a picture.
+pub(crate) fn short(number: f64) -> String {
+    plain(format!("{number:.3e}").parse().unwrap_or(number))
+}
+
 impl Ranged for Axis {
     type FormatOption = NoDefaultFormatting;
     type ValueType = f64;

@@ -379,8 +379,14 @@ fn panel(
         INK,
         (right - 10, down + 4),
     )?;
-    text(root, &short(frame.high[1]), 11, INK, (left - 38, up))?;
-    text(root, &short(frame.low[1]), 11, INK, (left - 38, down - 12))?;
+    text(root, &axis::short(frame.high[1]), 11, INK, (left - 38, up))?;
+    text(
+        root,
+        &axis::short(frame.low[1]),
+        11,
+        INK,
+        (left - 38, down - 12),
+    )?;
     let radius = shot.radius * f64::from(fine(1));
     for mark in &shot.marks {
         if let Some(at) = frame.at(mark.place).filter(|_| mark.value.is_finite()) {
@@ -394,10 +400,4 @@ fn panel(
         }
     }
     Ok(())
-}
-
-/// A number with at most four digits.
-fn short(x: f64) -> String {
-    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
-    axis::plain(rounded)
 }

@@ -247,7 +247,7 @@ impl Strip {
         let far = [corner[0] + side[0], corner[1] + side[1]];
         let edge = [pixel(corner), pixel(far)];
         root.draw(&Rectangle::new(edge, FAINT.stroke_width(fine(1) / 2)))?;
-        let words = format!("t = {}", axis::plain(rounded(time)));
+        let words = format!("t = {}", axis::short(time));
         #[allow(clippy::cast_possible_truncation)]
         let above = (corner[0] as i32, corner[1] as i32 - 17);
         text(root, &words, 12, INK, above)?;
@@ -288,8 +288,8 @@ impl Strip {
             Seen::Graph => {
                 let words = format!(
                     "from site to site; between {} and {}; a dot at the first site",
-                    axis::plain(rounded(self.low[1])),
-                    axis::plain(rounded(self.high[1]))
+                    axis::short(self.low[1]),
+                    axis::short(self.high[1])
                 );
                 #[allow(clippy::cast_possible_truncation)]
                 return text(root, &words, 12, INK, (left as i32, top as i32));
@@ -306,10 +306,7 @@ impl Strip {
             Seen::Plane([a, b]) => format!("component {} to the right, {} up", a + 1, b + 1),
             _ => "seen from one side, component 3 up".to_owned(),
         };
-        let words = format!(
-            "{}; {seen}; a dot at the first site",
-            axis::plain(rounded(length))
-        );
+        let words = format!("{}; {seen}; a dot at the first site", axis::short(length));
         #[allow(clippy::cast_possible_truncation)]
         text(
             root,
@@ -325,9 +322,4 @@ impl Strip {
 fn pixel(place: [f64; 2]) -> (i32, i32) {
     let at = |d: usize| (place[d] * f64::from(fine(1))).round() as i32;
     (at(0), at(1))
-}
-
-/// Four digits are enough beside a picture.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.3e}").parse().unwrap_or(x)
 }
