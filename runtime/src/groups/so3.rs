@@ -78,7 +78,7 @@ const ALLOWED_DEFECT: f64 = 1e-9;
 
 /// Hamilton's product, without any normalisation.
 #[inline(always)]
-pub(super) fn hamilton<T: Real>([a, b, c, d]: [T; 4], [w, x, y, z]: [T; 4]) -> [T; 4] {
+pub(crate) fn hamilton<T: Real>([a, b, c, d]: [T; 4], [w, x, y, z]: [T; 4]) -> [T; 4] {
     [
         (a * w - b * x) - (c * y + d * z),
         (a * x + b * w) + (c * z - d * y),

@@ -3,6 +3,7 @@
 
 use crate::Rotation;
 use crate::card::{Card, Field, Kind, Settings};
+use crate::groups::so3::hamilton;
 use crate::scalar::largest;
 use nalgebra::{DMatrix, Matrix3, SymmetricEigen, Vector3};
 use std::ops::Range;
@@ -58,9 +59,7 @@ impl LongestStep {
             && (!grows || probe.is_left(&least, 1.0 / growth));
         (moved && (swings || grows)).then_some(Self { step, growth })
     }
-}
 
-impl LongestStep {
     /// What is wrong with steps of `h`, if anything: they are too long, or a motion grows as they go on.
     #[must_use]
     pub fn warning(&self, h: f64) -> Option<String> {
@@ -94,7 +93,6 @@ struct Motion {
 }
 
 /// A configuration and its momentum among the initial values and among what is observed.
-#[derive(Clone)]
 struct Moves {
     initial: usize,
     behind: usize,
@@ -117,6 +115,7 @@ struct Probe<'a> {
     /// At rest.
     initial: Vec<Vec<f64>>,
     moves: Vec<Moves>,
+    /// The step of the inquiry.
     h: f64,
     /// The unit of disturbances of each freedom.
     units: Vec<f64>,
@@ -174,13 +173,13 @@ impl<'a> Probe<'a> {
             units,
             rest: Vec::new(),
         };
-        probe.rest = probe.after(&probe.initial)?;
+        probe.rest = probe.after(&probe.initial, h)?;
         Some(probe)
     }
 
-    /// What is observed after one step.
-    fn after(&self, initial: &[Vec<f64>]) -> Option<Vec<f64>> {
-        let settings = Settings::step(self.h);
+    /// What is observed after one step of `h`.
+    fn after(&self, initial: &[Vec<f64>], h: f64) -> Option<Vec<f64>> {
+        let settings = Settings::step(h);
         let mut trajectory = (self.card.open)(self.parameters, initial, settings).ok()?;
         trajectory.step().ok()?;
         let mut out = vec![0.0; self.card.observable_count()];
@@ -191,8 +190,8 @@ impl<'a> Probe<'a> {
     /// Of momenta after a step from rest, disturbed by `v`, what the disturbance adds: minus the stiffness times `v`,
     /// and the step.
     fn stiffness(&self, v: &[f64]) -> Option<Vec<f64>> {
-        let scale = PART / largest(v.iter().zip(&self.units).map(|(x, unit)| x / unit));
-        let after = self.after(&self.disturbed(v, scale)?)?;
+        let scale = PART / self.size(v);
+        let after = self.after(&self.disturbed(v, scale)?, self.h)?;
         let each = self.moves.iter().flat_map(|body| body.momentum.clone());
         let change = each.map(|column| (self.rest[column] - after[column]) / (scale * self.h));
         Some(change.collect())
@@ -214,13 +213,8 @@ impl<'a> Probe<'a> {
                 let target = moved.get_mut(body.behind)?;
                 target.clone_from(&own.iter().map(|x| x * scale).collect());
             }
-            let after = self.after(&moved)?;
-            let mut change = Vec::with_capacity(p.len());
-            for body in &self.moves {
-                let (a, b) = (&self.rest[body.place.clone()], &after[body.place.clone()]);
-                change.extend(difference(body, a, b));
-            }
-            let most = largest(change.iter().zip(&self.units).map(|(x, unit)| x / unit));
+            let change = self.change(&self.rest, &self.after(&moved, self.h)?);
+            let most = self.size(&change);
             if (0.01 * PART..=100.0 * PART).contains(&most) {
                 return Some(change.iter().map(|x| x / (scale * self.h)).collect());
             }
@@ -243,25 +237,24 @@ impl<'a> Probe<'a> {
 
     /// The part of a motion that a step leaves, and the step; `None` where it cannot be made.
     fn left(&self, motion: &Motion, h: f64) -> Option<(f64, f64)> {
-        let longer = Probe {
-            h,
-            initial: self.initial.clone(),
-            moves: self.moves.clone(),
-            units: self.units.clone(),
-            rest: Vec::new(),
-            ..*self
-        };
-        let rest = longer.after(&longer.initial)?;
-        let v = &motion.velocity;
-        let scale = PART / largest(v.iter().zip(&self.units).map(|(x, unit)| x / unit));
-        let moved = self.disturbed(v, scale)?;
-        let after = longer.after(&moved)?;
-        let mut change = Vec::with_capacity(v.len());
-        for body in &self.moves {
-            let (a, b) = (&rest[body.place.clone()], &after[body.place.clone()]);
-            change.extend(difference(body, a, b));
-        }
+        let scale = PART / self.size(&motion.velocity);
+        let moved = self.disturbed(&motion.velocity, scale)?;
+        let change = self.change(&self.after(&self.initial, h)?, &self.after(&moved, h)?);
         Some((h, dot(&motion.momentum, &change) / scale))
+    }
+
+    /// The largest part of a change in units of disturbances.
+    fn size(&self, change: &[f64]) -> f64 {
+        largest(change.iter().zip(&self.units).map(|(x, unit)| x / unit))
+    }
+
+    /// From the configurations of one observation to those of another.
+    fn change(&self, from: &[f64], to: &[f64]) -> Vec<f64> {
+        let each = self.moves.iter().flat_map(|body| {
+            let place = body.place.clone();
+            difference(body, &from[place.clone()], &to[place])
+        });
+        each.collect()
     }
 
     /// The start with a disturbance `scale` times `v`.
@@ -417,9 +410,9 @@ fn disturb(value: &mut Vec<f64>, body: &Moves, by: &[f64]) -> Option<()> {
         _ => {
             let [a, b] = [value.as_slice().try_into().ok()?, turn().quaternion()];
             let next = if body.spatial {
-                product(b, a)
+                hamilton(b, a)
             } else {
-                product(a, b)
+                hamilton(a, b)
             };
             *value = next.to_vec();
         }
@@ -446,22 +439,13 @@ fn difference(body: &Moves, a: &[f64], b: &[f64]) -> Vec<f64> {
             let (a, b) = (of(a), of(b));
             let back = [a[0], -a[1], -a[2], -a[3]];
             let turn = if body.spatial {
-                product(b, back)
+                hamilton(b, back)
             } else {
-                product(back, b)
+                hamilton(back, b)
             };
             turn[1..].iter().map(|x| 2.0 * x).collect()
         }
     }
-}
-
-fn product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
-    [
-        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
-    ]
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
