@@ -6,4 +6,5 @@
 
 pub mod blocks;
 pub mod body;
+pub mod python;
 pub mod truth;

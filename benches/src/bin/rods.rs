@@ -9,11 +9,10 @@ use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::scalar::largest;
 use clebsch::{BodyMomentum, Rotation};
 use clebsch_benches::blocks::computed;
+use clebsch_benches::python;
 use clebsch_models::lattices::geometrically_exact_rod::*;
 use serde_json::Value;
 use std::f64::consts::PI;
-use std::path::Path;
-use std::process::Command;
 
 // The data of python/rod.py.
 const LENGTH: f64 = 1.0;
@@ -90,25 +89,8 @@ fn generated(n: usize, h: f64) -> Run {
 
 /// The same by PyElastica, or why not.
 fn elastica(segments: usize) -> Result<Run, String> {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let (script, made) = (here.join("python/rod.py"), here.join("target/python"));
-    let result = made.join(format!("rod-{segments}.json"));
-    std::fs::create_dir_all(&made).map_err(|e| e.to_string())?;
-    let status = Command::new("python3")
-        .arg(script)
-        .arg("--out")
-        .arg(&result)
-        .arg("--venv")
-        .arg(made.join("venv"))
-        .arg("--segments")
-        .arg(segments.to_string())
-        .status()
-        .map_err(|e| format!("python3 cannot be run: {e}"))?;
-    if !status.success() {
-        return Err("the script could not measure it; its message is above".to_owned());
-    }
-    let text = std::fs::read_to_string(&result).map_err(|e| e.to_string())?;
-    let read: Value = serde_json::from_str(&text).map_err(|e| e.to_string())?;
+    let (result, count) = (format!("rod-{segments}.json"), segments.to_string());
+    let read = python::told("rod.py", &result, &["--segments", &count])?;
     let path = read["path"].as_array().into_iter().flatten();
     Ok(Run {
         path: path.filter_map(Value::as_f64).collect(),

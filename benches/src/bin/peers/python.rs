@@ -4,29 +4,13 @@
 use super::precision::{MOMENTS, MOMENTUM, TIME};
 use super::timing::{Measured, error};
 use clebsch::{DoubleDouble, Real};
+use clebsch_benches::python::told;
 use serde_json::Value;
-use std::path::Path;
-use std::process::Command;
 
 /// Versions in words, and what was measured.
 pub fn measured() -> Result<(String, Vec<Measured>), String> {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let (script, made) = (here.join("python/peers.py"), here.join("target/python"));
-    let result = made.join("peers.json");
-    let status = Command::new("python3")
-        .arg(script)
-        .arg("--out")
-        .arg(&result)
-        .arg("--venv")
-        .arg(made.join("venv"))
-        .status()
-        .map_err(|e| format!("python3 cannot be run: {e}"))?;
-    if !status.success() {
-        return Err("the script could not measure them; its message is above".to_owned());
-    }
-    let text = std::fs::read_to_string(&result).map_err(|e| e.to_string())?;
-    let read: Value = serde_json::from_str(&text).map_err(|e| e.to_string())?;
-    parsed(&read).ok_or_else(|| format!("{} is not what the script writes", result.display()))
+    let read = told("peers.py", "peers.json", &[])?;
+    parsed(&read).ok_or_else(|| "peers.json is not what the script writes".to_owned())
 }
 
 fn parsed(read: &Value) -> Option<(String, Vec<Measured>)> {
