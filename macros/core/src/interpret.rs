@@ -3,7 +3,7 @@
 
 mod functionals;
 
-use crate::check::spec::{Group, Side};
+use crate::check::spec::Group;
 use crate::derive::Derivation;
 use crate::derive::transport::Transport;
 use crate::expr::shape::{Dim, Structure};
@@ -514,10 +514,10 @@ impl Derivation {
                     true => g.transposed(),
                     false => g.inverse_and_det().0,
                 };
-                let w = match c.side {
+                let w = match c.side.is_body() {
                     _ if c.group.is_additive() => next.minus(&g),
-                    Side::Body => inverse(&g).times(&next),
-                    Side::Spatial => next.times(&inverse(&g)),
+                    true => inverse(&g).times(&next),
+                    false => next.times(&inverse(&g)),
                 };
                 all.set(&s.get(c.velocity).name, level, w.rows, w.cols, &w.data);
             }

@@ -4,7 +4,7 @@
 use crate::diagnostic::Place;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::{SymbolId, Symbols};
-use crate::expr::{Expr, Letter, Shift};
+use crate::expr::{self, Expr, Letter, Shift};
 use crate::syntax::ast::{Comparison, NodeRule};
 
 pub use crate::groups::Group;
@@ -16,6 +16,54 @@ pub enum Side {
     Body,
     /// `next(Λ) = ω Λ`: right-invariant systems, velocity and momentum in the space frame.
     Spatial,
+}
+
+impl Side {
+    /// Both sides, the body's first.
+    pub const BOTH: [Side; 2] = [Side::Body, Side::Spatial];
+
+    /// Whether velocities are seen from the body.
+    pub fn is_body(self) -> bool {
+        self == Side::Body
+    }
+
+    /// Whether velocities are seen from space.
+    pub fn is_spatial(self) -> bool {
+        self == Side::Spatial
+    }
+
+    /// The other side.
+    pub fn opposite(self) -> Side {
+        self.of(Side::Spatial, Side::Body)
+    }
+
+    /// The one of two that belongs to this side.
+    pub fn of<T>(self, body: T, space: T) -> T {
+        match self {
+            Side::Body => body,
+            Side::Spatial => space,
+        }
+    }
+
+    /// The frame of velocities and momenta, in one word.
+    pub fn frame(self) -> &'static str {
+        self.of("body", "space")
+    }
+
+    /// Two factors in the order of this side: `a b` seen from the body, `b a` from space, as an
+    /// element and its velocity in `Λ Ω` and `ω Λ`.
+    pub fn ordered<T>(self, a: T, b: T) -> (T, T) {
+        match self {
+            Side::Body => (a, b),
+            Side::Spatial => (b, a),
+        }
+    }
+
+    /// The product of two factors in the order of this side.
+    pub fn product(self, a: Expr, b: Expr) -> Expr {
+        let (first, second) = self.ordered(a, b);
+        expr::mul(first, second)
+    }
 }
 
 /// A configuration variable and its velocity.

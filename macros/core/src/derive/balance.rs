@@ -7,7 +7,7 @@ use super::action::Action;
 use super::far;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
-use crate::check::spec::{Configuration, Side, Spec};
+use crate::check::spec::{Configuration, Spec};
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
@@ -119,7 +119,7 @@ fn balance(
     let (outgoing, incoming) = (total(&edge_out, &node_out), total(&edge_in, &node_in));
     // What potentials add, if that is all that the step adds.
     let acting = || {
-        if c.side == Side::Body {
+        if c.side.is_body() {
             return None;
         }
         let at = |shift| nodes_of(&action.distributed, shift);
@@ -171,7 +171,7 @@ fn increment(
     incoming: &Expr,
     algebra: &Algebra,
 ) -> Option<Expr> {
-    if c.side == Side::Body {
+    if c.side.is_body() {
         return None;
     }
     let difference = expr::sub(incoming.clone(), outgoing.clone());

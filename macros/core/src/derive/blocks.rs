@@ -11,7 +11,7 @@ use super::seen_from_body::outgoing;
 use super::variation::at;
 use super::{Derivation, Letters};
 use crate::algebra::Algebra;
-use crate::check::spec::{Hold, Side, Spec};
+use crate::check::spec::{Hold, Spec};
 use crate::expr::{self, Expr, Shift};
 
 /// Configurations whose velocities are solved together.
@@ -162,7 +162,7 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize
                 "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
             ),
             Riccati::Quaternionic(q)
-                if is_constant(letters, &q.edge) && spec.configurations[*i].side == Side::Body =>
+                if is_constant(letters, &q.edge) && spec.configurations[*i].side.is_body() =>
             {
                 let why = "A is constant and symmetric, β constant: one equation for one number";
                 (Method::UnitQuaternions, why.to_owned())

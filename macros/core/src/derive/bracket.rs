@@ -6,7 +6,7 @@
 use super::Letters;
 use super::action::Action;
 use super::variation::{Variation, at};
-use crate::check::spec::{Side, Spec};
+use crate::check::spec::Spec;
 use crate::derive::Derivation;
 use crate::expr::shape::{Dim, Structure};
 use crate::expr::symbol::{SymbolId, Symbols};
@@ -97,9 +97,10 @@ pub fn bracket(
         );
         let along = |e: Expr| c.group.pairing(s, mu.clone(), e);
         let value = c.group.bracket(s, mu.clone(), xi.clone(), eta.clone());
-        let value = match c.side {
-            Side::Body => expr::neg(value),
-            Side::Spatial => value,
+        let value = if c.side.is_body() {
+            expr::neg(value)
+        } else {
+            value
         };
         rows.push(Row {
             first: along(xi),

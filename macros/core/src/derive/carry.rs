@@ -11,7 +11,7 @@ use super::rounding::Rounding;
 use super::transport::Transport;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
-use crate::check::spec::{Configuration, Side, Spec};
+use crate::check::spec::{Configuration, Spec};
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
@@ -113,24 +113,22 @@ impl Work<'_> {
             straight: self.is_straight(c, b),
         };
         // What is free of velocities is a force, and of the step's own size.
-        match (c.side, &b.increment) {
-            (Side::Spatial, Some(added)) => return Carry::Kept(added.clone()),
-            (Side::Body, _) if !self.moving(&through) => return through,
+        match &b.increment {
+            Some(added) if c.side.is_spatial() => return Carry::Kept(added.clone()),
+            _ if c.side.is_body() && !self.moving(&through) => return through,
             _ => {}
         }
         let through = self.rounded_least(i, c, through);
         let kept = Carry::Kept(self.added(i, c));
         if self.algebra.exhausted() {
             // A model at the limit of the engine: the plain difference is as right, if less exact.
-            return match c.side {
-                Side::Body => through,
-                Side::Spatial => Carry::Kept(expr::sub(b.incoming.clone(), b.outgoing.clone())),
+            return if c.side.is_body() {
+                through
+            } else {
+                Carry::Kept(expr::sub(b.incoming.clone(), b.outgoing.clone()))
             };
         }
-        let (first, second) = match c.side {
-            Side::Body => (through, kept),
-            Side::Spatial => (kept, through),
-        };
+        let (first, second) = c.side.ordered(through, kept);
         let loss = |carry: &Carry| match carry.is_zero() {
             true => f64::INFINITY,
             false => {
@@ -180,7 +178,7 @@ impl Work<'_> {
     /// Whether the linear momentum that a velocity brings is along the way, in body axes.
     fn is_straight(&self, c: &Configuration, b: &Balance) -> bool {
         let s = self.symbols;
-        let Some(rigid) = c.group.rigid().filter(|_| c.side == Side::Body) else {
+        let Some(rigid) = c.group.rigid().filter(|_| c.side.is_body()) else {
             return false;
         };
         let way = expr::column(s, &expr::here(s, c.velocity));

@@ -8,7 +8,7 @@ use super::balance::{pairing, shorter};
 use super::limit::Limit;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
-use crate::check::spec::{Configuration, Group, Side, Spec};
+use crate::check::spec::{Configuration, Group, Spec};
 use crate::expr::shape::Shape;
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter, Node, Shift};
@@ -161,8 +161,9 @@ fn coadjoint(letters: &Letters, c: &Configuration, i: usize) -> Expr {
     let s = &letters.symbols;
     let mu = expr::here(s, letters.node_momentum[i]);
     let zeta = expr::here(s, letters.rate[i]);
-    match c.side {
-        Side::Body => c.group.coadjoint(s, mu, zeta),
-        Side::Spatial => c.group.coadjoint_in_space(s, mu, zeta),
+    if c.side.is_body() {
+        c.group.coadjoint(s, mu, zeta)
+    } else {
+        c.group.coadjoint_in_space(s, mu, zeta)
     }
 }

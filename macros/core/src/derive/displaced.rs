@@ -10,7 +10,6 @@ use super::recognise::Riccati;
 use super::transport::Transport;
 use super::variation::at;
 use crate::algebra::Algebra;
-use crate::check::spec::Side;
 use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 
@@ -82,25 +81,26 @@ impl Space<'_> {
         let placement = expr::here(s, c.element);
         let back = expr::inverse(s, placement.clone());
         let across = expr::transpose(s, back.clone());
-        let (left, right) = match c.side {
-            Side::Body => (
+        let (left, right) = if c.side.is_body() {
+            (
                 expr::product([across, form.left.clone(), back]),
                 form.right.clone(),
-            ),
-            Side::Spatial => (
+            )
+        } else {
+            (
                 form.left.clone(),
                 expr::product([back, form.right.clone(), across]),
-            ),
+            )
         };
         let step = expr::here(s, d.spec.step);
         let left = self.constant(&expr::mul(step, left))?;
         let right = self.constant(&right)?;
-        let (leave, arrive) = match (c.side, &d.carries[self.i]) {
-            (Side::Body, Carry::Through { leave, arrive, .. }) => (
+        let (leave, arrive) = match &d.carries[self.i] {
+            Carry::Through { leave, arrive, .. } if c.side.is_body() => (
                 self.in_space(leave, Shift::HERE.time)?,
                 self.in_space(arrive, Shift::NEXT.time)?,
             ),
-            (Side::Spatial, Carry::Kept(added)) => {
+            Carry::Kept(added) if c.side.is_spatial() => {
                 (self.in_space(added, Shift::HERE.time)?, (None, None))
             }
             _ => return None,
@@ -154,10 +154,7 @@ impl Space<'_> {
         let still = expr::substitute(s, e, &[(velocity, one.clone())]);
         let back = expr::inverse(s, expr::here(s, c.element));
         let change = expr::here(s, d.letters.direction[self.i]);
-        let along = match c.side {
-            Side::Body => expr::mul(back, change),
-            Side::Spatial => expr::mul(change, back),
-        };
+        let along = c.side.product(back, change);
         let moving = match expr::contains(e, velocity) {
             true => {
                 let way = [(velocity, expr::add(one, along))];
@@ -167,9 +164,10 @@ impl Space<'_> {
             }
             false => expr::zero(e.shape()),
         };
-        let still = match c.side {
-            Side::Body => self.turned(&still, time)?,
-            Side::Spatial => super::balance::shorter(self.algebra, still),
+        let still = if c.side.is_body() {
+            self.turned(&still, time)?
+        } else {
+            super::balance::shorter(self.algebra, still)
         };
         let some = |e: Expr| (!e.is_zero()).then_some(e);
         (!divides(s, &still) && !divides(s, &moving)).then(|| (some(still), some(moving)))
@@ -230,12 +228,11 @@ impl Space<'_> {
         let s = &self.d.letters.symbols;
         let c = &self.d.spec.configurations[self.i];
         let placement = expr::shift_time(s, &expr::here(s, c.element), time);
-        match c.side {
-            Side::Body => {
-                let across = expr::transpose(s, expr::inverse(s, placement.clone()));
-                expr::product([across, e, expr::transpose(s, placement)])
-            }
-            Side::Spatial => e,
+        if c.side.is_body() {
+            let across = expr::transpose(s, expr::inverse(s, placement.clone()));
+            expr::product([across, e, expr::transpose(s, placement)])
+        } else {
+            e
         }
     }
 
@@ -250,7 +247,7 @@ impl Space<'_> {
         };
         let s = &d.letters.symbols;
         let square = s.get(quantity.quantity).shape == c.group.shape();
-        if c.side == Side::Spatial || !square {
+        if c.side.is_spatial() || !square {
             return None;
         }
         let seen = self.told_in_space(value.clone(), Shift::HERE.time);

@@ -204,9 +204,10 @@ impl Eliminated {
             for j in &left {
                 let mut total = self.written(&of(*i, *j));
                 for p in &self.places {
-                    let column = match side {
-                        Side::Body => along[i * count + p.block].clone(),
-                        Side::Spatial => of(*i, p.block),
+                    let column = if side.is_body() {
+                        along[i * count + p.block].clone()
+                    } else {
+                        of(*i, p.block)
                     };
                     total = expr::sub(
                         total,

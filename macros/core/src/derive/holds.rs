@@ -266,7 +266,7 @@ impl Derivation {
 fn seen_from_body(spec: &Spec, s: &Symbols, hold: &Hold) -> Expr {
     let (mut ends, mut velocities) = (Vec::new(), Vec::new());
     for c in &spec.configurations {
-        if c.side == Side::Body || c.group.is_additive() {
+        if c.side.is_body() || c.group.is_additive() {
             ends.push((at(c.element, Shift::NEXT), c.update.clone()));
             continue;
         }

@@ -2,7 +2,7 @@
 //! Lie algebra, and its momentum as the other end of an edge sees it. The groups' own part stands in
 //! [`crate::groups`].
 
-use crate::check::spec::{Configuration, Side};
+use crate::check::spec::Configuration;
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::groups::Group;
@@ -15,12 +15,11 @@ pub fn element(symbols: &Symbols, group: Group, letter: SymbolId) -> Expr {
 /// The momentum at the end of an edge as the start of the edge sees it: spatial momenta are one
 /// and the same, body momenta are carried by the velocity.
 pub fn seen_from_start(symbols: &Symbols, c: &Configuration, covector: Expr) -> Expr {
-    match c.side {
-        Side::Body => {
-            let velocity = expr::here(symbols, c.velocity);
-            c.group.to_space(symbols, &velocity, covector)
-        }
-        Side::Spatial => covector,
+    if c.side.is_body() {
+        let velocity = expr::here(symbols, c.velocity);
+        c.group.to_space(symbols, &velocity, covector)
+    } else {
+        covector
     }
 }
 

@@ -42,7 +42,7 @@ pub mod warnings;
 pub use outline::{Outline, outline};
 
 use crate::algebra::Algebra;
-use crate::check::spec::{Side, Spec};
+use crate::check::spec::Spec;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
@@ -157,10 +157,9 @@ fn letters(spec: &Spec) -> Letters {
         ));
         edge.push(numbered("M", i, algebra, structure, Role::Derived));
         let (covector, structure) = c.group.dual();
-        let name = match c.side {
-            _ if c.group.is_additive() => "p",
-            Side::Body => "μ",
-            Side::Spatial => "m",
+        let name = match c.group.is_additive() {
+            true => "p",
+            false => c.side.of("μ", "m"),
         };
         node.push(numbered(name, i, covector, structure, Role::Derived));
     }

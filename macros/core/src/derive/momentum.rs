@@ -71,10 +71,7 @@ fn momentum(
         Some(_) => matrix(carry(raw)),
         None => carry(edge.clone()),
     };
-    let (start, end) = match c.side {
-        Side::Body => (edge.clone(), carried),
-        Side::Spatial => (carried, edge.clone()),
-    };
+    let (start, end) = c.side.ordered(edge.clone(), carried);
     let p = expr::letter(s, letters.momentum[i], Shift::HERE);
     let product = c.group.pulled_back(s, c.side, expr::here(s, c.element), p);
     let cotangent = if c.group.is_orthogonal() {

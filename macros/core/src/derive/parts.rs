@@ -99,31 +99,26 @@ impl Parts {
         let letter = |id: SymbolId| expr::here(&self.symbols, id);
         let along = letter(self.direction);
         let half = |e: Expr| expr::scale(Rational::HALF, e);
-        let turned = |w: SymbolId| match side {
-            Side::Body => expr::mul(letter(w), expr::hat(along.clone())),
-            Side::Spatial => expr::mul(expr::hat(along.clone()), letter(w)),
-        };
+        let turned = |w: SymbolId| side.product(letter(w), expr::hat(along.clone()));
         let mut all = Vec::new();
         for v in &self.velocities {
             match *v {
                 Velocity::Rotation(w) => all.push(vec![(at(w), turned(w))]),
                 Velocity::Quaternion(re, im) => {
-                    let across = match side {
-                        Side::Body => expr::cross(letter(im), along.clone()),
-                        Side::Spatial => expr::cross(along.clone(), letter(im)),
-                    };
+                    let (first, second) = side.ordered(letter(im), along.clone());
+                    let across = expr::cross(first, second);
                     let turned = expr::add(expr::mul(letter(re), along.clone()), across);
                     let real = expr::neg(half(expr::dot(letter(im), along.clone())));
                     all.push(vec![(at(re), real), (at(im), half(turned))]);
                 }
-                Velocity::Motion(rot, pos) => match side {
-                    Side::Body => {
+                Velocity::Motion(rot, pos) => match side.is_body() {
+                    true => {
                         let shift = expr::mul(letter(rot), along.clone());
                         all.push(vec![(at(rot), turned(rot))]);
                         all.push(vec![(at(pos), shift)]);
                     }
                     // The translation is turned along.
-                    Side::Spatial => {
+                    false => {
                         let carried = expr::mul(expr::hat(along.clone()), letter(pos));
                         all.push(vec![(at(rot), turned(rot)), (at(pos), carried)]);
                         all.push(vec![(at(pos), along.clone())]);

@@ -12,7 +12,7 @@ use super::seen_from_body::seen_from_body;
 use super::transport::Transport;
 use super::variation::at;
 use crate::algebra::{Algebra, Poly, Rational};
-use crate::check::spec::{Configuration, Side, Spec};
+use crate::check::spec::{Configuration, Spec};
 use crate::expr::shape::Dim;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
@@ -266,7 +266,7 @@ fn turned(
 ) -> Option<Expr> {
     let s = &letters.symbols;
     let c = &spec.configurations[0];
-    if c.side != Side::Spatial {
+    if c.side.is_body() {
         return None;
     }
     let values = carried(spec, transports);
@@ -332,7 +332,7 @@ fn torque(
 ) -> Option<Expr> {
     let s = &letters.symbols;
     let c = &spec.configurations[i];
-    if c.side == Side::Body || !rest.shape().is_vector() {
+    if c.side.is_body() || !rest.shape().is_vector() {
         return None;
     }
     let (before, after) = (expr::shift_time(s, arrive, -1), expr::neg(rest.clone()));
@@ -409,15 +409,14 @@ fn in_body(
         return None;
     }
     let carried = expr::substitute(s, factor, &values);
-    if c.side == Side::Body && !expr::contains_role(s, &carried, Role::Element) {
+    if c.side.is_body() && !expr::contains_role(s, &carried, Role::Element) {
         return Some(carried);
     }
-    let seen = match c.side {
-        Side::Body => carried,
-        Side::Spatial => {
-            let element = frame(s, c);
-            expr::product([expr::transpose(s, element.clone()), carried, element])
-        }
+    let seen = if c.side.is_body() {
+        carried
+    } else {
+        let element = frame(s, c);
+        expr::product([expr::transpose(s, element.clone()), carried, element])
     };
     let reduced = shorter(algebra, algebra.raise(&algebra.lower(&seen)));
     (!expr::contains_role(s, &reduced, Role::Element)).then_some(reduced)
@@ -437,16 +436,15 @@ fn arrive(
     if transports.iter().any(|t| matches!(t, Transport::Advanced)) {
         return None;
     }
-    let value = match spec.configurations[i].side {
-        Side::Body => (*rest == b.node_out).then(|| b.node_in.clone())?,
-        Side::Spatial => {
-            let total = expr::add(b.increment.clone()?, rest.clone());
-            let short = match total.shape().is_vector() {
-                true => expr::vee(algebra.raise(&algebra.lower(&expr::hat(total.clone())))),
-                false => algebra.raise(&algebra.lower(&total)),
-            };
-            shorter(algebra, short)
-        }
+    let value = if spec.configurations[i].side.is_body() {
+        (*rest == b.node_out).then(|| b.node_in.clone())?
+    } else {
+        let total = expr::add(b.increment.clone()?, rest.clone());
+        let short = match total.shape().is_vector() {
+            true => expr::vee(algebra.raise(&algebra.lower(&expr::hat(total.clone())))),
+            false => algebra.raise(&algebra.lower(&total)),
+        };
+        shorter(algebra, short)
     };
     let here = |l: &Letter| {
         let constant = matches!(s.get(l.symbol).role, Role::Parameter | Role::Step);

@@ -31,7 +31,7 @@ pub fn seen_from_body(
     letters: &Letters,
     balances: &[Balance],
 ) -> Option<Vec<Expr>> {
-    let spatial = |c: &Configuration| c.side == Side::Spatial && !c.group.is_additive();
+    let spatial = |c: &Configuration| c.side.is_spatial() && !c.group.is_additive();
     if !spec.configurations.iter().any(spatial) {
         return None;
     }
@@ -75,7 +75,7 @@ fn turned(spec: &Spec, letters: &Letters) -> Spec {
     let mut turned = spec.clone();
     let mut velocities = Vec::new();
     for c in &mut turned.configurations {
-        if c.side == Side::Body || c.group.is_additive() {
+        if c.side.is_body() || c.group.is_additive() {
             continue;
         }
         let (g, v) = (expr::here(s, c.element), expr::here(s, c.velocity));

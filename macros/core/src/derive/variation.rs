@@ -5,7 +5,7 @@
 use super::Letters;
 use super::lie;
 use crate::algebra::{Algebra, Factor, Poly, Rational, Source};
-use crate::check::spec::{Advected, Configuration, Group, Side, Spec};
+use crate::check::spec::{Advected, Configuration, Group, Spec};
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::{SymbolId, Symbols};
@@ -83,10 +83,7 @@ fn of_configuration(c: &Configuration, letters: &Letters, i: usize) -> Variation
     let out = expr::here(s, c.velocity);
     let back = expr::letter(s, c.velocity, Shift::PREVIOUS);
     // The velocity that leaves moves on its other side.
-    let other = match c.side {
-        Side::Body => Side::Spatial,
-        Side::Spatial => Side::Body,
-    };
+    let other = c.side.opposite();
     let d_out = expr::neg(c.group.moved(other, out, xi.clone()));
     let (dg, d_in) = (
         c.group.moved(c.side, g, xi.clone()),
@@ -291,7 +288,7 @@ fn wrong_side(
         acting.map_or(String::new(), |c| s.get(of(c)).name.clone())
     };
     let (g, w) = (text(|c| c.element), text(|c| c.velocity));
-    let body = acting.is_none_or(|c| c.side == Side::Body);
+    let body = acting.is_none_or(|c| c.side.is_body());
     let (there, back) = acting.map_or_else(
         || (w.clone(), format!("{w}^T")),
         |c| action(c.group, &w, shape.rows),

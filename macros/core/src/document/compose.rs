@@ -3,7 +3,7 @@
 
 use super::sheet::{Sheet, references};
 use super::{holds, motion, outlook, scheme, solution, source, structure};
-use crate::check::spec::{Side, Subject};
+use crate::check::spec::Subject;
 use crate::derive::Derivation;
 use crate::derive::clebsch::constraint_terms;
 use crate::derive::warnings::Warning;
@@ -188,11 +188,11 @@ fn constraints(sheet: &Sheet, doc: &mut Document) {
         }
         // Bodies have a frame of their own, deformable ones a reference shape.
         let rigid = !c.group.is_linear();
-        let (frame, product) = match (rigid, c.side) {
-            (true, Side::Body) => ("; its velocity in the body is ", true),
-            (true, Side::Spatial) => ("; its velocity in space is ", false),
-            (false, Side::Body) => ("; its convective velocity is ", true),
-            (false, Side::Spatial) => ("; its velocity in space is ", false),
+        let (frame, product) = match (rigid, c.side.is_body()) {
+            (true, true) => ("; its velocity in the body is ", true),
+            (true, false) => ("; its velocity in space is ", false),
+            (false, true) => ("; its convective velocity is ", true),
+            (false, false) => ("; its velocity in space is ", false),
         };
         let from = if rigid {
             "the body"

@@ -3,7 +3,7 @@
 
 use super::compose::{pairing, relation_label, transport_label, variation_label};
 use super::sheet::{Sheet, references};
-use crate::check::spec::{Configuration, Side};
+use crate::check::spec::Configuration;
 use crate::derive::momentum::Momentum;
 use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Letter, Shift};
@@ -63,10 +63,9 @@ pub fn momentum_maps(sheet: &Sheet, doc: &mut Document) {
     let section = doc.section("Momentum maps");
     definitions(sheet, section);
     for (i, (c, m)) in d.spec.configurations.iter().zip(&d.momenta).enumerate() {
-        let translation = match c.side {
-            _ if c.group.is_additive() => "translation",
-            Side::Body => "right translation",
-            Side::Spatial => "left translation",
+        let translation = match c.group.is_additive() {
+            true => "translation",
+            false => c.side.of("right translation", "left translation"),
         };
         let lifted = if (0..d.spec.advected.len()).any(|j| sheet.moves(i, j)) {
             " and of the associated action on the advected quantities, cotangent-lifted to the multipliers, at a node:"
@@ -247,10 +246,10 @@ fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize
     if c.group.is_additive() {
         return of_field(sheet, section, c, i);
     }
-    let (behind, before) = match c.side {
-        Side::Body => ("from the right", "from the left"),
-        Side::Spatial => ("from the left", "from the right"),
-    };
+    let (behind, before) = c.side.of(
+        ("from the right", "from the left"),
+        ("from the left", "from the right"),
+    );
     let half = if c.group.is_orthogonal() {
         " and take twice the skew part"
     } else if c.group.coordinates().is_some() {
@@ -273,15 +272,16 @@ fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize
     words.extend(references(&others));
     words.push(" this gives the momentum map at the start of the edge:".into());
     section.paragraph(words);
-    let (start, end) = match c.side {
-        Side::Body => (
+    let (start, end) = if c.side.is_body() {
+        (
             sheet.edge_momentum(i, Shift::HERE),
             carried(sheet, c, i, Shift::HERE),
-        ),
-        Side::Spatial => (
+        )
+    } else {
+        (
             carried(sheet, c, i, Shift::HERE),
             sheet.edge_momentum(i, Shift::HERE),
-        ),
+        )
     };
     let mut terms = vec![sheet.lifted(i, 0)];
     terms.extend(diamonds(sheet, i));
@@ -351,15 +351,16 @@ pub fn balance(sheet: &Sheet, doc: &mut Document) {
             Inline::reference(&format!("start {i}")),
             " eliminates the multipliers:".into(),
         ]);
-        let (left, first) = match c.side {
-            Side::Body => (
+        let (left, first) = if c.side.is_body() {
+            (
                 sheet.edge_momentum(i, Shift::HERE),
                 carried(sheet, c, i, Shift::PREVIOUS),
-            ),
-            Side::Spatial => (
+            )
+        } else {
+            (
                 carried(sheet, c, i, Shift::HERE),
                 sheet.edge_momentum(i, Shift::PREVIOUS),
-            ),
+            )
         };
         let terms: Vec<Formula> = [first].into_iter().chain(diamonds(sheet, i)).collect();
         section.sourced(
@@ -382,10 +383,9 @@ pub fn balance(sheet: &Sheet, doc: &mut Document) {
             section.paragraph(words);
         }
         let mu = sheet.here(d.letters.node_momentum[i]);
-        let frame = match c.side {
-            _ if c.group.is_additive() => "",
-            Side::Body => "body ",
-            Side::Spatial => "spatial ",
+        let frame = match c.group.is_additive() {
+            true => "",
+            false => c.side.of("body ", "spatial "),
         };
         section.paragraph([
             format!("In terms of the {frame}momentum ").into(),

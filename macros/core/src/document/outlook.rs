@@ -2,7 +2,7 @@
 //! limit of small steps, and the list of identities that prove the derivation.
 
 use super::sheet::{Sheet, references};
-use crate::check::spec::{Configuration, Side};
+use crate::check::spec::Configuration;
 use crate::derive::holds;
 use crate::derive::invariants::{Invariant, Kind, Known};
 use crate::derive::limit::STANDING;
@@ -222,9 +222,10 @@ fn equations(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize, 
         Relation::Equal,
     )));
     let ad_star = Formula::lie_ad_star(sheet.here(*zeta), mu.clone());
-    let ad_star = match c.side {
-        Side::Body => ad_star,
-        Side::Spatial => Formula::neg(ad_star),
+    let ad_star = if c.side.is_body() {
+        ad_star
+    } else {
+        Formula::neg(ad_star)
     };
     let mut named = match field {
         true => Vec::new(),

@@ -2,7 +2,7 @@
 //! of the model bears, and the small formulas that recur.
 
 use super::thesis::Thesis;
-use crate::check::spec::{Configuration, Side};
+use crate::check::spec::Configuration;
 use crate::derive::Derivation;
 use crate::expr::symbol::{SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
@@ -87,10 +87,8 @@ impl<'a> Sheet<'a> {
         } else {
             String::new()
         };
-        let side = match self.d.spec.configurations.get(i).map(|c| c.side) {
-            Some(Side::Spatial) => "L",
-            Some(Side::Body) | None => "R",
-        };
+        let acting = self.d.spec.configurations.get(i);
+        let side = acting.map_or("R", |c| c.side.of("R", "L"));
         Formula::name(&format!("J^{side}_{{{number}{}}}", self.index(by)))
     }
 

@@ -4,7 +4,7 @@
 //! A model of another structure cites nothing.
 
 use crate::algebra::Algebra;
-use crate::check::spec::{Configuration, Side};
+use crate::check::spec::Configuration;
 use crate::derive::Derivation;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::Role;
@@ -93,10 +93,9 @@ impl<'a> Thesis<'a> {
         let c = self
             .configuration(i)
             .filter(|c| c.group.coordinates().is_none() && !c.group.is_additive())?;
-        cite(match (c.group.is_orthogonal(), c.side) {
-            (true, Side::Body) => "(2.62)",
-            (true, Side::Spatial) => "(2.106)",
-            (false, _) => "(3.16)",
+        cite(match c.group.is_orthogonal() {
+            true => c.side.of("(2.62)", "(2.106)"),
+            false => "(3.16)",
         })
     }
 
@@ -161,13 +160,13 @@ impl<'a> Thesis<'a> {
             if self.holds_elements() || other {
                 return None;
             }
-            return cite(match (self.system, c.group.is_orthogonal(), c.side) {
+            return cite(match (self.system, c.group.is_orthogonal()) {
                 (Some(System::HeavyTop), ..) => "(2.145) corrected: there $Ωᵀ P$ for $P Ωᵀ$",
                 (Some(System::CoupledBodies), ..) => "(2.170)",
-                (_, true, Side::Body) => "(2.60)",
-                (_, true, Side::Spatial) => "(2.104)",
-                (_, false, Side::Body) => "(3.28)",
-                (_, false, Side::Spatial) => "(3.36), whose solved form prints $Γ$ for $γ$",
+                (_, true) => c.side.of("(2.60)", "(2.104)"),
+                (_, false) => c
+                    .side
+                    .of("(3.28)", "(3.36), whose solved form prints $Γ$ for $γ$"),
             });
         }
         if spec.configurations.iter().any(is_velocity) {
@@ -326,11 +325,11 @@ fn carried(d: &Derivation, algebra: &Algebra, j: usize) -> Carried {
             if shape.rows != c.group.size() {
                 return Carried::Other;
             }
-            match c.side {
-                Side::Body if shape.is_vector() && is(expr::mul(t(w(c)), own.clone())) => {
+            match c.side.is_body() {
+                true if shape.is_vector() && is(expr::mul(t(w(c)), own.clone())) => {
                     Carried::BodyVector
                 }
-                Side::Spatial
+                false
                     if structure == Structure::Symmetric
                         && is(expr::product([w(c), own.clone(), t(w(c))])) =>
                 {
@@ -339,16 +338,16 @@ fn carried(d: &Derivation, algebra: &Algebra, j: usize) -> Carried {
                 _ => Carried::Other,
             }
         }
-        [c] if structure == Structure::Symmetric && shape.rows == c.group.size() => match c.side {
-            Side::Body if is(expr::product([t(w(c)), own.clone(), w(c)])) => Carried::BodyMetric,
-            Side::Spatial if is(expr::product([w(c), own.clone(), t(w(c))])) => {
-                Carried::SpatialShape
+        [c] if structure == Structure::Symmetric && shape.rows == c.group.size() => {
+            match c.side.is_body() {
+                true if is(expr::product([t(w(c)), own.clone(), w(c)])) => Carried::BodyMetric,
+                false if is(expr::product([w(c), own.clone(), t(w(c))])) => Carried::SpatialShape,
+                _ => Carried::Other,
             }
-            _ => Carried::Other,
-        },
+        }
         [a, b]
             if [a, b].iter().all(|c| {
-                c.group.is_orthogonal() && c.side == Side::Body && c.group.size() == shape.rows
+                c.group.is_orthogonal() && c.side.is_body() && c.group.size() == shape.rows
             }) && shape.is_square() =>
         {
             let between = |x: &Configuration, y: &Configuration| {
@@ -395,7 +394,7 @@ fn system(d: &Derivation, algebra: &Algebra, carried: &[Carried]) -> Option<Syst
         carried,
         gradients.as_slice(),
     ) {
-        ([c], [], _) if c.group.is_orthogonal() && c.side == Side::Body => {
+        ([c], [], _) if c.group.is_orthogonal() && c.side.is_body() => {
             (rigid && nodal.is_zero()).then_some(System::FreeBody)
         }
         ([_], [Carried::BodyVector], _) => {
@@ -413,11 +412,11 @@ fn system(d: &Derivation, algebra: &Algebra, carried: &[Carried]) -> Option<Syst
             let bilinear = coupled(d, algebra, [a, b], [g1, g2]);
             (nodal.is_zero() && bilinear).then_some(System::CoupledBodies)
         }
-        ([c], [Carried::BodyMetric], [g]) => {
-            quadratic(d, algebra, c, g, Side::Body).then_some(System::ConvectiveEllipsoid)
+        ([c], [Carried::BodyMetric], [g]) if c.side.is_body() => {
+            quadratic(d, algebra, c, g).then_some(System::ConvectiveEllipsoid)
         }
-        ([c], [Carried::SpatialShape], [g]) => {
-            quadratic(d, algebra, c, g, Side::Spatial).then_some(System::SpatialEllipsoid)
+        ([c], [Carried::SpatialShape], [g]) if c.side.is_spatial() => {
+            quadratic(d, algebra, c, g).then_some(System::SpatialEllipsoid)
         }
         _ => None,
     }
@@ -443,7 +442,7 @@ fn coupled(
 
 /// `h ∇ℓ` is `C (G - Id) I0` on the body side, `C0 (γ - Id) I` on the spatial side, with a constant
 /// matrix that is read off at twice the identity.
-fn quadratic(d: &Derivation, algebra: &Algebra, c: &Configuration, g: &Expr, side: Side) -> bool {
+fn quadratic(d: &Derivation, algebra: &Algebra, c: &Configuration, g: &Expr) -> bool {
     let s = &d.letters.symbols;
     let w = expr::here(s, c.velocity);
     let id = expr::identity(c.group.size());
@@ -451,19 +450,14 @@ fn quadratic(d: &Derivation, algebra: &Algebra, c: &Configuration, g: &Expr, sid
     let back = expr::inverse(s, a.clone());
     let two = expr::scale(crate::algebra::Rational::integer(2), id.clone());
     let there = expr::substitute(s, g, &[(at(c.velocity), two)]);
-    let constant = match side {
-        Side::Body => expr::mul(back, there),
-        Side::Spatial => expr::mul(there, back),
-    };
+    let constant = c.side.product(back, there);
     let constant = algebra.raise(&algebra.lower(&constant));
     let parameters = expr::letters(&constant)
         .iter()
         .all(|l| s.get(l.symbol).role == Role::Parameter);
     let moved = expr::sub(w, id);
-    let expected = match side {
-        Side::Body => expr::product([a, moved, constant]),
-        Side::Spatial => expr::product([constant, moved, a]),
-    };
+    let (first, last) = c.side.ordered(a, constant);
+    let expected = expr::product([first, moved, last]);
     let nodal = !expr::contains_role(s, &d.action.nodal, Role::Element);
     parameters && nodal && !expected.is_zero() && algebra.equal(g, &expected)
 }

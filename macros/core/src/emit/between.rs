@@ -6,7 +6,6 @@ use super::expression::Bindings;
 use super::items::{advanced, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, own, tagged};
 use super::step::at;
-use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::expr::{self, Expr, Shift};
 use proc_macro2::TokenStream;
@@ -36,12 +35,12 @@ pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr]) -> Ed
     let mut locals = TokenStream::new();
     for (i, c) in d.spec.configurations.iter().enumerate() {
         let (own, name) = (own(d, c.element), tagged(d, names, c.velocity, "matrix"));
-        let value = match (element::rests(d, i), c.side) {
-            (Some([rest, _]), _) => quote! {
+        let velocity = element::velocity_between(c);
+        let value = match element::rests(d, i) {
+            Some([rest, _]) => quote! {
                 #before.#own.velocity_between(&#before.#rest, &#after.#own, &#after.#rest)
             },
-            (None, Side::Body) => quote!(#before.#own.body_velocity(&#after.#own)),
-            (None, Side::Spatial) => quote!(#before.#own.spatial_velocity(&#after.#own)),
+            None => quote!(#before.#own.#velocity(&#after.#own)),
         };
         let value = element::matrix(c, value);
         locals.extend(quote!(let #name = #value;));

@@ -277,7 +277,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             known.push(mv.factor.clone());
         }
         let c = &d.spec.configurations[i];
-        if c.side == Side::Body && family(c) == Family::Rotation {
+        if c.side.is_body() && family(c) == Family::Rotation {
             needed.push(at(c.element, Shift::HERE));
         }
     }

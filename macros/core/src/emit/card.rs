@@ -104,13 +104,15 @@ fn element_field(d: &Derivation, i: usize) -> FieldOf {
 
 fn momentum_field(d: &Derivation, i: usize, side: Side) -> FieldOf {
     let c = &d.spec.configurations[i];
-    let (kind, doc) = match side {
-        _ if c.group.is_additive() => {
+    let (kind, doc) = match c.group.is_additive() {
+        true => {
             let name = &d.letters.symbols.get(c.element).name;
             ("FieldMomentum", format!("momentum of {name}"))
         }
-        Side::Body => ("BodyMomentum", "momentum, body frame".to_owned()),
-        Side::Spatial => ("SpatialMomentum", "momentum, space frame".to_owned()),
+        false => (
+            side.of("BodyMomentum", "SpatialMomentum"),
+            format!("momentum, {} frame", side.frame()),
+        ),
     };
     FieldOf {
         name: element::momentum_field(d, i, side).to_string(),
@@ -140,10 +142,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         initial.push(momentum_field(d, i, c.side));
         observables.push(element_field(d, i));
         let element = own(d, c.element);
-        let (b, s) = (
-            element::momentum_field(d, i, Side::Body),
-            element::momentum_field(d, i, Side::Spatial),
-        );
+        let [b, s] = Side::BOTH.map(|side| element::momentum_field(d, i, side));
         if c.group.is_additive() {
             observables.push(momentum_field(d, i, c.side));
             observed.push(quote! {
@@ -152,8 +151,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             });
             continue;
         }
-        observables.push(momentum_field(d, i, Side::Body));
-        observables.push(momentum_field(d, i, Side::Spatial));
+        observables.extend(Side::BOTH.map(|side| momentum_field(d, i, side)));
         let numbers = match family(c) {
             Family::Quaternion => quote!(state.#element().components()),
             _ => quote!(rows(state.#element().matrix())),
@@ -197,7 +195,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             let method = format_ident!("{}", v.name);
             values.extend(match &v.kind {
                 Kind::SpatialMomentum(i) => {
-                    let m = element::momentum_field(d, *i, Side::Spatial);
+                    let m = element::spatial_momentum_field(d, *i);
                     let element = own(d, d.spec.configurations[*i].element);
                     // The state keeps the spatial momentum; what shows a drift is the momentum that
                     // the solver iterates in the body, seen from space.

@@ -3,7 +3,7 @@
 
 use super::element::{self, Family, family};
 use super::names::{Names, own, per_configuration, tagged, variable};
-use crate::check::spec::{Configuration, Side};
+use crate::check::spec::Configuration;
 use crate::derive::Derivation;
 use crate::derive::carry::Carry;
 use crate::derive::displaced::Displaced;
@@ -22,7 +22,7 @@ pub(super) struct Acting {
 /// the end of the edge.
 pub(super) fn seen_from_space(d: &Derivation, i: usize, shift: Shift, e: &Expr) -> Option<Expr> {
     let (s, c) = (&d.letters.symbols, &d.spec.configurations[i]);
-    let turns = c.side == Side::Body && family(c) == Family::Rotation;
+    let turns = c.side.is_body() && family(c) == Family::Rotation;
     let attitude = expr::shift_time(s, &expr::here(s, c.element), shift.time);
     turns.then(|| expr::turned(s, &attitude, e)).flatten()
 }
@@ -176,17 +176,17 @@ impl Body<'_> {
         let part = |k: usize| parts.get(k).and_then(Option::as_ref);
         let plus = |e: Option<&Acting>| e.map(|Acting { value, .. }| quote!(+ #value));
         let old = element::value(c, quote!(state.#field.0));
-        let value = match (c.side, u) {
+        let value = match (c.side.is_body(), u) {
             _ if c.group.is_additive() => {
                 let (a, b) = (plus(part(0)), plus(part(1)));
                 quote!(#old #a #b)
             }
-            (Side::Body, Carry::Through { .. }) => {
+            (true, Carry::Through { .. }) => {
                 let left = part(0).map(|e| self.turned(&quote!(state.#element), &self.here, e));
                 let arrived = part(1).map(|e| self.turned(&quote!(#moved), &self.next, e));
                 quote!(state.#field.0 #left #arrived)
             }
-            (Side::Body, Carry::Kept(_)) => {
+            (true, Carry::Kept(_)) => {
                 let added = plus(part(0));
                 let (there, back) = match element::about_body(c) {
                     true => (quote!(covector_turned), quote!(covector_turned_back)),
@@ -194,11 +194,11 @@ impl Body<'_> {
                 };
                 quote!(#moved.#there(&(state.#element.#back(&state.#field.0) #added)))
             }
-            (Side::Spatial, Carry::Kept(_)) => {
+            (false, Carry::Kept(_)) => {
                 let added = plus(part(0));
                 quote!(#old #added)
             }
-            (Side::Spatial, Carry::Through { .. }) => {
+            (false, Carry::Through { .. }) => {
                 let (left, arrived) = (plus(part(0)), plus(part(1)));
                 quote! {
                     #moved.covector_to_space(

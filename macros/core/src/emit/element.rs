@@ -209,21 +209,32 @@ pub fn advanced(
     element: TokenStream,
     velocity: TokenStream,
 ) -> TokenStream {
-    match (family(c), side) {
-        (Family::Field(_), _) => quote!(#element + #velocity),
-        (_, Side::Body) => quote!(#element * #velocity),
-        (_, Side::Spatial) => quote!(#velocity * #element),
+    match family(c) {
+        Family::Field(_) => quote!(#element + #velocity),
+        _ => {
+            let (first, second) = side.ordered(element, velocity);
+            quote!(#first * #second)
+        }
     }
 }
 
 /// The name of the momentum of a configuration in the frame of a side; a field has one frame.
 pub fn momentum_field(d: &Derivation, i: usize, side: Side) -> proc_macro2::Ident {
-    let base = match (of(d, i), side) {
-        (Family::Field(_), _) => "momentum",
-        (_, Side::Body) => "body_momentum",
-        (_, Side::Spatial) => "spatial_momentum",
+    let base = match of(d, i) {
+        Family::Field(_) => "momentum",
+        _ => side.of("body_momentum", "spatial_momentum"),
     };
     super::names::per_configuration(d, base, i)
+}
+
+/// The method that gives the velocity from one element to the next.
+pub fn velocity_between(c: &Configuration) -> proc_macro2::Ident {
+    format_ident!("{}_velocity", c.side.of("body", "spatial"))
+}
+
+/// The name of the momentum of a configuration in the space frame.
+pub fn spatial_momentum_field(d: &Derivation, i: usize) -> proc_macro2::Ident {
+    momentum_field(d, i, Side::Spatial)
 }
 
 /// The array that the runtime keeps for a covector.
@@ -241,7 +252,7 @@ pub fn kept_array(d: &Derivation, i: usize) -> TokenStream {
 /// Whether the state keeps the momentum about the body's own origin, in the axes of space: that of a
 /// rigid motion whose equations are those of the body.
 pub fn about_body(c: &Configuration) -> bool {
-    c.side == Side::Body && c.group.rigid().is_some()
+    c.side.is_body() && c.group.rigid().is_some()
 }
 
 /// Whether the linear momentum of a rigid motion is along its way, so that it has no moment on it.
@@ -293,10 +304,7 @@ pub fn covector(d: &Derivation, i: usize) -> TokenStream {
 
 /// The name of the type of a momentum in the frame of a side.
 pub fn momentum_name(d: &Derivation, i: usize, side: Side) -> TokenStream {
-    let frame = match side {
-        Side::Body => "Body",
-        Side::Spatial => "Spatial",
-    };
+    let frame = side.of("Body", "Spatial");
     let name = match of(d, i) {
         Family::Rotation | Family::Quaternion => format_ident!("{frame}Momentum"),
         Family::Coordinates(names) => format_ident!("{frame}{}", names.momentum),

@@ -161,7 +161,7 @@ impl Equations<'_> {
         // The same tangent otherwise, of which the loop takes the one that is least work. Where the model
         // is stated in space its velocities are corrected in the body: from the other side, places far
         // from the origin came out a few roundings worse in free fall.
-        let in_bodies = d.spec.configurations.iter().all(|c| c.side == Side::Body);
+        let in_bodies = d.spec.configurations.iter().all(|c| c.side.is_body());
         let others = [
             (Side::Body, true),
             (Side::Spatial, false),

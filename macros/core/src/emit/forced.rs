@@ -8,7 +8,6 @@ use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
 use super::step::{at, here, step_signature};
 use crate::algebra::Rational;
-use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::recognise::MoserVeselov;
 use crate::derive::transport::Transport;
@@ -89,10 +88,10 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
         false => quote!(state.#own),
     };
     let mut turn = TokenStream::new();
-    if c.side == Side::Body && quaternion {
+    if c.side.is_body() && quaternion {
         element = names.local("turn");
         turn = quote!(let #element = #attitude.matrix(););
-    } else if c.side == Side::Body {
+    } else if c.side.is_body() {
         needed.push(at(c.element, Shift::HERE));
     }
     let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
@@ -101,16 +100,16 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let p = schedule::program(s, std::slice::from_ref(&mv.rest), "t");
     let (lets, values) = program(&p, &bindings);
     let [kick, space] = ["kick", "space"].map(|base| names.local(base));
-    let edge = match c.side {
+    let edge = match c.side.is_body() {
         // The spatial momentum is not taken through the body frame and back: that would leave rounding in it.
-        Side::Body if mv.rest.is_zero() => {
+        true if mv.rest.is_zero() => {
             quote!(Edge::new(#element.tr_mul(&state.#momentum.0), state.#momentum.0))
         }
-        Side::Body => quote! {
+        true => quote! {
             let #kick = #(#values)*;
             Edge::new(#element.tr_mul(&state.#momentum.0) - #kick, state.#momentum.0 - #element * #kick)
         },
-        Side::Spatial => {
+        false => {
             let rest = (!mv.rest.is_zero()).then(|| quote!(- (#(#values)*)));
             quote! {
                 let #space = state.#momentum.0 #rest;
@@ -200,7 +199,7 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     };
     let seen_lets = seen.as_ref().map(|(lets, _)| lets);
     let act = match values.as_slice() {
-        [both] if c.side == Side::Body => {
+        [both] if c.side.is_body() => {
             let [torque, kick] = ["torque", "kick"].map(|base| names.local(base));
             quote! {
                 let #torque = #both;
@@ -220,7 +219,7 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
                 let #following = Edge::new(#body, #left);
             }
         }
-        [arrived, kick] if c.side == Side::Spatial => {
+        [arrived, kick] if c.side.is_spatial() => {
             let left = names.local("left");
             let body = from_body(quote!(#left));
             quote! {

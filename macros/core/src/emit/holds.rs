@@ -8,7 +8,7 @@ use super::items::{letters_of, parameter_locals, text, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
 use super::step::{at, here};
-use crate::check::spec::{Configuration, Hold, Side};
+use crate::check::spec::{Configuration, Hold};
 use crate::derive::{Derivation, holds};
 use crate::expr::shape::Shape;
 use crate::expr::{self, Expr, Shift};
@@ -194,7 +194,7 @@ fn project(d: &Derivation, names: &Names, projection: &Projection) -> TokenStrea
             .chain(&projection.kicks),
     );
     for (i, c) in d.spec.configurations.iter().enumerate() {
-        if c.side == Side::Body && family(c) == Family::Rotation && !projection.kicks[i].is_zero() {
+        if c.side.is_body() && family(c) == Family::Rotation && !projection.kicks[i].is_zero() {
             needed.push(at(c.element, Shift::HERE));
         }
     }
@@ -242,14 +242,14 @@ fn update(d: &Derivation, names: &Names, i: usize, value: TokenStream) -> TokenS
     let (element, field) = (own(d, c.element), per_configuration(d, "momentum", i));
     let kind = element::kept_name(d, i);
     let own_matrix = variable(&d.letters.symbols, c.element);
-    let kick = match (c.side, family(c)) {
+    let kick = match (c.side.is_body(), family(c)) {
         (_, Family::Field(_)) => element::array(c, value),
-        (Side::Spatial, _) => value,
-        (Side::Body, Family::Rotation) => quote!(#own_matrix * (#value)),
-        (Side::Body, _) if element::about_body(c) => {
+        (false, _) => value,
+        (true, Family::Rotation) => quote!(#own_matrix * (#value)),
+        (true, _) if element::about_body(c) => {
             quote!(state.#element.covector_turned(&(#value)))
         }
-        (Side::Body, _) => quote!(state.#element.covector_to_space(&(#value))),
+        (true, _) => quote!(state.#element.covector_to_space(&(#value))),
     };
     match element::rests(d, i) {
         Some([_, rest]) => {

@@ -7,7 +7,6 @@ use super::items::{letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, variable};
 use super::sizes::{Generics, size};
 use super::step::{at, here};
-use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::invariants::{Invariant, Kind};
 use crate::expr::{Expr, Letter, Shift};
@@ -177,7 +176,7 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
             (Kind::Spectrum, _, _) => functions.extend(spectrum(d, names, v)),
             (Kind::TotalMomentum(set), _, _) => {
                 let parts = set.iter().map(|i| {
-                    let momentum = element::momentum_field(d, *i, Side::Spatial);
+                    let momentum = element::spatial_momentum_field(d, *i);
                     element::value(&d.spec.configurations[*i], quote!(state.#momentum().0))
                 });
                 let t = element::covector(d, set.first().copied().unwrap_or(0));

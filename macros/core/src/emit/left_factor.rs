@@ -8,7 +8,6 @@ use super::items::{advanced, letters_of, parameter_locals, text, with_transports
 use super::names::{Names, item, own, tagged, variable};
 use super::sizes::{Generics, size};
 use super::step::{at, finish, here, node_momentum, step_signature};
-use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::blocks::Block;
 use crate::derive::carry::Carry;
@@ -238,7 +237,7 @@ fn edge_momentum(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStrea
     let own = own(d, c.element);
     let mut bindings = Bindings::new();
     let mut needed = letters_of([&mv.rest]);
-    let matrix = c.side == Side::Body && family(c) == Family::Rotation;
+    let matrix = c.side.is_body() && family(c) == Family::Rotation;
     if matrix {
         needed.push(at(c.element, Shift::HERE));
     }
@@ -322,8 +321,9 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
     let onwards = || list.iter().copied().chain(advanced(d).map(|a| &a.update));
     let uses_velocity = onwards().any(|e| expr::contains(e, velocity));
     let mut needed: Vec<Letter> = letters_of(onwards());
-    if let (Side::Body, [Carry::Through { leave, .. }], true) =
-        (c.side, d.carries.as_slice(), rotations)
+    if let [Carry::Through { leave, .. }] = d.carries.as_slice()
+        && c.side.is_body()
+        && rotations
         && !leave.is_zero()
     {
         needed.push(at(c.element, Shift::HERE));

@@ -110,10 +110,8 @@ impl Together<'_> {
     /// The side on which a velocity is found.
     pub fn side(&self, i: usize) -> Side {
         let c = &self.block.spec.configurations[i];
-        match self.block.solve.seen_from_body {
-            Some(_) if !c.group.is_additive() => Side::Body,
-            _ => c.side,
-        }
+        let turned = self.block.solve.seen_from_body.is_some() && !c.group.is_additive();
+        if turned { Side::Body } else { c.side }
     }
 
     /// The momenta of the outgoing edge that are solved for.
@@ -129,7 +127,7 @@ impl Together<'_> {
     pub fn needed(&self) -> Vec<Letter> {
         let mut needed = letters_of(&self.momenta());
         for (i, c) in self.block.spec.configurations.iter().enumerate() {
-            if self.side(i) == Side::Body && family(c) == Family::Rotation {
+            if self.side(i).is_body() && family(c) == Family::Rotation {
                 needed.push(at(c.element, Shift::HERE));
             }
         }
@@ -255,9 +253,10 @@ impl Together<'_> {
         let (at_trial, wants, correct) = match &equations.part {
             Some(part) => {
                 let (turned, at_trial) = (format_ident!("{TURNED}"), &part.at_trial);
-                let correct = match equations.side {
-                    Side::Body => quote!(correct_part(#trial)),
-                    Side::Spatial => quote!(correct_part_from_left(#trial)),
+                let correct = if equations.side.is_body() {
+                    quote!(correct_part(#trial))
+                } else {
+                    quote!(correct_part_from_left(#trial))
                 };
                 let at_trial = [
                     quote!(let #turned = #newton.trial(); #at_trial),
@@ -266,10 +265,8 @@ impl Together<'_> {
                 (at_trial, quote!(#newton.wants_residual() &&), correct)
             }
             None => {
-                let correct = match equations.side {
-                    Side::Body => quote!(correct()),
-                    Side::Spatial => quote!(correct_from_left()),
-                };
+                let (of_body, of_space) = (quote!(correct()), quote!(correct_from_left()));
+                let correct = equations.side.of(of_body, of_space);
                 let at_trial = [quote!(let #trial = #newton.trial();), quote!(#at_whole)];
                 (at_trial, quote!(), correct)
             }
@@ -398,10 +395,8 @@ impl Together<'_> {
             .map(|(i, c)| {
                 let (own, part) = (own(d, c.element), self.part(quote!(solved.element), i));
                 let name = &d.letters.symbols.get(c.element).name;
-                let moved = match self.side(i) {
-                    Side::Body => quote!(state.#own * #part),
-                    Side::Spatial => quote!(#part * state.#own),
-                };
+                let (first, second) = self.side(i).ordered(quote!(state.#own), part.clone());
+                let moved = quote!(#first * #second);
                 quote! {
                     if let Err(contact) = domain::invertible(#name, &state.#own, &(#moved), #step) {
                         return Err(self.left_domain(&state, #step, contact));

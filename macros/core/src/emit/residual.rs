@@ -8,7 +8,6 @@ use super::items::{kept, letters_of, node_locals, parameter_locals, with_transpo
 use super::names::{Names, item, own, tagged, variable};
 use super::sizes::Generics;
 use super::step::at;
-use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::expr::Shift;
 use proc_macro2::TokenStream;
@@ -100,10 +99,8 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
             } else {
                 tagged(d, names, c.velocity, "before")
             };
-            let value = match c.side {
-                Side::Body => quote!(#from.#e.body_velocity(&#to.#e)),
-                Side::Spatial => quote!(#from.#e.spatial_velocity(&#to.#e)),
-            };
+            let velocity = element::velocity_between(c);
+            let value = quote!(#from.#e.#velocity(&#to.#e));
             let value = element::matrix(c, value);
             velocities.extend(quote!(let #local = #value;));
             bindings.bind(

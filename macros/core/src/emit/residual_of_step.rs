@@ -8,7 +8,6 @@ use super::expression::program;
 use super::names::{Names, item, own, per_configuration, variable};
 use super::sizes::{Generics, size};
 use super::step::at;
-use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
@@ -30,9 +29,10 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
             Some(kick) => expr::add(b.incoming.clone(), kick.clone()),
             None => b.incoming.clone(),
         };
-        let momentum = match c.side {
-            Side::Body => quote!(#after.#field.to_body(&#after.#own).0),
-            Side::Spatial => element::value(c, quote!(#after.#field.0)),
+        let momentum = if c.side.is_body() {
+            quote!(#after.#field.to_body(&#after.#own).0)
+        } else {
+            element::value(c, quote!(#after.#field.0))
         };
         match c.group.rigid() {
             Some(rigid) => {

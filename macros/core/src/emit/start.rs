@@ -8,7 +8,6 @@ use super::items::{self, parameter_locals};
 use super::names::{Names, field, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
 use super::step::at;
-use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::recognise::Method;
 use crate::derive::transport::Transport;
@@ -119,10 +118,10 @@ pub(super) fn state_of(d: &Derivation, names: &Names) -> TokenStream {
             #skew
         });
         let rests = element::rests(d, i).into_iter().flatten();
-        let value = match c.side {
+        let value = match c.side.is_body() {
             _ if element::about_body(c) => quote!(initial.#given.carried(&initial.#element)),
-            Side::Body => quote!(initial.#given.to_space(&initial.#element)),
-            Side::Spatial => quote!(initial.#given),
+            true => quote!(initial.#given.to_space(&initial.#element)),
+            false => quote!(initial.#given),
         };
         fields.push(
             quote!(#element: initial.#element, #momentum: #value #(, #rests: SMatrix::zeros())*),

@@ -21,17 +21,11 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
     for (i, c) in d.spec.configurations.iter().enumerate() {
         let element = own(d, c.element);
         let momentum = per_configuration(d, "momentum", i);
-        let (spatial, body) = (
-            element::momentum_field(d, i, Side::Spatial),
-            element::momentum_field(d, i, Side::Body),
-        );
+        let [body, spatial] = Side::BOTH.map(|side| element::momentum_field(d, i, side));
         let name = &s.get(c.element).name;
         let doc = format!(" `{name}` at node 0: body -> space.");
-        let (kind, of_body, of_space) = (
-            element::ty(d, i),
-            element::momentum(d, i, Side::Body),
-            element::momentum(d, i, Side::Spatial),
-        );
+        let kind = element::ty(d, i);
+        let [of_body, of_space] = Side::BOTH.map(|side| element::momentum(d, i, side));
         let rests = element::rests(d, i).map(|[place, of_momentum]| {
             let (t, covector) = (element::rest_ty(d, i), element::kept_array(d, i));
             quote!(, #place: #t, #of_momentum: #covector)
@@ -52,15 +46,16 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
             });
             continue;
         }
-        given.push(match c.side {
-            Side::Body => quote! {
+        given.push(if c.side.is_body() {
+            quote! {
                 #[doc = #doc] pub #element: #kind,
                 #[doc = " Momentum at node 0, in the body frame."] pub #body: #of_body
-            },
-            Side::Spatial => quote! {
+            }
+        } else {
+            quote! {
                 #[doc = #doc] pub #element: #kind,
                 #[doc = " Momentum at node 0, in the space frame."] pub #spatial: #of_space
-            },
+            }
         });
         kept_fields.push(quote!(#element: #kind, #momentum: #kept #rests));
         let seen = match element::about_body(c) {

@@ -143,13 +143,13 @@ pub(super) fn node_momentum(d: &Derivation, i: usize, side: Side) -> TokenStream
     let c = &d.spec.configurations[i];
     let momentum = per_configuration(d, "momentum", i);
     let (element, own) = (variable(&d.letters.symbols, c.element), own(d, c.element));
-    match (side, family(c)) {
-        (Side::Body, Family::Rotation) => quote!(#element.tr_mul(&state.#momentum.0)),
-        (Side::Body, _) => quote!(state.#momentum.to_body(&state.#own).0),
-        (Side::Spatial, _) if element::about_body(c) => {
+    match (side.is_body(), family(c)) {
+        (true, Family::Rotation) => quote!(#element.tr_mul(&state.#momentum.0)),
+        (true, _) => quote!(state.#momentum.to_body(&state.#own).0),
+        (false, _) if element::about_body(c) => {
             quote!(state.#momentum.to_space(&state.#own).0)
         }
-        (Side::Spatial, _) => element::value(c, quote!(state.#momentum.0)),
+        (false, _) => element::value(c, quote!(state.#momentum.0)),
     }
 }
 
@@ -229,8 +229,8 @@ pub(super) fn finish(
     };
     // Rotated torques need the matrices of both nodes.
     for (c, u) in d.spec.configurations.iter().zip(&d.carries) {
-        if let (Side::Body, Carry::Through { leave, arrive, .. }, Family::Rotation) =
-            (c.side, u, family(c))
+        if let (Carry::Through { leave, arrive, .. }, Family::Rotation) = (u, family(c))
+            && c.side.is_body()
         {
             if !leave.is_zero() {
                 needed.push(at(c.element, Shift::HERE));

@@ -327,10 +327,7 @@ pub trait Record {
 
     /// The change of an element along a matrix of the Lie algebra: `g ξ` (body) or `ξ g` (spatial).
     fn moved(&self, side: Side, g: Expr, xi: Expr) -> Expr {
-        match side {
-            Side::Body => expr::mul(g, xi),
-            Side::Spatial => expr::mul(xi, g),
-        }
+        side.product(g, xi)
     }
 
     /// Twice the term of second order of `exp(ξ)`.
@@ -341,10 +338,7 @@ pub trait Record {
     /// A gradient with respect to an element, carried to the identity: `g^T Y` (body) or `Y g^T`.
     fn pulled_back(&self, s: &Symbols, side: Side, g: Expr, y: Expr) -> Expr {
         let t = expr::transpose(s, g);
-        match side {
-            Side::Body => expr::mul(t, y),
-            Side::Spatial => expr::mul(y, t),
-        }
+        side.product(t, y)
     }
 
     /// The weight of the pairing of an element with its multiplier: with ½ the momentum map of SO(n)
@@ -417,18 +411,14 @@ impl dyn Record {
     /// The velocity from one node to the next: `g^-1 g'` (body) or `g' g^-1` (spatial).
     pub fn velocity(&self, s: &Symbols, side: Side, g: Expr, next: Expr) -> Expr {
         let back = self.inverse(s, g);
-        match side {
-            Side::Body => self.compose(back, next),
-            Side::Spatial => self.compose(next, back),
-        }
+        let (first, second) = side.ordered(back, next);
+        self.compose(first, second)
     }
 
     /// The element at the end of an edge: `g w` (body) or `w g` (spatial).
     pub fn advanced(&self, side: Side, g: Expr, w: Expr) -> Expr {
-        match side {
-            Side::Body => self.compose(g, w),
-            Side::Spatial => self.compose(w, g),
-        }
+        let (first, second) = side.ordered(g, w);
+        self.compose(first, second)
     }
 }
 

@@ -357,7 +357,7 @@ fn how(
             false => together(),
         }
     };
-    let alone = c.side == Side::Body && block.len() == 1;
+    let alone = c.side.is_body() && block.len() == 1;
     match (c.group.kept(), &d.solve.riccati[i]) {
         (Kept::Rotation, Riccati::Exact(mv)) if alone => turning(mv, None),
         (Kept::Quaternion, Riccati::Quaternionic(q)) if alone => turning(&q.edge, Some(&q.real)),

@@ -6,7 +6,6 @@ use super::passage::Passage;
 use super::{Family, Inputs, Invariant, Kind, here, is_conserved, length};
 use crate::algebra::Rational;
 use crate::algebra::exact::{Matrix, Point};
-use crate::check::spec::Side;
 use crate::derive::recognise::Riccati;
 use crate::expr::shape::Dim;
 use crate::expr::symbol::Role;
@@ -42,7 +41,7 @@ pub(super) fn lax(x: &Inputs) -> Option<Lax> {
         .collect();
     let made_of = |l: &Letter| {
         let role = s.get(l.symbol).role;
-        role == Role::Parameter || (role == Role::Advected && c.side == Side::Spatial)
+        role == Role::Parameter || (role == Role::Advected && c.side.is_spatial())
     };
     let at_node = expr::letters(&mv.factor).iter().all(made_of);
     if !mv.symmetric || !at_node || !c.group.is_orthogonal() {
@@ -66,15 +65,16 @@ pub(super) fn lax(x: &Inputs) -> Option<Lax> {
         expr::sum([square, middle, expr::neg(last)], shape)
     };
     let w = expr::here(s, c.velocity);
-    let intertwiner = match c.side {
-        Side::Body => expr::sub(
+    let intertwiner = if c.side.is_body() {
+        expr::sub(
             mv.factor.clone(),
             expr::mul(lambda.clone(), expr::transpose(s, w)),
-        ),
-        Side::Spatial => expr::sub(
+        )
+    } else {
+        expr::sub(
             expr::mul(w, mv.factor.clone()),
             expr::mul(lambda.clone(), expr::identity(n)),
-        ),
+        )
     };
     let after = expr::substitute(s, &mv.factor, &carried);
     let left = expr::mul(of(skew(&b.incoming), after), intertwiner.clone());

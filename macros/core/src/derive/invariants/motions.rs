@@ -73,26 +73,27 @@ const PLACES: usize = 6;
 
 /// The node momentum in the space frame.
 pub(super) fn in_space(x: &Inputs, i: usize) -> Expr {
-    turned(x, i, Side::Body)
+    turned(x, i, Side::is_body)
 }
 
 /// The node momentum in the body frame.
 fn in_body(x: &Inputs, i: usize) -> Expr {
-    turned(x, i, Side::Spatial)
+    turned(x, i, Side::is_spatial)
 }
 
 /// The node momentum, carried to the other frame if it is stated on this side.
-fn turned(x: &Inputs, i: usize, from: Side) -> Expr {
+fn turned(x: &Inputs, i: usize, from: fn(Side) -> bool) -> Expr {
     let s = &x.letters.symbols;
     let c = &x.spec.configurations[i];
     let mu = expr::here(s, x.letters.node_momentum[i]);
-    if c.side != from {
+    if !from(c.side) {
         return mu;
     }
     let g = expr::here(s, c.element);
-    let g = match c.side {
-        Side::Body => g,
-        Side::Spatial => c.group.inverse(s, g),
+    let g = if c.side.is_body() {
+        g
+    } else {
+        c.group.inverse(s, g)
     };
     c.group.to_space(s, &g, mu)
 }
@@ -105,14 +106,14 @@ fn parts(x: &Inputs, i: usize, rigid: &dyn Euclidean, way: Way) -> (Expr, Expr) 
     let (a, l) = (rigid.angular(s, &mu), rigid.linear(s, &mu));
     let g = expr::here(s, c.element);
     let (turn, place) = (expr::block(s, &g), expr::column(s, &g));
-    match (way == Way::Body, c.side) {
-        (true, Side::Body) | (false, Side::Spatial) => (a, l),
-        (true, Side::Spatial) => {
+    match (way == Way::Body, c.side.is_body()) {
+        (true, true) | (false, false) => (a, l),
+        (true, false) => {
             let back = expr::transpose(s, turn);
             let own = expr::sub(a, rigid.moment(s, place, l.clone()));
             (rigid.turned(back.clone(), own), expr::mul(back, l))
         }
-        (false, Side::Body) => {
+        (false, true) => {
             let l = expr::mul(turn.clone(), l);
             let moment = rigid.moment(s, place, l.clone());
             (expr::add(rigid.turned(turn, a), moment), l)
@@ -129,7 +130,7 @@ fn sizes(x: &Inputs, i: usize, rigid: &dyn Euclidean, way: Way) -> [Expr; 2] {
     let mu = expr::here(s, x.letters.node_momentum[i]);
     let own = length(x, &rigid.angular(s, &mu));
     let linear = length(x, &rigid.linear(s, &mu));
-    if way == Way::Body && c.side == Side::Body {
+    if way == Way::Body && c.side.is_body() {
         return [own, linear];
     }
     let place = expr::column(s, &expr::here(s, c.element));
@@ -232,10 +233,7 @@ fn of_configuration(x: &Inputs, i: usize, way: Way, out: &mut Vec<Motion>) {
         (Group::GeneralLinear(GeneralLinear(n)), Way::Shift) => {
             let mu = expr::here(s, x.letters.node_momentum[i]);
             let back = expr::inverse(s, expr::transpose(s, expr::here(s, c.element)));
-            let value = match c.side {
-                Side::Body => expr::mul(back, mu),
-                Side::Spatial => expr::mul(mu, back),
-            };
+            let value = c.side.product(back, mu);
             push(Sort::Entries(n), value, None, false);
         }
         (Group::Additive(Additive(shape)), Way::Space) => {
@@ -305,9 +303,10 @@ fn of_rigid(
             let (angular, linear) = parts(x, i, rigid, Way::Space);
             let mu = expr::here(s, x.letters.node_momentum[i]);
             let g = expr::here(s, c.element);
-            let value = match c.side {
-                Side::Body => rigid.turned(expr::block(s, &g), rigid.angular(s, &mu)),
-                Side::Spatial => expr::sub(angular, rigid.moment(s, expr::column(s, &g), linear)),
+            let value = if c.side.is_body() {
+                rigid.turned(expr::block(s, &g), rigid.angular(s, &mu))
+            } else {
+                expr::sub(angular, rigid.moment(s, expr::column(s, &g), linear))
             };
             // The state keeps the moment about the origin of space, of which this is a part.
             let [angular, _] = sizes(x, i, rigid, Way::Space);
@@ -384,20 +383,20 @@ impl Motion {
         let c = &x.spec.configurations[self.configuration];
         let v = v.clone();
         // In the frame of the motion, and whether that is the frame of ξ.
-        let own = match (self.way, c.side) {
-            (Way::Body, Side::Body) | (Way::Space, Side::Spatial) => true,
-            (Way::Body, Side::Spatial) | (Way::Space, Side::Body) => false,
-            (Way::Spin | Way::About(_) | Way::Shift | Way::Mixing { .. }, _) => false,
+        let own = match self.way {
+            Way::Body => c.side.is_body(),
+            Way::Space => c.side.is_spatial(),
+            Way::Spin | Way::About(_) | Way::Shift | Way::Mixing { .. } => false,
         };
         let back = || expr::inverse(s, g.clone());
         if let Some(rigid) = c.group.rigid() {
             let (angular, linear) = self.twist(s, rigid, g, v);
-            if own || c.side == Side::Spatial && self.way != Way::Body {
+            if own || c.side.is_spatial() && self.way != Way::Body {
                 return expr::stacked(angular, linear);
             }
             let turn = expr::block(s, g);
             let place = expr::column(s, g);
-            if c.side == Side::Spatial {
+            if c.side.is_spatial() {
                 let angular = rigid.turned(turn.clone(), angular);
                 let back = expr::neg(rigid.swept(s, angular.clone(), place));
                 let moved = expr::add(expr::mul(turn, linear), back);
@@ -410,10 +409,10 @@ impl Motion {
         match c.group {
             Group::SpecialOrthogonal(SpecialOrthogonal(THREE)) | Group::UnitQuaternions(_) => {
                 let turn = c.group.turn(s, g).unwrap_or_else(|| g.clone());
-                let moved = match (own, c.side) {
+                let moved = match (own, c.side.is_body()) {
                     (true, _) => v,
-                    (false, Side::Body) => expr::mul(expr::transpose(s, turn), v),
-                    (false, Side::Spatial) => expr::mul(turn, v),
+                    (false, true) => expr::mul(expr::transpose(s, turn), v),
+                    (false, false) => expr::mul(turn, v),
                 };
                 match c.group.coordinates() {
                     Some(_) => moved,
@@ -450,12 +449,11 @@ impl Motion {
                     (Sort::Angular, _) => expr::hat(v),
                     _ => v,
                 };
-                match (self.way, own, c.side) {
-                    (_, true, _) => v,
-                    (Way::Shift, _, Side::Body) => expr::mul(back(), v),
-                    (Way::Shift, _, Side::Spatial) => expr::mul(v, back()),
-                    (_, false, Side::Body) => expr::product([back(), v, g.clone()]),
-                    (_, false, Side::Spatial) => expr::product([g.clone(), v, back()]),
+                match self.way {
+                    _ if own => v,
+                    Way::Shift => c.side.product(back(), v),
+                    _ if c.side.is_body() => expr::product([back(), v, g.clone()]),
+                    _ => expr::product([g.clone(), v, back()]),
                 }
             }
         }

@@ -5,7 +5,6 @@ use super::Inputs;
 use super::mixed::Component;
 use super::motions::{Sort, Way};
 use super::noether::{Term, configurations, is_whole};
-use crate::check::spec::Side;
 
 /// How a linear map of components of fields moves each of them in proportion to others.
 fn map(terms: &[Term]) -> Vec<(Component, Component, i64)> {
@@ -61,22 +60,22 @@ pub(super) fn name(x: &Inputs, terms: &[Term]) -> String {
     let added = terms.iter().all(|t| t.times == 1);
     let one = terms.len() == 1;
     let whole = is_whole(x, terms);
-    let side = |i: &usize| x.spec.configurations[*i].side;
-    let own = set.first().map(side);
+    let of_body = |i: &usize| x.spec.configurations[*i].side.is_body();
+    let own = set.first().map(of_body);
     let field = |i: &usize| x.spec.configurations[*i].group.is_additive();
     let fields = set.iter().all(field);
     let mut parts: Vec<String> = Vec::new();
     let stem = if all(&|w| matches!(w, Way::Space | Way::About(_))) && (one || added) {
         match (one, whole, own) {
             (true, ..) if fields => "momentum",
-            (true, false, Some(Side::Spatial)) => "momentum",
+            (true, false, Some(false)) => "momentum",
             (true, ..) => "spatial_momentum",
             (false, ..) => "total_momentum",
         }
     } else if all(&|w| w == Way::Body) && (one || added) {
         match (one, whole, own) {
             (true, true, _) => "body_momentum_whole",
-            (true, false, Some(Side::Body)) => "momentum",
+            (true, false, Some(true)) => "momentum",
             (true, false, _) => "body_momentum",
             (false, ..) => "total_body_momentum",
         }

@@ -7,7 +7,6 @@ use super::passage::Passage;
 use super::words::Piece;
 use super::{Inputs, length};
 use crate::algebra::Rational;
-use crate::check::spec::Side;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr};
@@ -42,7 +41,7 @@ pub(super) fn totals(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
             && set.iter().all(|i| turn(x, *i).is_some())
             && set
                 .iter()
-                .all(|i| x.spec.configurations[*i].side == Side::Spatial)
+                .all(|i| x.spec.configurations[*i].side.is_spatial())
     };
     let coupled: Vec<Vec<usize>> = components(x).into_iter().filter(of_space).collect();
     sets.retain(|set| !coupled.contains(set));
@@ -126,13 +125,15 @@ fn carriers(x: &Inputs, passages: &[Passage]) -> Vec<Carrier> {
                 };
                 let side = |i: usize| x.spec.configurations[i].side;
                 // What is seen from a body turns back, what is seen from space along.
-                let start = match side(from) {
-                    Side::Body => start,
-                    Side::Spatial => expr::transpose(s, start),
+                let start = if side(from).is_body() {
+                    start
+                } else {
+                    expr::transpose(s, start)
                 };
-                let end = match side(to) {
-                    Side::Body => expr::transpose(s, end),
-                    Side::Spatial => end,
+                let end = if side(to).is_body() {
+                    expr::transpose(s, end)
+                } else {
+                    end
                 };
                 let carried = expr::product([end, rotation.clone(), start]);
                 let joins = passages

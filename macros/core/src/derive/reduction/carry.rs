@@ -4,7 +4,6 @@
 use super::relative::Frame;
 use super::terms::{Carried, Reducer};
 use crate::algebra::{Factor, Word};
-use crate::check::spec::Side;
 use crate::expr::shape::{Dim, Structure};
 use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr};
@@ -149,10 +148,7 @@ impl Reducer<'_> {
             let name = &s.get(c.element).name;
             elements.contains(name)
         });
-        let frame = match side.map(|c| c.side) {
-            Some(Side::Spatial) => "space",
-            Some(Side::Body) | None => "body",
-        };
+        let frame = side.map_or("body", |c| c.side.frame());
         let unit = w.iter().find_map(|f| match f {
             Factor::Unit { axis, .. } => Some(format!("E{}", axis + 1)),
             _ => None,

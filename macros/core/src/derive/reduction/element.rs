@@ -41,9 +41,9 @@ impl Occurrence<'_> {
 
     fn open(&self) -> Open {
         let outward = self.transposed == self.inverted;
-        match (self.configuration.side, outward) {
-            (Side::Body, true) | (Side::Spatial, false) => Open::Left,
-            (Side::Body, false) | (Side::Spatial, true) => Open::Right,
+        match self.configuration.side.is_body() == outward {
+            true => Open::Left,
+            false => Open::Right,
         }
     }
 }
@@ -105,7 +105,7 @@ impl<'a> Reducer<'a> {
                 true => rest.first(),
             };
             let turned = matches!(beside, Some(Factor::Letter { source: Source::Rotation(l), transposed: t, .. }) if *l == at && *t != transposed);
-            let back = turned && side == Some(Side::Body);
+            let back = turned && side.is_some_and(Side::is_body);
             if back {
                 minus = !minus;
                 match transposed {
@@ -160,7 +160,7 @@ impl<'a> Reducer<'a> {
             return None;
         };
         let of_motion = o.configuration.group.rigid().is_some();
-        (of_motion && o.configuration.side == Side::Body).then(|| {
+        (of_motion && o.configuration.side.is_body()).then(|| {
             let first = inclusion_of_space(o.configuration.group.size(), false);
             [&[motion(*at, true, false), first][..], rest].concat()
         })

@@ -4,7 +4,7 @@
 
 use super::settle::settled;
 use super::terms::{Carried, Reducer};
-use crate::check::spec::{Configuration, Side};
+use crate::check::spec::Configuration;
 use crate::derive::variation::at;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId};
@@ -56,9 +56,10 @@ impl<'a> Reducer<'a> {
     fn by_first(&mut self, first: &Configuration, c: &Configuration) -> Expr {
         let between = self.motion_between(first, c);
         let g = expr::here(&self.symbols, first.element);
-        match c.side {
-            Side::Body => expr::mul(g, between),
-            Side::Spatial => expr::mul(expr::inverse(&self.symbols, between), g),
+        if c.side.is_body() {
+            expr::mul(g, between)
+        } else {
+            expr::mul(expr::inverse(&self.symbols, between), g)
         }
     }
 
@@ -70,9 +71,10 @@ impl<'a> Reducer<'a> {
         let s = &self.symbols;
         let between = |s: &crate::expr::symbol::Symbols, x: SymbolId, middle: Option<Expr>, y| {
             let (x, y) = (expr::here(s, x), expr::here(s, y));
-            let (x, y) = match a.side {
-                Side::Body => (expr::inverse(s, x), y),
-                Side::Spatial => (x, expr::inverse(s, y)),
+            let (x, y) = if a.side.is_body() {
+                (expr::inverse(s, x), y)
+            } else {
+                (x, expr::inverse(s, y))
             };
             expr::product([x].into_iter().chain(middle).chain([y]))
         };
