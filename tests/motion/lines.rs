@@ -21,6 +21,8 @@ mod held;
 mod laws;
 #[path = "lines/models/mod.rs"]
 mod models;
+#[path = "lines/rossby.rs"]
+mod rossby;
 #[path = "lines/turns.rs"]
 mod turns;
 #[path = "lines/walls.rs"]
