@@ -77,6 +77,26 @@ clebsch::model! {
     }
 }
 
+clebsch::model! {
+    /// A matrix that is held to be a rotation.
+    pub model Matrices {
+        param J: Sym<3>;
+        field Q: Mat<3>;
+        hold l: Q^T*Q = Id;
+        lagrangian = tr((next(Q) - Q)*J*(next(Q) - Q)^T)/(2*h);
+    }
+}
+
+clebsch::model! {
+    /// The body that it then is.
+    pub model Turning {
+        param J: Sym<3>;
+        group Q: SO<3> velocity W;
+        constraint next(Q) = Q*W;
+        lagrangian = -tr(J*W)/h;
+    }
+}
+
 fn case(h: f64, parameters: &[&[f64]], initial: &[&[f64]]) -> Case {
     let lists = |all: &[&[f64]]| all.iter().map(|list| list.to_vec()).collect();
     Case {
@@ -155,4 +175,51 @@ fn shapes_held_in_space() {
     // A turn: C0 g I0 with g skew.
     let momentum = [0.0, -0.14, 0.08, 0.1, 0.0, 0.08, -0.05, -0.07, 0.0];
     both(&Shape::CARD, &case(0.02, &parameters, &[&ONE, &momentum]));
+}
+
+/// Six multipliers of a matrix, and the step of Moser and Veselov, to rounding.
+#[test]
+fn matrices_held_to_be_rotations_turn_as_bodies_do() {
+    let moments = [1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0];
+    // Of the angular velocity w the momenta hat(w) J and (tr(J) - J) w.
+    let w = [0.3, -0.2, 0.1];
+    let momentum = [
+        0.0,
+        -2.0 * w[2],
+        3.0 * w[1],
+        w[2],
+        0.0,
+        -3.0 * w[0],
+        -w[1],
+        2.0 * w[0],
+        0.0,
+    ];
+    let held = case(0.02, &[&moments], &[&ONE, &momentum]);
+    both(&Matrices::CARD, &held);
+    let body = case(
+        0.02,
+        &[&moments],
+        &[&ONE, &[5.0 * w[0], 4.0 * w[1], 3.0 * w[2]]],
+    );
+    let start = |card: &Card, case: &Case| {
+        (card.open)(&case.parameters, &case.initial, Settings::step(case.h)).expect("starts")
+    };
+    let mut matrix = start(&Matrices::CARD, &held);
+    let mut turning = start(&Turning::CARD, &body);
+    for _ in 0..100 {
+        matrix.step().expect("steps");
+        turning.step().expect("steps");
+    }
+    let observed = |card: &Card, of: &dyn clebsch::card::Trajectory| {
+        let mut all = vec![0.0; card.observable_count()];
+        of.observe(&mut all);
+        all
+    };
+    let matrix = observed(&Matrices::CARD, &*matrix);
+    let turning = observed(&Turning::CARD, &*turning);
+    for (x, y) in matrix.iter().zip(&turning).take(9) {
+        // A hundred steps of a few roundings each.
+        assert!((x - y).abs() < 1e-13, "{x} {y}");
+    }
+    assert!(turning[1].abs() > 0.1);
 }

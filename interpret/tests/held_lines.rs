@@ -12,21 +12,24 @@ mod compiled;
 
 use beside::{bits, choice, start};
 use clebsch_interpret::lines::LineModel;
-use compiled::{Case, held};
+use compiled::{Case, held, sums};
 
 #[test]
 fn held_lines_equal_the_compiled_ones_to_the_last_bit() {
     beside::equal_to_the_last_bit(held::all().into_iter());
+    beside::equal_to_the_last_bit(sums::all().into_iter());
 }
 
 #[test]
 fn held_lines_move_as_their_bodies_do() {
     beside::move_as_bodies_do(held::all().into_iter());
+    beside::move_as_bodies_do(sums::all().into_iter());
 }
 
 #[test]
 fn a_held_line_is_written_down_and_goes_on_to_the_last_bit() {
     beside::go_on(held::all().into_iter());
+    beside::go_on(sums::all().into_iter());
 }
 
 #[test]
@@ -116,4 +119,35 @@ fn the_card_of_a_long_held_line_tells_multipliers_and_constraints() {
         assert!(!card.summary.contains("_2, constraint"), "{}", card.summary);
         assert!(card.summary.contains("loops over them"), "{}", card.summary);
     }
+}
+
+/// What sums hold is told without a site, and a sum that no motion changes is refused.
+#[test]
+fn data_off_a_sum_are_refused_with_the_equation() {
+    let (source, make, _) = sums::all().swap_remove(0);
+    let model = LineModel::read(source).expect("is read");
+    let case = Case::new(50, None);
+    let (_, data) = make(&case);
+    let chosen = choice(source, case.n, case.ends);
+    let refused = |data: &compiled::Data| {
+        let started = model.start(&chosen, case.h, &|name| data.get(name));
+        started.map(|_| ()).expect_err("is refused").to_string()
+    };
+    let off = refused(&data.with("X", |x| x[0] += 0.1));
+    for wanted in ["p", "off the constraint", "∑_{i=0}^{N-1} s Λ_{i,k} E₃ = X"] {
+        assert!(off.contains(wanted), "{off}");
+    }
+    assert!(!off.contains("site"), "{off}");
+    let across = refused(&data.with("body_momentum_Λ", |p| p[31] = 0.4));
+    assert!(across.contains("would move"), "{across}");
+    // All along one axis: no turn changes the length to first order.
+    let straight = data.with("Λ", |turns| {
+        let one = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+        turns.chunks_mut(9).for_each(|m| m.copy_from_slice(&one));
+    });
+    let straight = straight.with("X", |x| x.copy_from_slice(&[0.0, 0.0, 25.0]));
+    let told = refused(&straight);
+    assert!(told.contains("not determined"), "{told}");
+    let short = refused(&data.with("X", |x| x.truncate(2)));
+    assert!(short.contains("`X` takes 3 numbers"), "{short}");
 }

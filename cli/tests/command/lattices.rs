@@ -4,7 +4,7 @@
 use crate::common::{Folder, program as clebsch};
 
 /// The model files that the project ships, each with its case.
-const SHIPPED: [&str; 10] = [
+const SHIPPED: [&str; 11] = [
     "circular-rod",
     "coupled-body-chain",
     "coupled-tops",
@@ -15,6 +15,7 @@ const SHIPPED: [&str; 10] = [
     "shallow-water-1d",
     "sine-gordon",
     "toda-chain",
+    "uniform-tension-rod",
 ];
 
 fn shipped(file: &str) -> String {

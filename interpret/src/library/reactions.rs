@@ -35,6 +35,10 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             }
             _ => None,
         },
+        ("Multipliers::of_sums", 1) => |a, _| {
+            let search = Multipliers::of_sums(a.first()?.count()?);
+            Some(Value::Multipliers(Box::new(search)))
+        },
         ("line::turned_by", 4) => |a, _| match a {
             [
                 Value::Poinsot(body),

@@ -131,7 +131,8 @@ impl Carded {
         });
         // Constraints are told of all sites together, not of those of the short line.
         let of_holds = |name: &str| name.starts_with("constraint_");
-        let has_holds = !unfolded.holds.is_empty();
+        let of_sums = !unfolded.totals.is_empty();
+        let has_holds = !unfolded.holds.is_empty() || of_sums;
         let named = named.filter(|i| !(has_holds && of_holds(i.name)));
         let (kept, lost): (Vec<Invariant>, Vec<Invariant>) = named.partition(|i| match i.name {
             "energy" => model.has_energies(),
@@ -144,6 +145,7 @@ impl Carded {
         for (name, rows, reason) in others {
             if kept.iter().all(|i| i.name != name) {
                 let formula = match of_holds(name) {
+                    true if of_sums => format!("the length of a sum over all sites; {reason}"),
                     true => format!("the root of the sum of squares over all sites; {reason}"),
                     false => format!("a sum over all sites; {reason}"),
                 };
@@ -166,6 +168,7 @@ impl Carded {
             source: text(source),
             summary: text(&summary),
             solver: match has_holds {
+                true if of_sums => HELD_SUMS,
                 true => HELD,
                 false => text(&words.solver),
             },
@@ -210,6 +213,10 @@ fn of_space(name: &str, count: usize) -> (Field, Place) {
 /// How multipliers along a line are found.
 const HELD: &str = "the multipliers of all sites together by Newton's method with block-tridiagonal derivatives, velocities \
                     site by site, so that the constraints hold at the end of the step";
+
+/// How multipliers of sums are found.
+const HELD_SUMS: &str = "the multipliers of sums over all sites together by Newton's method, velocities site by site, so that the \
+                         constraints hold at the end of the step";
 
 /// A summary whose invariants name constraints of all sites together.
 fn of_all_sites<'a>(summary: &str, names: impl Iterator<Item = &'a str>) -> String {

@@ -521,7 +521,9 @@ impl LineTrajectory {
         let own = model.observers.iter().find(|(own, _)| own == name);
         let (_, routine) =
             own.or_else(|| model.functionals.iter().find(|(own, _)| *own == values))?;
-        columns(&self.ask(routine)?)
+        let value = self.ask(routine)?;
+        // What belongs to the whole line is one value.
+        columns(&value).or_else(|| numbers(&value))
     }
 }
 

@@ -97,7 +97,8 @@ pub fn beside(
             continue;
         };
         let list = line.observe(name).expect("is observed");
-        let at = site.expect("has a site") * field.count();
+        // What belongs to the whole line has no site.
+        let at = site.unwrap_or(0) * field.count();
         let pair = own.iter().zip(&list[at..at + field.count()]);
         pairs.extend(pair.map(|(x, y)| [*x, *y]));
     }

@@ -9,9 +9,10 @@ pub mod quaternion_rod;
 pub mod shallow_water_1d;
 pub mod sine_gordon;
 pub mod toda_chain;
+pub mod uniform_tension_rod;
 
 /// The files and the statements that are compiled.
-pub const STATEMENTS: [(&str, &str); 8] = [
+pub const STATEMENTS: [(&str, &str); 9] = [
     (
         include_str!("../../lattices/coupled-tops.clebsch"),
         coupled_tops::CoupledTops::<f64>::SOURCE,
@@ -43,5 +44,9 @@ pub const STATEMENTS: [(&str, &str); 8] = [
     (
         include_str!("../../lattices/toda-chain.clebsch"),
         toda_chain::TodaChain::<f64>::SOURCE,
+    ),
+    (
+        include_str!("../../lattices/uniform-tension-rod.clebsch"),
+        uniform_tension_rod::UniformTensionRod::<f64>::SOURCE,
     ),
 ];

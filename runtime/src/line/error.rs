@@ -11,13 +11,21 @@ use core::fmt;
 pub struct Place {
     /// The quantity as the model writes it.
     pub quantity: &'static str,
-    /// The site.
+    /// The site; [`Place::ALL`] of what belongs to the whole line.
     pub site: usize,
+}
+
+impl Place {
+    /// The site of what belongs to the whole line.
+    pub const ALL: usize = isize::MAX as usize;
 }
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "`{}` at site {}", self.quantity, self.site)
+        match self.site {
+            Self::ALL => write!(f, "`{}`", self.quantity),
+            site => write!(f, "`{}` at site {site}", self.quantity),
+        }
     }
 }
 

@@ -12,6 +12,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::blocks::Blocks;
+use super::error::Place;
 use super::root::scales_of;
 use crate::Real;
 use core::fmt;
@@ -94,6 +95,8 @@ pub struct Multipliers<T> {
     n: usize,
     sites: usize,
     ring: bool,
+    /// Whether impulses belong to no site.
+    of_sums: bool,
     /// Of each component at how many sites it is held.
     counts: Vec<usize>,
     blocks: Blocks<T>,
@@ -138,6 +141,7 @@ impl<T: Real> Multipliers<T> {
             n,
             sites,
             ring,
+            of_sums: false,
             counts: counts.to_vec(),
             blocks: Blocks::new(n, sites, ring),
             impulses: list(),
@@ -153,6 +157,15 @@ impl<T: Real> Multipliers<T> {
             further: 0,
             roundings: 0.0,
             corrected: false,
+        }
+    }
+
+    /// Room for constraints on sums over all sites: `n` impulses, found together as those of one site.
+    #[must_use]
+    pub fn of_sums(n: usize) -> Self {
+        Self {
+            of_sums: true,
+            ..Self::new(&vec![1; n], false)
         }
     }
 
@@ -428,6 +441,14 @@ impl<T: Real> Multipliers<T> {
         most
     }
 
+    /// A site, or that of all where impulses belong to sums.
+    fn place(&self, site: usize) -> usize {
+        match self.of_sums {
+            true => Place::ALL,
+            false => site,
+        }
+    }
+
     /// Whether impulses were found.
     ///
     /// # Errors
@@ -435,7 +456,7 @@ impl<T: Real> Multipliers<T> {
     pub fn root_found(&self) -> Result<(), (usize, NoReaction)> {
         match self.phase {
             Phase::Found => Ok(()),
-            _ => Err((self.worst(), NoReaction { share: self.share })),
+            _ => Err((self.place(self.worst()), NoReaction { share: self.share })),
         }
     }
 
@@ -484,12 +505,13 @@ impl<T: Real> Multipliers<T> {
             }
         }
         let none = NoReaction { share: 1.0 };
-        self.blocks.factor(n, FLOOR).map_err(|site| (site, none))?;
+        let factored = self.blocks.factor(n, FLOOR);
+        factored.map_err(|site| (self.place(site), none))?;
         self.blocks.solve(n, &mut self.impulses);
         let lost = self.impulses.iter().position(|x| !x.is_finite());
         match lost {
             None => Ok(()),
-            Some(at) => Err((at / n.max(1), none)),
+            Some(at) => Err((self.place(at / n.max(1)), none)),
         }
     }
 

@@ -6,7 +6,7 @@ use super::messages::{self, shape_text};
 use super::spec::Hold;
 use crate::algebra::Algebra;
 use crate::diagnostic::{Diagnostic, Errors, Place};
-use crate::expr::shape::Structure;
+use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Shift};
 use crate::syntax::ast::Name;
@@ -20,7 +20,7 @@ pub(super) fn hold(
     largest: u32,
     errors: &mut Errors,
 ) -> Option<Hold> {
-    let value = expr::sub(left.clone(), right.clone());
+    let value = entries(&declared.symbols, expr::sub(left.clone(), right.clone()));
     if value.size() > largest {
         errors.push(messages::too_large(place, value.size(), largest, true));
         return None;
@@ -45,6 +45,46 @@ pub(super) fn hold(
         place,
         name_place: name.place,
     })
+}
+
+/// The independent entries of a matrix as one vector: of a symmetric one those on and above the diagonal, row by row, of a
+/// skew one its axial vector or the entries below the diagonal, of any other all. Numbers and vectors stay.
+fn entries(symbols: &Symbols, value: Expr) -> Expr {
+    let shape = value.shape();
+    let (Dim::Fixed(rows), Dim::Fixed(cols)) = (shape.rows, shape.cols) else {
+        return value;
+    };
+    if shape.is_scalar() || shape.is_vector() {
+        return value;
+    }
+    let (Ok(rows), Ok(cols)) = (u8::try_from(rows), u8::try_from(cols)) else {
+        return value;
+    };
+    let algebra = Algebra::new(symbols);
+    let flipped = || expr::transpose(symbols, value.clone());
+    let square = shape.is_square();
+    let symmetric = square && algebra.is_zero(&expr::sub(value.clone(), flipped()));
+    let skew = square && !symmetric && algebra.is_zero(&expr::add(value.clone(), flipped()));
+    if skew && rows == 3 {
+        return expr::vee(value);
+    }
+    let wanted = |i: u8, j: u8| match (symmetric, skew) {
+        (true, _) => i <= j,
+        (_, true) => i > j,
+        _ => true,
+    };
+    let all = (0..rows).flat_map(|i| (0..cols).map(move |j| (i, j)));
+    let all: Vec<(u8, u8)> = all.filter(|(i, j)| wanted(*i, *j)).collect();
+    let Ok(count) = u8::try_from(all.len()) else {
+        return value;
+    };
+    let count = Dim::Fixed(u32::from(count));
+    let each = (0..).zip(all).map(|(k, (i, j))| {
+        let column = expr::mul(value.clone(), expr::unit(shape.cols, j));
+        let entry = expr::dot(expr::unit(shape.rows, i), column);
+        expr::mul(entry, expr::unit(count, k))
+    });
+    expr::sum(each.collect::<Vec<_>>(), Shape::vector(count))
 }
 
 /// What is wrong with the equation, if anything.

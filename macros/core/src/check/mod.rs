@@ -63,6 +63,12 @@ pub fn numbers(model: &Model, list: &[&Expression]) -> Vec<Option<Expr>> {
     list.iter().map(|e| elaborator.number(e).ok()).collect()
 }
 
+/// Two expressions of one shape, in the names of a model.
+pub fn sides(model: &Model, a: &Expression, b: &Expression) -> Option<(Expr, Expr)> {
+    let names = declare::declare(model, &mut Errors::new());
+    Elaborator::new(&names, Vec::new()).pair(a, b).ok()
+}
+
 /// The shape of a parameter as declared, where it is one.
 pub fn parameter_shape(symbols: &Symbols, declared: &Kindred) -> Option<(Shape, Structure)> {
     shapes::shape(symbols, declared, &mut Errors::new())

@@ -219,10 +219,14 @@ pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> 
             "the constraint of `{name}` follows from the others, or some of its components from one another: \
              {wanted} equations hold {rank} directions, and its multiplier is not determined"
         );
-        return Some(
-            Diagnostic::new(hold.place, message)
-                .help("leave out what the other constraints state already"),
-        );
+        let help = match hold.left.shape() == hold.value.shape() {
+            true => "leave out what the other constraints state already",
+            false => {
+                "a matrix is held by all of its entries, a symmetric one by those on and above the diagonal, a skew one by its \
+                 axial vector: between rotations state `vee(A^T*B) = 0` for `A = B`"
+            }
+        };
+        return Some(Diagnostic::new(hold.place, message).help(help));
     }
     None
 }

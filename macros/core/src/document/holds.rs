@@ -22,6 +22,14 @@ pub fn stated(sheet: &Sheet, section: &mut Section) {
             sheet.math(&hold.right),
         ));
         section.labelled(&label(j));
+        let (own, paired) = (hold.left.shape(), hold.value.shape());
+        if own != paired {
+            let count = sheet.symbols().sizes(paired.rows).1;
+            let name = &sheet.symbols().get(hold.multiplier).name;
+            section.text(&format!(
+                "Its {count} independent entries are paired with the components of {name}."
+            ));
+        }
     }
 }
 

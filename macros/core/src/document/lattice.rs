@@ -8,6 +8,7 @@ mod invariants;
 mod sums;
 
 use super::folded::{Folded, From, Part};
+use crate::check::spec::Hold;
 use crate::derive::warnings::Warning;
 use crate::diagnostic::Errors;
 use crate::expr::{self, Expr, Node, Shift};
@@ -287,6 +288,12 @@ fn terms(folded: &mut Folded, part: &Part, doc: &mut Document) {
             "Beside it the action of a step contains, at every site, the work of the multiplier {name}: the step times {name} paired with what it holds, left side less right side, at the node where the step begins."
         ));
     }
+    for stated in &part.unfolded.totals {
+        let name = &stated.name;
+        section.text(&format!(
+            "Beside it the action of a step contains, once for all sites, the work of the multiplier {name}: the step times {name} paired with what it holds, left side less right side, at the node where the step begins."
+        ));
+    }
 }
 
 fn constraints(folded: &mut Folded, part: &Part, doc: &mut Document) {
@@ -350,6 +357,26 @@ fn holds(folded: &mut Folded, part: &Part, section: &mut Section) {
         let right = folded.expression(part, &hold.right, from);
         let math = |e: Expr| Formula::Expr(expr::collect(&folded.symbols, &e));
         section.equation(Formula::equal(math(left), math(right)));
+    }
+    for stated in &part.unfolded.totals {
+        let symbols = &part.d.letters.symbols;
+        let own = |h: &&Hold| symbols.get(h.multiplier).name == stated.name;
+        let Some(hold) = part.d.spec.holds.iter().find(own) else {
+            continue;
+        };
+        let multiplier = folded.letter(part, hold.multiplier, Shift::HERE, From::First);
+        section.paragraph(vec![
+            "The multiplier ".into(),
+            multiplier.into(),
+            ", one for all sites, holds:".into(),
+        ]);
+        let mut side = |e: &Expr| match sums::told(folded, part, e) {
+            Some(sum) => sum,
+            None => folded.derived(part, e, From::First),
+        };
+        let both = [side(&hold.left), side(&hold.right)];
+        let [left, right] = both;
+        section.equation(Formula::equal(left, right));
     }
 }
 

@@ -22,7 +22,7 @@ pub use names::{Copied, copy_name};
 pub(crate) use put::any_name;
 pub use range::Range;
 pub(crate) use unfold::{LARGEST, definitions, inlined};
-pub use unfold::{StatedHold, Summand, Unfolded, unfold};
+pub use unfold::{StatedHold, StatedTotal, Summand, Summed, Unfolded, unfold};
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::ast::{Model, Statement};

@@ -98,6 +98,11 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
                 found.label = found.label.or(lattice.line);
                 walk(lattice, inner, by, found)
             }
+            ("sum", [_]) => Err(Diagnostic::new(
+                e.place,
+                "a sum over all sites is a number or a vector of the whole line, which a held constraint alone may contain",
+            )
+            .help("the Lagrangian is summed over labels anyway: leave `sum` out, or state the sites of a term, `sum(expr, nodes)`; of a constraint write `hold p: sum(m*x) = X;`")),
             _ => arguments
                 .iter()
                 .try_for_each(|a| walk(lattice, a, by, found)),

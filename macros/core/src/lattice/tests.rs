@@ -294,3 +294,69 @@ fn a_term_of_one_neighbour_is_warned_of_and_a_difference_is_not() {
         assert_eq!(warned(term), count, "{term}");
     }
 }
+
+fn beads(hold: &str) -> String {
+    format!(
+        "model Beads {{
+            label i in 0..N; periodic;
+            param m: Real at nodes; param a: Real at segments; param X: Vec<3>; param R: Real;
+            field φ: Vec<3> at nodes;
+            {hold}
+            lagrangian = m*dot(next(φ) - φ, next(φ) - φ)/(2*h) - h*m*dot(X, φ)/R;
+        }}"
+    )
+}
+
+#[test]
+fn a_sum_that_is_held_is_the_sum_typed_by_hand() {
+    let lattice = chosen(&beads("hold c: sum(m*φ) = X;"), 2, false, ["free", "free"]);
+    let sum = "hold c: m_0*φ_0 + m_1*φ_1 + m_2*φ_2 = X;";
+    assert!(lattice.contains(sum), "{lattice}");
+    // Of distances at segments, of squares at nodes.
+    let several = "hold c: R = 2*sum(dot(next(φ, i) - φ, next(φ, i) - φ)) - sum(dot(φ, φ), nodes);";
+    let lattice = chosen(&beads(several), 1, false, ["free", "free"]);
+    let wanted = "R = 2*dot(φ_1 - φ_0, φ_1 - φ_0) - dot(φ_0, φ_0) - dot(φ_1, φ_1);";
+    assert!(lattice.contains(wanted), "{lattice}");
+}
+
+#[test]
+fn a_constraint_with_the_site_before_is_counted_from_that_one() {
+    let with = |hold: &str, ring| chosen(&beads(hold), 4, ring, ["free", "free"]);
+    for ring in [false, true] {
+        let before = with(
+            "hold n: dot(φ - prev(φ, i), φ - prev(φ, i)) = prev(a, i)^2;",
+            ring,
+        );
+        let after = with("hold n: dot(next(φ, i) - φ, next(φ, i) - φ) = a^2;", ring);
+        assert_eq!(before, after);
+    }
+}
+
+#[test]
+fn sums_are_refused_where_they_mean_nothing() {
+    for (hold, wanted) in [
+        ("hold c: sum(φ) = φ;", "stands beside a sum over sites"),
+        ("hold c: sum(sum(φ)) = X;", "stands within another one"),
+        ("hold c: sum(X) = X;", "there is nothing to sum over"),
+        ("hold c: sum(φ) = R;", "a vector of length 3 is needed here"),
+        ("hold c: sum(m) = R;", "contains no configuration"),
+        (
+            "hold c: sum(φ, edges) = X;",
+            "over `nodes` or over `segments`",
+        ),
+        ("hold c: sum(next(φ)) = X;", "stands at one node"),
+        (
+            "hold c: sum(φ) = X; hold d: sum(2*φ) = X;",
+            "follows from the others",
+        ),
+        ("scale sum(m);", "which a held constraint alone may contain"),
+    ] {
+        let source = beads(hold);
+        let model = parse_source(&source).unwrap();
+        let lattice = Lattice::read(&model).unwrap();
+        let told = document::printed_lattice(&model, &source, Format::Text, 100).map(|_| ());
+        let told = told.expect_err(hold).to_string();
+        assert!(told.contains(wanted), "{hold}: {told}");
+        assert!(lattice.line.is_some());
+    }
+}

@@ -6,6 +6,7 @@ mod holds;
 mod lagrangian;
 mod mesh;
 mod pinned;
+mod totals;
 mod warned;
 
 use super::choice::Choice;
@@ -20,6 +21,7 @@ use crate::expr::symbol::ascii;
 use crate::syntax::ast::{Alternative, Expression, Extent, Kind, Kindred, Model, Name, Statement};
 pub(crate) use definitions::{definitions, inlined};
 use std::collections::BTreeMap;
+pub use totals::{StatedTotal, Summed};
 use warned::without_a_ring;
 
 /// Largest Lagrangian that is written out, in quantities, numbers and operations.
@@ -75,6 +77,8 @@ pub struct Unfolded {
     pub summands: Vec<Summand>,
     /// The constraints that are held at sites.
     pub holds: Vec<StatedHold>,
+    /// The constraints that are held on sums over sites.
+    pub totals: Vec<StatedTotal>,
     /// Terms that are hardly meant.
     pub warnings: Vec<Warning>,
 }
@@ -119,6 +123,7 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfol
             given: Vec::new(),
             summands: Vec::new(),
             holds: Vec::new(),
+            totals: Vec::new(),
             warnings: Vec::new(),
         },
     };

@@ -6,14 +6,17 @@ use super::pull::{defined, forces};
 use super::site::BASE;
 use super::{How, Lone, Mover, Refused, Written};
 use crate::algebra::Algebra;
-use crate::check::spec::Hold;
+use crate::check::{self, spec::Hold};
 use crate::derive::balance::{pairing, shorter};
 use crate::derive::{Derivation, holds};
+use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::groups::Kept;
-use crate::lattice::{Lattice, StatedHold};
+use crate::lattice::{Lattice, Sites, StatedHold, StatedTotal};
+use crate::print::formula::Formula;
+use crate::syntax::ast::{self as syntax, Expression};
 
-/// A constraint as stated: one at every index of a range, from the first site on.
+/// A constraint as stated: one at every index of a range, from the first site on, or one on the sum over them.
 #[derive(Clone, Debug)]
 pub struct Held {
     /// The name of its multiplier.
@@ -33,7 +36,11 @@ pub struct Held {
     /// The size of its terms.
     pub scale: Expr,
     /// The equation, in the letters of the base.
-    pub sides: [Expr; 2],
+    pub sides: [Formula; 2],
+    /// The letters of the equation.
+    pub symbols: Symbols,
+    /// Of a sum over sites, whose summand is what `value` is: what stands beside it.
+    pub beside: Option<Expr>,
     /// Its derivatives.
     pub reaches: Vec<Reach>,
 }
@@ -49,6 +56,8 @@ pub struct Reach {
     pub reaction: Expr,
     /// The same for each component of it.
     pub columns: Matrix,
+    /// Whether a sum over sites holds it.
+    pub in_sum: bool,
 }
 
 /// A matrix by its columns.
@@ -136,6 +145,19 @@ pub(super) fn held(lattice: &Lattice, part: &Written, lone: &[Lone]) -> Result<V
         }
         out.push(found);
     }
+    if let (Some(sum), Some(site)) = (part.unfolded.totals.first(), out.first()) {
+        return refused(format!(
+            "`{}` holds a sum over sites and `{}` holds something at each: their multipliers are found together",
+            sum.name, site.name
+        ));
+    }
+    for stated in &part.unfolded.totals {
+        let found = total(lattice, part, stated)?;
+        for reach in &found.reaches {
+            admitted(lattice, lone, &found, reach)?;
+        }
+        out.push(found);
+    }
     match out.is_empty() && !part.d.spec.holds.is_empty() {
         true => refused("a constraint is held that belongs to no site".to_owned()),
         false => Ok(out),
@@ -170,21 +192,24 @@ fn admitted(lattice: &Lattice, lone: &[Lone], held: &Held, reach: &Reach) -> Res
     }
 }
 
-fn one(part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
-    let (d, name) = (&part.d, &stated.name);
-    let s = &d.letters.symbols;
-    let algebra = Algebra::new(s);
-    let first = stated.letters.iter().map(|(_, o)| *o).min().unwrap_or(0);
-    let last = stated.letters.iter().map(|(_, o)| *o).max().unwrap_or(0);
-    if first != 0 || stated.range.from != 0 {
+/// The letters of a constraint begin at its index, and reach the next one at most: how far they stand apart.
+fn width(name: &str, from: isize, letters: &[(Sites, isize)]) -> Result<usize, Refused> {
+    let first = letters.iter().map(|(_, o)| *o).min().unwrap_or(0);
+    let last = letters.iter().map(|(_, o)| *o).max().unwrap_or(0);
+    if first != 0 || from != 0 {
         return refused(format!(
             "`{name}` is held from a site on that it does not hold: count it from that one, with `next(x, i)`"
         ));
     }
-    let width = usize::try_from(last).unwrap_or(0);
-    if width > 1 {
-        return refused(format!("`{name}` holds sites that are no neighbours"));
+    match usize::try_from(last).unwrap_or(0) {
+        width @ 0..=1 => Ok(width),
+        _ => refused(format!("`{name}` holds sites that are no neighbours")),
     }
+}
+
+fn one(part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
+    let (d, name) = (&part.d, &stated.name);
+    let width = width(name, stated.range.from, &stated.letters)?;
     let multiplier = part.copy(name, BASE);
     let mut holds = d.spec.holds.iter();
     let Some(hold) = holds.find(|h| Some(h.multiplier) == multiplier) else {
@@ -192,13 +217,128 @@ fn one(part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
             "`{name}` is held at no site with all its neighbours"
         ));
     };
-    let shape = s.get(hold.multiplier).shape;
-    let letter = Letter {
-        symbol: hold.multiplier,
-        shift: Shift::HERE,
+    let sides = [&hold.left, &hold.right].map(|e| Formula::Expr(e.clone()));
+    let held = Held {
+        name: name.clone(),
+        label: stated.range.label,
+        to: stated.range.to,
+        width,
+        multiplier: Letter {
+            symbol: hold.multiplier,
+            shift: Shift::HERE,
+        },
+        components: 0,
+        value: hold.value.clone(),
+        scale: expr::integer(0),
+        sides,
+        symbols: d.letters.symbols.clone(),
+        beside: None,
+        reaches: Vec::new(),
     };
-    let own = expr::here(s, hold.multiplier);
-    let value = defined(part, &hold.value)?;
+    with_derivatives(part, hold, held)
+}
+
+/// A constraint on a sum over sites.
+fn total(lattice: &Lattice, part: &Written, stated: &StatedTotal) -> Result<Held, Refused> {
+    let (d, name) = (&part.d, &stated.name);
+    let Some(summed) = &stated.summed else {
+        return refused(format!("`{name}` is not linear in the sums that it holds"));
+    };
+    let Some(first) = summed.first() else {
+        return refused(format!("`{name}` holds no sum"));
+    };
+    let mut largest = 0;
+    for term in summed {
+        if term.range != first.range || term.site != first.site {
+            return refused(format!("`{name}` holds sums over several ranges of sites"));
+        }
+        largest = largest.max(width(name, term.range.from, &term.letters)?);
+    }
+    let mut holds = d.spec.holds.iter();
+    let own = |h: &&Hold| d.letters.symbols.get(h.multiplier).name == *name;
+    let Some(hold) = holds.find(own) else {
+        return refused(format!("`{name}` is not held"));
+    };
+    let place = stated.rest.place;
+    let terms = summed.iter().map(|t| (false, t.shown.clone()));
+    let kind = syntax::Kind::Sum(terms.collect());
+    let terms = Expression { kind, place };
+    let found = check::sides(&part.unfolded.model, &terms, &stated.rest);
+    let Some((summand, beside)) = found.filter(|(a, _)| a.shape() == hold.value.shape()) else {
+        return refused(format!("the summand of `{name}` is not read"));
+    };
+    let by = isize::try_from(BASE).unwrap_or(0) - isize::try_from(first.site).unwrap_or(0);
+    let Some(value) = part.moved(&summand, by) else {
+        return refused(format!("`{name}` reaches beyond the sites shown"));
+    };
+    let is_constant = |l: &Letter| d.letters.symbols.get(l.symbol).role == Role::Parameter;
+    if !expr::letters(&beside).iter().all(is_constant) {
+        return refused(format!("`{name}` holds a sum and what belongs to no site"));
+    }
+    let mut symbols = d.letters.symbols.clone();
+    let (index, count) = match lattice.labels.get(first.range.label) {
+        Some(l) => (l.index.text.as_str(), l.count.text.as_str()),
+        None => ("", ""),
+    };
+    let seen = seen_from(part, &value, index, &mut symbols);
+    let left = Formula::SumOver {
+        index: index.to_owned(),
+        from: Some("0".to_owned()),
+        to: Some(match first.range.to {
+            0 => count.to_owned(),
+            by => format!("{count}{by}"),
+        }),
+        of: Box::new(Formula::Expr(seen)),
+    };
+    let right = Formula::Expr(expr::neg(beside.clone()));
+    let held = Held {
+        name: name.clone(),
+        label: first.range.label,
+        to: first.range.to,
+        width: largest,
+        multiplier: Letter {
+            symbol: hold.multiplier,
+            shift: Shift::HERE,
+        },
+        components: 0,
+        value,
+        scale: expr::integer(0),
+        sides: [left, right],
+        symbols,
+        beside: Some(beside),
+        reaches: Vec::new(),
+    };
+    with_derivatives(part, hold, held)
+}
+
+/// An expression of the base with its letters as those of the site `i`, for print.
+fn seen_from(part: &Written, e: &Expr, index: &str, symbols: &mut Symbols) -> Expr {
+    let mut list = Vec::new();
+    for l in expr::letters(e) {
+        let Some(at) = part.sited(l.symbol) else {
+            continue;
+        };
+        let own = symbols.get(l.symbol).clone();
+        let site = match at.site - BASE {
+            0 => index.to_owned(),
+            by => format!("{index}+{by}"),
+        };
+        let name = format!("{}_{{{site}}}", at.of);
+        let id = symbols.add(&name, own.shape, own.structure, own.role);
+        list.push((l, expr::letter(symbols, id, l.shift)));
+    }
+    expr::substitute(symbols, e, &list)
+}
+
+/// A constraint with its derivatives and the size of its terms.
+fn with_derivatives(part: &Written, hold: &Hold, held: Held) -> Result<Held, Refused> {
+    let d = &part.d;
+    let s = &d.letters.symbols;
+    let algebra = Algebra::new(s);
+    let (name, letter) = (&held.name, held.multiplier);
+    let shape = s.get(letter.symbol).shape;
+    let own = expr::here(s, letter.symbol);
+    let value = defined(part, &held.value)?;
     let step = Letter {
         symbol: d.spec.step,
         shift: Shift::HERE,
@@ -207,6 +347,7 @@ fn one(part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
         return refused(format!("`{name}` holds something that depends on the step"));
     }
     let axes = expr::axes(shape).unwrap_or_default();
+    let in_sum = held.beside.is_some();
     let reaches = forces(part, &pairing(&d.letters, &own, &value));
     let reaches = reaches.into_iter().map(|f| {
         let along = |axis: &Expr| expr::substitute(s, &f.value, &[(letter, axis.clone())]);
@@ -215,6 +356,7 @@ fn one(part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
             on: f.on,
             site: f.site - BASE,
             reaction: f.value,
+            in_sum,
         }
     });
     let reaches: Vec<Reach> = reaches.collect();
@@ -226,16 +368,11 @@ fn one(part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
         ..hold.clone()
     };
     Ok(Held {
-        name: name.clone(),
-        label: stated.range.label,
-        to: stated.range.to,
-        width,
-        multiplier: letter,
         components: axes.len(),
         scale: holds::scale(s, &by_definition),
         value,
-        sides: [hold.left.clone(), hold.right.clone()],
         reaches,
+        ..held
     })
 }
 

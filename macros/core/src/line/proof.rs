@@ -104,7 +104,8 @@ impl Line {
         for held in &self.holds {
             for r in held.reaches.iter().filter(|r| r.on == name) {
                 let index = site.checked_sub(r.site);
-                if index.is_none_or(|i| part.copy(&held.name, i).is_none()) {
+                let one_each = held.beside.is_none();
+                if index.is_none_or(|i| one_each && part.copy(&held.name, i).is_none()) {
                     continue;
                 }
                 let by = isize::try_from(site).ok()?

@@ -159,12 +159,31 @@ fn constraints_that_loops_do_not_take_are_refused_with_their_names() {
         ""
     );
     assert_eq!(held("hold k: dot(X, X) = a^2;"), "");
+    // Counted from the site before.
+    assert_eq!(
+        held("hold k: dot(X - prev(X, i), X - prev(X, i)) = a^2;"),
+        ""
+    );
+    assert_eq!(held("hold k: sum(m*X) = a*E1;"), "");
+    assert_eq!(held("hold k: 2*sum(dot(X - prev(X, i), X)) = a;"), "");
     let far = "hold k: dot(next(next(X, i), i) - X, next(next(X, i), i) - X) = a^2;";
     for (statement, part) in [
         (far, "no neighbours"),
         (
-            "hold k: dot(X - prev(X, i), X - prev(X, i)) = a^2;",
+            "hold k: dot(next(X, i), next(X, i)) = a^2;",
             "count it from that one",
+        ),
+        (
+            "hold k: dot(sum(X), sum(X)) = a;",
+            "is not linear in the sums",
+        ),
+        (
+            "hold k: sum(dot(X, X)) = sum(dot(next(X, i), X));",
+            "over several ranges",
+        ),
+        (
+            "hold k: sum(X) = a*E1; hold l: dot(X, X) = a;",
+            "their multipliers are found together",
         ),
         ("hold k: det(Y) = 1;", "numbers, vectors and rotations"),
     ] {

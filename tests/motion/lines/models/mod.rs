@@ -19,6 +19,8 @@ mod quartic;
 mod quaternions;
 mod rod;
 mod sine;
+mod sums;
+mod tension;
 mod toda;
 mod tops;
 mod water;
@@ -169,6 +171,10 @@ pub fn all(n: usize) -> Vec<Box<dyn Line>> {
             .into_iter()
             .map(|line| Box::new(line) as Box<dyn Line>),
     );
+    let tension = tension::all(n).into_iter();
+    out.extend(tension.map(|line| Box::new(line) as Box<dyn Line>));
+    let sums = sums::all(n).into_iter();
+    out.extend(sums.map(|line| Box::new(line) as Box<dyn Line>));
     out.push(Box::new(Rod::free(n)));
     if n > 1 {
         out.push(Box::new(Rod::new(n, None)));

@@ -270,6 +270,10 @@ impl Elaborator<'_> {
                 let a = argument(Some(self.hint(first).unwrap_or(four)))?;
                 self.of_group(f, a, first.place)
             }
+            "sum" => fail(
+                Diagnostic::new(name.place, "`sum` goes over the sites of a label, and here is none")
+                    .help("declare one, `label i in 0..N;`, and quantities `at nodes` or `at segments`: `hold p: sum(m*x) = X;` then holds their sum"),
+            ),
             _ => fail(
                 Diagnostic::new(
                     name.place,

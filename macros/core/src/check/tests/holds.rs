@@ -56,10 +56,7 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
             "both sides of the constraint of `λ` are the same",
         ),
         ("hold m: dot(x, x) = L^2;", "`m` is declared twice"),
-        (
-            "hold λ: x*x^T = Id;",
-            "a multiplier is a number or a vector",
-        ),
+        ("hold λ: x*x^T = Id;", "6 equations hold 3 directions"),
         ("hold λ: dot(x, x) = x;", "this is"),
         ("hold λ dot(x, x) = L^2;", "a held constraint reads"),
         ("hold λ: dot(x, x);", "a held constraint reads"),
@@ -160,4 +157,37 @@ fn fields_of_symmetric_and_skew_matrices_are_their_entries() {
     let d = of("Sym<3>", "tr((next(S) - S)^2)/(2*h) - h*k*tr(S)^2");
     let source = crate::document::source(&d);
     derive_source(&source).unwrap_or_else(|e| panic!("{source}\n{e}"));
+}
+
+#[test]
+fn matrices_are_held_by_their_independent_entries() {
+    let body = "field Q: Mat<3>; param A: Mat<3>; \
+        lagrangian = tr((next(Q) - Q)*(next(Q) - Q)^T)/(2*h) - h*tr(A*Q);";
+    for (hold, components) in [
+        ("Q^T*Q = Id", 6),
+        ("sym(A^T*Q) = 0", 6),
+        ("skew(A^T*Q) = 0", 3),
+        ("Q*E1*E2^T*A = A*Q", 9),
+    ] {
+        let text = format!("model M {{ {body} hold l: {hold}; }}");
+        let d = derive_source(&text).unwrap_or_else(|e| panic!("{hold}: {e}"));
+        let shape = d.spec.holds[0].value.shape();
+        let wanted = crate::expr::shape::Dim::Fixed(components);
+        assert_eq!(shape, crate::expr::shape::Shape::vector(wanted), "{hold}");
+        let source = crate::document::source(&d);
+        let again = derive_source(&source).unwrap_or_else(|e| panic!("{source}: {e}"));
+        assert_eq!(crate::document::source(&again), source);
+    }
+    let turning = "param J: Sym<3>; param A: SO<3>; group Λ: SO<3> velocity W; \
+        constraint next(Λ) = Λ*W; lagrangian = -tr(J*W)/h;";
+    let told = refused(&format!("{turning} hold l: Λ = A;"));
+    for wanted in ["9 equations hold 3 directions", "vee(A^T*B) = 0"] {
+        assert!(told.contains(wanted), "{told}");
+    }
+}
+
+#[test]
+fn a_sum_needs_sites() {
+    let told = held("hold λ: sum(x) = E1;");
+    assert!(told.contains("goes over the sites of a label"), "{told}");
 }

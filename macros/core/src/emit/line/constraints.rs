@@ -99,7 +99,10 @@ pub(super) fn told(l: &Lines) -> TokenStream {
             }
         }
     });
-    let each: Vec<TokenStream> = each.collect();
+    let each: Vec<TokenStream> = match l.holds_sums() {
+        true => vec![super::totals::told(l, &none_reached, &none_moving)],
+        false => each.collect(),
+    };
     quote! {
         impl<T: Real> #name<T> {
             /// The velocities of the momenta of a node, in the limit of small steps.

@@ -3,7 +3,7 @@
 
 use super::locals::Places;
 use super::pulls::{known, range_of};
-use super::{Lines, Moving, number, responses, rows};
+use super::{Lines, Moving, number, responses, rows, totals};
 use crate::emit::expression::Bindings;
 use crate::expr::symbol::Role;
 use crate::expr::{Expr, Letter};
@@ -163,7 +163,8 @@ pub(super) fn field(r: &Reach) -> Ident {
 pub(super) fn kept(l: &Lines, r: &Reach) -> Kept {
     match &r.columns {
         Matrix::Columns(_) => Kept::Matrix,
-        Matrix::Multiple(e) if crate::expr::letters(e).is_empty() => {
+        // Of a sum the derivative vanishes at sites that there are not.
+        Matrix::Multiple(e) if crate::expr::letters(e).is_empty() && !r.in_sum => {
             let s = &l.line.representative.d.letters.symbols;
             let (_, value) = l.program(s, std::slice::from_ref(e), &Bindings::new());
             Kept::Fixed(value.into_iter().next().unwrap_or_default())
@@ -233,7 +234,10 @@ pub(super) fn held(l: &Lines) -> TokenStream {
         .filter(|m| l.is_reached(&m.mover.name))
         .map(|m| reacted(l, &m))
         .collect();
-    let rows = rows::rows(l, &bodies);
+    let rows = match l.holds_sums() {
+        true => totals::kernels(l, &bodies),
+        false => rows::rows(l, &bodies),
+    };
     let all = sweep(l);
     quote! {
         #structs
@@ -373,7 +377,11 @@ fn reacted(l: &Lines, m: &Moving) -> TokenStream {
         let (row, r) = (number(l.held_row(h)), number(h.components));
         for reach in h.reaches.iter().filter(|r| r.on == *name) {
             let (own, by) = (field(reach), number(1 - reach.site));
-            let impulse = quote!(impulses[site + #by].fixed_rows::<#r>(#row).into_owned());
+            let at = match reach.in_sum {
+                true => quote!(1),
+                false => quote!(site + #by),
+            };
+            let impulse = quote!(impulses[#at].fixed_rows::<#r>(#row).into_owned());
             terms.push(match kept(l, reach) {
                 Kept::Fixed(c) => quote!(#impulse * (#c)),
                 Kept::Number => quote!(#impulse * reached.#list[site + #by].#own),

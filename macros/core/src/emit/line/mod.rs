@@ -22,6 +22,7 @@ mod solved;
 mod state;
 mod step;
 mod tied;
+mod totals;
 mod unique;
 mod walls;
 

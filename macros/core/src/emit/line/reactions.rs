@@ -4,9 +4,9 @@
 use super::held::Bodies;
 use super::pulls::range_of;
 use super::step::range_name;
-use super::{Lines, Moving, number};
+use super::{Lines, Moving, number, totals};
 use crate::line::Held;
-use crate::print::{Format, Style, expression};
+use crate::print::{Format, Style, formula};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -35,8 +35,11 @@ pub(super) fn fields(l: &Lines) -> Option<TokenStream> {
     })
 }
 
-/// How many indices a constraint has.
+/// How many indices a constraint has; on a sum it is one.
 pub(super) fn count(l: &Lines, h: &Held) -> TokenStream {
+    if h.beside.is_some() {
+        return quote!(1);
+    }
     let range = range_of(l, h.label, 0, h.to);
     quote!({ #range last - first })
 }
@@ -88,6 +91,10 @@ pub(super) fn values(l: &Lines, edges: &TokenStream) -> Option<TokenStream> {
         (0..h.components).map(move |_| count.clone())
     });
     let ring = ring(l);
+    let search = match l.holds_sums() {
+        true => quote!(line::Multipliers::of_sums(#n)),
+        false => quote!(line::Multipliers::new(&[#(#counts),*], #ring)),
+    };
     let places = l.holds().map(|(_, h)| {
         let count = l.count_field(h.label);
         quote!(self.sites.#count + 3)
@@ -100,7 +107,7 @@ pub(super) fn values(l: &Lines, edges: &TokenStream) -> Option<TokenStream> {
         responses: #responses { #(#none),* },
         weights: #responses { #(#none),* },
         velocities: #velocities,
-        search: line::Multipliers::new(&[#(#counts),*], #ring),
+        search: #search,
         impulses: ::std::vec![SVector::<T, #n>::zeros(); #places],
         found: ::std::vec![SVector::<T, #n>::zeros(); #places],
         held: ::std::vec![SMatrix::<T, #n, 2>::zeros(); #places],
@@ -157,10 +164,17 @@ pub(super) fn state(l: &Lines) -> (TokenStream, TokenStream) {
              many times the derivative of the left side less the right one."
         );
         fields.extend(quote!(#name: Vec<SMatrix<T, #r, 1>>,));
+        let (shown, value) = match h.beside {
+            Some(_) => (quote!(SMatrix<T, #r, 1>), quote!(self.multipliers.#name[0])),
+            None => (
+                quote!(&[SMatrix<T, #r, 1>]),
+                quote!(&self.multipliers.#name),
+            ),
+        };
         access.extend(quote! {
             #[doc = #doc]
-            pub fn #name(&self) -> &[SMatrix<T, #r, 1>] {
-                &self.multipliers.#name
+            pub fn #name(&self) -> #shown {
+                #value
             }
         });
     }
@@ -175,11 +189,12 @@ pub(super) fn state(l: &Lines) -> (TokenStream, TokenStream) {
 pub(super) fn sides(l: &Lines, h: &Held) -> [String; 2] {
     let d = &l.line.representative.d;
     let style = Style::new(&d.spec.time_index);
-    let shown = |e| expression(e, &d.letters.symbols, &style, Format::Text);
+    let shown = |side| formula(side, &h.symbols, &style, Format::Text);
     [shown(&h.sides[0]), shown(&h.sides[1])]
 }
 
-fn equation(l: &Lines, h: &Held) -> String {
+/// The equation as text.
+pub(super) fn equation(l: &Lines, h: &Held) -> String {
     let [left, right] = sides(l, h);
     format!("{left} = {right}")
 }
@@ -294,6 +309,22 @@ pub(super) fn search(l: &Lines, solved: &TokenStream) -> TokenStream {
     });
     let responses: Vec<TokenStream> = responses.collect();
     let first = l.line.holds.first().map(|h| &h.name);
+    let held = match l.holds_sums() {
+        true => totals::held(),
+        false => quote! {
+            {
+                let last = work.search.sites();
+                let (there,) = (&work.there,);
+                line::fill(self.threads, &mut work.held[0..last], |i| self.held_at(i, there));
+            }
+        },
+    };
+    let rows = held_rows(
+        l,
+        &quote!(&work.there),
+        &quote!(&work.here),
+        &quote!(&work.responses),
+    );
     quote! {
         work.search.begin_search(&mut work.impulses);
         while work.search.goes_on() {
@@ -301,18 +332,10 @@ pub(super) fn search(l: &Lines, solved: &TokenStream) -> TokenStream {
             #solved
             self.around(&mut work.places);
             self.reached(&work.places, &mut work.there);
-            {
-                let last = work.search.sites();
-                let (there,) = (&work.there,);
-                line::fill(self.threads, &mut work.held[0..last], |i| self.held_at(i, there));
-            }
+            #held
             if work.search.wants_derivatives(&work.held, &mut work.impulses) {
                 #(#responses)*
-                {
-                    let last = work.search.sites();
-                    let (there, here, responses) = (&work.there, &work.here, &work.responses);
-                    line::fill(self.threads, &mut work.held_rows[0..last], |i| self.held_row(i, there, here, responses));
-                }
+                #rows
                 work.search.correct(&work.held_rows, &mut work.impulses);
             }
         }
@@ -320,6 +343,25 @@ pub(super) fn search(l: &Lines, solved: &TokenStream) -> TokenStream {
             return Err(self.refused(state, h, line::Place { quantity: #first, site }, StepCause::NoReaction(cause)));
         }
         work.found.copy_from_slice(&work.impulses);
+    }
+}
+
+/// The derivatives of what is held at places `there` by impulses that act at `here`.
+fn held_rows(
+    l: &Lines,
+    there: &TokenStream,
+    here: &TokenStream,
+    responses: &TokenStream,
+) -> TokenStream {
+    if l.holds_sums() {
+        return totals::rows(there, here, responses);
+    }
+    quote! {
+        {
+            let last = work.search.sites();
+            let (there, here, responses) = (#there, #here, #responses);
+            line::fill(self.threads, &mut work.held_rows[0..last], |i| self.held_row(i, there, here, responses));
+        }
     }
 }
 
@@ -358,19 +400,22 @@ fn projected(
         let value = quote!(self.#kernel(h, site, at, momenta, weights));
         over(l, b, &quote!(work.velocities), &given, &value)
     });
+    let rows = held_rows(l, reached, reached, &quote!(&work.weights));
+    let rates = match l.holds_sums() {
+        true => totals::rates(reached),
+        false => quote! {
+            {
+                let last = work.search.sites();
+                let (reached, velocities) = (#reached, &work.velocities);
+                line::fill(self.threads, &mut work.held_rates[0..last], |i| self.held_rate(i, reached, velocities));
+            }
+        },
+    };
     quote! {
         #(#weights)*
         #(#velocities)*
-        {
-            let last = work.search.sites();
-            let (reached, weights) = (#reached, &work.weights);
-            line::fill(self.threads, &mut work.held_rows[0..last], |i| self.held_row(i, reached, reached, weights));
-        }
-        {
-            let last = work.search.sites();
-            let (reached, velocities) = (#reached, &work.velocities);
-            line::fill(self.threads, &mut work.held_rates[0..last], |i| self.held_rate(i, reached, velocities));
-        }
+        #rows
+        #rates
     }
 }
 
@@ -442,9 +487,19 @@ pub(super) fn project(l: &Lines) -> TokenStream {
     }
 }
 
+/// The refusal of a state at a site, or for what a sum over sites holds.
+fn refused_at(l: &Lines, h: &Held) -> TokenStream {
+    let label = &h.name;
+    match l.holds_sums() {
+        true => quote!(LineError::Parameter(error)),
+        false => quote!(LineError::Site { at: line::Place { quantity: #label, site }, error }),
+    }
+}
+
 /// The tests of a state at node 0: it must be on the constraints, its momenta along them. What rounding leaves across is
 /// taken away.
 pub(super) fn admitted(l: &Lines) -> TokenStream {
+    let sums = l.holds_sums();
     let tests = l.holds().map(|(k, h)| {
         let (list, label, equation) = (format_ident!("held_{k}"), &h.name, equation(l, h));
         let range = range_of(l, h.label, 0, h.to);
@@ -461,6 +516,10 @@ pub(super) fn admitted(l: &Lines) -> TokenStream {
             }
         }
     });
+    let tests: TokenStream = match sums {
+        true => totals::on_constraints(l),
+        false => tests.collect(),
+    };
     let projected = projected(
         l,
         &quote!(&state.places),
@@ -500,25 +559,27 @@ pub(super) fn admitted(l: &Lines) -> TokenStream {
     let first = l.line.holds.first();
     let label = first.map(|h| &h.name);
     let equation_of_first = first.map(|h| equation(l, h));
+    let refused_first = first.map(|h| refused_at(l, h));
     let along = l.holds().map(|(_, h)| {
         let (label, equation) = (&h.name, equation(l, h));
         let (row, r) = (number(l.held_row(h)), number(h.components));
+        let refused = refused_at(l, h);
         quote! {
             if let Err(error) = validate::along_constraint(#label, #equation, length(&work.impulses[site + 1].fixed_rows::<#r>(#row).into_owned()), taken, whole) {
-                return Err(LineError::Site { at: line::Place { quantity: #label, site }, error });
+                return Err(#refused);
             }
         }
     });
     let along: Vec<TokenStream> = along.collect();
     quote! {
-        #(#tests)*
+        #tests
         #projected
         let site = match work.search.projected(&work.held_rows, &work.held_rates, &mut work.impulses) {
             Ok(()) => work.search.largest_impulse(),
             Err((site, _)) => {
                 let none = T::from_f64(f64::NAN);
                 if let Err(error) = validate::along_constraint(#label, #equation_of_first, none, none, none) {
-                    return Err(LineError::Site { at: line::Place { quantity: #label, site }, error });
+                    return Err(#refused_first);
                 }
                 site
             }

@@ -1,10 +1,13 @@
 //! Held constraints at the sites that they have: one with a multiplier of its own at each.
 
 use super::definitions::inlined;
+use super::totals::has_sum;
 use super::{StatedHold, Writer};
 use crate::diagnostic::Place;
+use crate::lattice::declared::Sites;
 use crate::lattice::names::{Copied, copy};
-use crate::lattice::range::reach;
+use crate::lattice::put::any_name;
+use crate::lattice::range::{Range, reach};
 use crate::syntax::ast::{Expression, Kind, Name, Statement};
 
 impl Writer<'_> {
@@ -17,6 +20,9 @@ impl Writer<'_> {
         docs: &[String],
     ) {
         let (left, right) = (inlined(left, self.lets), inlined(right, self.lets));
+        if has_sum(&left) || has_sum(&right) {
+            return self.total(name, (left, right), place, docs);
+        }
         let whole = Expression {
             kind: Kind::Sum(vec![(false, left.clone()), (true, right.clone())]),
             place,
@@ -25,8 +31,9 @@ impl Writer<'_> {
             Ok(found) => found,
             Err(d) => return self.errors.push(d),
         };
+        let by = self.first_counted(&whole, &found.letters);
         let range = found.range(self.lattice, self.choice);
-        let Some(range) = range else {
+        let Some(range) = range.map(|r| self.counted_from(r, by)) else {
             let name = name.clone();
             let stated = Statement::Hold {
                 name,
@@ -39,13 +46,11 @@ impl Writer<'_> {
         self.out.holds.push(StatedHold {
             name: name.text.clone(),
             range,
-            letters: found.letters,
+            letters: found.letters.iter().map(|(s, o)| (*s, o - by)).collect(),
         });
         for site in range.indices(self.choice.count(range.label)) {
-            let both = self
-                .put(site)
-                .put(&left)
-                .and_then(|l| Ok((l, self.put(site).put(&right)?)));
+            let put = self.put(site - by);
+            let both = put.put(&left).and_then(|l| Ok((l, put.put(&right)?)));
             let (left, right) = match both {
                 Ok(both) => both,
                 Err(d) => return self.errors.push(*d),
@@ -71,6 +76,28 @@ impl Writer<'_> {
                 place,
             };
             self.push(stated, docs);
+        }
+    }
+    /// The offset of the first site that a constraint holds, where that is one before its index: it is counted from there, so
+    /// that `x - prev(x, i)` is the constraint `next(x, i) - x`. Once around a ring that would not be so of fields that grow.
+    pub(super) fn first_counted(&self, e: &Expression, letters: &[(Sites, isize)]) -> isize {
+        let grows = |n: &str| self.lattice.find(n).is_some_and(|q| q.offset.is_some());
+        let first = letters.iter().map(|(_, offset)| *offset).min();
+        match first {
+            Some(first) if first < 0 && !any_name(e, &grows) => first,
+            _ => 0,
+        }
+    }
+
+    /// The indices of a range, counted from sites that are so far off.
+    pub(super) fn counted_from(&self, range: Range, by: isize) -> Range {
+        match self.choice.periodic && self.lattice.line == Some(range.label) {
+            true => range,
+            false => Range {
+                from: range.from + by,
+                to: range.to + by,
+                ..range
+            },
         }
     }
 }

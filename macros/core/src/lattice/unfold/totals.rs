@@ -1,0 +1,272 @@
+//! Held constraints on sums over sites, `hold p: sum(m*φ) = X;`: written out they have one multiplier. Takes both
+//! sides as stated; gives the sums over the sites that exist, and what is summed, where the constraint is linear in its sums.
+
+use super::{LARGEST, Writer};
+use crate::diagnostic::{Diagnostic, Place};
+use crate::lattice::declared::{Lattice, Sites};
+use crate::lattice::range::{Range, Reach, reach};
+use crate::syntax::ast::{Expression, Kind, Name, Statement};
+
+/// Functions that are linear in each of their arguments.
+const LINEAR: [&str; 12] = [
+    "dot", "cross", "hat", "vee", "tr", "Tr", "sym", "skew", "diag", "perp", "re", "im",
+];
+
+/// A constraint on sums over sites as stated.
+#[derive(Clone, Debug)]
+pub struct StatedTotal {
+    /// The name of its multiplier.
+    pub name: String,
+    /// What is summed, left side less right side; none where the constraint is not linear in its sums.
+    pub summed: Option<Vec<Summed>>,
+    /// What stands beside the sums, left side less right side.
+    pub rest: Expression,
+}
+
+/// What is summed over sites.
+#[derive(Clone, Debug)]
+pub struct Summed {
+    /// It, at the site where it is shown.
+    pub shown: Expression,
+    /// That site.
+    pub site: usize,
+    /// The sites that it is summed over.
+    pub range: Range,
+    /// Kind of sites and offset of its letters, seen from its index.
+    pub letters: Vec<(Sites, isize)>,
+}
+
+/// The summand of a call of `sum`.
+fn summand(e: &Expression) -> Option<&Expression> {
+    match &e.kind {
+        Kind::Call(f, arguments) if f.text == "sum" => arguments.first(),
+        _ => None,
+    }
+}
+
+/// Where the letters of a sum stand, and the sites that it states.
+fn over(lattice: &Lattice, call: &Expression) -> Result<Reach, Diagnostic> {
+    match &call.kind {
+        Kind::Call(_, arguments) => match arguments.as_slice() {
+            [inner] => reach(lattice, inner),
+            _ => reach(lattice, call),
+        },
+        _ => reach(lattice, call),
+    }
+}
+
+/// Whether an expression holds a sum over sites.
+pub(super) fn has_sum(e: &Expression) -> bool {
+    summand(e).is_some() || parts(e).into_iter().any(has_sum)
+}
+
+/// The expressions that one is made of.
+fn parts(e: &Expression) -> Vec<&Expression> {
+    match &e.kind {
+        Kind::Number(_) | Kind::Constant(_) | Kind::Name(_) => Vec::new(),
+        Kind::Shaped(a, _)
+        | Kind::Neg(a)
+        | Kind::Transpose(a)
+        | Kind::Power(a, _)
+        | Kind::Component(a, _) => vec![a],
+        Kind::Quotient(a, b) => vec![a, b],
+        Kind::Sum(terms) => terms.iter().map(|(_, t)| t).collect(),
+        Kind::Product(list) | Kind::Call(_, list) => list.iter().collect(),
+    }
+}
+
+/// The same expression of other parts, in the order of [`parts`].
+fn with_parts(e: &Expression, mut new: impl Iterator<Item = Expression>) -> Expression {
+    let mut one = |a: &Expression| Box::new(new.next().unwrap_or_else(|| a.clone()));
+    let kind = match &e.kind {
+        Kind::Number(_) | Kind::Constant(_) | Kind::Name(_) => e.kind.clone(),
+        Kind::Shaped(a, shape) => Kind::Shaped(one(a), shape.clone()),
+        Kind::Neg(a) => Kind::Neg(one(a)),
+        Kind::Transpose(a) => Kind::Transpose(one(a)),
+        Kind::Power(a, q) => Kind::Power(one(a), *q),
+        Kind::Component(a, indices) => Kind::Component(one(a), indices.clone()),
+        Kind::Quotient(a, b) => Kind::Quotient(one(a), one(b)),
+        Kind::Sum(terms) => Kind::Sum(terms.iter().map(|(m, t)| (*m, *one(t))).collect()),
+        Kind::Product(list) => Kind::Product(list.iter().map(|t| *one(t)).collect()),
+        Kind::Call(f, list) => Kind::Call(f.clone(), list.iter().map(|t| *one(t)).collect()),
+    };
+    let place = e.place;
+    Expression { kind, place }
+}
+
+/// A sum of terms with their signs; of none, zero.
+fn sum_of(terms: Vec<(bool, Expression)>, place: Place) -> Expression {
+    let kind = match terms.is_empty() {
+        true => Kind::Number(crate::algebra::Rational::ZERO),
+        false => Kind::Sum(terms),
+    };
+    Expression { kind, place }
+}
+
+/// Terms with one sum each or none, with their signs; none where an expression is not linear in its sums.
+fn terms(e: &Expression) -> Option<Vec<(bool, Expression)>> {
+    if summand(e).is_some() || !has_sum(e) {
+        return Some(vec![(false, e.clone())]);
+    }
+    let signed = |terms: Vec<(bool, Expression)>, minus: bool| {
+        terms.into_iter().map(move |(m, t)| (m != minus, t))
+    };
+    match &e.kind {
+        Kind::Sum(list) => {
+            let each = list
+                .iter()
+                .map(|(minus, t)| Some(signed(terms(t)?, *minus)));
+            let each = each.collect::<Option<Vec<_>>>()?;
+            return Some(each.into_iter().flatten().collect());
+        }
+        Kind::Neg(a) => return Some(signed(terms(a)?, true).collect()),
+        Kind::Quotient(_, b) if has_sum(b) => return None,
+        Kind::Power(..) => return None,
+        Kind::Call(f, _) if !LINEAR.contains(&f.text.as_str()) => return None,
+        _ => {}
+    }
+    let all = parts(e);
+    let mut with_sums = (0..all.len()).filter(|i| has_sum(all[*i]));
+    let (Some(at), None) = (with_sums.next(), with_sums.next()) else {
+        return None;
+    };
+    let own = terms(all[at])?.into_iter().map(|(minus, term)| {
+        let new = all.iter().enumerate();
+        let new = new.map(|(i, p)| if i == at { term.clone() } else { (*p).clone() });
+        (minus, with_parts(e, new))
+    });
+    Some(own.collect())
+}
+
+/// What is summed in a term of one sum: the term with the summand in the place of the sum, and the call.
+fn opened(term: &Expression) -> (Expression, Option<&Expression>) {
+    if let Some(inner) = summand(term) {
+        return (inner.clone(), Some(term));
+    }
+    let mut call = None;
+    let new: Vec<Expression> = parts(term)
+        .into_iter()
+        .map(|p| {
+            let (new, found) = opened(p);
+            call = call.or(found);
+            new
+        })
+        .collect();
+    (with_parts(term, new.into_iter()), call)
+}
+
+impl Writer<'_> {
+    /// A constraint on sums over sites.
+    pub(super) fn total(
+        &mut self,
+        name: &Name,
+        (left, right): (Expression, Expression),
+        place: Place,
+        docs: &[String],
+    ) {
+        let both = self
+            .summed(&left)
+            .and_then(|l| Ok((l, self.summed(&right)?)));
+        let (written_left, written_right) = match both {
+            Ok(both) => both,
+            Err(d) => return self.errors.push(*d),
+        };
+        let whole = Expression {
+            kind: Kind::Sum(vec![(false, left), (true, right)]),
+            place,
+        };
+        let (mut summed, mut rest) = (Some(Vec::new()), Vec::new());
+        match terms(&whole) {
+            None => summed = None,
+            Some(list) => {
+                for (minus, term) in list {
+                    if !has_sum(&term) {
+                        rest.push((minus, term));
+                        continue;
+                    }
+                    let own = self.one_summed(minus, &term);
+                    summed = summed.and_then(|mut all: Vec<Summed>| {
+                        all.push(own?);
+                        Some(all)
+                    });
+                }
+            }
+        }
+        self.out.totals.push(StatedTotal {
+            name: name.text.clone(),
+            summed,
+            rest: sum_of(rest, place),
+        });
+        let stated = Statement::Hold {
+            name: name.clone(),
+            left: written_left,
+            right: written_right,
+            place,
+        };
+        self.push(stated, docs);
+    }
+
+    /// What a term of one sum sums, at the middle of its range.
+    fn one_summed(&self, minus: bool, term: &Expression) -> Option<Summed> {
+        let (open, call) = opened(term);
+        let found = over(self.lattice, call?).ok()?;
+        let range = found.range(self.lattice, self.choice)?;
+        let sites: Vec<isize> = range.indices(self.choice.count(range.label)).collect();
+        let site = *sites.get(sites.len() / 2)?;
+        let shown = self.put(site).put(&open).ok()?;
+        let by = self.first_counted(&open, &found.letters);
+        Some(Summed {
+            shown: sum_of(vec![(minus, shown)], term.place),
+            site: usize::try_from(site + by).ok()?,
+            range: self.counted_from(range, by),
+            letters: found.letters.iter().map(|(s, o)| (*s, o - by)).collect(),
+        })
+    }
+
+    /// An expression with its sums written out.
+    fn summed(&self, e: &Expression) -> Result<Expression, Box<Diagnostic>> {
+        let refused = |d: Diagnostic| Err(Box::new(d));
+        if let Kind::Name(n) = &e.kind
+            && self.lattice.find(n).is_some()
+        {
+            let message =
+                format!("`{n}` differs from site to site, and stands beside a sum over sites");
+            return refused(Diagnostic::new(e.place, message).help(
+                "a constraint on a sum is one for all sites: put the quantity into the sum, `sum(m*x)`; or hold it site by site, without a sum",
+            ));
+        }
+        let Some(inner) = summand(e) else {
+            let new = parts(e).into_iter().map(|p| self.summed(p));
+            let new = new.collect::<Result<Vec<_>, _>>()?;
+            return Ok(with_parts(e, new.into_iter()));
+        };
+        if has_sum(inner) {
+            let d = Diagnostic::new(e.place, "a sum over sites stands within another one");
+            return refused(d.help("write one sum, over nodes or over segments"));
+        }
+        let found = over(self.lattice, e).map_err(Box::new)?;
+        let range = found.range(self.lattice, self.choice);
+        let Some(range) = range.filter(|_| !found.letters.is_empty()) else {
+            let d = Diagnostic::new(
+                e.place,
+                "this is the same at every site: there is nothing to sum over",
+            );
+            return refused(d.help("a sum is of what is declared `at nodes` or `at segments`: `sum(m*x)`; leave `sum` out of what stands once"));
+        };
+        let mut all = Vec::new();
+        let mut large = 0;
+        for site in range.indices(self.choice.count(range.label)) {
+            let copy = self.put(site).put(inner)?;
+            large += copy.size();
+            if large > LARGEST {
+                let words = self.choice.words(self.lattice);
+                let message = format!("this lattice is too large to be written out: {words}");
+                return refused(Diagnostic::new(e.place, message).help(format!(
+                    "a sum that is held may have {LARGEST} quantities, numbers and operations: take fewer sites"
+                )));
+            }
+            all.push((false, copy));
+        }
+        Ok(sum_of(all, e.place))
+    }
+}
