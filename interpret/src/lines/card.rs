@@ -165,9 +165,10 @@ impl Carded {
         let card = Card {
             source: text(source),
             summary: text(&summary),
-            solver: match has_holds {
-                true => HELD,
-                false => text(&words.solver),
+            solver: match (has_holds, model.is_solved_together()) {
+                (true, _) => HELD,
+                (false, true) => TOGETHER,
+                (false, false) => text(&words.solver),
             },
             orders: &[2],
             solvers: &[],
@@ -210,6 +211,10 @@ fn of_space(name: &str, count: usize) -> (Field, Place) {
 /// How multipliers along a line are found.
 const HELD: &str = "the multipliers of all sites together by Newton's method with block-tridiagonal derivatives, velocities \
                     site by site, so that the constraints hold at the end of the step";
+
+/// How velocities are found that stand in the momenta of neighbours.
+const TOGETHER: &str =
+    "the velocities of all sites together by Newton's method with block-tridiagonal derivatives";
 
 /// A summary whose invariants name constraints of all sites together.
 fn of_all_sites<'a>(summary: &str, names: impl Iterator<Item = &'a str>) -> String {

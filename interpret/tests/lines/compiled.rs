@@ -169,6 +169,8 @@ pub mod held;
 pub mod newton;
 #[path = "quaternions.rs"]
 pub mod quaternions;
+#[path = "together.rs"]
+pub mod together;
 
 fn flat<const R: usize>(list: &[SMatrix<f64, R, 1>]) -> Vec<f64> {
     list.iter().flat_map(|x| x.as_slice().to_vec()).collect()
