@@ -34,6 +34,9 @@ pub const MOST_BODY_BY_BODY: usize = 32;
 /// with the cube of their number.
 pub const MOST_HELD_BODY_BY_BODY: usize = 4;
 
+/// The same where velocities of neighbours stand in one term: so does a step for the velocities of all bodies.
+pub const MOST_TOGETHER_BODY_BY_BODY: usize = 8;
+
 /// Most sites that are derived body by body.
 fn most_body_by_body(model: &Model) -> usize {
     let is_held = model
@@ -130,15 +133,31 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
         };
     }
     let most = most_body_by_body(&model);
-    if choice.counts.iter().any(|n| *n > most) {
+    let beyond = |most: usize| choice.counts.iter().any(|n| *n > most);
+    if beyond(most.min(MOST_TOGETHER_BODY_BY_BODY)) {
         match LineModel::read(source) {
+            Ok(line) if !beyond(most) && !line.is_solved_together() => {}
             Ok(line) => return card_of_line((&model, &lattice), choice, line, source),
+            Err(_) if !beyond(most) => {}
             Err(NoLine::Form(why)) => written_out = Some(why),
             // What is wrong with a model is said of its bodies too; what is not read of a line is
             // written out.
-            Err(NoLine::Refused(Refused::Construct(what))) => written_out = Some(what),
+            Err(NoLine::Refused(Refused::Construct(what))) => {
+                written_out = Some(format!("`{what}` is not executed in them"));
+            }
             Err(NoLine::Refused(refused)) => return Err(refused),
         }
+    }
+    let longest = lattice.labels.iter().zip(&choice.counts);
+    let longest = longest.max_by_key(|(_, n)| **n);
+    if let (Some(why), Some((label, n))) = (&written_out, longest)
+        && *n > MOST_BODY_BY_BODY
+    {
+        return Err(Refused::TooLong {
+            why: why.clone(),
+            asked: (label.index.text.clone(), *n),
+            most: MOST_BODY_BY_BODY,
+        });
     }
     let derived = pipeline::derive_lattice(&model, &lattice, choice);
     let (unfolded, d) = derived.map_err(Refused::Model)?;

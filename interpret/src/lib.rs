@@ -54,6 +54,15 @@ pub enum Refused {
         /// Why, in words.
         why: String,
     },
+    /// More sites than a model without loops over sites is run with.
+    TooLong {
+        /// Why it has no loops over sites, in words.
+        why: String,
+        /// How many sites are asked for, by the name of their number.
+        asked: (String, usize),
+        /// Most of them that are written out body by body.
+        most: usize,
+    },
     /// An operation that is not known here.
     Construct(String),
     /// More models than one process holds.
@@ -73,6 +82,15 @@ impl fmt::Display for Refused {
                  model into a crate by `model! {{ ... }}`, which builds it"
             ),
             Self::Form { why } => write!(f, "the model is not run with loops over sites: {why}"),
+            Self::TooLong {
+                why,
+                asked: (label, asked),
+                most,
+            } => write!(
+                f,
+                "`{label} = {asked}` is more than a model without loops over sites is run with, which is written out body by body: at most \
+                 `{label} = {most}`; loops over sites, which run any number of them, do not take this model: {why}"
+            ),
             Self::Functional { path } => write!(
                 f,
                 "the functional `{path}` is Rust code of its own, which needs a build: put the model into a \

@@ -48,7 +48,7 @@ impl Saved for Value<f64> {
             // What it stands for is put back whole.
             Value::Stamp(_) => {}
             // Begun anew in every step.
-            Value::Multipliers(_) => {}
+            Value::Multipliers(_) | Value::Band(_) => {}
             // Made of the parameters.
             Value::Extent(_) | Value::Around(_) => {}
             Value::Functional(held) => held.words(words),

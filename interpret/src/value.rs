@@ -169,6 +169,8 @@ pub enum Value<T: Real> {
     At(line::Place),
     /// A search for the impulses of constraints.
     Multipliers(Box<line::Multipliers<T>>),
+    /// A search for the velocities of all sites together.
+    Band(Box<line::AnyBand<T>>),
     /// A search for velocities.
     Search(crate::newton::Held),
     /// Part of an array, from an offset on: the place of the array.

@@ -136,23 +136,57 @@ fn a_term_that_is_left_out_is_seen() {
 }
 
 #[test]
+fn velocities_of_all_sites_are_found_together_to_the_last_bit_and_as_those_of_bodies() {
+    beside::equal_to_the_last_bit(compiled::together::all().into_iter());
+    beside::move_as_bodies_do(compiled::together::all().into_iter());
+    beside::go_on(compiled::together::all().into_iter());
+}
+
+#[test]
+fn bodies_whose_velocities_are_joined_run_with_sixty_segments() {
+    let (source, make, _) = compiled::together::all().remove(0);
+    let case = Case::new(60, None);
+    let (_, data) = make(&case);
+    let chosen = choice(source, case.n, case.ends);
+    let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("a card");
+    let told = "one for every number of sites";
+    assert!(card.summary.contains(told), "{}", card.summary);
+    let (parameters, initial) = (
+        beside::values(card.parameters, &data),
+        beside::values(card.initial, &data),
+    );
+    let settings = clebsch::card::Settings::step(case.h);
+    let mut line = (card.open)(&parameters, &initial, settings).expect("starts");
+    line.step().expect("steps");
+    let mut sums = vec![f64::NAN; card.invariant_count()];
+    line.invariants(&mut sums);
+    assert!(sums.iter().all(|x| x.is_finite()), "{sums:?}");
+}
+
+#[test]
 fn a_line_is_written_down_and_goes_on_to_the_last_bit() {
     beside::go_on(compiled::all().into_iter());
 }
 
 #[test]
-fn what_is_solved_along_the_line_has_no_loops_over_sites() {
-    let source = "model Coupled { label i in 0..N; param m: Real; param k: Real; field q: Real at nodes;
-        lagrangian = m*(next(q) - q)^2/(2*h) + (k/h)*(next(q) - q)*(next(next(q, i)) - next(q, i)); }";
+fn what_loops_over_sites_do_not_take_is_run_body_by_body_or_refused_at_once() {
+    let source =
+        "model Coupled { label i in 0..N; param m: Real; param k: Real; field q: Real at nodes;
+        lagrangian = m*(next(q) - q)^2/(2*h)
+            + (k/h)*(next(prev(q, i)) - prev(q, i))*(next(next(q, i)) - next(q, i)); }";
     let why = match LineModel::read(source) {
         Err(NoLine::Form(why)) => why,
         other => panic!("{other:?}"),
     };
-    let chosen = choice(source, 40, Some(["free", "free"]));
-    let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("is written out");
-    let told = "written out body by body, not with loops over sites";
-    assert!(card.summary.contains(told), "{}", card.summary);
-    assert!(card.summary.contains(&why), "{}", card.summary);
+    let card = |n: usize| {
+        let chosen = choice(source, n, Some(["free", "free"]));
+        clebsch_interpret::card_on_lattice(source, &chosen)
+    };
+    assert!(card(6).is_ok());
+    let told = card(60).expect_err("is refused").to_string();
+    for part in ["`i = 60`", "at most `i = 32`", &why] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
 }
 
 #[test]

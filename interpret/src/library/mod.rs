@@ -1,6 +1,7 @@
 //! What emitted code calls, by name: the runtime's own functions on [`Value`]s. One file a kind.
 
 mod algebra;
+mod band;
 mod domain;
 mod functions;
 pub(crate) mod groups;
@@ -82,6 +83,7 @@ pub fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
         .or_else(|| line::native(name, arguments))
         .or_else(|| reactions::native(name, arguments))
         .or_else(|| mesh::native(name, arguments))
+        .or_else(|| band::native(name, arguments))
 }
 
 /// The same of those that residuals and tangents call: no solver, no element is moved.
@@ -97,4 +99,5 @@ pub fn special<T: Real>(name: &str) -> Option<Special<T>> {
         .or_else(|| line::special(name))
         .or_else(|| reactions::special(name))
         .or_else(|| mesh::special(name))
+        .or_else(|| band::special(name))
 }

@@ -167,10 +167,11 @@ impl Carded {
         let card = Card {
             source: text(source),
             summary: text(&summary),
-            solver: match has_holds {
-                true if of_sums => HELD_SUMS,
-                true => HELD,
-                false => text(&words.solver),
+            solver: match (has_holds, model.is_solved_together()) {
+                (true, _) if of_sums => HELD_SUMS,
+                (true, _) => HELD,
+                (false, true) => TOGETHER,
+                (false, false) => text(&words.solver),
             },
             orders: &[2],
             solvers: &[],
@@ -217,6 +218,10 @@ const HELD: &str = "the multipliers of all sites together by Newton's method wit
 /// How multipliers of sums are found.
 const HELD_SUMS: &str = "the multipliers of sums over all sites together by Newton's method, velocities site by site, so that the \
                          constraints hold at the end of the step";
+
+/// How velocities are found that stand in the momenta of neighbours.
+const TOGETHER: &str =
+    "the velocities of all sites together by Newton's method with block-tridiagonal derivatives";
 
 /// A summary whose invariants name constraints of all sites together.
 fn of_all_sites<'a>(summary: &str, names: impl Iterator<Item = &'a str>) -> String {

@@ -89,6 +89,8 @@ pub struct LineModel {
     new: Routine<f64>,
     start: Routine<f64>,
     step: Routine<f64>,
+    /// Whether velocities of all sites are found together.
+    together: bool,
     /// Where the energy of small steps is known.
     energies: Option<Routine<f64>>,
     energy_sizes: Option<Routine<f64>>,
@@ -144,13 +146,6 @@ impl LineModel {
         };
         if let Some(why) = emit::refusal_of_line(&line) {
             return Err(NoLine::Form(why));
-        }
-        if !line.ties.is_empty() {
-            return Err(NoLine::Form(
-                "velocities of neighbours stand in one term, and are found together: a build does that for every \
-                 number of sites, a file that is run does it for the bodies written out"
-                    .to_owned(),
-            ));
         }
         let program = Program::read(emit::emit_line(&line, source))?;
         Ok(Self::of(&program, &model.name.text, &line)?)
@@ -261,6 +256,7 @@ impl LineModel {
             new,
             start,
             step,
+            together: !line.ties.is_empty(),
             energies,
             energy_sizes,
             totals,
@@ -277,6 +273,11 @@ impl LineModel {
     /// The name of the model.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Whether velocities of all sites are found together.
+    pub fn is_solved_together(&self) -> bool {
+        self.together
     }
 
     /// Whether [`LineTrajectory::energies`] gives any.

@@ -171,6 +171,8 @@ pub mod newton;
 pub mod quaternions;
 #[path = "sums.rs"]
 pub mod sums;
+#[path = "together.rs"]
+pub mod together;
 
 fn flat<const R: usize>(list: &[SMatrix<f64, R, 1>]) -> Vec<f64> {
     list.iter().flat_map(|x| x.as_slice().to_vec()).collect()

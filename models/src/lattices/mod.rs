@@ -1,6 +1,7 @@
 //! Models with labels, compiled: one stepper for every number of sites. Their statements are those of
 //! the files in `models/lattices/`, which run without a build.
 
+pub mod coupled_body_chain;
 pub mod coupled_tops;
 pub mod geometrically_exact_rod;
 pub mod hanging_chain;
@@ -12,7 +13,11 @@ pub mod toda_chain;
 pub mod uniform_tension_rod;
 
 /// The files and the statements that are compiled.
-pub const STATEMENTS: [(&str, &str); 9] = [
+pub const STATEMENTS: [(&str, &str); 10] = [
+    (
+        include_str!("../../lattices/coupled-body-chain.clebsch"),
+        coupled_body_chain::CoupledBodyChain::<f64>::SOURCE,
+    ),
     (
         include_str!("../../lattices/coupled-tops.clebsch"),
         coupled_tops::CoupledTops::<f64>::SOURCE,

@@ -4,7 +4,7 @@
 use crate::saved::{Saved, Words};
 use crate::solvers::moser_veselov::Poinsot;
 use crate::{Real, Rotation, TurnedRotation, UnitQuaternion, linalg};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 /// A rotation, body to space, and its matrix. The quaternion that it is kept by has a sign, which stays what
 /// it is along a motion: read as a unit quaternion it is an element of SU(2).
@@ -35,6 +35,15 @@ impl<T: Real> Attitude<T> {
             rotation: turned.rotation(),
             matrix: turned.matrix(),
         }
+    }
+
+    /// The attitude that the rotation of a vector ([`turn_of`](super::turn_of)) turns this one to, seen from the body.
+    #[inline(always)]
+    #[must_use]
+    pub fn moved(&self, v: &Vector3<T>) -> Self {
+        let half = T::from_f64(0.5);
+        let omega = [T::one(), v[0] * half, v[1] * half, v[2] * half];
+        Self::turned(&self.rotation.turned(omega))
     }
 
     /// The rotation.

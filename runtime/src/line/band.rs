@@ -7,9 +7,97 @@ use super::root::{Lists, Momenta, NoRoot, follow, scales_of};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
-/// What is kept from step to step: room for the equations of a line of sites with `N` components each.
+/// Momenta of all sites and their derivatives at some velocities, to which sites and terms of neighbours add.
+#[derive(Debug)]
+pub struct Sums<'a, T> {
+    velocities: &'a [T],
+    momenta: &'a mut [T],
+    /// None where derivatives are known.
+    blocks: Option<&'a mut Blocks<T>>,
+}
+
+impl<T: Real> Sums<'_, T> {
+    /// The velocities of a site with `n` components.
+    #[inline(always)]
+    pub fn velocity(&self, n: usize, site: usize) -> &[T] {
+        &self.velocities[n * site..n * (site + 1)]
+    }
+
+    /// Adds to the momenta of a site.
+    #[inline(always)]
+    pub fn add(&mut self, n: usize, site: usize, momenta: &[T]) {
+        let own = &mut self.momenta[n * site..n * (site + 1)];
+        for (x, y) in own.iter_mut().zip(momenta) {
+            *x += *y;
+        }
+    }
+
+    /// Adds to their derivative by the velocities of a site or of a neighbour, column after column.
+    #[inline(always)]
+    pub fn add_derivative(&mut self, row: usize, column: usize, derivative: &[T]) {
+        if let Some(blocks) = &mut self.blocks {
+            blocks.add(row, column, derivative);
+        }
+    }
+}
+
+/// The equations of a line.
+struct Line<'a, T, F> {
+    n: usize,
+    blocks: &'a mut Blocks<T>,
+    moving: [usize; 2],
+    all: F,
+    /// Whether derivatives are known.
+    known: bool,
+}
+
+impl<T: Real, F: FnMut(&mut Sums<'_, T>)> Momenta<T> for Line<'_, T, F> {
+    #[inline(always)]
+    fn at(&mut self, velocities: &[T], momenta: &mut [T]) {
+        let n = self.n;
+        if !self.known {
+            self.blocks.clear();
+        }
+        momenta.fill(T::zero());
+        let mut sums = Sums {
+            velocities,
+            momenta,
+            blocks: match self.known {
+                true => None,
+                false => Some(&mut *self.blocks),
+            },
+        };
+        (self.all)(&mut sums);
+        let [first, last] = self.moving;
+        let sites = velocities.len() / n.max(1);
+        for site in (0..first).chain(last..sites) {
+            momenta[n * site..n * (site + 1)].fill(T::zero());
+            if !self.known {
+                self.blocks.hold(site);
+            }
+        }
+    }
+
+    fn scales(&self, scales: &mut [f64]) {
+        for (site, own) in scales.chunks_exact_mut(self.n).enumerate() {
+            scales_of(self.n, self.blocks.own(site), own);
+        }
+    }
+
+    #[inline(always)]
+    fn factor(&mut self) -> bool {
+        self.blocks.factor(self.n, 0.0).is_ok()
+    }
+
+    #[inline(always)]
+    fn solve(&mut self, x: &mut [T]) {
+        self.blocks.solve(self.n, x);
+    }
+}
+
+/// What is kept from step to step: room for the equations of a line of sites, of any number of components each.
 #[derive(Clone, Debug)]
-pub struct Band<T, const N: usize> {
+pub struct AnyBand<T> {
     sites: usize,
     /// Whether derivatives are the same at all places and velocities: they are factored once.
     constant: bool,
@@ -24,156 +112,70 @@ pub struct Band<T, const N: usize> {
     scales: Vec<f64>,
 }
 
-/// The velocities at which momenta are wanted.
-#[derive(Clone, Copy, Debug)]
-pub struct Velocities<'a, T, const N: usize>(&'a [T]);
-
-impl<T: Real, const N: usize> Velocities<'_, T, N> {
-    /// Those of a site.
-    #[inline(always)]
-    pub fn at(&self, site: usize) -> SVector<T, N> {
-        SVector::from_column_slice(&self.0[N * site..N * (site + 1)])
-    }
-}
-
-/// Momenta of sites and their derivatives, to which terms of neighbours are added.
-#[derive(Debug)]
-pub struct Rows<'a, T, const N: usize> {
-    momenta: &'a mut [T],
-    /// None where derivatives are known.
-    blocks: Option<&'a mut Blocks<T>>,
-}
-
-impl<T: Real, const N: usize> Rows<'_, T, N> {
-    /// Adds what a term gives to the sites that it touches: momenta, and their derivatives, of the first index by
-    /// the velocity of the second.
-    #[inline(always)]
-    pub fn add<const K: usize>(
-        &mut self,
-        sites: [usize; K],
-        (momenta, derivatives): ([SVector<T, N>; K], [[SMatrix<T, N, N>; K]; K]),
-    ) {
-        for (i, row) in sites.into_iter().enumerate() {
-            let own = &mut self.momenta[N * row..N * (row + 1)];
-            for (x, y) in own.iter_mut().zip(momenta[i].iter()) {
-                *x += *y;
-            }
-            if let Some(blocks) = &mut self.blocks {
-                for (j, column) in sites.into_iter().enumerate() {
-                    blocks.add(row, column, derivatives[i][j].as_slice());
-                }
-            }
-        }
-    }
-}
-
-/// The equations of a line.
-struct Line<'a, T, A, B, const N: usize> {
-    blocks: &'a mut Blocks<T>,
-    moving: [usize; 2],
-    own: A,
-    between: B,
-    /// Whether derivatives are known.
-    known: bool,
-}
-
-impl<T: Real, A, B, const N: usize> Momenta<T> for Line<'_, T, A, B, N>
-where
-    A: Fn(usize, &SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
-    B: Fn(Velocities<'_, T, N>, &mut Rows<'_, T, N>),
-{
-    #[inline(always)]
-    fn at(&mut self, velocity: &[T], momenta: &mut [T]) {
-        let all = Velocities(velocity);
-        if !self.known {
-            self.blocks.clear();
-        }
-        let sites = velocity.len() / N.max(1);
-        for site in 0..sites {
-            let (own, derivative) = (self.own)(site, &all.at(site));
-            momenta[N * site..N * (site + 1)].copy_from_slice(own.as_slice());
-            if !self.known {
-                self.blocks.add(site, site, derivative.as_slice());
-            }
-        }
-        let mut rows = Rows {
-            momenta,
-            blocks: match self.known {
-                true => None,
-                false => Some(&mut *self.blocks),
-            },
-        };
-        (self.between)(all, &mut rows);
-        let [first, last] = self.moving;
-        for site in (0..first).chain(last..sites) {
-            momenta[N * site..N * (site + 1)].fill(T::zero());
-            if !self.known {
-                self.blocks.hold(site);
-            }
-        }
-    }
-
-    fn scales(&self, scales: &mut [f64]) {
-        for (site, own) in scales.chunks_exact_mut(N).enumerate() {
-            scales_of(N, self.blocks.own(site), own);
-        }
-    }
-
-    #[inline(always)]
-    fn factor(&mut self) -> bool {
-        self.blocks.factor(N, 0.0).is_ok()
-    }
-
-    #[inline(always)]
-    fn solve(&mut self, x: &mut [T]) {
-        self.blocks.solve(N, x);
-    }
-}
-
-impl<T: Real, const N: usize> Band<T, N> {
-    /// Room for so many sites, of a ring or of an open line; `constant` where derivatives are the same at all
-    /// places and velocities, for one model and step.
+impl<T: Real> AnyBand<T> {
+    /// Room for so many sites with `n` components each, of a ring or of an open line; `constant` where derivatives are
+    /// the same at all places and velocities, for one model and step.
     #[must_use]
-    pub fn new(sites: usize, ring: bool, constant: bool) -> Self {
-        let list = || vec![T::zero(); N * sites];
+    pub fn new(n: usize, sites: usize, ring: bool, constant: bool) -> Self {
+        let list = || vec![T::zero(); n * sites];
         Self {
             sites,
             constant,
             factored: false,
-            blocks: Blocks::new(N, sites, ring),
+            blocks: Blocks::new(n, sites, ring),
             velocity: list(),
             from: list(),
             momenta: list(),
             whole: list(),
             correction: list(),
             known: list(),
-            scales: vec![0.0; N * sites],
+            scales: vec![0.0; n * sites],
         }
     }
 
-    /// The velocities of sites whose momenta are `known`, those outside `moving` zero: `own` gives momenta and
-    /// their derivative by the velocity of one site, `between` adds those of terms of neighbours.
+    /// How many sites there are.
+    pub fn sites(&self) -> usize {
+        self.sites
+    }
+
+    /// The momenta aimed at, site after site, to be given before they are solved for.
+    pub fn known_mut(&mut self) -> &mut [T] {
+        &mut self.known
+    }
+
+    /// The velocities that were found last, site after site.
+    pub fn velocities(&self) -> &[T] {
+        &self.velocity
+    }
+
+    /// Half the sum of the velocities found last times the momenta aimed at, less those at rest: the kinetic energy of
+    /// momenta that are linear in velocities.
+    pub fn half_product(&self) -> T {
+        let all = self.velocity.iter().zip(&self.known).zip(&self.momenta);
+        let sum = all.fold(T::zero(), |sum, ((v, p), rest)| sum + *v * (*p - *rest));
+        sum * T::from_f64(0.5)
+    }
+
+    /// The velocities of sites with `n` components whose momenta are known, those outside `moving` zero: `all` adds the
+    /// momenta of sites and of terms of neighbours, with their derivatives.
     ///
     /// # Errors
     /// [`NoRoot`] where none follow from rest, and the site where that shows most.
+    #[inline(always)]
     pub fn solve(
         &mut self,
+        n: usize,
         moving: [usize; 2],
-        known: impl Fn(usize) -> SVector<T, N>,
-        own: impl Fn(usize, &SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
-        between: impl Fn(Velocities<'_, T, N>, &mut Rows<'_, T, N>),
-        out: &mut [SVector<T, N>],
+        all: impl FnMut(&mut Sums<'_, T>),
     ) -> Result<(), (usize, NoRoot)> {
-        self.known.fill(T::zero());
-        for site in moving[0]..moving[1] {
-            let value = known(site);
-            self.known[N * site..N * (site + 1)].copy_from_slice(value.as_slice());
+        for site in (0..moving[0]).chain(moving[1]..self.sites) {
+            self.known[n * site..n * (site + 1)].fill(T::zero());
         }
         let mut line = Line {
+            n,
             blocks: &mut self.blocks,
             moving,
-            own,
-            between,
+            all,
             known: self.factored,
         };
         if self.constant {
@@ -190,11 +192,10 @@ impl<T: Real, const N: usize> Band<T, N> {
             }
             let found = self.factored && self.velocity.iter().all(|x| x.is_finite());
             self.correction.copy_from_slice(&self.velocity);
-            if !found {
-                return Err((self.worst(), NoRoot { share: 0.0 }));
-            }
-            self.put(out);
-            return Ok(());
+            return match found {
+                true => Ok(()),
+                false => Err((self.worst(n), NoRoot { share: 0.0 })),
+            };
         }
         let mut lists = Lists {
             velocity: &mut self.velocity,
@@ -204,33 +205,141 @@ impl<T: Real, const N: usize> Band<T, N> {
             correction: &mut self.correction,
             scales: &mut self.scales,
         };
-        if let Err(e) = follow(&self.known, &mut line, &mut lists) {
-            return Err((self.worst(), e));
-        }
-        self.put(out);
-        Ok(())
-    }
-
-    fn put(&self, out: &mut [SVector<T, N>]) {
-        for (site, out) in out.iter_mut().enumerate().take(self.sites) {
-            *out = Velocities(&self.velocity).at(site);
+        match follow(&self.known, &mut line, &mut lists) {
+            Ok(()) => Ok(()),
+            Err(e) => Err((self.worst(n), e)),
         }
     }
 
     /// The site of the largest correction, or of the first that is no number.
     #[cold]
-    fn worst(&self) -> usize {
+    fn worst(&self, n: usize) -> usize {
         let sizes = self.correction.iter().zip(&self.scales);
         let sizes = sizes.map(|(x, scale)| x.magnitude() * scale);
         let mut worst = (0, -1.0);
         for (at, size) in sizes.enumerate() {
             if size.is_nan() {
-                return at / N.max(1);
+                return at / n.max(1);
             }
             if size > worst.1 {
                 worst = (at, size);
             }
         }
-        worst.0 / N.max(1)
+        worst.0 / n.max(1)
+    }
+}
+
+/// The same for `N` components of each site.
+#[derive(Clone, Debug)]
+pub struct Band<T, const N: usize>(AnyBand<T>);
+
+/// What sites and terms of neighbours add.
+#[derive(Debug)]
+pub struct Rows<'a, 'b, T, const N: usize>(&'a mut Sums<'b, T>);
+
+/// Momenta of the sites of a term, and their derivatives, of the first index by the velocity of the second.
+pub type Added<T, const N: usize, const K: usize> =
+    ([SVector<T, N>; K], [[SMatrix<T, N, N>; K]; K]);
+
+impl<T: Real, const N: usize> Rows<'_, '_, T, N> {
+    /// Adds what terms of neighbours give to the sites that they touch, for each index from the first to the one before
+    /// the last.
+    #[inline(always)]
+    pub fn tie<const K: usize>(
+        &mut self,
+        [first, last]: [usize; 2],
+        sites: impl Fn(usize) -> [usize; K],
+        term: impl Fn(usize, [SVector<T, N>; K]) -> Added<T, N, K>,
+    ) {
+        for index in first..last {
+            let sites = sites(index);
+            let velocities = sites.map(|i| SVector::from_column_slice(self.0.velocity(N, i)));
+            let (momenta, derivatives) = term(index, velocities);
+            for (i, row) in sites.into_iter().enumerate() {
+                self.0.add(N, row, momenta[i].as_slice());
+                for (j, column) in sites.into_iter().enumerate() {
+                    self.0
+                        .add_derivative(row, column, derivatives[i][j].as_slice());
+                }
+            }
+        }
+    }
+}
+
+impl<T: Real, const N: usize> Band<T, N> {
+    /// Room for so many sites, of a ring or of an open line; `constant` where derivatives are the same at all
+    /// places and velocities, for one model and step.
+    #[must_use]
+    pub fn new(sites: usize, ring: bool, constant: bool) -> Self {
+        Self(AnyBand::new(N, sites, ring, constant))
+    }
+
+    /// The velocities of sites whose momenta are `known`, those outside `moving` zero: `own` gives momenta and
+    /// their derivative by the velocity of one site, `between` adds those of terms of neighbours.
+    ///
+    /// # Errors
+    /// [`NoRoot`] where none follow from rest, and the site where that shows most.
+    pub fn solve_along(
+        &mut self,
+        moving: [usize; 2],
+        known: impl Fn(usize) -> SVector<T, N>,
+        own: impl Fn(usize, &SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
+        between: impl Fn(&mut Rows<'_, '_, T, N>),
+        out: &mut [SVector<T, N>],
+    ) -> Result<(), (usize, NoRoot)> {
+        let Self(band) = self;
+        let sites = band.sites;
+        for site in moving[0]..moving[1] {
+            band.known[N * site..N * (site + 1)].copy_from_slice(known(site).as_slice());
+        }
+        band.solve(N, moving, |sums| {
+            for site in 0..sites {
+                let velocity = SVector::from_column_slice(sums.velocity(N, site));
+                let (momenta, derivative) = own(site, &velocity);
+                sums.add(N, site, momenta.as_slice());
+                sums.add_derivative(site, site, derivative.as_slice());
+            }
+            between(&mut Rows(sums));
+        })?;
+        for (site, out) in out.iter_mut().enumerate().take(sites) {
+            *out = SVector::from_column_slice(&band.velocity[N * site..N * (site + 1)]);
+        }
+        Ok(())
+    }
+
+    /// The kinetic energy of momenta that are linear in the velocities of sites and of their neighbours: `known`, `own`
+    /// and `between` as of [`Band::solve_along`], momenta where nothing moves. Not a number where there are no such velocities.
+    pub fn kinetic(
+        [sites, first, last]: [usize; 3],
+        ring: bool,
+        known: impl Fn(usize) -> SVector<T, N>,
+        own: impl Fn(usize) -> (SVector<T, N>, SMatrix<T, N, N>),
+        between: impl Fn(&mut Rows<'_, '_, T, N>),
+    ) -> T {
+        let mut band = Self::new(sites, ring, true);
+        let own = |site: usize, _: &SVector<T, N>| own(site);
+        match band.solve_along([first, last], known, own, between, &mut []) {
+            Ok(()) => band.0.half_product(),
+            Err(_) => T::from_f64(f64::NAN),
+        }
+    }
+}
+
+/// Adds to values at sites what terms of neighbours give at these velocities, for each index from the first to the one
+/// before the last.
+#[inline(always)]
+pub fn spread<T: Real, const N: usize, const K: usize>(
+    [first, last]: [usize; 2],
+    sites: impl Fn(usize) -> [usize; K],
+    velocities: &[SVector<T, N>],
+    out: &mut [SVector<T, N>],
+    term: impl Fn(usize, [SVector<T, N>; K]) -> [SVector<T, N>; K],
+) {
+    for index in first..last {
+        let sites = sites(index);
+        let added = term(index, sites.map(|i| velocities[i]));
+        for (site, value) in sites.into_iter().zip(added) {
+            out[site] += value;
+        }
     }
 }

@@ -13,9 +13,10 @@ mod root;
 mod signs;
 mod stamp;
 mod sweep;
+mod turn;
 
 pub use attitude::{Attitude, between, turned_by};
-pub use band::{Band, Rows, Velocities};
+pub use band::{Added, AnyBand, Band, Rows, Sums, spread};
 pub use check::{count_of, each, length_of, repeated, shorter};
 pub use error::{LineError, Place};
 pub use multipliers::{Multipliers, NoReaction};
@@ -23,3 +24,4 @@ pub use root::{NoRoot, root, root_of};
 pub use signs::{agree, closes, turn_towards};
 pub use stamp::Stamp;
 pub use sweep::{Threads, fill, sum, total, try_each, try_fill, update};
+pub use turn::{rate_of, turn_of};

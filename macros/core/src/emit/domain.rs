@@ -236,6 +236,16 @@ fn guard(s: &Symbols, domain: Domain, function: Named, argument: &Expr, all: &mu
     }
 }
 
+/// Whether it asks that the step is not zero, which it never is.
+fn is_power_of_step(g: &Guard) -> bool {
+    let of_letter = |e: &Expr| matches!(e.node(), Node::Letter(_));
+    let power = match g.argument.node() {
+        Node::Power(a, q) => of_letter(a) && q.as_integer().is_some(),
+        _ => false,
+    };
+    power && g.place == Place::Step && g.domain == Domain::NotZero
+}
+
 /// What a function asks of its argument, as tokens.
 pub(super) struct Tested {
     /// The domain, as the runtime names it.
@@ -258,7 +268,7 @@ pub(super) fn tested(s: &Symbols, time_index: &str, list: &[Expr]) -> Option<Vec
     let mut all = Vec::new();
     list.iter().for_each(|e| collect(s, e, &mut all));
     let text = |e: &Expr| expression(e, s, &Style::new(time_index), Format::Text);
-    all.retain(|g| !is_square(&g.argument));
+    all.retain(|g| !is_square(&g.argument) && !is_power_of_step(g));
     all.iter()
         .map(|g| {
             let admitted = matches!(g.place, Place::Node | Place::Parameters);

@@ -93,8 +93,21 @@ pub(super) fn twice_kinetic(
     limit: &Limit,
     momenta: &[TokenStream],
 ) -> TokenStream {
+    twice_kinetic_of(d, bindings, limit, momenta, &|_| true)
+}
+
+/// The same of the configurations that are `wanted`, which share theirs with no others.
+pub(super) fn twice_kinetic_of(
+    d: &Derivation,
+    bindings: &Bindings,
+    limit: &Limit,
+    momenta: &[TokenStream],
+    wanted: &dyn Fn(usize) -> bool,
+) -> TokenStream {
     let mut part = d.clone();
-    let each = parts(d, limit).into_iter().map(|members| {
+    let own = parts(d, limit).into_iter();
+    let own = own.filter(|members| members.iter().any(|i| wanted(*i)));
+    let each = own.map(|members| {
         part_of(&mut part, d, &members);
         let own = members.iter().map(|i| momenta[*i].clone()).collect();
         let inverted = match element::only_rotations(&part) {

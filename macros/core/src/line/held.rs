@@ -4,11 +4,11 @@
 
 use super::pull::{defined, forces};
 use super::site::BASE;
-use super::{How, Lone, Mover, Refused, Written};
+use super::{How, Lone, Mover, Refused, Written, velocity};
 use crate::algebra::Algebra;
 use crate::check::{self, spec::Hold};
 use crate::derive::balance::{pairing, shorter};
-use crate::derive::{Derivation, holds};
+use crate::derive::holds;
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::groups::Kept;
@@ -130,6 +130,23 @@ fn refused<T>(words: String) -> Result<T, Refused> {
 /// The constraints of a line.
 pub(super) fn held(lattice: &Lattice, part: &Written, lone: &[Lone]) -> Result<Vec<Held>, Refused> {
     let mut out: Vec<Held> = Vec::new();
+    let movers = lone.iter().flat_map(|l| l.movers.iter());
+    let mut turning = movers.filter(|m| {
+        matches!(
+            m.how,
+            How::Newton {
+                arriving: Some(_),
+                ..
+            }
+        )
+    });
+    if let (Some(m), false) = (turning.next(), part.unfolded.holds.is_empty()) {
+        return refused(format!(
+            "a constraint is held, and the velocity of `{}` is found by Newton's method: beside constraints loops over \
+             sites take rotations whose kinetic energy is `-tr(J*Ω)` with `J` of parameters",
+            m.name
+        ));
+    }
     for stated in &part.unfolded.holds {
         let found = one(part, stated)?;
         if let Some(first) = out.first()
@@ -421,17 +438,11 @@ fn unit(lone: &Lone, members: &[usize], movers: &[&Mover]) -> Result<Unit, Refus
                 "`{name}` is held, and shares its kinetic energy with what is found apart from it"
             ));
         }
-        let mut columns = Vec::new();
-        for j in members {
-            for direction in directions(d, *j) {
-                columns.push(expr::directional(
-                    s,
-                    &momentum,
-                    &[(variation(*j), direction)],
-                ));
-            }
-        }
-        of_node.push(Matrix::of(&algebra, columns));
+        let columns = members.iter().flat_map(|j| {
+            let c = &d.spec.configurations[*j];
+            velocity::columns_of_limit(s, &momentum, c, variation(*j).symbol)
+        });
+        of_node.push(Matrix::of(&algebra, columns.collect()));
     }
     let mut of_edge = None;
     if !movers.iter().any(|m| matches!(m.how, How::Rotation { .. })) {
@@ -451,17 +462,6 @@ fn unit(lone: &Lone, members: &[usize], movers: &[&Mover]) -> Result<Unit, Refus
             .map(|i| gradient(&limit.linear, *i))
             .collect(),
     })
-}
-
-/// The velocities along the axes of a configuration.
-fn directions(d: &Derivation, i: usize) -> Vec<Expr> {
-    let shape = d.letters.symbols.get(d.letters.variation[i]).shape;
-    if d.spec.configurations[i].group.is_additive() {
-        return expr::axes(shape).unwrap_or_default();
-    }
-    let axes = 0..3;
-    axes.map(|axis| expr::hat(expr::unit(shape.rows, axis)))
-        .collect()
 }
 
 /// The reactions of all copies of all constraints on a configuration of the lattice that is written out, per unit

@@ -3,7 +3,7 @@
 
 use super::pull::lone_at;
 use super::tie::Tie;
-use super::{Refused, Written};
+use super::{Refused, Written, velocity};
 use crate::algebra::Algebra;
 use crate::check::{self, spec::Side};
 use crate::derive::carry::Carry;
@@ -12,7 +12,7 @@ use crate::derive::recognise::{MoserVeselov, Riccati};
 use crate::derive::{self, Derivation, Outline};
 use crate::diagnostic::Errors;
 use crate::expr::symbol::Role;
-use crate::expr::{self, Expr, Letter, Shift};
+use crate::expr::{self, Expr, Letter};
 use crate::groups::Kept;
 use crate::lattice::{Kind as Standing, Lattice, Sites, definitions, inlined};
 use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Statement};
@@ -79,8 +79,11 @@ pub enum How {
         momentum: Expr,
         /// Its derivative by each component of each velocity of the block.
         columns: Vec<Expr>,
-        /// What the edge adds to the momentum, in velocities and both ends.
+        /// What the edge adds to the momentum, in velocities and both ends; of a rotation at its start, seen from
+        /// the body there.
         added: Expr,
+        /// Of a rotation what it adds at its end, seen from the body there.
+        arriving: Option<Expr>,
     },
 }
 
@@ -320,13 +323,11 @@ fn how(
     let c = &d.spec.configurations[i];
     let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
     let together = || {
+        if velocity::turns(c) {
+            return by_newton(d, i, block);
+        }
         let group = c.group.name(&|n| s.dim_text(n));
         Err(Refused::Form(match (c.group.kept(), c.side) {
-            (Kept::Rotation | Kept::Field(_), Side::Body) | (Kept::Field(_), _) => {
-                format!(
-                    "the velocity of `{name}` is found by Newton's method: loops over sites do that for fields"
-                )
-            }
             (Kept::Rotation | Kept::Quaternion, Side::Spatial) => format!(
                 "`{name}` turns seen from space, `next({name}) = ω*{name}`: loops over sites take rotations seen from the body"
             ),
@@ -393,8 +394,8 @@ fn system(d: &Derivation, i: usize, block: &[usize]) -> Result<How, Refused> {
     let still: Vec<(Letter, Expr)> = block
         .iter()
         .map(|j| {
-            let shape = d.spec.configurations[*j].group.shape();
-            (velocity(d, *j), expr::zero(shape))
+            let c = &d.spec.configurations[*j];
+            (velocity::letter(c), expr::zero(c.group.shape()))
         })
         .collect();
     Ok(How::System {
@@ -407,10 +408,20 @@ fn system(d: &Derivation, i: usize, block: &[usize]) -> Result<How, Refused> {
 /// The same as a function whose derivative may depend on the velocities.
 fn by_newton(d: &Derivation, i: usize, block: &[usize]) -> Result<How, Refused> {
     let (momentum, columns) = momentum(d, i, block)?;
+    let c = &d.spec.configurations[i];
+    let (added, arriving) = match (velocity::turns(c), &d.carries[i]) {
+        (false, _) => (added(d, i), None),
+        (true, Carry::Through { leave, arrive, .. }) => (leave.clone(), Some(arrive.clone())),
+        (true, Carry::Kept(_)) => {
+            let b = &d.balances[i];
+            (expr::neg(b.node_out.clone()), Some(b.node_in.clone()))
+        }
+    };
     Ok(How::Newton {
         momentum,
         columns,
-        added: added(d, i),
+        added,
+        arriving,
     })
 }
 
@@ -422,15 +433,8 @@ fn added(d: &Derivation, i: usize) -> Expr {
     }
 }
 
-fn velocity(d: &Derivation, j: usize) -> Letter {
-    Letter {
-        symbol: d.spec.configurations[j].velocity,
-        shift: Shift::HERE,
-    }
-}
-
 /// The momentum of the edge that leaves a node, in the place at the node and the velocities, and its
-/// derivative by each component of each velocity of a block.
+/// derivative by each component of each velocity of a block, columns side by side.
 pub(super) fn momentum(
     d: &Derivation,
     i: usize,
@@ -441,24 +445,15 @@ pub(super) fn momentum(
     let mut columns = Vec::new();
     for j in block {
         let c = &d.spec.configurations[*j];
-        let directions = match c.group.is_additive() {
-            true => expr::axes(c.group.shape()),
-            false => None,
-        };
-        let Some(directions) = directions else {
+        let Some(own) = velocity::columns(s, &momentum, c) else {
             return Err(Refused::Form(format!(
-                "the velocity of `{}` is found together with that of `{}`: loops over sites take fields so",
+                "the velocity of `{}` is found together with that of `{}`: loops over sites take fields and rotations of \
+                 SO<3> seen from the body so",
                 s.get(d.spec.configurations[i].element).name,
                 s.get(c.element).name
             )));
         };
-        for direction in directions {
-            columns.push(expr::directional(
-                s,
-                &momentum,
-                &[(velocity(d, *j), direction)],
-            ));
-        }
+        columns.extend(own);
     }
     Ok((momentum, columns))
 }

@@ -4,6 +4,7 @@
 //! stepper with loops over sites is made of, or why it has to be written out.
 
 mod held;
+mod inertia;
 mod lone;
 mod meshed;
 mod proof;
@@ -14,8 +15,10 @@ mod site;
 mod tests;
 mod tie;
 mod total;
+mod velocity;
 
 pub use held::{Held, Matrix, Reach, Unit};
+pub use inertia::{Inertia, of_site as inertia_of_site};
 pub use lone::{How, Lone, Mover};
 pub use meshed::Meshed;
 pub use pull::{EndTerm, Force, Pull};

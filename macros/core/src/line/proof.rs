@@ -49,11 +49,9 @@ impl Line {
         let algebra = Algebra::new(s);
         let tied = self.tied(&mover.name, site).ok_or_else(refused)?;
         let zero = |e: Expr| {
-            let e = match tied.is_some() {
-                true => expr::substitute(s, &e, &d.spec.end_of_edge()),
-                false => e,
-            };
-            algebra.is_zero(&d.defined(&e))
+            let by_start = || expr::substitute(s, &e, &d.spec.end_of_edge());
+            tied.is_none() && algebra.is_zero(&d.defined(&e))
+                || algebra.is_zero(&d.defined(&by_start()))
         };
         let without = |e: Expr, own: usize| match &tied {
             Some(both) => expr::sub(e, both[own].clone()),
@@ -86,7 +84,7 @@ impl Line {
             let by =
                 isize::try_from(site).ok()? - isize::try_from(own.site + super::site::BASE).ok()?;
             let moved = |e: &Expr| self.representative.moved(e, by);
-            let (leaving, coming) = (moved(&own.momentum())?, moved(&own.incoming)?);
+            let (leaving, coming) = (moved(&own.momentum)?, moved(&own.incoming)?);
             out = Some(match out {
                 None => [leaving, coming],
                 Some([a, b]) => [expr::add(a, leaving), expr::add(b, coming)],

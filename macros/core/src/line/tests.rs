@@ -194,3 +194,77 @@ fn constraints_that_loops_do_not_take_are_refused_with_their_names() {
         );
     }
 }
+
+/// Bodies with this Lagrangian of their own, and these terms of neighbours.
+fn bodies(own: &str, neighbours: &str) -> Result<Line, Refused> {
+    line(&format!(
+        "model Bodies {{ label i in 0..N; periodic; param J, C: Sym<3>; param d, g: Vec<3>; param b, e, m: Real;
+        field q: Real at nodes;
+        group Λ: SO<3> at nodes velocity Ω; advected Γ: Vec<3> at nodes = Λ^T*g;
+        constraint next(Λ) = Λ*Ω; constraint next(Γ) = Ω^T*Γ;
+        lagrangian = -tr(J*Ω)/h + m*(next(q) - q)^2/(2*h) {own} {neighbours}; }}"
+    ))
+}
+
+#[test]
+fn rotations_are_found_together_with_their_neighbours() {
+    let dragged = "- (e/h)*dot((Ω - Id)*d, Λ^T*next(Λ, i)*(next(Ω, i) - Id)*d)";
+    let sinking = "+ (e/h)*dot(next(Γ) - Γ, d)*(next(next(q, i)) - next(q, i))";
+    let turned = "- h*dot(Γ, d) + h*tr(C*Λ^T*next(Λ, i))";
+    for (neighbours, pulls) in [
+        (dragged.to_owned(), 0),
+        (sinking.to_owned(), 0),
+        (format!("{dragged} {sinking}"), 0),
+        (format!("{dragged} {turned}"), 1),
+        (format!("{dragged} {sinking} {turned}"), 1),
+    ] {
+        match bodies("", &neighbours) {
+            Ok(line) => {
+                assert_eq!(
+                    (line.ties.len(), line.pulls.len()),
+                    (1, pulls),
+                    "{neighbours}"
+                );
+                let mut movers = line.lone.iter().flat_map(|l| &l.movers);
+                assert!(movers.any(|m| matches!(
+                    m.how,
+                    How::Newton {
+                        arriving: Some(_),
+                        ..
+                    }
+                )));
+                assert!(line.ties[0].inertia.is_some(), "{neighbours}");
+                assert_eq!(crate::emit::refusal_of_line(&line), None);
+            }
+            Err(refused) => panic!("{neighbours}: {refused:?}"),
+        }
+    }
+}
+
+#[test]
+fn rotations_whose_equation_is_another_are_found_by_newtons_method_at_their_site() {
+    for own in [
+        "+ b*tr(Id - Ω)^2/h^3",
+        "+ (b/(2*h))*dot(next(Γ) - Γ, next(Γ) - Γ)",
+        "- h*dot(g, (Λ + next(Λ))*d)/2",
+        "- h*dot(g, (Λ + next(Λ))*d)^2/4",
+    ] {
+        match bodies(own, "+ h*tr(C*Λ^T*next(Λ, i))") {
+            Ok(line) => {
+                let mut movers = line.lone.iter().flat_map(|l| &l.movers);
+                assert!(
+                    movers.any(|m| matches!(
+                        m.how,
+                        How::Newton {
+                            arriving: Some(_),
+                            ..
+                        }
+                    )),
+                    "{own}"
+                );
+                assert_eq!(crate::emit::refusal_of_line(&line), None);
+            }
+            Err(refused) => panic!("{own}: {refused:?}"),
+        }
+    }
+}

@@ -1,9 +1,9 @@
 //! Terms of neighbours in which velocities stand: what they add to the momenta of the sites that they touch,
 //! whose velocities are then found together. Letters are those of the lattice that is written out.
 
-use super::pull::Placed;
-use super::{Refused, Written};
-use crate::derive::balance::shorter;
+use super::pull::{Placed, defined};
+use super::{Inertia, Refused, Written, inertia, velocity};
+use crate::derive::balance::{pairing, shorter};
 use crate::expr::shape::Shape;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::lattice::Lattice;
@@ -24,6 +24,8 @@ pub struct Tie {
     pub parts: Vec<Part>,
     /// The terms of the Lagrangian, in places at the node and velocities.
     pub terms: Expr,
+    /// What it adds to momenta in the limit of small steps, if there is one.
+    pub inertia: Option<Inertia>,
 }
 
 /// What terms add to the momentum of one configuration.
@@ -37,15 +39,10 @@ pub struct Part {
     pub velocity: Letter,
     /// To the momentum of the edge where it comes to a node: the derivative by the velocity.
     pub incoming: Expr,
-    /// By how much that is more than where it leaves one: the derivative by the place.
+    /// By how much the edge adds to it, seen from there: the derivative by the place.
     pub added: Expr,
-}
-
-impl Part {
-    /// To the momentum of the edge where it leaves a node.
-    pub fn momentum(&self) -> Expr {
-        expr::sub(self.incoming.clone(), self.added.clone())
-    }
+    /// To the momentum of the edge where it leaves a node: seen from there, less what the edge adds.
+    pub momentum: Expr,
 }
 
 /// Puts a term beside those of its range.
@@ -65,6 +62,7 @@ pub(super) fn put(ties: &mut Vec<Tie>, part: &Written, placed: Placed) {
             width: placed.width,
             parts: Vec::new(),
             terms: term,
+            inertia: None,
         }),
     }
 }
@@ -88,21 +86,19 @@ pub(super) fn settle(part: &Written, tie: &mut Tie, nodal: Option<&Expr>) -> Exp
     }
     let configurations = d.spec.configurations.iter();
     let still: Vec<(Letter, Expr)> = configurations
-        .filter(|c| c.group.is_additive())
-        .map(|c| {
-            let velocity = Letter {
-                symbol: c.velocity,
-                shift: Shift::HERE,
-            };
-            (velocity, expr::zero(c.group.shape()))
-        })
+        .map(|c| (velocity::letter(c), c.group.identity()))
         .collect();
     let at_rest = algebra.shortest(&expr::substitute(s, &whole, &still));
+    // Nothing is left of differences as they are stated.
+    if at_rest.is_zero() && d.spec.configurations.iter().any(velocity::turns) {
+        tie.terms = whole;
+        return at_rest;
+    }
     tie.terms = algebra.shortest(&expr::sub(whole, on_edge(&at_rest)));
     at_rest
 }
 
-/// Finds what the terms add, which must be to fields of one kind of sites, next to one another.
+/// Finds what the terms add, which must be to fields and rotations of one kind of sites, next to one another.
 pub(super) fn finish(lattice: &Lattice, part: &Written, ties: &mut [Tie]) -> Result<(), Refused> {
     let d = &part.d;
     let s = &d.letters.symbols;
@@ -117,16 +113,8 @@ pub(super) fn finish(lattice: &Lattice, part: &Written, ties: &mut [Tie]) -> Res
                 "velocities of sites that are no neighbours stand in one term".to_owned(),
             ));
         }
-        if d.spec
-            .advected
-            .iter()
-            .any(|a| expr::contains(&tie.terms, here(a.quantity)))
-        {
-            return Err(Refused::Form(
-                "velocities of neighbours stand in one term with an advected quantity".to_owned(),
-            ));
-        }
-        for c in &d.spec.configurations {
+        tie.terms = defined(part, &tie.terms)?;
+        for (i, c) in d.spec.configurations.iter().enumerate() {
             let Some(at) = part.sited(c.element) else {
                 continue;
             };
@@ -137,26 +125,58 @@ pub(super) fn finish(lattice: &Lattice, part: &Written, ties: &mut [Tie]) -> Res
                     false => shorter(&algebra, gradient),
                 }
             };
+            // The covector of a variation of what the terms see.
+            let along = |(letter, change): (Letter, Expr)| -> Expr {
+                let gradient = expr::gradient(s, &tie.terms, letter);
+                let paired = expr::sum([pairing(&d.letters, &gradient, &change)], Shape::SCALAR);
+                let own = here(d.letters.variation[i]);
+                shorter(
+                    &algebra,
+                    c.group.of_gradient(s, expr::gradient(s, &paired, own)),
+                )
+            };
             if !expr::contains(&tie.terms, here(c.velocity))
                 && !expr::contains(&tie.terms, here(c.element))
             {
                 continue;
             }
-            if !c.group.is_additive() {
+            if !velocity::is_free(c) {
                 return Err(Refused::Form(format!(
                     "the velocity of `{}` stands in one term with that of a neighbour: loops over sites take \
-                     fields so",
+                     fields and rotations of SO<3> seen from the body so",
                     at.of
                 )));
             }
+            let [incoming, added, momentum] = match velocity::turns(c) {
+                false => {
+                    let (by_velocity, by_place) = (of(here(c.velocity)), of(here(c.element)));
+                    let momentum = expr::sub(by_velocity.clone(), by_place.clone());
+                    [by_velocity, by_place, momentum]
+                }
+                true => {
+                    let v = &d.variations[i];
+                    let coming = expr::shift_time(s, &v.incoming.1, Shift::NEXT.time);
+                    let going = expr::neg(v.outgoing.1.clone());
+                    let velocity = here(c.velocity);
+                    let leaving = along((velocity, going));
+                    let added = along(v.element.clone());
+                    // Together they are often shorter than either.
+                    let momentum = shorter(&algebra, expr::sub(leaving, added.clone()));
+                    [along((velocity, coming)), added, momentum]
+                }
+            };
             tie.parts.push(Part {
                 on: at.of,
                 site: at.site - BASE,
                 velocity: here(c.velocity),
-                incoming: of(here(c.velocity)),
-                added: of(here(c.element)),
+                incoming,
+                added,
+                momentum,
             });
         }
+    }
+    for tie in ties.iter_mut() {
+        tie.inertia = inertia::of_tie(part, tie);
     }
     let mut kinds = ties.iter().flat_map(|t| &t.parts);
     let kind = |on: &str| lattice.find(on).map(|q| (q.label, q.sites));
@@ -172,13 +192,12 @@ pub(super) fn finish(lattice: &Lattice, part: &Written, ties: &mut [Tie]) -> Res
 }
 
 impl Tie {
-    /// The derivative of the momentum of one part by each component of the velocity of another.
+    /// The derivative of the momentum of one part by the velocity of another, columns side by side.
     pub fn columns(&self, part: &Written, of: &Part, by: &Part) -> Vec<Expr> {
         let s = &part.d.letters.symbols;
-        let momentum = of.momentum();
-        let shape: Shape = s.get(by.velocity.symbol).shape;
-        let axes = expr::axes(shape).unwrap_or_default();
-        let along = |axis: Expr| expr::directional(s, &momentum, &[(by.velocity, axis)]);
-        axes.into_iter().map(along).collect()
+        let mut all = part.d.spec.configurations.iter();
+        let c = all.find(|c| c.velocity == by.velocity.symbol);
+        let columns = c.and_then(|c| velocity::columns(s, &of.momentum, c));
+        columns.unwrap_or_default()
     }
 }

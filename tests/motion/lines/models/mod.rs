@@ -6,11 +6,13 @@ use clebsch::nalgebra::{Matrix3, Vector3};
 
 mod bent;
 mod beta;
+mod bodies;
 mod cells;
 mod chain;
 mod charges;
 pub mod cloud;
 mod dense;
+mod fast;
 pub mod grid;
 mod kirchhoff;
 mod linked;
@@ -27,10 +29,12 @@ mod water;
 
 pub use bent::Bent;
 pub use beta::Beta;
+pub use bodies::{Beaded, Bodies, Dragged};
 pub use cells::{Cells, Smoothed};
 pub use chain::Chain;
 pub use charges::Charges;
 pub use cloud::Cloud;
+pub use fast::Fast;
 pub use grid::{Basin, Plane};
 pub use kirchhoff::{Ends, Kirchhoff};
 pub use linked::{Linked, LinkedChainState, Woven};
@@ -157,7 +161,16 @@ pub fn all(n: usize) -> Vec<Box<dyn Line>> {
     out.extend(linked.map(|line| Box::new(line) as Box<dyn Line>));
     for ring in [false, true] {
         out.push(Box::new(Woven { n, ring }));
+        out.push(Box::new(Bodies { n, ring }));
+        if n > 1 {
+            // The potential of a bead in a ring of one is none.
+            out.push(Box::new(Beaded { n, ring }));
+        }
     }
+    let fast = (0..4).filter(|ends| n > 1 || *ends < 4);
+    out.extend(fast.map(|ends| Box::new(Fast { n, ends }) as Box<dyn Line>));
+    let dragged = (0..5).filter(|ends| n > 1 || *ends < 4);
+    out.extend(dragged.map(|ends| Box::new(Dragged { n, ends }) as Box<dyn Line>));
     let quartic = (0..4).map(|ends| Quartic { n, ends });
     out.extend(quartic.map(|line| Box::new(line) as Box<dyn Line>));
     out.push(Box::new(Named { n, end: false }));

@@ -1,11 +1,11 @@
 //! Kernels of what acts on a site at a node: its own potential and what neighbours add, before the node
 //! and after it; of blocks of fields, what the edge adds.
 
-use super::locals::{Known, Places, step};
+use super::locals::{Places, step};
 use super::pulls::{field, front};
+use super::velocities::taken_apart;
 use super::{Lines, Moving, number};
 use crate::algebra::Rational;
-use crate::emit::expression::Bindings;
 use crate::expr::{self, Expr};
 use crate::line::How;
 use proc_macro2::{Ident, TokenStream};
@@ -168,7 +168,13 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
     let s = &d.letters.symbols;
     let (kernel, places, t) = (edge_kernel(&m), l.item("Places"), m.covector());
     let h = step(d);
-    let wanted = [d.defined(added)];
+    let wanted: Vec<Expr> = match &m.mover.how {
+        How::Newton {
+            arriving: Some(arriving),
+            ..
+        } => vec![d.defined(added), d.defined(arriving)],
+        _ => vec![d.defined(added)],
+    };
     let at = Places {
         here: quote!(from),
         next: quote!(to),
@@ -182,11 +188,34 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
     else {
         return TokenStream::new();
     };
-    let velocities = velocities(members, &letters, &mut bindings);
+    let velocities = taken_apart(members, &letters, &mut bindings);
     let (lets, results) = l.program(s, &wanted, &bindings);
-    let value = m.array(results.into_iter().next().unwrap_or_default());
+    let value = match (wanted.as_slice(), results.as_slice()) {
+        ([_], [value]) => m.array(value.clone()),
+        ([leaving, arriving], [at_start, at_end]) => {
+            let name = m.name();
+            let parts = [
+                (leaving, quote!(from.#name[site].matrix() * (#at_start))),
+                (arriving, quote!(to.#name[site].matrix() * (#at_end))),
+            ];
+            let parts = parts.into_iter().filter(|(e, _)| !e.is_zero());
+            let parts: Vec<TokenStream> = parts.map(|(_, value)| value).collect();
+            match parts.is_empty() {
+                true => quote!(SMatrix::zeros()),
+                false => quote!(#(#parts)+*),
+            }
+        }
+        _ => return TokenStream::new(),
+    };
     let size = number(*n);
-    let doc = format!(" What the edge adds to the momentum of `{}`.", m.mover.name);
+    let frame = match m.is_rotation() {
+        true => ", in the space frame",
+        false => "",
+    };
+    let doc = format!(
+        " What the edge adds to the momentum of `{}`{frame}.",
+        m.mover.name
+    );
     quote! {
         #[doc = #doc]
         #[inline(always)]
@@ -198,35 +227,4 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
             #value
         }
     }
-}
-
-/// Lets that take the velocities of a block apart, those among `letters`, and their bindings.
-pub(super) fn velocities(
-    members: &[Moving],
-    letters: &[Known],
-    bindings: &mut Bindings,
-) -> TokenStream {
-    let mut row = 0;
-    let mut out = TokenStream::new();
-    for o in members {
-        let d = o.outline();
-        let c = &d.spec.configurations[o.mover.index];
-        let letter = expr::Letter {
-            symbol: c.velocity,
-            shift: expr::Shift::HERE,
-        };
-        let (at_row, rows) = (number(row), number(o.components()));
-        row += o.components();
-        if !letters.iter().any(|k| k.letter == letter) {
-            continue;
-        }
-        let local = crate::emit::names::variable(&d.letters.symbols, c.velocity);
-        let value = match o.is_number() {
-            true => quote!(velocity[#at_row]),
-            false => quote!(velocity.fixed_rows::<#rows>(#at_row).into_owned()),
-        };
-        out.extend(quote!(let #local = #value;));
-        bindings.bind(letter, local);
-    }
-    out
 }

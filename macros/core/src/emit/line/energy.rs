@@ -7,7 +7,7 @@ use super::{Lines, Moving, OfMeshes};
 use crate::algebra::Algebra;
 use crate::derive::limit::Limit;
 use crate::emit::element;
-use crate::emit::energy::twice_kinetic;
+use crate::emit::energy::twice_kinetic_of;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::line::{Lone, Total};
@@ -26,10 +26,6 @@ pub(super) fn energy(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
 /// `energies` and `energy`, where every part has a limit of small steps.
 fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
     let [places, momenta, state] = ["Places", "Momenta", "State"].map(|suffix| l.item(suffix));
-    if !l.line.ties.is_empty() {
-        // The velocities of given momenta are those of all sites together.
-        return None;
-    }
     let part = &l.line.representative;
     let mut kernels = TokenStream::new();
     let (mut kinetic, mut potential) = (Vec::new(), Vec::new());
@@ -38,14 +34,16 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
         let count = l.count(lone.label, lone.sites);
         let kernel = format_ident!("kinetic_{}", n + 1);
         let body = kinetic_of_site(l, lone, limit);
-        kernels.extend(quote! {
-            /// The kinetic energy of one site.
-            fn #kernel(&self, site: usize, at: &#places<T>, momenta: &#momenta<T>) -> T {
-                let _ = (site, at);
-                #body
-            }
-        });
-        kinetic.push(quote!(line::sum(#count, |i| self.#kernel(i, at, momenta))));
+        if let Some(body) = body {
+            kernels.extend(quote! {
+                /// The kinetic energy of one site.
+                fn #kernel(&self, site: usize, at: &#places<T>, momenta: &#momenta<T>) -> T {
+                    let _ = (site, at);
+                    #body
+                }
+            });
+            kinetic.push(quote!(line::sum(#count, |i| self.#kernel(i, at, momenta))));
+        }
         if !limit.potential.is_zero() {
             let kernel = format_ident!("own_potential_{}", n + 1);
             let (d, s) = (&lone.outline, &lone.outline.letters.symbols);
@@ -61,6 +59,11 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
             });
             potential.push(quote!(line::sum(#count, |i| self.#kernel(i, at))));
         }
+    }
+    if !l.line.ties.is_empty() {
+        let (more, together) = super::inertia::kinetic(l)?;
+        kernels.extend(more);
+        kinetic.push(together);
     }
     let s = &part.d.letters.symbols;
     let h = expr::here(s, part.d.spec.step);
@@ -125,8 +128,17 @@ pub(super) fn without_step(algebra: &Algebra, e: &Expr, h: &Expr) -> Option<Expr
     forms.into_iter().find(free)
 }
 
-/// The kinetic energy of one site, that of the limit inverted for its momenta.
-fn kinetic_of_site(l: &Lines, lone: &Lone, limit: &Limit) -> TokenStream {
+/// The kinetic energy of one site, that of the limit inverted for its momenta; what is found together along the line
+/// is left out.
+fn kinetic_of_site(l: &Lines, lone: &Lone, limit: &Limit) -> Option<TokenStream> {
+    let is_apart = |i: usize| {
+        let own = lone.blocks.iter().find(|b| b.contains(&i));
+        let mut names = lone.movers.iter();
+        !names.any(|m| own.is_some_and(|b| b.contains(&m.index)) && l.line.is_tied(&m.name))
+    };
+    if !lone.movers.iter().any(|m| is_apart(m.index)) {
+        return None;
+    }
     let (d, outline) = (&lone.d, &lone.outline);
     let s = &d.letters.symbols;
     let limit = Limit {
@@ -144,12 +156,12 @@ fn kinetic_of_site(l: &Lines, lone: &Lone, limit: &Limit) -> TokenStream {
         element::value(c, momentum(&m, &quote!(site)))
     });
     let own: Vec<TokenStream> = own.collect();
-    let twice = twice_kinetic(d, &bindings, &limit, &own);
-    quote! {
+    let twice = twice_kinetic_of(d, &bindings, &limit, &own, &is_apart);
+    Some(quote! {
         #locals
         #twice
         twice * T::from_f64(0.5)
-    }
+    })
 }
 
 /// The momenta that belong to velocities, where one field of places moves: those of the limit of small steps, what

@@ -3,6 +3,7 @@
 //! Takes a [`Line`]; gives Rust items.
 
 mod acting;
+mod around;
 mod constraints;
 mod domain;
 mod ends;
@@ -10,6 +11,7 @@ mod energy;
 mod forms;
 mod given;
 mod held;
+mod inertia;
 mod items;
 mod locals;
 mod meshes;
@@ -24,6 +26,7 @@ mod step;
 mod tied;
 mod totals;
 mod unique;
+mod velocities;
 mod walls;
 
 use crate::derive::{Derivation, Outline};
@@ -116,7 +119,8 @@ impl Moving<'_> {
 
     /// Whether it turns: a rotation or a unit quaternion.
     fn is_rotation(&self) -> bool {
-        matches!(self.mover.how, How::Rotation { .. })
+        let c = &self.d().spec.configurations[self.mover.index];
+        matches!(c.group.kept(), Kept::Rotation | Kept::Quaternion)
     }
 
     /// Whether it is a unit quaternion.

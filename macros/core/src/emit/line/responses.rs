@@ -1,7 +1,6 @@
 //! Kernels of how what moves answers to the impulses of constraints: at the end of an edge by one at its start, and at a node,
 //! in the limit of small steps.
 
-use super::acting;
 use super::held::{Bodies, filled};
 use super::locals::Places;
 use super::{Lines, number};
@@ -126,7 +125,7 @@ fn inverse(l: &Lines, b: &Bodies, list: &[Matrix], with_velocities: bool) -> Tok
     let letters = l.of_site(d, &values);
     let (locals, mut bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
     let velocities = match with_velocities {
-        true => acting::velocities(&b.members, &letters, &mut bindings),
+        true => super::velocities::taken_apart(&b.members, &letters, &mut bindings),
         false => TokenStream::new(),
     };
     let (lets, results) = l.program(s, &values, &bindings);

@@ -1,8 +1,8 @@
 //! Kernels of the velocities of a site: from the momentum that leaves a node to the place at the next
 //! one.
 
-use super::acting;
 use super::locals::{Places, step};
+use super::velocities::{as_array, taken_apart, width};
 use super::{Lines, Moving, number};
 use crate::emit::blocks::linear_solution;
 use crate::emit::element;
@@ -215,27 +215,41 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     }
     let letters = l.of_site(d, &values);
     let (locals, mut bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
-    let velocities = acting::velocities(members, &letters, &mut bindings);
+    let velocities = taken_apart(members, &letters, &mut bindings);
     let (lets, results) = l.program(s, &values, &bindings);
     let size = number(n);
     let (mut fill, mut given) = (TokenStream::new(), TokenStream::new());
     let mut row = 0;
-    let mut results = results.into_iter();
+    let mut results = values.iter().zip(results);
     for m in members {
         let count = m.components();
         let (rows, at_row, name) = (number(count), number(row), m.name());
-        for column in 0..n {
-            let (column, value) = (number(column), results.next().unwrap_or_default());
-            let value = m.array(value);
-            fill.extend(
-                quote!(a.fixed_view_mut::<#rows, 1>(#at_row, #column).copy_from(&(#value));),
-            );
+        let mut column = 0;
+        for by in members {
+            if let (Some(rate), 0) = (by.rate(&quote!(velocity), column), row) {
+                let local = by.rate_name(0);
+                fill.extend(quote!(let #local = #rate;));
+            }
+            let end = column + by.components();
+            while column < end {
+                let Some((e, value)) = results.next() else {
+                    return TokenStream::new();
+                };
+                let (at_column, wide) = (number(column), number(width(e)));
+                let value = by.by_numbers(&as_array(e, value), 0);
+                fill.extend(
+                    quote!(a.fixed_view_mut::<#rows, #wide>(#at_row, #at_column).copy_from(&(#value));),
+                );
+                column += width(e);
+            }
         }
-        let momentum = m.array(results.next().unwrap_or_default());
+        let momentum = results.next().map(|(_, value)| m.array(value));
         fill.extend(quote!(made.fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&(#momentum));));
-        given.extend(
-            quote!(known.fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&edges.#name[site]);),
-        );
+        let edge = match m.is_rotation() {
+            true => quote!(edges.#name[site].body()),
+            false => quote!(edges.#name[site]),
+        };
+        given.extend(quote!(known.fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&#edge);));
         row += count;
     }
     let names: Vec<String> = members.iter().map(|m| m.mover.name.clone()).collect();

@@ -34,7 +34,7 @@ pub(super) fn step(
     let ranges = moving.iter().map(|m| range(l, m));
     let checks = moving.iter().map(|m| check(l, m));
     let beyond = number(l.line.beyond());
-    let around = around(l, &moving);
+    let around = super::around::around(l, &moving);
     let systems = l.systems();
     let (is_kicked, apart): (Vec<_>, Vec<_>) = moving
         .iter()
@@ -353,49 +353,6 @@ fn range(l: &Lines, m: &Moving) -> TokenStream {
     }
 }
 
-/// The sites beyond the last one, those from the beginning of a ring.
-fn around(l: &Lines, moving: &[Moving]) -> TokenStream {
-    let places = l.item("Places");
-    let beyond = number(l.line.beyond());
-    if l.line.lattice.periodic.is_none() || l.line.beyond() == 0 {
-        return quote! {
-            /// No site is beyond the last one.
-            #[inline]
-            fn around(&self, _: &mut #places<T>) {}
-        };
-    }
-    let lattice = &l.line.lattice;
-    let offsets: Vec<String> = l.offsets().iter().map(|(n, _)| n.clone()).collect();
-    let pattern = l.ring_pattern(&offsets);
-    let each = moving.iter().filter_map(|m| {
-        let q = lattice.find(&m.mover.name)?;
-        if lattice.line != Some(q.label) {
-            return None;
-        }
-        let (name, count) = (m.name(), l.count_of(&m.mover.name));
-        let offset = q.offset.as_ref().map(|o| {
-            let local = super::ends::end_local(&o.text);
-            let value = m.array(quote!(#local));
-            quote!(+ #value)
-        });
-        Some(quote! {
-            for i in 0..#beyond {
-                at.#name[#count + i] = at.#name[i] #offset;
-            }
-        })
-    });
-    let each: Vec<TokenStream> = each.collect();
-    quote! {
-        /// The sites beyond the last one of a ring are those from its beginning.
-        #[inline]
-        fn around(&self, at: &mut #places<T>) {
-            if let #pattern = self.sites.ends {
-                #(#each)*
-            }
-        }
-    }
-}
-
 /// Tests of initial data.
 fn check(l: &Lines, m: &Moving) -> TokenStream {
     let (name, text, count) = (m.name(), &m.mover.name, l.count_of(&m.mover.name));
@@ -457,10 +414,18 @@ fn solve(l: &Lines, m: &Moving, edges: &Ident) -> TokenStream {
                 .map(Moving::components)
                 .sum();
             let (rows, row) = (number(m.components()), number(before));
+            let moved = match m.is_rotation() {
+                true => {
+                    quote!(at.#name[first + i].moved(&velocity[first + i].fixed_rows::<3>(#row).into_owned()))
+                }
+                false => {
+                    quote!(at.#name[first + i] + velocity[first + i].fixed_rows::<#rows>(#row))
+                }
+            };
             quote! {
                 let (at, velocity) = (&state.places, &work.#field);
                 line::fill(self.threads, &mut work.places.#name[first..last], |i| {
-                    at.#name[first + i] + velocity[first + i].fixed_rows::<#rows>(#row)
+                    #moved
                 });
             }
         }
@@ -540,7 +505,11 @@ fn arrive(l: &Lines, m: &Moving) -> TokenStream {
         let field = own.map(|(field, ..)| field.clone());
         let kernel = acting::edge_kernel(m);
         let tied = tied::added(l, m);
-        quote!(let edge = edge + self.#kernel(h, site, &state.places, at, &work.#field[site])#tied;)
+        let of_edge = quote!(self.#kernel(h, site, &state.places, at, &work.#field[site])#tied);
+        match m.is_rotation() {
+            true => quote!(let edge = Edge::new(edge.body(), edge.space() + #of_edge);),
+            false => quote!(let edge = edge + #of_edge;),
+        }
     });
     let arrived = arrived(l, m);
     quote! {

@@ -4,6 +4,7 @@
 use super::locals::{Places, step};
 use super::pulls::{known, range_of};
 use super::step::range_name;
+use super::velocities::{as_array, width};
 use super::{Lines, Moving, number};
 use crate::emit::expression::Bindings;
 use crate::expr::symbol::{Role, Symbols};
@@ -19,7 +20,7 @@ pub(super) fn is_tied(l: &Lines, members: &[Moving]) -> bool {
 }
 
 /// The block of those, if there is one: the field of its velocities, its components, its members.
-fn block<'a>(l: &'a Lines) -> Option<(Ident, usize, Vec<Moving<'a>>)> {
+pub(super) fn block<'a>(l: &'a Lines) -> Option<(Ident, usize, Vec<Moving<'a>>)> {
     let mut systems = l.systems().into_iter();
     systems.find(|(.., members)| is_tied(l, members))
 }
@@ -46,11 +47,14 @@ pub(super) fn band_value(l: &Lines) -> Option<TokenStream> {
     let (count, ring) = (l.count_of(&first.mover.name), ring(l));
     let tied = adds(l).then(|| quote!(tied: ::std::vec![SVector::<T, #n>::zeros(); #count],));
     let constant = is_constant(l, &members);
-    Some(quote!(band: line::Band::new(#count, #ring, #constant), #tied))
+    Some(quote!(band: line::Band::<T, #n>::new(#count, #ring, #constant), #tied))
 }
 
 /// Whether the derivatives of momenta are the same at all places and velocities: they are factored once.
 fn is_constant(l: &Lines, members: &[Moving]) -> bool {
+    if members.iter().any(Moving::is_rotation) {
+        return false;
+    }
     let part = &l.line.representative;
     let fixed = |s: &Symbols, e: &Expr| {
         let role = |letter: &expr::Letter| s.get(letter.symbol).role;
@@ -77,7 +81,7 @@ fn is_constant(l: &Lines, members: &[Moving]) -> bool {
     own && l.line.ties.iter().all(of_tie)
 }
 
-fn ring(l: &Lines) -> TokenStream {
+pub(super) fn ring(l: &Lines) -> TokenStream {
     match l.line.lattice.periodic.is_some() {
         true => quote!(self.is_ring()),
         false => quote!(false),
@@ -85,7 +89,7 @@ fn ring(l: &Lines) -> TokenStream {
 }
 
 /// The sites that the term of an index touches, the ring closed.
-fn touched(l: &Lines, tie: &Tie, count: &TokenStream) -> TokenStream {
+pub(super) fn touched(l: &Lines, tie: &Tie, count: &TokenStream) -> TokenStream {
     match (tie.width, l.line.lattice.periodic.is_some()) {
         (0, _) => quote!([site]),
         (_, false) => quote!([site, site + 1]),
@@ -108,10 +112,9 @@ pub(super) fn solve(l: &Lines, field: &Ident, members: &[Moving]) -> TokenStream
         );
         let touched = touched(l, tie, &count);
         quote! {
-            #range
-            for site in first..last {
-                let sites = #touched;
-                rows.add(sites, self.#kernel(h, site, at, sites.map(|i| velocities.at(i))));
+            {
+                #range
+                rows.tie([first, last], |site| #touched, |site, velocities| self.#kernel(h, site, at, velocities));
             }
         }
     });
@@ -123,13 +126,9 @@ pub(super) fn solve(l: &Lines, field: &Ident, members: &[Moving]) -> TokenStream
             let touched = touched(l, tie, &count);
             quote! {
                 #range
-                for site in first..last {
-                    let sites = #touched;
-                    let added = self.#kernel(h, site, &state.places, sites.map(|i| work.#field[i]));
-                    for (i, value) in sites.into_iter().zip(added) {
-                        work.tied[i] += value;
-                    }
-                }
+                line::spread([first, last], |site| #touched, &work.#field, &mut work.tied, |site, velocities| {
+                    self.#kernel(h, site, &state.places, velocities)
+                });
             }
         });
             quote! {
@@ -140,11 +139,11 @@ pub(super) fn solve(l: &Lines, field: &Ident, members: &[Moving]) -> TokenStream
     quote! {
         {
             let (at, edges) = (&state.places, &work.edges);
-            let made = work.band.solve(
+            let made = work.band.solve_along(
                 self.#range(),
                 |site| self.#given(site, edges),
                 |site, velocity| self.#own(h, site, at, velocity),
-                |velocities, rows| { #({ #each })* },
+                |rows| { #(#each)* },
                 &mut work.#field,
             );
             if let Err((site, cause)) = made {
@@ -165,7 +164,13 @@ pub(super) fn added(l: &Lines, m: &Moving) -> Option<TokenStream> {
     let before = members.iter().take_while(|o| o.mover.name != m.mover.name);
     let row = number(before.map(Moving::components).sum());
     let rows = number(m.components());
-    Some(quote!(+ work.tied[site].fixed_rows::<#rows>(#row)))
+    let name = m.name();
+    Some(match m.is_rotation() {
+        true => {
+            quote!(+ state.places.#name[site].matrix() * work.tied[site].fixed_rows::<3>(#row))
+        }
+        false => quote!(+ work.tied[site].fixed_rows::<#rows>(#row)),
+    })
 }
 
 /// The kernels.
@@ -180,7 +185,7 @@ pub(super) fn tied(l: &Lines) -> TokenStream {
 }
 
 /// Where the rows of a field begin in its block, and how many there are.
-fn rows_of(members: &[Moving], on: &str) -> (usize, usize) {
+pub(super) fn rows_of(members: &[Moving], on: &str) -> (usize, usize) {
     let before = members.iter().take_while(|o| o.mover.name != on);
     let own = members.iter().find(|o| o.mover.name == on);
     (
@@ -196,38 +201,46 @@ fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> Token
     let formed = |e: &Expr| expr::factored(s, &schedule::displaced(s, e));
     let mut values: Vec<Expr> = Vec::new();
     for of in &tie.parts {
-        values.push(formed(&of.momentum()));
+        values.push(formed(&of.momentum));
         for by in &tie.parts {
             values.extend(tie.columns(part, of, by).iter().map(formed));
         }
     }
     let (lets, results) = computed(l, tie, members, &values);
-    let mut results = results.into_iter();
+    let mut results = values.iter().zip(results);
     let (size, wide) = (number(n), number(tie.width + 1));
     let mut fill = TokenStream::new();
-    let array = |on: &str, value: TokenStream| {
-        let own = members.iter().find(|m| m.mover.name == on);
-        own.map_or(value.clone(), |m| m.array(value))
-    };
+    for by in &tie.parts {
+        let own = members.iter().find(|m| m.mover.name == by.on);
+        let (site, (row, _)) = (number(by.site), rows_of(members, &by.on));
+        let rate = own.and_then(|m| Some((m, m.rate(&quote!(velocities[#site]), row)?)));
+        if let Some((m, rate)) = rate {
+            let local = m.rate_name(by.site);
+            fill.extend(quote!(let #local = #rate;));
+        }
+    }
     for of in &tie.parts {
         let (row, rows) = rows_of(members, &of.on);
         let (at_row, rows, site) = (number(row), number(rows), number(of.site));
-        let value = array(&of.on, results.next().unwrap_or_default());
+        let value = results.next().map(|(e, value)| as_array(e, value));
         fill.extend(
             quote!(made[#site].fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&(#value));),
         );
         for by in &tie.parts {
             let (column, columns) = rows_of(members, &by.on);
             let other = number(by.site);
-            for j in column..column + columns {
-                let j = number(j);
-                let Some(value) = results.next() else {
-                    continue;
+            let own = members.iter().find(|m| m.mover.name == by.on);
+            let mut j = column;
+            while let (true, Some(own)) = (j < column + columns, own) {
+                let Some((e, value)) = results.next() else {
+                    break;
                 };
-                let value = array(&of.on, value);
+                let (at_column, wide) = (number(j), number(width(e)));
+                let value = own.by_numbers(&as_array(e, value), by.site);
                 fill.extend(
-                    quote!(a[#site][#other].fixed_view_mut::<#rows, 1>(#at_row, #j).copy_from(&(#value));),
+                    quote!(a[#site][#other].fixed_view_mut::<#rows, #wide>(#at_row, #at_column).copy_from(&(#value));),
                 );
+                j += width(e);
             }
         }
     }
@@ -270,13 +283,10 @@ fn computed(
         }
         let base = format!("change_{}_{}", own.on, own.site);
         let local = l.unique(&base, &base, &mut used);
-        let (row, rows) = rows_of(members, &own.on);
-        let (row, rows, site) = (number(row), number(rows), number(own.site));
-        let is_number = s.get(own.velocity.symbol).shape.is_scalar();
-        let value = match is_number {
-            true => quote!(velocities[#site][#row]),
-            false => quote!(velocities[#site].fixed_rows::<#rows>(#row).into_owned()),
-        };
+        let (row, _) = rows_of(members, &own.on);
+        let site = number(own.site);
+        let of = members.iter().find(|m| m.mover.name == own.on);
+        let value = of.map(|m| m.velocity(&quote!(velocities[#site]), row));
         lets.extend(quote!(let #local = #value;));
         bindings.bind(own.velocity, local);
     }

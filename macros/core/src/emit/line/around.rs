@@ -1,0 +1,48 @@
+//! The places beyond the last site of a ring: copies of those from its beginning, grown by offsets.
+
+use super::{Lines, Moving, number};
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// The sites beyond the last one, those from the beginning of a ring.
+pub(super) fn around(l: &Lines, moving: &[Moving]) -> TokenStream {
+    let places = l.item("Places");
+    let beyond = number(l.line.beyond());
+    if l.line.lattice.periodic.is_none() || l.line.beyond() == 0 {
+        return quote! {
+            /// No site is beyond the last one.
+            #[inline]
+            fn around(&self, _: &mut #places<T>) {}
+        };
+    }
+    let lattice = &l.line.lattice;
+    let offsets: Vec<String> = l.offsets().iter().map(|(n, _)| n.clone()).collect();
+    let pattern = l.ring_pattern(&offsets);
+    let each = moving.iter().filter_map(|m| {
+        let q = lattice.find(&m.mover.name)?;
+        if lattice.line != Some(q.label) {
+            return None;
+        }
+        let (name, count) = (m.name(), l.count_of(&m.mover.name));
+        let offset = q.offset.as_ref().map(|o| {
+            let local = super::ends::end_local(&o.text);
+            let value = m.array(quote!(#local));
+            quote!(+ #value)
+        });
+        Some(quote! {
+            for i in 0..#beyond {
+                at.#name[#count + i] = at.#name[i] #offset;
+            }
+        })
+    });
+    let each: Vec<TokenStream> = each.collect();
+    quote! {
+        /// The sites beyond the last one of a ring are those from its beginning.
+        #[inline]
+        fn around(&self, at: &mut #places<T>) {
+            if let #pattern = self.sites.ends {
+                #(#each)*
+            }
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The kinetic energy of velocities that are found together along the line: kernels of the momenta of a site and of a term
+//! of neighbours, linear in velocities, which the runtime inverts for all sites.
+
+use super::locals::{Known, Places};
+use super::pulls::{known, range_of};
+use super::step::range_name;
+use super::tied::rows_of;
+use super::velocities::as_array;
+use super::{Lines, number};
+use crate::emit::element;
+use crate::expr::symbol::Symbols;
+use crate::expr::{self, Expr};
+use crate::line::{Inertia, inertia_of_site};
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+
+/// The kernels, and the energy; none where it has no limit.
+pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
+    let (_, n, members) = super::tied::block(l)?;
+    let first = members.first()?;
+    let (places, size) = (l.item("Places"), number(n));
+    let indices: Vec<usize> = members.iter().map(|m| m.mover.index).collect();
+    let own = inertia_of_site(first.lone, &indices)?;
+    let d = first.outline();
+    let sites: Vec<[usize; 3]> = members
+        .iter()
+        .map(|m| {
+            let (row, rows) = rows_of(&members, &m.mover.name);
+            [0, row, rows]
+        })
+        .collect();
+    let own = Inertia {
+        at_rest: own.at_rest.iter().map(|e| d.defined(e)).collect(),
+        columns: own
+            .columns
+            .iter()
+            .map(|list| list.iter().map(|e| d.defined(e)).collect())
+            .collect(),
+    };
+    let body = filled(l, &d.letters.symbols, &own, &sites, &|values| {
+        l.of_site(d, values)
+    });
+    let mut kernels = quote! {
+        /// The momenta of one site where nothing moves, and their derivatives by velocities, in the limit of small steps.
+        fn inertia(&self, site: usize, at: &#places<T>) -> (SVector<T, #size>, SMatrix<T, #size, #size>) {
+            let _ = (site, at);
+            let mut made = [SVector::<T, #size>::zeros(); 1];
+            let mut a = [[SMatrix::<T, #size, #size>::zeros(); 1]; 1];
+            #body
+            (made[0], a[0][0])
+        }
+    };
+    let s = &l.line.representative.d.letters.symbols;
+    let count = l.count_of(&first.mover.name);
+    let mut each = Vec::new();
+    for (k, tie) in l.line.ties.iter().enumerate() {
+        let of_tie = tie.inertia.as_ref()?;
+        let sites: Vec<[usize; 3]> = tie
+            .parts
+            .iter()
+            .map(|p| {
+                let (row, rows) = rows_of(&members, &p.on);
+                [p.site, row, rows]
+            })
+            .collect();
+        let body = filled(l, s, of_tie, &sites, &|values| known(l, values));
+        let (kernel, wide) = (format_ident!("inertia_{}", k + 1), number(tie.width + 1));
+        kernels.extend(quote! {
+            /// What a term of neighbours adds to them.
+            fn #kernel(&self, site: usize, at: &#places<T>) -> ([SVector<T, #size>; #wide], [[SMatrix<T, #size, #size>; #wide]; #wide]) {
+                let _ = (site, at);
+                let mut made = [SVector::<T, #size>::zeros(); #wide];
+                let mut a = [[SMatrix::<T, #size, #size>::zeros(); #wide]; #wide];
+                #body
+                (made, a)
+            }
+        });
+        let range = range_of(l, tie.label, tie.from, tie.to);
+        let touched = super::tied::touched(l, tie, &count);
+        each.push(quote! {{
+            #range
+            rows.tie([first, last], |site| #touched, |site, _| self.#kernel(site, at));
+        }});
+    }
+    let given = members.iter().map(|m| {
+        let (row, rows) = rows_of(&members, &m.mover.name);
+        let (row, rows) = (number(row), number(rows));
+        let c = &m.d().spec.configurations[m.mover.index];
+        let value = element::value(c, super::energy::momentum(m, &quote!(site)));
+        let value = m.array(value);
+        quote!(known.fixed_view_mut::<#rows, 1>(#row, 0).copy_from(&(#value));)
+    });
+    let (range, ring) = (range_name(first), super::tied::ring(l));
+    let energy = quote! {{
+        let [first, last] = self.#range();
+        line::Band::<T, #size>::kinetic(
+            [#count, first, last],
+            #ring,
+            |site| {
+                let mut known = SVector::<T, #size>::zeros();
+                #(#given)*
+                known
+            },
+            |site| self.inertia(site, at),
+            |rows| { #(#each)* },
+        )
+    }};
+    Some((kernels, energy))
+}
+
+/// Fills `made` and `a` by configurations with their site in the kernel, first row and number of rows.
+fn filled(
+    l: &Lines,
+    s: &Symbols,
+    inertia: &Inertia,
+    sites: &[[usize; 3]],
+    known: &dyn Fn(&[Expr]) -> Vec<Known>,
+) -> TokenStream {
+    let mut values = Vec::new();
+    for (rest, columns) in inertia.at_rest.iter().zip(&inertia.columns) {
+        values.push(expr::parted(s, rest));
+        values.extend(columns.iter().map(|e| expr::parted(s, e)));
+    }
+    let (locals, bindings) = l.locals(s, &known(&values), &Places::of_node(), &quote!(site));
+    let (lets, results) = l.program(s, &values, &bindings);
+    let mut out = quote!(#locals #lets);
+    let mut results = values.iter().zip(results);
+    for of in sites {
+        let [site, row, rows] = of.map(number);
+        let value = results.next().map(|(e, value)| as_array(e, value));
+        out.extend(quote!(made[#site].fixed_view_mut::<#rows, 1>(#row, 0).copy_from(&(#value));));
+        for [by, from, count] in sites {
+            let by = number(*by);
+            for j in *from..from + count {
+                let j = number(j);
+                let value = results.next().map(|(e, value)| as_array(e, value));
+                out.extend(
+                    quote!(a[#site][#by].fixed_view_mut::<#rows, 1>(#row, #j).copy_from(&(#value));),
+                );
+            }
+        }
+    }
+    out
+}

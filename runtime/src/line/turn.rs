@@ -1,0 +1,74 @@
+//! Rotations of a step as they are found by Newton's method: by the vector `v` of the Cayley transform
+//! `Ω = (Id - hat(v)/2)^-1 (Id + hat(v)/2)`, which has every rotation but those by half a turn.
+
+use crate::Real;
+use nalgebra::{Matrix3, Vector3};
+
+/// `1/(1 + v.v/4)`.
+#[inline(always)]
+fn factor<T: Real>(v: &Vector3<T>) -> T {
+    T::one() / (T::one() + v.dot(v) * T::from_f64(0.25))
+}
+
+/// The rotation of a vector.
+#[inline(always)]
+#[must_use]
+pub fn turn_of<T: Real>(v: &Vector3<T>) -> Matrix3<T> {
+    let factor = factor(v);
+    let half = factor * T::from_f64(0.5);
+    let ([x, y, z], [a, b, c]) = (v.data.0[0], (v * factor).data.0[0]);
+    let (xx, yy, zz) = (x * x * half, y * y * half, z * z * half);
+    let (xy, xz, yz) = (x * y * half, x * z * half, y * z * half);
+    let one = T::one();
+    #[rustfmt::skip]
+    let turn = Matrix3::new(
+        one - (yy + zz), xy - c, xz + b,
+        xy + c, one - (xx + zz), yz - a,
+        xz - b, yz + a, one - (xx + yy),
+    );
+    turn
+}
+
+/// The matrix from a change of `v` to the vector `η` of `Ω hat(η)`, the change of the rotation.
+#[inline(always)]
+#[must_use]
+pub fn rate_of<T: Real>(v: &Vector3<T>) -> Matrix3<T> {
+    let factor = factor(v);
+    let [x, y, z] = (v * (factor * T::from_f64(0.5))).data.0[0];
+    #[rustfmt::skip]
+    let rate = Matrix3::new(
+        factor, z, -y,
+        -z, factor, x,
+        y, -x, factor,
+    );
+    rate
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{rate_of, turn_of};
+    use nalgebra::{Matrix3, Vector3};
+
+    /// Against the quotient that defines it, and central differences, whose error is of the square of their step.
+    #[test]
+    fn a_turn_is_its_cayley_transform_and_its_rate_the_derivative() {
+        let v = Vector3::new(0.7, -1.3, 0.4);
+        let hat = |v: Vector3<f64>| v.cross_matrix() * 0.5;
+        let cayley = |v: Vector3<f64>| {
+            let below = (Matrix3::identity() - hat(v))
+                .try_inverse()
+                .expect("is one");
+            below * (Matrix3::identity() + hat(v))
+        };
+        assert!((turn_of(&v) - cayley(v)).norm() < 8.0 * f64::EPSILON);
+        let h = 1e-5;
+        for axis in 0..3 {
+            let mut along = Vector3::zeros();
+            along[axis] = h;
+            let change = (turn_of(&(v + along)) - turn_of(&(v - along))) / (2.0 * h);
+            let eta = rate_of(&v).column(axis).into_owned();
+            let own = turn_of(&v) * eta.cross_matrix();
+            assert!((change - own).norm() < 1e-9, "{change} {own}");
+        }
+    }
+}
