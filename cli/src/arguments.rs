@@ -82,7 +82,8 @@ fn run() -> Command {
     .arg(
         flag(
             "paper",
-            "Draw pictures for a column of a paper: 86 mm wide, without titles, legends below",
+            "Draw pictures for a column of a paper: 86 mm wide, without titles, legends below; as PDF beside SVG \
+             where the command is built with `--features pdf`",
         )
         .requires("out"),
     )

@@ -4,6 +4,7 @@
 
 pub(crate) mod arrays;
 mod interrupted;
+mod pdf;
 pub(crate) mod points;
 pub(crate) mod run_json;
 pub(crate) mod samples;
@@ -58,7 +59,7 @@ pub struct Finished<'a> {
 }
 
 /// Every file name a run can write, so that a folder with anything else is never replaced.
-pub const FILES: [&str; 17] = [
+pub const FILES: [&str; 26] = [
     "trajectory.csv",
     "trajectory.npz",
     "run.json",
@@ -77,6 +78,16 @@ pub const FILES: [&str; 17] = [
     samples::NAME,
     checkpoint::NAME,
     checkpoint::UNFINISHED,
+    // Of pictures for a paper.
+    "momentum.pdf",
+    "invariants.pdf",
+    "advected.pdf",
+    "fields.pdf",
+    "attitude.pdf",
+    "angles.pdf",
+    "particles.pdf",
+    "vorticity.pdf",
+    "snapshots.pdf",
 ];
 
 /// Writes all files into `staging`; gives their names.
@@ -133,6 +144,15 @@ pub fn write(
         if let Some(svg) = plot {
             staging.write(name, |file| file.write_all(svg.as_bytes()))?;
             files.push(name.to_owned());
+            if run.plan.paper
+                && let Some(pdf) = pdf::pdf(&svg)
+            {
+                let pdf =
+                    pdf.map_err(|why| Failure::Failed(format!("cannot set {name}: {why}")))?;
+                let name = name.replace(".svg", ".pdf");
+                staging.write(&name, |file| file.write_all(&pdf))?;
+                files.push(name);
+            }
             pictures.push((name, svg));
         }
     }

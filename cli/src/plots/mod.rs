@@ -39,8 +39,11 @@ use window::{Window, window};
 /// A drawn plot; `None` when the model has nothing of the kind.
 pub(crate) type Plot = Result<Option<String>, String>;
 
-/// Momentum components against time, one panel per momentum.
+/// Momentum components against time, one panel per momentum; none of particles in the plane.
 pub(crate) fn momentum(run: &Finished<'_>, samples: &Samples) -> Plot {
+    if particles::in_plane(run) {
+        return Ok(None);
+    }
     observables(run, samples, "momentum", |field, _| {
         let kinds = [
             Kind::BodyMomentum,
@@ -58,8 +61,11 @@ pub(crate) fn advected(run: &Finished<'_>, samples: &Samples) -> Plot {
     })
 }
 
-/// Components of the fields against time, one panel per field.
+/// Components of the fields against time, one panel per field; none of particles in the plane.
 pub(crate) fn fields(run: &Finished<'_>, samples: &Samples) -> Plot {
+    if particles::in_plane(run) {
+        return Ok(None);
+    }
     observables(run, samples, "fields", |_, moves| moves)
 }
 

@@ -52,6 +52,11 @@ pub(super) struct Snapshot {
     pub(super) radius: f64,
 }
 
+/// Whether a run is of a fluid in the plane: its particles have no order along a line, and are shown where they are.
+pub(super) fn in_plane(run: &Finished<'_>) -> bool {
+    space(run.card, run.plan).is_some_and(|(space, _)| space.lengths.len() > 1)
+}
+
 /// The picture; nothing for models that are no fluids.
 pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
     let Some((space, stated)) = space(run.card, run.plan) else {

@@ -67,6 +67,13 @@ fn arrays_are_by_sample_particle_and_component_and_particles_are_mapped() {
     for shape in ["(5, 1800, 2,)", "(5, 528,)", "momentum_X.npy", "H.npy"] {
         assert!(has(shape), "{shape}");
     }
+    // Particles have no order along a line.
+    for name in ["fields.svg", "momentum.svg"] {
+        assert!(
+            std::fs::metadata(format!("{out}/{name}")).is_err(),
+            "{name}"
+        );
+    }
     let map = std::fs::read_to_string(format!("{out}/particles.svg")).expect("is written");
     let circles = map.matches("<circle").count();
     // Particles, twice.

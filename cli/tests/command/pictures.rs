@@ -66,6 +66,35 @@ fn pictures_for_a_paper_fit_a_column() {
     assert!(read("wide") == read("column"));
 }
 
+/// With `cargo test -p clebsch-cli --features pdf`.
+#[cfg(feature = "pdf")]
+#[test]
+fn pictures_for_a_paper_are_there_as_pdf() {
+    let folder = Folder::new("pdf");
+    picture(&folder, "top", &["heavy-top", "--steps", "500", "--paper"]);
+    for name in ["momentum", "invariants", "advected", "attitude", "angles"] {
+        let pdf = fs::read(folder.path(&format!("top/{name}.pdf"))).expect("written");
+        assert!(pdf.starts_with(b"%PDF-"), "{name}");
+        // 86 mm in points of 1/72 inch, to the pixel of 1/96 inch that the page is rounded to.
+        let text = String::from_utf8_lossy(&pdf).into_owned();
+        let page = text.split("/MediaBox [0 0 ").nth(1).expect("a page");
+        let width: f64 = page
+            .split(' ')
+            .next()
+            .expect("a width")
+            .parse()
+            .expect("a number");
+        assert!((width - 86.0 / 25.4 * 72.0).abs() < 0.75, "{name}: {width}");
+        // Text is set, not left out: fonts are embedded.
+        assert!(
+            text.contains("/FontDescriptor") || text.contains("/Type0"),
+            "{name} has no text"
+        );
+    }
+    let json = fs::read_to_string(folder.path("top/run.json")).expect("written");
+    assert!(json.contains("attitude.pdf"));
+}
+
 #[test]
 fn entries_of_skew_matrices_are_drawn_once() {
     let folder = Folder::new("skew");
