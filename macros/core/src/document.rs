@@ -8,6 +8,7 @@ mod holds;
 mod lattice;
 mod motion;
 mod outlook;
+mod parts;
 mod proof;
 mod quaternionic;
 mod scheme;
@@ -26,6 +27,9 @@ pub use source::source;
 
 use crate::derive::Derivation;
 use crate::derive::recognise::Riccati;
+use crate::expr::Expr;
+use crate::expr::symbol::Symbols;
+use crate::print::document::Document;
 use crate::print::{Format, Style, expression, render};
 
 /// The style of a model: its time index.
@@ -49,12 +53,24 @@ pub fn printed_telling(d: &Derivation, format: Format, columns: usize, sources: 
         sources,
         scheme: matches!(format, Format::Latex | Format::Markdown),
     };
-    render(
-        &document_telling(d, told),
-        &d.letters.symbols,
-        &style,
-        format,
-    )
+    let doc = document_telling(d, told);
+    paged(doc, &d.letters.symbols, Some(&d.spec.lets), &style, format)
+}
+
+/// A document in a format: on a page rigid motions and their momenta in parts, and what the model names by its names;
+/// on a terminal as they are. A model with sites has no names here.
+fn paged(
+    doc: Document,
+    symbols: &Symbols,
+    lets: Option<&[(String, Expr)]>,
+    style: &Style,
+    format: Format,
+) -> String {
+    if format == Format::Text {
+        return render(&doc, symbols, style, format);
+    }
+    let (doc, symbols) = parts::in_parts(doc, symbols, lets.unwrap_or_default(), lets.is_none());
+    render(&doc, &symbols, style, format)
 }
 
 /// A number that changes when the model's text or the engine's version does (FNV-1a).

@@ -65,6 +65,11 @@ impl<'a> Elaborator<'a> {
         self.unbound.push((name.text.clone(), true));
     }
 
+    /// What is named by `let` so far, in order.
+    pub fn bound(&self) -> &[(String, Expr)] {
+        &self.bindings
+    }
+
     /// Adds `let name = value`.
     pub fn bind(&mut self, name: &Name, value: Expr, errors: &mut Errors) {
         let mut fresh = self.names.clone();

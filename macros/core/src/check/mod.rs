@@ -228,7 +228,7 @@ fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
         Some(s) => expr::quotient(typed.clone(), s.clone()),
         None => typed.clone(),
     };
-    let spec = finish(
+    let mut spec = finish(
         model,
         declared,
         assumptions,
@@ -240,6 +240,7 @@ fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
         terms,
         node_rule,
     )?;
+    spec.lets = elaborator.bound().to_vec();
     usage(&spec)?;
     Ok(spec)
 }
@@ -329,6 +330,7 @@ fn finish(
         parameter_places: declared.parameter_places,
         assumptions,
         formulas: crate::syntax::formula::stated(model),
+        lets: Vec::new(),
         configurations,
         advected,
         holds,

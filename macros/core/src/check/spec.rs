@@ -211,6 +211,8 @@ pub struct Spec {
     pub assumptions: Vec<Assumption>,
     /// Functions that are written out, as they are stated: their calls are replaced.
     pub formulas: Vec<String>,
+    /// What the model names by `let`, with its names written out, in order.
+    pub lets: Vec<(String, Expr)>,
     /// Configurations in order.
     pub configurations: Vec<Configuration>,
     /// Advected quantities in order.

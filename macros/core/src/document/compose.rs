@@ -359,10 +359,11 @@ fn variations(sheet: &Sheet, doc: &mut Document) {
             section.equation(Formula::equal(Formula::variation(x), sheet.derived(change)));
             section.labelled(&variation_label(i, j));
         }
-        let words = d.spec.configurations.get(i).map(|c| {
-            let inclusion = sheet.symbols().fresh_name("ι");
-            c.group.variation_words(&inclusion)
-        });
+        let words = d
+            .spec
+            .configurations
+            .get(i)
+            .map(|c| c.group.variation_words());
         let algebra = match words {
             Some([line, page]) if line == page => line.into(),
             Some([line, page]) => Inline::Notation { line, page },

@@ -16,7 +16,7 @@ use crate::lattice::{Choice, Lattice, Range, Sites};
 use crate::pipeline;
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::Formula;
-use crate::print::{Format, Style, expression, render};
+use crate::print::{Format, Style, expression};
 use crate::syntax::ast::Model;
 
 pub use card::{CardWords, card_words};
@@ -64,7 +64,7 @@ pub fn printed_lattice(
         ..Style::new(&first.d.spec.time_index)
     };
     Ok(Printed {
-        text: render(&doc, &folded.symbols, &style, format),
+        text: super::paged(doc, &folded.symbols, None, &style, format),
         warnings,
     })
 }

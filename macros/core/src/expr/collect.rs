@@ -26,10 +26,7 @@ pub fn collect(symbols: &Symbols, e: &Expr) -> Expr {
 fn sum_of(terms: &[Expr], shape: Shape) -> Expr {
     let mut found: Vec<(Expr, Rational)> = Vec::new();
     for term in terms {
-        let mut parts = parts(term);
-        let coefficient = parts.coefficient;
-        parts.coefficient = Rational::ONE;
-        let core = whole(parts);
+        let (coefficient, core) = coefficient(term);
         let known = found
             .iter_mut()
             .find(|(other, _)| *other == core)
@@ -88,11 +85,17 @@ fn scaled(c: Rational, a: Expr) -> Expr {
     }
 }
 
-fn cancelled(e: &Expr) -> Expr {
+/// The number in front of a term, and the term without it.
+pub fn coefficient(e: &Expr) -> (Rational, Expr) {
     let mut parts = parts(e);
     let coefficient = parts.coefficient;
     parts.coefficient = Rational::ONE;
-    scaled(coefficient, whole(parts))
+    (coefficient, whole(parts))
+}
+
+fn cancelled(e: &Expr) -> Expr {
+    let (coefficient, core) = coefficient(e);
+    scaled(coefficient, core)
 }
 
 pub(super) fn parts(e: &Expr) -> Parts {

@@ -35,7 +35,7 @@ use std::sync::Arc;
 use symbol::SymbolId;
 
 pub use build::*;
-pub use collect::{collect, positive_first};
+pub use collect::{coefficient, collect, positive_first};
 pub use constant::Constant;
 pub use diagonal::{diagonal, diagonal_of};
 pub use directional::directional;

@@ -85,7 +85,7 @@ impl Record for Additive {
         Kept::Field(self.0)
     }
 
-    fn variation_words(&self, _: &str) -> [String; 2] {
+    fn variation_words(&self) -> [String; 2] {
         let words = match (self.0.is_scalar(), self.0.is_vector()) {
             (true, _) => " is an arbitrary number.",
             (false, true) => " is an arbitrary vector.",

@@ -58,7 +58,7 @@ impl Record for GeneralLinear {
         Kept::Linear(self.0)
     }
 
-    fn variation_words(&self, _: &str) -> [String; 2] {
+    fn variation_words(&self) -> [String; 2] {
         let words = " is an arbitrary matrix.";
         [words.to_owned(), words.to_owned()]
     }

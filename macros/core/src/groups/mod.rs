@@ -383,9 +383,8 @@ pub trait Record {
         self.structure().is_orthogonal()
     }
 
-    /// What a letter of variation is, in words: on a line, and typeset, where `inclusion` puts a
-    /// vector into a longer one.
-    fn variation_words(&self, inclusion: &str) -> [String; 2];
+    /// What a letter of variation is, in words: on a line, and typeset.
+    fn variation_words(&self) -> [String; 2];
 
     /// What the elements do as symmetries of space.
     fn motions_words(&self) -> &'static str {

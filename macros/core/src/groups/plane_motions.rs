@@ -97,15 +97,13 @@ impl Record for PlaneMotions {
         Some(self)
     }
 
-    fn variation_words(&self, inclusion: &str) -> [String; 2] {
-        let both = " is an arbitrary turn and a displacement on top of each other; twist of it is the matrix of the Lie algebra, and";
+    fn variation_words(&self) -> [String; 2] {
+        let both = " is an arbitrary vector of an angle and a displacement; twist of it is the matrix of the Lie algebra";
         [
             format!(
-                "{both} ang and lin take the two parts of such a vector, x[1:2] the first two entries of a longer one."
+                "{both}, ang and lin take its parts, and x[1:2] the first two entries of a longer vector."
             ),
-            format!(
-                "{both} {inclusion} is the zero-padding inclusion of a vector in a longer one, from the row given by its second index."
-            ),
+            format!("{both}."),
         ]
     }
 

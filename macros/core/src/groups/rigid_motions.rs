@@ -96,15 +96,13 @@ impl Record for RigidMotions {
         Some(self)
     }
 
-    fn variation_words(&self, inclusion: &str) -> [String; 2] {
-        let both = " is an arbitrary angular and a linear displacement on top of each other; twist of it is the matrix of the Lie algebra, and";
+    fn variation_words(&self) -> [String; 2] {
+        let both = " is an arbitrary vector of an angular and a linear displacement; twist of it is the matrix of the Lie algebra";
         [
             format!(
-                "{both} ang and lin take the angular and the linear part of such a vector, x[1:3] the first three entries of a longer one."
+                "{both}, ang and lin take its parts, and x[1:3] the first three entries of a longer vector."
             ),
-            format!(
-                "{both} {inclusion} is the zero-padding inclusion of a vector in a longer one, from the row given by its second index."
-            ),
+            format!("{both}."),
         ]
     }
 

@@ -128,7 +128,7 @@ impl Record for SpecialOrthogonal {
         }
     }
 
-    fn variation_words(&self, _: &str) -> [String; 2] {
+    fn variation_words(&self) -> [String; 2] {
         let words = " is an arbitrary skew matrix.";
         [words.to_owned(), words.to_owned()]
     }

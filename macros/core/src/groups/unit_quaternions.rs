@@ -65,7 +65,7 @@ impl Record for UnitQuaternions {
         Kept::Quaternion
     }
 
-    fn variation_words(&self, _: &str) -> [String; 2] {
+    fn variation_words(&self) -> [String; 2] {
         let words = " is an arbitrary vector, an angular displacement; quat(v) is the left multiplication by the quaternion v.";
         [words.to_owned(), words.to_owned()]
     }

@@ -2,6 +2,8 @@
 //! gradients, variations, pairings and the words between them. A closed tree that every renderer
 //! prints; expressions are its leaves.
 
+mod mapped;
+
 use crate::algebra::Rational;
 use crate::expr::{Expr, Letter};
 
@@ -119,6 +121,8 @@ pub enum Formula {
     Grouped(Box<Formula>),
     /// Formulas separated by commas.
     List(Vec<Formula>),
+    /// Relations below one another under one number, aligned at their signs.
+    Rows(Vec<Formula>),
     /// Formulas and words side by side, e.g. a relation, `for all`, a letter.
     Sequence(Vec<Formula>),
     /// Words.

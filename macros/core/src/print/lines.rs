@@ -102,12 +102,61 @@ pub(super) fn broken<'a>(layout: &'a Layout, ruler: &Ruler) -> Option<Lines<'a>>
 
 /// The formula in lines of so many points, indented by a quad for each bracket and one more.
 pub(super) fn typeset(layout: &Layout, points: usize) -> Option<Lines<'_>> {
+    within(layout, 10 * points)
+}
+
+/// The same in tenths of a point.
+fn within(layout: &Layout, limit: usize) -> Option<Lines<'_>> {
     let ruler = Ruler {
-        limit: 10 * points,
+        limit,
         measure: &|p| p.width(),
         indent: &|depth, _| 100 * (depth + 1),
     };
     broken(layout, &ruler)
+}
+
+/// Part of a line beyond which a left side is too wide for the signs of other relations to stand below its own.
+const WIDE_LEFT: usize = 4;
+
+/// Relations below one another in lines of so many points, their signs aligned; one with a wide left side begins where
+/// the right sides of the others do.
+pub(super) fn group(layouts: &[Layout], points: usize) -> Vec<Lines<'_>> {
+    let limit = 10 * points;
+    let width = |pieces: &[Piece]| pieces.iter().map(Piece::width).sum::<usize>();
+    let sides = layouts.iter().map(|layout| {
+        let mut left = Vec::new();
+        flatten(layout, 0, &mut left);
+        let sign = left.iter().position(Piece::is_relation);
+        let right = left.split_off(sign.unwrap_or(0));
+        (layout, left, right)
+    });
+    let sides: Vec<_> = sides.collect();
+    let narrow = |left: &[Piece]| width(left) <= limit / WIDE_LEFT;
+    let lefts = sides.iter().map(|(_, left, _)| left).filter(|l| narrow(l));
+    let widest = lefts.map(|l| width(l)).max().unwrap_or(0);
+    let one = |left, pieces| Lines {
+        left,
+        lines: vec![Line {
+            depth: 0,
+            relation: true,
+            pieces,
+        }],
+    };
+    let placed = sides.into_iter().map(|(layout, left, right)| {
+        if narrow(&left) {
+            let room = limit.saturating_sub(widest - width(&left));
+            return within(layout, room).unwrap_or_else(|| one(left, right));
+        }
+        let Some(mut broken) = within(layout, limit.saturating_sub(widest)) else {
+            return one(Vec::new(), left.into_iter().chain(right).collect());
+        };
+        let start = std::mem::take(&mut broken.left);
+        if let Some(first) = broken.lines.first_mut() {
+            first.pieces.splice(0..0, start);
+        }
+        broken
+    });
+    placed.collect()
 }
 
 fn flatten<'a>(layout: &'a Layout, depth: usize, out: &mut Vec<Piece<'a>>) {

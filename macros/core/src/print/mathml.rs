@@ -14,32 +14,45 @@ pub(super) fn inline(page: &Page, f: &Formula) -> String {
 
 /// A displayed formula, as a table if it takes several lines.
 pub(super) fn display(page: &Page, f: &Formula) -> String {
-    let layout = page.stacked(f);
-    let body = match lines::typeset(&layout, page.style.points) {
-        None => element(&layout),
-        Some(broken) => {
-            let mut rows = String::new();
-            for (i, row) in broken.lines.iter().enumerate() {
-                let left = if i == 0 {
-                    pieces(&broken.left)
-                } else {
-                    String::new()
-                };
-                let indent = if i == 0 || row.relation {
-                    String::new()
-                } else {
-                    format!("<mspace width=\"{}em\"></mspace>", row.depth + 1)
-                };
-                rows.push_str(&format!(
-                    "<mtr><mtd style=\"text-align:right\"><mrow>{left}</mrow></mtd>\
-                     <mtd style=\"text-align:left\"><mrow>{indent}{}</mrow></mtd></mtr>",
-                    pieces(&row.pieces)
-                ));
+    let table = |rows: String| format!("<mtable displaystyle=\"true\">{rows}</mtable>");
+    let points = page.style.points;
+    let body = match f {
+        Formula::Rows(parts) => {
+            let layouts: Vec<Layout> = parts.iter().map(|part| page.stacked(part)).collect();
+            table(lines::group(&layouts, points).iter().map(rows).collect())
+        }
+        _ => {
+            let layout = page.stacked(f);
+            match lines::typeset(&layout, points) {
+                None => element(&layout),
+                Some(broken) => table(rows(&broken)),
             }
-            format!("<mtable displaystyle=\"true\">{rows}</mtable>")
         }
     };
     format!("<math display=\"block\">{body}</math>")
+}
+
+/// The rows of a table, aligned at the signs of relations.
+fn rows(broken: &lines::Lines) -> String {
+    let mut rows = String::new();
+    for (i, row) in broken.lines.iter().enumerate() {
+        let left = if i == 0 {
+            pieces(&broken.left)
+        } else {
+            String::new()
+        };
+        let indent = if i == 0 || row.relation {
+            String::new()
+        } else {
+            format!("<mspace width=\"{}em\"></mspace>", row.depth + 1)
+        };
+        rows.push_str(&format!(
+            "<mtr><mtd style=\"text-align:right\"><mrow>{left}</mrow></mtd>\
+             <mtd style=\"text-align:left\"><mrow>{indent}{}</mrow></mtd></mtr>",
+            pieces(&row.pieces)
+        ));
+    }
+    rows
 }
 
 /// Exactly one element.

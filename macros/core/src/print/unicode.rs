@@ -164,6 +164,10 @@ fn columns(text: &str) -> usize {
 
 /// A displayed formula in lines of at most `limit` columns, continued after the relation sign.
 pub(super) fn display(page: &Page, f: &Formula, limit: usize) -> Vec<String> {
+    if let Formula::Rows(parts) = f {
+        let lines = parts.iter().flat_map(|part| display(page, part, limit));
+        return lines.collect();
+    }
     if let Some(parts) = equations(f) {
         let lines = parts.iter().flat_map(|part| display(page, part, limit));
         return lines.collect();

@@ -90,7 +90,7 @@ impl Composer<'_> {
                 of,
             } => self.sum_over(index, from.as_deref(), to.as_deref(), of),
             Formula::Grouped(a) => Laid::atom(Layout::fenced(Fence::Round, self.formula(a).layout)),
-            Formula::List(parts) => {
+            Formula::List(parts) | Formula::Rows(parts) => {
                 let mut row = Vec::new();
                 for part in parts {
                     if !row.is_empty() {

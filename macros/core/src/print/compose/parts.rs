@@ -1,7 +1,6 @@
-//! Vectors inside longer ones, for text on a line: in parts instead of by the inclusion ι, which a
-//! typeset page shows. A vector of six is its angular and its linear part, `(a, b)`, of which `ang` and
-//! `lin` take one; of homogeneous coordinates and matrices `x[1:3]` and `A[1:3, 4]` take entries, and
-//! `[v; 0]` and `[A, 0; 0, 0]` are made of blocks.
+//! Vectors inside longer ones, in parts. A vector of the Lie algebra of rigid motions is its angular and its
+//! linear part, `(a, b)`, of which `ang` and `lin` take one; of homogeneous coordinates and matrices `x[1:3]`
+//! and `A[1:3, 4]` take entries, on a page below the line, and `[v; 0]` and `[A, 0; 0, 0]` are made of blocks.
 
 use super::Composer;
 use crate::expr::shape::{Dim, Shape};
@@ -9,22 +8,34 @@ use crate::expr::{self, Expr, Node};
 use crate::print::formula::Formula;
 use crate::print::layout::{Fence, Layout, Strength};
 use crate::print::level::Laid;
+use crate::print::name;
 
-/// The first row of the linear part.
-const LINEAR: u8 = 3;
-
-/// What an inclusion of space does in a product.
+/// What an inclusion does in a product.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Inclusion {
     /// Length of the longer vectors.
     rows: u32,
+    /// Length of the shorter ones.
+    cols: u32,
     /// The first row of the shorter one.
     at: u8,
     /// Whether it takes a part instead of putting it.
     takes: bool,
 }
 
-/// The inclusion of vectors of three that a factor is.
+impl Inclusion {
+    /// Whether it is one into homogeneous coordinates.
+    fn is_of_points(self) -> bool {
+        self.at == 0 && self.rows == self.cols + 1
+    }
+
+    /// Whether the part is the linear one of a vector of the Lie algebra.
+    fn is_linear(self) -> bool {
+        self.at > 0
+    }
+}
+
+/// The inclusion that a factor is.
 fn inclusion(factor: &Expr) -> Option<Inclusion> {
     let (node, takes) = match factor.node() {
         Node::Transpose(inner) => (inner.node(), true),
@@ -34,11 +45,12 @@ fn inclusion(factor: &Expr) -> Option<Inclusion> {
         Node::Inclusion(
             Shape {
                 rows: Dim::Fixed(rows),
-                cols: Dim::Fixed(3),
+                cols: Dim::Fixed(cols),
             },
             at,
         ) => Some(Inclusion {
             rows: *rows,
+            cols: *cols,
             at: *at,
             takes,
         }),
@@ -53,14 +65,12 @@ fn is_last(factor: &Expr, transposed: bool) -> bool {
         (node, false) => node,
         _ => return false,
     };
-    matches!(node, Node::Unit(Dim::Fixed(4), 3))
+    matches!(node, Node::Unit(n, axis) if *axis == expr::last_axis(*n))
 }
 
-/// The angular and the linear part of a vector of six that is written by inclusions, every term of it.
+/// The angular and the linear part of a vector that is written by inclusions, every term of it.
 pub(in crate::print) fn in_parts(e: &Expr) -> Option<[Expr; 2]> {
-    if e.shape() != Shape::vector(Dim::Fixed(6)) {
-        return None;
-    }
+    let [(_, angles), (_, lengths)] = expr::rows_in_parts(e)?;
     let terms = match e.node() {
         Node::Sum(terms) => terms.as_slice(),
         _ => std::slice::from_ref(e),
@@ -68,42 +78,43 @@ pub(in crate::print) fn in_parts(e: &Expr) -> Option<[Expr; 2]> {
     let (mut angular, mut linear) = (Vec::new(), Vec::new());
     for term in terms {
         match put(term)? {
-            (LINEAR, part) => linear.push(part),
-            (_, part) => angular.push(part),
+            (true, part) => linear.push(part),
+            (false, part) => angular.push(part),
         }
     }
-    let sum = |terms| expr::sum(terms, Shape::vector(Dim::Fixed(3)));
-    Some([sum(angular), sum(linear)])
+    let sum = |terms, count| expr::sum(terms, Shape::vector(count));
+    Some([sum(angular, angles), sum(linear, lengths)])
 }
 
-/// The row at which a term stands, and the term without the inclusion that puts it there.
-fn put(term: &Expr) -> Option<(u8, Expr)> {
+/// Whether a term stands in the linear part, and the term without what puts it there.
+fn put(term: &Expr) -> Option<(bool, Expr)> {
     match term.node() {
-        Node::Neg(inner) => put(inner).map(|(at, part)| (at, expr::neg(part))),
+        Node::Neg(inner) => put(inner).map(|(linear, part)| (linear, expr::neg(part))),
         Node::Quotient(top, bottom) => {
-            put(top).map(|(at, part)| (at, expr::quotient(part, bottom.clone())))
+            put(top).map(|(linear, part)| (linear, expr::quotient(part, bottom.clone())))
         }
         Node::Product(factors) => {
             let first = factors.iter().position(|f| !f.shape().is_scalar())?;
             let (before, after) = factors.split_at_checked(first)?;
             let (head, rest) = after.split_first()?;
-            let found = inclusion(head).filter(|i| i.rows == 6 && !i.takes)?;
+            // The angle of a motion of the plane is a number.
+            if let (Node::Unit(_, 0), []) = (head.node(), rest) {
+                return Some((false, expr::product(before.iter().cloned())));
+            }
+            let found = inclusion(head).filter(|i| !i.is_of_points() && !i.takes)?;
             if rest.is_empty() {
                 return None;
             }
             let factors = before.iter().chain(rest).cloned();
-            Some((found.at, expr::product(factors)))
+            Some((found.is_linear(), expr::product(factors)))
         }
         _ => None,
     }
 }
 
 impl Composer<'_> {
-    /// A vector of six in parts, `(a, b)`; on the line only.
+    /// A vector of the Lie algebra in parts, `(a, b)`.
     pub(super) fn parts(&self, e: &Expr) -> Option<Laid> {
-        if self.stacked {
-            return None;
-        }
         let parts = in_parts(e)?;
         Some(self.list(parts.iter().map(|p| self.expression(p).layout).collect()))
     }
@@ -114,6 +125,9 @@ impl Composer<'_> {
 
     /// A matrix or a column by its blocks, `[A, v; 0, 0]`.
     fn blocks(&self, [top, bottom]: [Vec<Layout>; 2]) -> Laid {
+        if self.stacked {
+            return Laid::atom(Layout::Grid(vec![top, bottom]));
+        }
         let rows = vec![
             self.commas(top),
             Layout::Word("; ".to_owned()),
@@ -126,57 +140,56 @@ impl Composer<'_> {
     /// What the inclusion at the front of these factors makes of those behind it, and how many it is
     /// said for; `None` where it is shown as it is.
     pub(super) fn included(&self, factors: &[Expr]) -> Option<(Laid, usize)> {
-        if self.stacked {
-            return None;
-        }
         let (head, rest) = factors.split_first()?;
         let Some(found) = inclusion(head) else {
             return self.row_included(factors);
         };
         let zero = || Layout::Number("0".to_owned());
         let is = |wanted: Inclusion| move |f: &Expr| inclusion(f) == Some(wanted);
+        let identity = if found.takes { found.rows } else { found.cols };
         let inner = |count: usize| -> Option<Expr> {
             let inner = rest.get(..count)?;
             Some(match inner.is_empty() {
-                true => expr::identity(Dim::Fixed(if found.takes { 4 } else { 3 })),
+                true => expr::identity(Dim::Fixed(identity)),
                 false => expr::product(inner.iter().cloned()),
             })
         };
         let whole = || inner(rest.len()).filter(|e| !rest.is_empty() && e.shape().is_vector());
-        match (found.rows, found.takes) {
-            (6, true) => {
+        match (found.is_of_points(), found.takes) {
+            (false, true) => {
                 let of = whole()?;
-                let part = usize::from(found.at == LINEAR);
+                let part = usize::from(found.is_linear());
                 let laid = match in_parts(&of) {
                     Some(parts) => self.expression(parts.get(part)?),
                     None => self.call(["ang", "lin"].get(part)?, self.expression(&of)),
                 };
                 Some((laid, factors.len()))
             }
-            (6, false) => {
+            (false, false) => {
                 let part = self.expression(&whole()?).layout;
-                let parts = match found.at {
-                    LINEAR => vec![zero(), part],
-                    _ => vec![part, zero()],
+                let parts = match found.is_linear() {
+                    true => vec![zero(), part],
+                    false => vec![part, zero()],
                 };
                 Some((self.list(parts), factors.len()))
             }
-            (4, true) => {
+            (true, true) => {
                 let closes = is(Inclusion {
                     takes: false,
                     ..found
                 });
                 let end = rest.iter().position(|f| closes(f) || is_last(f, false));
+                let (space, last) = (found.cols, found.rows);
                 let (of, entries, used) = match end {
-                    Some(end) if is_last(rest.get(end)?, false) => (inner(end)?, "1:3, 4", end + 2),
-                    Some(end) => (inner(end)?, "1:3, 1:3", end + 2),
-                    None => (whole()?, "1:3", factors.len()),
+                    Some(end) if is_last(rest.get(end)?, false) => {
+                        (inner(end)?, format!("1:{space}, {last}"), end + 2)
+                    }
+                    Some(end) => (inner(end)?, format!("1:{space}, 1:{space}"), end + 2),
+                    None => (whole()?, format!("1:{space}"), factors.len()),
                 };
-                let entries = Layout::fenced(Fence::Square, Layout::Word(entries.to_owned()));
-                let row = vec![self.expression(&of).base(), entries];
-                Some((Laid::atom(Layout::Row(row)), used))
+                Some((self.entries(&of, &entries), used))
             }
-            (4, false) => {
+            (true, false) => {
                 let closes = is(Inclusion {
                     takes: true,
                     ..found
@@ -193,8 +206,21 @@ impl Composer<'_> {
                 };
                 Some((self.blocks([top, vec![zero(), zero()]]), end + 2))
             }
-            _ => None,
         }
+    }
+
+    /// `A[1:3, 4]`, on a page below the line.
+    fn entries(&self, of: &Expr, entries: &str) -> Laid {
+        let base = self.expression(of).base();
+        if self.stacked {
+            let base = match base {
+                scripted @ Layout::Script { .. } => Layout::fenced(Fence::Round, scripted),
+                plain => plain,
+            };
+            return Laid::atom(base.subscript(name::script(entries)));
+        }
+        let entries = Layout::fenced(Fence::Square, Layout::Word(entries.to_owned()));
+        Laid::atom(Layout::Row(vec![base, entries]))
     }
 }
 
@@ -208,14 +234,14 @@ impl Composer<'_> {
         };
         let next = |at: usize| factors.get(at).and_then(inclusion);
         let (row, used) = match next(1) {
-            Some(i) if i.rows == 6 && !i.takes && head.shape().rows == Dim::Fixed(1) => {
-                let word = if i.at == LINEAR { "lin" } else { "ang" };
+            Some(i) if !i.is_of_points() && !i.takes && head.shape().rows == Dim::Fixed(1) => {
+                let word = if i.is_linear() { "lin" } else { "ang" };
                 let part = self.call(word, self.expression(column));
                 (part.raised(super::transposition(false)), 2)
             }
             _ => (self.expression(head), 1),
         };
-        let longer = next(used).is_some_and(|i| i.rows == 4 && i.takes);
+        let longer = next(used).is_some_and(|i| i.is_of_points() && i.takes);
         if longer && head.shape().rows == Dim::Fixed(1) {
             let zero = Layout::Number("0".to_owned());
             let row = self.commas(vec![row.layout, zero]);
@@ -225,7 +251,7 @@ impl Composer<'_> {
     }
 }
 
-/// What a displayed equation of vectors of six is on a terminal: one of their angular parts and one of
+/// What a displayed equation of vectors of the Lie algebra is on a terminal: one of their angular parts and one of
 /// their linear parts.
 pub(in crate::print) fn equations(f: &Formula) -> Option<[Formula; 2]> {
     match f {

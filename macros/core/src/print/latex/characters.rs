@@ -4,12 +4,34 @@
 use crate::expr::spelling::twin;
 use crate::expr::symbol::{GREEK, greek_command};
 
+/// The accent behind a name, as a command for a letter and one for several, and the name without it.
+fn accent(s: &str) -> Option<((&'static str, &'static str), &str)> {
+    const ACCENTS: [(char, &str, &str); 2] = [
+        ('\u{304}', "bar", "overline"),
+        ('\u{20d7}', "vec", "overrightarrow"),
+    ];
+    let found = |(mark, narrow, wide): &(char, &'static str, &'static str)| {
+        Some(((*narrow, *wide), s.strip_suffix(*mark)?))
+    };
+    ACCENTS
+        .iter()
+        .find_map(found)
+        .filter(|(_, rest)| !rest.is_empty())
+}
+
 /// A letter, or several set as one name.
 pub(super) fn identifier(s: &str) -> String {
     let mut chars = s.chars();
     match (chars.next(), chars.next()) {
         (Some(only), None) => symbol_of(only, false),
         _ => {
+            if let Some(((narrow, wide), rest)) = accent(s) {
+                let command = match rest.chars().count() {
+                    1 => narrow,
+                    _ => wide,
+                };
+                return format!("\\{command}{{{}}}", identifier(rest));
+            }
             let letters = s.chars().map(|c| symbol_of(c, false));
             format!("\\mathit{{{}}}", joined(letters))
         }

@@ -202,10 +202,21 @@ fn aligned(rows: &[String]) -> String {
 
 /// The lines of a displayed formula; several are aligned at `&`.
 fn rows(page: &Page, f: &Formula, dialect: Dialect) -> Vec<String> {
+    if let Formula::Rows(parts) = f {
+        let layouts: Vec<Layout> = parts.iter().map(|part| page.stacked(part)).collect();
+        let groups = lines::group(&layouts, page.style.points);
+        let each = groups.iter().flat_map(|part| aligned_rows(part, dialect));
+        return each.collect();
+    }
     let layout = page.stacked(f);
-    let Some(broken) = lines::typeset(&layout, page.style.points) else {
-        return vec![line(&layout, dialect)];
-    };
+    match lines::typeset(&layout, page.style.points) {
+        Some(broken) => aligned_rows(&broken, dialect),
+        None => vec![line(&layout, dialect)],
+    }
+}
+
+/// Lines with the place at which they are aligned.
+fn aligned_rows(broken: &lines::Lines, dialect: Dialect) -> Vec<String> {
     let mut rows = Vec::new();
     for (i, row) in broken.lines.iter().enumerate() {
         let text = pieces(&row.pieces, dialect);

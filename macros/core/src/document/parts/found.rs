@@ -1,0 +1,93 @@
+//! What a document holds, looked through before its letters are chosen: names in its equations, numbers of homogeneous
+//! coordinates, letters of which parts are taken.
+
+use super::each_formula;
+use super::names::Kind;
+use super::read::{homogeneous, last_taken, taken_kind};
+use crate::expr::shape::Dim;
+use crate::expr::symbol::SymbolId;
+use crate::expr::{Constant, Expr, Node};
+use crate::print::document::{Block, Document};
+use std::collections::BTreeSet;
+
+/// What was found.
+pub struct Found {
+    /// Names in displayed equations that are no symbols.
+    pub names: BTreeSet<String>,
+    /// The numbers of homogeneous coordinates.
+    pub points: BTreeSet<Dim>,
+    /// Letters whose parts stand somewhere.
+    pub parted: BTreeSet<(Kind, SymbolId)>,
+}
+
+impl Found {
+    /// What this document holds.
+    pub fn in_document(doc: &Document) -> Found {
+        let mut names = BTreeSet::new();
+        // Letters of definitions stand for anything; those in equations mean one thing.
+        for block in doc.sections.iter().flat_map(|s| &s.blocks) {
+            if let Block::Equation { formula, .. } = block {
+                formula.each_name(&mut |base| {
+                    names.insert(base.to_owned());
+                });
+            }
+        }
+        let mut points = BTreeSet::new();
+        each_formula(doc, &mut |f| {
+            f.each_expression(&mut |e| coordinates(e, &mut points));
+        });
+        let mut parted = BTreeSet::new();
+        each_formula(doc, &mut |f| {
+            f.each_expression(&mut |e| {
+                if has_pi(e) {
+                    names.insert("π".to_owned());
+                }
+                taken_apart(e, &points, &mut parted);
+            });
+        });
+        Found {
+            names,
+            points,
+            parted,
+        }
+    }
+}
+
+/// The numbers of homogeneous coordinates that vectors are put into.
+fn coordinates(e: &Expr, out: &mut BTreeSet<Dim>) {
+    out.extend(homogeneous(e));
+    for child in e.children() {
+        coordinates(child, out);
+    }
+}
+
+/// The letters of which an expression takes parts.
+fn taken_apart(e: &Expr, points: &BTreeSet<Dim>, out: &mut BTreeSet<(Kind, SymbolId)>) {
+    if let Node::Product(list) = e.node() {
+        for pair in list.windows(2) {
+            if let [head, of] = pair
+                && let (Some(kind), Node::Letter(at)) = (taken_kind(head), of.node())
+                && of.shape().is_vector()
+            {
+                out.insert((kind, at.symbol));
+            }
+        }
+    }
+    let unit = e
+        .children()
+        .into_iter()
+        .find(|c| matches!(c.node(), Node::Unit(..)));
+    if let (Some(at), Some(unit)) = (last_taken(e), unit)
+        && points.contains(&unit.shape().rows)
+    {
+        out.insert((Kind::Point, at.symbol));
+    }
+    for child in e.children() {
+        taken_apart(child, points, out);
+    }
+}
+
+fn has_pi(e: &Expr) -> bool {
+    matches!(e.node(), Node::Constant(c) if *c == Constant::PI)
+        || e.children().into_iter().any(has_pi)
+}

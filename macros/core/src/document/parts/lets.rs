@@ -1,0 +1,346 @@
+//! What a model names by `let`, kept as a name in print: where its value stands literally, shifted in time, transposed,
+//! or distributed over the terms of a sum, as `M a/2 + M b/2` of `u = a + b`. Each replacement is proved before it is
+//! printed.
+
+use crate::algebra::{Algebra, Rational};
+use crate::expr::shape::Structure;
+use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::expr::{self, Expr, Letter, Map, Node, Shift};
+
+/// Nodes of an expression from which on no names are looked for.
+const LARGEST: u32 = 4_000;
+
+/// A name and what it stands for.
+struct Let {
+    symbol: SymbolId,
+    value: Expr,
+    patterns: Vec<Pattern>,
+}
+
+/// How a value stands in expressions: its terms, the longest first, and what is written for them.
+struct Pattern {
+    terms: Vec<(Rational, Expr)>,
+    name: Expr,
+}
+
+/// The names of a model.
+#[derive(Default)]
+pub struct Lets {
+    list: Vec<Let>,
+}
+
+impl Lets {
+    /// Adds a name for a value in the letters of the page, unless it is as short.
+    pub fn name(&mut self, symbols: &mut Symbols, name: &str, value: &Expr) {
+        let value = expr::collect(symbols, &self.named(symbols, value));
+        if value.size() <= 2 {
+            return;
+        }
+        let letters = expr::letters(&value);
+        // Made of both ends of a step it is a name of the model as stated; what is printed has velocities instead.
+        let ends =
+            |l: &Letter| symbols.get(l.symbol).role == Role::Element && l.shift != Shift::HERE;
+        if letters.iter().any(ends) {
+            return;
+        }
+        let moves = letters.iter().any(|l| {
+            let role = symbols.get(l.symbol).role;
+            !matches!(role, Role::Step | Role::Parameter | Role::Variation)
+        });
+        let role = if moves {
+            Role::Derived
+        } else {
+            Role::Parameter
+        };
+        let name = symbols.fresh_name(name);
+        let turned = expr::collect(symbols, &expr::transpose(symbols, value.clone()));
+        let structure =
+            match turned == value && value.shape().is_square() && !value.shape().is_scalar() {
+                true => Structure::Symmetric,
+                false => Structure::General,
+            };
+        let symbol = symbols.add(&name, value.shape(), structure, role);
+        let shifts: &[i8] = if moves { &[0, 1, -1] } else { &[0] };
+        let mut patterns = Vec::new();
+        for by in shifts {
+            let shift = Shift {
+                time: *by,
+                ..Shift::HERE
+            };
+            let own = expr::letter(symbols, symbol, shift);
+            let shifted = expr::shift_time(symbols, &value, *by);
+            patterns.push(pattern(symbols, &shifted, own.clone()));
+            if !value.shape().is_scalar() {
+                let turned = expr::transpose(symbols, shifted);
+                patterns.push(pattern(symbols, &turned, expr::transpose(symbols, own)));
+            }
+        }
+        self.list.push(Let {
+            symbol,
+            value,
+            patterns,
+        });
+    }
+
+    /// An expression with the names in it.
+    pub fn named(&self, symbols: &Symbols, e: &Expr) -> Expr {
+        if e.size() > LARGEST {
+            return e.clone();
+        }
+        let mut out = e.clone();
+        for one in &self.list {
+            for pattern in &one.patterns {
+                let tried = pattern.put(symbols, &out);
+                if tried != out && self.is_equal(symbols, &out, &tried) {
+                    out = tried;
+                }
+            }
+        }
+        out
+    }
+
+    /// Whether two expressions are equal by what the names stand for.
+    fn is_equal(&self, symbols: &Symbols, a: &Expr, b: &Expr) -> bool {
+        let written_out = |e: &Expr| self.written_out(symbols, e);
+        Algebra::new(symbols).equal(&written_out(a), &written_out(b))
+    }
+
+    /// An expression with the values in the places of the names.
+    pub fn written_out(&self, symbols: &Symbols, e: &Expr) -> Expr {
+        let mut out = e.clone();
+        // Later names are made of earlier ones.
+        for one in self.list.iter().rev() {
+            let places = expr::letters(&out).into_iter();
+            let places = places.filter(|at| at.symbol == one.symbol);
+            let values: Vec<(Letter, Expr)> = places
+                .map(|at| (at, expr::shift_time(symbols, &one.value, at.shift.time)))
+                .collect();
+            out = expr::substitute(symbols, &out, &values);
+        }
+        out
+    }
+
+    /// The value that a symbol names.
+    pub fn value(&self, symbol: SymbolId) -> Option<&Expr> {
+        let found = self.list.iter().find(|one| one.symbol == symbol)?;
+        Some(&found.value)
+    }
+}
+
+fn pattern(symbols: &Symbols, value: &Expr, name: Expr) -> Pattern {
+    let terms = match expr::collect(symbols, value).node() {
+        Node::Sum(terms) => terms.clone(),
+        _ => vec![value.clone()],
+    };
+    let mut terms: Vec<(Rational, Expr)> = terms.iter().map(expr::coefficient).collect();
+    // A sum under a number: `(a + b)/2`.
+    if let [(c, core)] = terms.as_slice()
+        && let Node::Sum(inner) = core.node()
+    {
+        let scaled = inner.iter().map(|t| {
+            let (q, t) = expr::coefficient(t);
+            Some((c.times(q)?, t))
+        });
+        terms = scaled.collect::<Option<_>>().unwrap_or(terms);
+    }
+    terms.sort_by_key(|(_, t)| std::cmp::Reverse(t.size()));
+    Pattern { terms, name }
+}
+
+impl Pattern {
+    /// The expression with the name wherever all terms of the value stand in one context.
+    fn put(&self, symbols: &Symbols, e: &Expr) -> Expr {
+        let children = e.children().into_iter().map(|x| self.put(symbols, x));
+        let e = expr::with_children(symbols, e, children.collect());
+        match self.terms.as_slice() {
+            [(c, only)] => self.alone(symbols, &e, *c, only),
+            _ => match e.node() {
+                Node::Sum(terms) => self.in_sum(symbols, &e, terms),
+                _ => e,
+            },
+        }
+    }
+
+    /// A value of one term.
+    fn alone(&self, symbols: &Symbols, e: &Expr, c: Rational, only: &Expr) -> Expr {
+        let whole = Context::of(e, only).into_iter().find(|found| found.at_root);
+        match (whole, c.inverse()) {
+            (Some(found), Some(q)) => {
+                let name = expr::scale(q, self.name.clone());
+                expr::collect(symbols, &found.with(symbols, &name))
+            }
+            _ => e.clone(),
+        }
+    }
+
+    /// A value of several terms among those of a sum.
+    fn in_sum(&self, symbols: &Symbols, e: &Expr, terms: &[Expr]) -> Expr {
+        let mut terms: Vec<(Rational, Expr)> = terms.iter().map(expr::coefficient).collect();
+        let mut at = 0;
+        while let Some((q, core)) = terms.get(at).cloned() {
+            match self.matched(symbols, &terms, at, q, &core) {
+                Some((used, new)) => {
+                    let mut kept = Vec::new();
+                    for (i, term) in terms.into_iter().enumerate() {
+                        if i == at {
+                            kept.push(expr::coefficient(&new));
+                        } else if !used.contains(&i) {
+                            kept.push(term);
+                        }
+                    }
+                    terms = kept;
+                    at = 0;
+                }
+                None => at += 1,
+            }
+        }
+        let list = terms.into_iter().map(|(q, core)| expr::scale(q, core));
+        expr::sum(list.collect::<Vec<_>>(), e.shape())
+    }
+
+    /// The terms that with this one make the value in some context, and that context with the name.
+    fn matched(
+        &self,
+        symbols: &Symbols,
+        terms: &[(Rational, Expr)],
+        at: usize,
+        q: Rational,
+        core: &Expr,
+    ) -> Option<(Vec<usize>, Expr)> {
+        let ((first, longest), others) = self.terms.split_first()?;
+        'contexts: for found in Context::of(core, longest) {
+            let put =
+                |x: &Expr| expr::coefficient(&expr::collect(symbols, &found.with(symbols, x)));
+            let (own, again) = put(longest);
+            if again != *core {
+                continue;
+            }
+            let mut used = vec![at];
+            for (c, other) in others {
+                let (sign, wanted) = put(other);
+                let ratio = c.times(first.inverse()?)?;
+                let weight = q.times(ratio)?.times(sign)?.times(own.inverse()?)?;
+                let same = |(i, (w, t)): (usize, &(Rational, Expr))| {
+                    !used.contains(&i) && *w == weight && *t == wanted
+                };
+                match (0..terms.len()).zip(terms).position(same) {
+                    Some(i) => used.push(i),
+                    None => continue 'contexts,
+                }
+            }
+            let scale = q.times(first.inverse()?)?.times(own.inverse()?)?;
+            let new = expr::scale(scale, found.with(symbols, &self.name));
+            return Some((used, expr::collect(symbols, &new)));
+        }
+        None
+    }
+}
+
+/// A place in an expression that is linear in what stands there.
+struct Context {
+    /// From the outside to the inside: the nodes and which child is gone into.
+    way: Vec<(Expr, usize)>,
+    /// The factors before and behind, where the place is a run of factors.
+    around: Option<(Vec<Expr>, Vec<Expr>)>,
+    /// Whether the place is the whole or a run of its factors.
+    at_root: bool,
+}
+
+impl Context {
+    /// The linear places in which `wanted` stands.
+    fn of(e: &Expr, wanted: &Expr) -> Vec<Context> {
+        let mut out = Vec::new();
+        let mut way = Vec::new();
+        look(e, wanted, &mut way, &mut out);
+        out
+    }
+
+    /// The expression with something else there.
+    fn with(&self, symbols: &Symbols, x: &Expr) -> Expr {
+        let inner = match &self.around {
+            Some((before, behind)) => {
+                let all = before.iter().chain([x]).chain(behind).cloned();
+                expr::product(all.collect::<Vec<_>>())
+            }
+            None => x.clone(),
+        };
+        self.way.iter().rev().fold(inner, |inner, (node, which)| {
+            let children = node.children().into_iter().enumerate();
+            let children = children.map(|(i, c)| {
+                if i == *which {
+                    inner.clone()
+                } else {
+                    c.clone()
+                }
+            });
+            expr::with_children(symbols, node, children.collect())
+        })
+    }
+}
+
+fn look(e: &Expr, wanted: &Expr, way: &mut Vec<(Expr, usize)>, out: &mut Vec<Context>) {
+    if e == wanted {
+        out.push(Context {
+            way: way.clone(),
+            around: None,
+            at_root: way.is_empty(),
+        });
+        return;
+    }
+    let linear: Vec<usize> = match e.node() {
+        Node::Product(list) => {
+            if let Some(around) = run(list, wanted) {
+                out.push(Context {
+                    way: way.clone(),
+                    around: Some(around),
+                    at_root: way.is_empty(),
+                });
+            }
+            (0..list.len()).collect()
+        }
+        Node::Neg(_)
+        | Node::Quotient(..)
+        | Node::Transpose(_)
+        | Node::Trace(_)
+        | Node::Hat(_)
+        | Node::Vee(_)
+        | Node::Part(..)
+        | Node::Map(
+            Map::Twist | Map::Pure | Map::Imaginary | Map::Real | Map::Diagonal | Map::DiagonalOf,
+            _,
+        ) => vec![0],
+        Node::Dot(..) | Node::Cross(..) => vec![0, 1],
+        _ => Vec::new(),
+    };
+    let children = e.children();
+    for which in linear {
+        if let Some(child) = children.get(which) {
+            way.push((e.clone(), which));
+            look(child, wanted, way, out);
+            way.pop();
+        }
+    }
+}
+
+/// The factors before and behind those of `wanted`, where these stand in a row; numbers may stand anywhere.
+fn run(list: &[Expr], wanted: &Expr) -> Option<(Vec<Expr>, Vec<Expr>)> {
+    let Node::Product(inner) = wanted.node() else {
+        return None;
+    };
+    let scalar = |f: &Expr| f.shape().is_scalar();
+    let parted =
+        |list: &[Expr]| -> (Vec<Expr>, Vec<Expr>) { list.iter().cloned().partition(scalar) };
+    let ((mut numbers, own), (wanted, run)) = (parted(list), parted(inner));
+    for number in wanted {
+        let at = numbers.iter().position(|n| *n == number)?;
+        numbers.remove(at);
+    }
+    let at = match run.is_empty() {
+        true => 0,
+        false => own.windows(run.len()).position(|w| w == run.as_slice())?,
+    };
+    let (before, rest) = own.split_at_checked(at)?;
+    let behind = rest.get(run.len()..)?;
+    let before = numbers.into_iter().chain(before.iter().cloned());
+    Some((before.collect(), behind.to_vec()))
+}

@@ -1,0 +1,304 @@
+//! The letters of parts: which a vector, a point or a motion is printed by, chosen so that nothing else of the
+//! document bears them.
+
+use super::found::Found;
+use super::lets::Lets;
+use super::said::Said;
+use crate::expr::shape::{Dim, Shape, Structure};
+use crate::expr::spelling::{self, Parsed};
+use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::expr::{self, Expr, Letter};
+use crate::print::document::Document;
+use std::collections::BTreeMap;
+
+/// What a letter is taken apart into.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// The angular and the linear part of a vector of the Lie algebra or its dual.
+    Twist,
+    /// All entries of homogeneous coordinates but the last, and the last.
+    Point,
+    /// The rotation and the translation of a rigid motion.
+    Motion,
+    /// The upper left block and the upper entries of the last column.
+    Matrix,
+}
+
+/// A bar and an arrow over a letter.
+const BAR: char = '\u{304}';
+const ARROW: char = '\u{20d7}';
+
+/// Letters of an angular and of a linear part, by the letter of the whole; the first pair that is free is taken.
+const TWISTS: [(&str, &[(&str, &str)]); 5] = [
+    ("μ", &[("π", "p"), ("π", "f"), ("π", "n"), ("κ", "ν")]),
+    ("M", &[("Π", "Q"), ("Σ", "T"), ("Φ", "Ψ")]),
+    ("ξ", &[("φ", "ψ"), ("θ", "χ"), ("ε", "δ")]),
+    ("η", &[("α", "β"), ("ρ", "σ"), ("ϕ", "ϖ")]),
+    ("ζ", &[("ω", "v"), ("ω", "w"), ("ϖ", "u")]),
+];
+
+/// Letters of a rotation and a translation, of configurations and of velocities.
+const MOTIONS: [&[(&str, &str)]; 2] = [
+    &[("R", "x"), ("S", "s"), ("Q", "q"), ("T", "t"), ("B", "b")],
+    &[
+        ("F", "y"),
+        ("F", "f"),
+        ("Y", "z"),
+        ("W", "w"),
+        ("Z", "f"),
+        ("U", "u"),
+    ],
+];
+
+/// Letters of a block and a column.
+const BLOCKS: [(&str, &str); 6] = [
+    ("C", "c"),
+    ("D", "d"),
+    ("N", "n"),
+    ("A", "a"),
+    ("B", "b"),
+    ("H", "g"),
+];
+
+/// The letters of a page, those of parts among them.
+pub struct Names {
+    /// All symbols.
+    pub symbols: Symbols,
+    /// The parts of each letter that has been taken apart.
+    known: BTreeMap<(Kind, SymbolId), [SymbolId; 2]>,
+    /// Pairs by what they are the parts of.
+    pairs: BTreeMap<(Kind, String), (String, String)>,
+    /// What was found in the document.
+    found: Found,
+    /// What each letter of a part is a part of.
+    pub(super) wholes: BTreeMap<SymbolId, (Kind, SymbolId)>,
+    /// What the model names.
+    pub(super) lets: Lets,
+    /// What has been introduced.
+    pub(super) said: Said,
+}
+
+impl Names {
+    /// The letters of a document with these symbols, in which the model names `lets`.
+    pub fn new(symbols: &Symbols, doc: &Document, lets: &[(String, Expr)], sites: bool) -> Names {
+        let mut found = Found::in_document(doc);
+        // The names of the model are its own, printed or not.
+        let own = lets.iter().map(|(name, _)| spelling::parse(name).base);
+        found.names.extend(own);
+        let mut names = Names {
+            symbols: symbols.clone(),
+            known: BTreeMap::new(),
+            pairs: BTreeMap::new(),
+            found,
+            wholes: BTreeMap::new(),
+            lets: Lets::default(),
+            said: Said::of(sites),
+        };
+        for (name, value) in lets {
+            let value = names.rewritten(value);
+            names.lets.name(&mut names.symbols, name, &value);
+        }
+        names
+    }
+
+    /// The number of homogeneous coordinates in the document, without the last.
+    pub(super) fn space(&self) -> Option<Dim> {
+        self.found.points.first().map(|n| expr::within(*n))
+    }
+
+    /// The parts of a letter at its offset.
+    pub fn parts(&mut self, kind: Kind, at: Letter) -> [Expr; 2] {
+        let ids = match self.known.get(&(kind, at.symbol)) {
+            Some(ids) => *ids,
+            None => self.made(kind, at.symbol),
+        };
+        ids.map(|id| expr::letter(&self.symbols, id, at.shift))
+    }
+
+    /// Whether a letter is known to be taken apart so.
+    pub fn knows(&self, kind: Kind, symbol: SymbolId) -> bool {
+        let key = (kind, symbol);
+        self.found.parted.contains(&key) || self.known.contains_key(&key)
+    }
+
+    /// Whether this is the shape of homogeneous coordinates.
+    pub fn is_of_points(&self, shape: Shape) -> bool {
+        shape.is_vector() && self.found.points.contains(&shape.rows)
+    }
+
+    /// An expression, like terms collected, with the names of the model.
+    pub fn named(&self, e: &Expr) -> Expr {
+        let e = expr::collect(&self.symbols, e);
+        let named = self.lets.named(&self.symbols, &e);
+        match named == e {
+            true => e,
+            false => expr::collect(&self.symbols, &named),
+        }
+    }
+
+    fn made(&mut self, kind: Kind, whole: SymbolId) -> [SymbolId; 2] {
+        let symbol = self.symbols.get(whole).clone();
+        let parsed = spelling::parse(&symbol.name);
+        let space = expr::within(symbol.shape.rows);
+        let vector = Shape::vector(space);
+        let (shapes, structure) = match kind {
+            Kind::Twist if symbol.shape.rows == Dim::Fixed(6) => {
+                let three = Shape::vector(Dim::Fixed(3));
+                ([three, three], Structure::General)
+            }
+            Kind::Twist => ([Shape::SCALAR, vector], Structure::General),
+            Kind::Point => ([vector, Shape::SCALAR], Structure::General),
+            Kind::Motion => ([Shape::square(space), vector], Structure::Orthogonal),
+            Kind::Matrix => ([Shape::square(space), vector], Structure::General),
+        };
+        let names = match kind {
+            Kind::Twist | Kind::Motion => {
+                let (first, second) = self.pair(kind, &parsed, symbol.role);
+                [
+                    with_scripts(&first, &parsed),
+                    with_scripts(&second, &parsed),
+                ]
+            }
+            Kind::Point => {
+                let last = self.symbols.dim_text(symbol.shape.rows);
+                let mut component = with_scripts(&parsed.base, &parsed);
+                component.push_str(&format!("^{{{last}}}"));
+                [
+                    with_scripts(&format!("{}{BAR}", parsed.base), &parsed),
+                    component,
+                ]
+            }
+            Kind::Matrix => {
+                [BAR, ARROW].map(|mark| with_scripts(&format!("{}{mark}", parsed.base), &parsed))
+            }
+        };
+        let [first, second] = names;
+        let mut add = |name: &str, shape, structure| {
+            let name = self.symbols.fresh_name(name);
+            self.symbols.add(&name, shape, structure, symbol.role)
+        };
+        let ids = [
+            add(&first, shapes[0], structure),
+            add(&second, shapes[1], Structure::General),
+        ];
+        if let Some(latex) = symbol
+            .typeset
+            .filter(|_| matches!(kind, Kind::Point | Kind::Matrix))
+        {
+            let last = self.symbols.dim_text(symbol.shape.rows);
+            let second = match kind {
+                Kind::Point => format!("{{{latex}}}^{{{last}}}"),
+                _ => format!("\\vec{{{latex}}}"),
+            };
+            self.symbols
+                .describe(ids[0], Some(format!("\\bar{{{latex}}}")), &[]);
+            self.symbols.describe(ids[1], Some(second), &[]);
+        }
+        self.known.insert((kind, whole), ids);
+        self.wholes.extend(ids.map(|id| (id, (kind, whole))));
+        ids
+    }
+
+    /// Letters for the blocks of a matrix that are written in equations of their own.
+    pub fn blocks(&mut self, space: Dim) -> [Expr; 2] {
+        let free = BLOCKS.iter().find(|(a, b)| {
+            let none = spelling::parse("");
+            self.is_free(a, &none) && self.is_free(b, &none)
+        });
+        let (a, b) = free.unwrap_or(&BLOCKS[0]);
+        let mut add = |name: &str, shape| {
+            let name = self.symbols.fresh_name(name);
+            let id = self
+                .symbols
+                .add(&name, shape, Structure::General, Role::Derived);
+            expr::here(&self.symbols, id)
+        };
+        [add(a, Shape::square(space)), add(b, Shape::vector(space))]
+    }
+
+    /// The letters of the two parts, without scripts.
+    fn pair(&mut self, kind: Kind, of: &Parsed, role: Role) -> (String, String) {
+        let key = (kind, of.base.clone());
+        if let Some(pair) = self.pairs.get(&key) {
+            return pair.clone();
+        }
+        let candidates: &[(&str, &str)] = match kind {
+            Kind::Motion => MOTIONS[usize::from(role == Role::Velocity)],
+            _ => {
+                let found = TWISTS.iter().find(|(whole, _)| *whole == of.base);
+                found.map_or(&[], |(_, pairs)| *pairs)
+            }
+        };
+        let owned = |(a, b): &(&str, &str)| ((*a).to_owned(), (*b).to_owned());
+        let free = candidates
+            .iter()
+            .find(|(a, b)| self.is_free(a, of) && self.is_free(b, of));
+        let marks = match kind {
+            Kind::Motion => ("rot", "pos"),
+            _ => ("ang", "lin"),
+        };
+        let marked = |mark: &str| format!("{}^{{{mark}}}", of.base);
+        let pair = free.map_or_else(|| (marked(marks.0), marked(marks.1)), owned);
+        self.pairs.insert(key, pair.clone());
+        pair
+    }
+
+    fn is_free(&self, letter: &str, of: &Parsed) -> bool {
+        let scripted = with_scripts(letter, of);
+        let unused = |name: &str| self.symbols.fresh_name(name) == name;
+        let paired = |(a, b): &(String, String)| a == letter || b == letter;
+        !self.found.names.contains(letter)
+            && unused(letter)
+            && unused(&scripted)
+            && !self.pairs.values().any(paired)
+    }
+
+    /// An expression with the letters of parts written out again.
+    #[cfg(test)]
+    pub fn written_out(&self, e: &Expr) -> Expr {
+        let e = &self.lets.written_out(&self.symbols, e);
+        let wholes = expr::letters(e).into_iter().filter_map(|at| {
+            let (kind, whole) = *self.wholes.get(&at.symbol)?;
+            let part = self
+                .known
+                .get(&(kind, whole))?
+                .iter()
+                .position(|id| *id == at.symbol)?;
+            let of = expr::letter(&self.symbols, whole, at.shift);
+            let rows = of.shape().rows;
+            let take = |from, count| expr::rows_of(&self.symbols, &of, from, count);
+            let put = || expr::inclusion(rows, expr::within(rows), 0);
+            let last = || expr::unit(rows, expr::last_axis(rows));
+            let taken = |end| expr::product([expr::transposed(put()), of.clone(), end]);
+            let three = Dim::Fixed(3);
+            Some((
+                at,
+                match (kind, part) {
+                    (Kind::Twist, 0) if rows == Dim::Fixed(6) => take(0, three),
+                    (Kind::Twist, _) if rows == Dim::Fixed(6) => take(3, three),
+                    (Kind::Twist, 0) => take(0, Dim::Fixed(1)),
+                    (Kind::Twist, _) => take(1, Dim::Fixed(2)),
+                    (Kind::Point, 0) => take(0, expr::within(rows)),
+                    (Kind::Point, _) => expr::dot(last(), of.clone()),
+                    (Kind::Motion, 0) => expr::block(&self.symbols, &of),
+                    (Kind::Motion, _) => expr::column(&self.symbols, &of),
+                    (Kind::Matrix, 0) => taken(put()),
+                    (Kind::Matrix, _) => taken(last()),
+                },
+            ))
+        });
+        expr::substitute(&self.symbols, e, &wholes.collect::<Vec<_>>())
+    }
+}
+
+/// A letter with the scripts of the name of the whole.
+fn with_scripts(letter: &str, of: &Parsed) -> String {
+    let mut name = letter.to_owned();
+    for sub in &of.subs {
+        name.push_str(&format!("_{{{sub}}}"));
+    }
+    if let (Some(sup), false) = (&of.sup, letter.contains('^')) {
+        name.push_str(&format!("^{{{sup}}}"));
+    }
+    name
+}

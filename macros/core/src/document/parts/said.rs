@@ -1,0 +1,202 @@
+//! Sentences that introduce the letters of parts and the names of a model, behind what holds them first.
+
+use super::names::{Kind, Names};
+use super::read::taken_kind;
+use crate::expr::shape::{Dim, Shape};
+use crate::expr::spelling;
+use crate::expr::symbol::SymbolId;
+use crate::expr::{self, Expr, Letter, Node};
+use crate::print::document::{Block, Inline};
+use crate::print::formula::Formula;
+use std::collections::BTreeSet;
+
+/// Nodes of a value from which on it stands in an equation of its own.
+const LONG: u32 = 20;
+
+/// What has been said of letters, and what is to be.
+#[derive(Default)]
+pub struct Said {
+    /// Letters whose parts have been introduced, or will be next.
+    known: BTreeSet<(Kind, String)>,
+    /// Whether letters of all sites are introduced by those of one.
+    sites: bool,
+    /// Those that are next.
+    pending: Vec<(Kind, SymbolId)>,
+    /// Names of the model that have been told, or will be next.
+    told: BTreeSet<SymbolId>,
+    /// Those that are next.
+    new: Vec<SymbolId>,
+    /// Entries of what has no letters for them, `x_{1:3}`, were printed, and explained.
+    entries: [bool; 2],
+}
+
+impl Said {
+    /// Nothing yet; letters of many `sites` are introduced by those of one.
+    pub fn of(sites: bool) -> Said {
+        Said {
+            sites,
+            ..Said::default()
+        }
+    }
+}
+
+impl Names {
+    /// Notes which letters of parts stand in a formula.
+    pub fn printed(&mut self, f: &Formula) {
+        f.each_expression(&mut |e| {
+            for at in expr::letters(e) {
+                if let Some((kind, whole)) = self.wholes.get(&at.symbol).copied() {
+                    self.said_next(kind, whole);
+                }
+                if self.lets.value(at.symbol).is_some() && self.said.told.insert(at.symbol) {
+                    self.said.new.push(at.symbol);
+                }
+            }
+            self.said.entries[0] |= takes_entries(e);
+        });
+    }
+
+    /// Puts a letter among those that are introduced next, unless it has been; of several sites that with the
+    /// shortest index.
+    fn said_next(&mut self, kind: Kind, whole: SymbolId) {
+        let name = |id| &self.symbols.get(id).name;
+        let key = |id| match self.said.sites {
+            true => spelling::parse(name(id)).base,
+            false => name(id).clone(),
+        };
+        let own = key(whole);
+        let alike = |(k, id): &(Kind, SymbolId)| *k == kind && key(*id) == own;
+        match self.said.pending.iter().position(alike) {
+            Some(i) => {
+                if let Some((_, other)) = self.said.pending.get(i)
+                    && name(whole).len() < name(*other).len()
+                {
+                    self.said.pending[i] = (kind, whole);
+                }
+            }
+            None => {
+                if self.said.known.insert((kind, own)) {
+                    self.said.pending.push((kind, whole));
+                }
+            }
+        }
+    }
+
+    /// The sentence on the letters and names that are new, where there are any, and equations for long ones.
+    pub fn introduced(&mut self) -> Vec<Block> {
+        // What is said of a name may hold further ones.
+        let mut named = Vec::new();
+        while !self.said.new.is_empty() {
+            for symbol in std::mem::take(&mut self.said.new) {
+                if let Some(value) = self.lets.value(symbol).cloned() {
+                    let size = value.size();
+                    let own = Formula::Expr(expr::here(&self.symbols, symbol));
+                    let definition = Formula::defined(own, value);
+                    self.printed(&definition);
+                    named.insert(0, (size, definition));
+                }
+            }
+        }
+        let mut pending = std::mem::take(&mut self.said.pending);
+        pending.sort_by_key(|(kind, _)| *kind);
+        let mut words: Vec<Inline> = Vec::new();
+        for group in pending.chunk_by(|a, b| a.0 == b.0) {
+            for (i, (kind, whole)) in group.iter().enumerate() {
+                words.push(match (words.is_empty(), i) {
+                    (true, _) => "We write ".into(),
+                    (false, 0) => "; ".into(),
+                    (false, _) if i + 1 == group.len() => " and ".into(),
+                    (false, _) => ", ".into(),
+                });
+                words.push(self.definition(*kind, *whole).into());
+            }
+            if let Some((kind, whole)) = group.first() {
+                words.push(said(*kind, self.symbols.get(*whole).shape).into());
+            }
+        }
+        let (long, short): (Vec<_>, Vec<_>) = named.into_iter().partition(|(size, _)| *size > LONG);
+        for (_, definition) in short {
+            words.push(match words.is_empty() {
+                true => "We write ".into(),
+                false => "; ".into(),
+            });
+            words.push(definition.into());
+        }
+        if self.said.entries == [true, false] {
+            self.said.entries[1] = true;
+            words.push(match words.is_empty() {
+                true => "We write ".into(),
+                false => "; ".into(),
+            });
+            let mut letters = ["Y", "X", "B", "A"].into_iter();
+            let letter = letters
+                .rfind(|l| self.symbols.fresh_name(l) == *l)
+                .unwrap_or("A");
+            let n = self
+                .space()
+                .map_or_else(String::new, |n| self.symbols.dim_text(n));
+            words.push(Formula::name(&format!("{letter}_{{1:{n},1:{n}}}")).into());
+            words.push(" for the entries in these rows and columns".into());
+        }
+        let mut blocks = Vec::new();
+        if !words.is_empty() {
+            words.push(".".into());
+            blocks.push(Block::Paragraph(words));
+        }
+        let mut long: Vec<Formula> = long.into_iter().map(|(_, definition)| definition).collect();
+        let formula = match long.len() {
+            0 => return blocks,
+            1 => long.remove(0),
+            _ => Formula::Rows(long),
+        };
+        blocks.push(Block::Paragraph(vec!["The model names".into()]));
+        blocks.push(Block::Equation {
+            formula,
+            tag: None,
+            note: None,
+            label: None,
+        });
+        blocks
+    }
+
+    fn definition(&mut self, kind: Kind, whole: SymbolId) -> Formula {
+        let at = Letter {
+            symbol: whole,
+            shift: expr::Shift::HERE,
+        };
+        let parts = self.parts(kind, at).map(Formula::Expr);
+        let own = Formula::Expr(expr::here(&self.symbols, whole));
+        match kind {
+            Kind::Twist | Kind::Point | Kind::Motion => {
+                let pair = Formula::Grouped(Box::new(Formula::List(parts.into())));
+                Formula::equal(own, pair)
+            }
+            Kind::Matrix => {
+                let [block, column] = parts;
+                let any = || Formula::name("*");
+                let rows = vec![vec![block, column], vec![any(), any()]];
+                Formula::equal(own, Formula::Matrix(rows))
+            }
+        }
+    }
+}
+
+/// What the parts are, in a sentence.
+fn said(kind: Kind, shape: Shape) -> &'static str {
+    match kind {
+        Kind::Twist => ", angular and linear part",
+        Kind::Point if shape.rows == Dim::Fixed(3) => ", the first two entries and the last",
+        Kind::Point => ", the first three entries and the last",
+        Kind::Motion => ", rotation and translation",
+        Kind::Matrix => " by blocks",
+    }
+}
+
+/// Whether it takes entries of something.
+fn takes_entries(e: &Expr) -> bool {
+    let takes = match e.node() {
+        Node::Product(list) => list.iter().any(|f| taken_kind(f) == Some(Kind::Point)),
+        _ => false,
+    };
+    takes || e.children().into_iter().any(takes_entries)
+}
