@@ -474,3 +474,51 @@ fn wrong_data_of_a_long_line_name_their_site() {
     assert_eq!(done.code, 2, "{}", done.err);
     assert!(done.err.contains("2"), "{}", done.err);
 }
+
+/// Momenta that are small beside the rounding of inertia over the step, along a line whose rotations are found together.
+#[test]
+fn bodies_that_hardly_turn_are_stepped_at_any_step() {
+    let folder = Folder::new("hardly-turning");
+    let model = shipped("coupled-body-chain.clebsch");
+    let case = text("coupled-body-chain.toml")
+        .replace("i = 5", "i = 40")
+        .replace("steps = 500", "steps = 10");
+    let (head, _) = case
+        .split_once("body_momentum_Lambda")
+        .expect("has momenta");
+    for h in ["1e-2", "1e-4", "1e-6"] {
+        let case = format!("{head}body_momentum_Lambda = [1e-6, 2e-6, 3e-6]\n")
+            .replace("h = 0.02", &format!("h = {h}"))
+            .replace(
+                "Lambda = [1.0, 0.0, 0.0, 0.0]",
+                "Lambda = [\"cos(0.3*i)\", \"sin(0.3*i)\", 0.0, 0.0]",
+            );
+        assert!(case.contains("sin(0.3*i)") && case.contains(h));
+        let file = folder.write("case.toml", &case);
+        let done = clebsch(&["run", &model, "--case", &file]);
+        assert_eq!(done.code, 0, "{h}: {}{}", done.out, done.err);
+        assert!(done.out.contains("within bound"), "{}", done.out);
+    }
+}
+
+/// What is wrong in a model is told with its place in the model, not in the case that it is run with.
+#[test]
+fn a_wrong_sum_is_told_in_the_model_where_a_case_is_given() {
+    let folder = Folder::new("wrong-sum");
+    let text = "model M {\n    label i in 0..N;\n    param m: Real;\n    param X: Real;\n    \
+                field x: Real at nodes;\n    hold p: sum(sum(x)) = X;\n    \
+                lagrangian = m*(next(x) - x)^2/(2*h);\n}\n";
+    let model = folder.write("m.clebsch", text);
+    let case = folder.write(
+        "c.toml",
+        "model = \"M\"\nname = \"c\"\nh = 0.1\nsteps = 2\n",
+    );
+    let done = clebsch(&["run", &model, "--case", &case]);
+    assert_eq!(done.code, 2, "{}{}", done.out, done.err);
+    assert!(
+        done.err.contains("stands within another one"),
+        "{}",
+        done.err
+    );
+    assert!(done.err.contains("m.clebsch:6:"), "{}", done.err);
+}

@@ -20,6 +20,15 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             }
             _ => None,
         },
+        ("with_turns", 2) => |a, _| match a {
+            [Value::Band(band), turns] => {
+                let turns = super::line::flags(turns)?;
+                Some(Value::Band(Box::new(
+                    band.as_ref().clone().with_turns(&turns),
+                )))
+            }
+            _ => None,
+        },
         ("line::turn_of", 1) => |a, _| match a.first()? {
             Value::Vector(v) => Some(Value::Matrix(line::turn_of(v))),
             _ => None,

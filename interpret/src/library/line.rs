@@ -295,14 +295,27 @@ fn shorter<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     })
 }
 
-/// `line::root(&known, |velocity| ...)`
+/// A list of truth values.
+pub(super) fn flags<T: Real>(list: &Value<T>) -> Option<Vec<bool>> {
+    let Value::List(all) = list else {
+        return None;
+    };
+    let each = all.iter().map(|value| match value {
+        Value::Bool(b) => Some(*b),
+        _ => None,
+    });
+    each.collect()
+}
+
+/// `line::root(&known, [turns, ...], |velocity| ...)`
 fn root<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
-    let [known, closure] = a else {
+    let [known, turns, closure] = a else {
         return Err(missing());
     };
     let known = unfit(known.run(places)?.dense())?;
+    let turns = unfit(flags(&turns.run(places)?))?;
     let mut stopped = None;
-    let found = line::root_of(&known.data, |velocity, momenta, derivative| {
+    let found = line::root_of(&known.data, &turns, |velocity, momenta, derivative| {
         let velocity = Value::of(Dense::column_of(velocity.to_vec()));
         let both = closure.call(vec![velocity], places);
         let told = match &both {

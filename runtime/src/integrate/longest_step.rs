@@ -311,6 +311,10 @@ impl<'a> Probe<'a> {
             let v: Vec<f64> = v.iter().map(|x| x / length).collect();
             momenta.push(p.iter().map(|x| x / length).collect());
             p = self.stiffness(&v)?;
+            // Nothing resists: no step is too long for that.
+            if velocities.is_empty() && p.iter().all(|x| *x == 0.0) {
+                return None;
+            }
             alphas.push(dot(&v, &p));
             velocities.push(v);
         }

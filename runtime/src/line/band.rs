@@ -44,6 +44,7 @@ impl<T: Real> Sums<'_, T> {
 /// The equations of a line.
 struct Line<'a, T, F> {
     n: usize,
+    turns: &'a [bool],
     blocks: &'a mut Blocks<T>,
     moving: [usize; 2],
     all: F,
@@ -78,6 +79,12 @@ impl<T: Real, F: FnMut(&mut Sums<'_, T>)> Momenta<T> for Line<'_, T, F> {
         }
     }
 
+    fn turns(&self, component: usize) -> bool {
+        self.turns
+            .get(component % self.n.max(1))
+            .is_some_and(|turns| *turns)
+    }
+
     fn scales(&self, scales: &mut [f64]) {
         for (site, own) in scales.chunks_exact_mut(self.n).enumerate() {
             scales_of(self.n, self.blocks.own(site), own);
@@ -101,6 +108,8 @@ pub struct AnyBand<T> {
     sites: usize,
     /// Whether derivatives are the same at all places and velocities: they are factored once.
     constant: bool,
+    /// Which components of a site are those of the vector of a rotation.
+    turns: Vec<bool>,
     factored: bool,
     blocks: Blocks<T>,
     velocity: Vec<T>,
@@ -121,6 +130,7 @@ impl<T: Real> AnyBand<T> {
         Self {
             sites,
             constant,
+            turns: Vec::new(),
             factored: false,
             blocks: Blocks::new(n, sites, ring),
             velocity: list(),
@@ -131,6 +141,13 @@ impl<T: Real> AnyBand<T> {
             known: list(),
             scales: vec![0.0; n * sites],
         }
+    }
+
+    /// The same with velocities of rotations: which components of a site are those of the vector of one.
+    #[must_use]
+    pub fn with_turns(self, turns: &[bool]) -> Self {
+        let turns = turns.to_vec();
+        Self { turns, ..self }
     }
 
     /// How many sites there are.
@@ -174,6 +191,7 @@ impl<T: Real> AnyBand<T> {
         let mut line = Line {
             n,
             blocks: &mut self.blocks,
+            turns: &self.turns,
             moving,
             all,
             known: self.factored,
@@ -272,6 +290,12 @@ impl<T: Real, const N: usize> Band<T, N> {
     #[must_use]
     pub fn new(sites: usize, ring: bool, constant: bool) -> Self {
         Self(AnyBand::new(N, sites, ring, constant))
+    }
+
+    /// The same with velocities of rotations: which components of a site are those of the vector of one.
+    #[must_use]
+    pub fn with_turns(self, turns: [bool; N]) -> Self {
+        Self(self.0.with_turns(&turns))
     }
 
     /// The velocities of sites whose momenta are `known`, those outside `moving` zero: `own` gives momenta and

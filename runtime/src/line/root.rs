@@ -68,6 +68,8 @@ pub(super) trait Momenta<T: Real> {
     fn at(&mut self, velocity: &[T], momenta: &mut [T]);
     /// A scale of each velocity, by the diagonal of the derivative.
     fn scales(&self, scales: &mut [f64]);
+    /// Whether a component of a velocity is of the vector of a rotation, which is rounded as numbers of the size of 1.
+    fn turns(&self, component: usize) -> bool;
     /// Factors the derivative; false where it is singular or not finite.
     fn factor(&mut self) -> bool;
     /// `x = A^-1 x` of the derivative that was factored last.
@@ -198,6 +200,19 @@ pub(super) fn follow<T: Real>(
     Err(NoRoot { share })
 }
 
+/// A correction that is rounding of rotations, in units of scales: momenta are differences of turned vectors, which hardly
+/// turn where a step is short.
+#[inline(always)]
+fn of_turns<T: Real>(equations: &impl Momenta<T>, scales: &[f64]) -> f64 {
+    let mut most = 0.0_f64;
+    for (component, scale) in scales.iter().enumerate() {
+        if equations.turns(component) {
+            most = most.max(*scale);
+        }
+    }
+    ROUNDINGS * T::EPSILON * most
+}
+
 /// Goes to the end of a stage: by what part of it another one should be shorter, if it is too long.
 #[inline(always)]
 fn stage<T: Real>(
@@ -207,6 +222,7 @@ fn stage<T: Real>(
     lists: &mut Lists<'_, T>,
 ) -> Option<f64> {
     let last = end >= 1.0;
+    let turned = of_turns(equations, lists.scales);
     residual(known, end, lists);
     equations.solve(lists.correction);
     let first = largest(lists.correction, lists.scales);
@@ -219,7 +235,7 @@ fn stage<T: Real>(
     if !(first.is_finite() && second.is_finite()) {
         return Some(WORSE);
     }
-    if !rounded.joint && second > FALLS * first {
+    if !rounded.joint && second > turned && second > FALLS * first {
         return Some((0.8 * FALLS * first / second).clamp(0.1, 0.8));
     }
     let small = |own: f64, velocity: &[T], scales: &[f64]| {
@@ -252,7 +268,7 @@ fn stage<T: Real>(
         corrected(lists.velocity, lists.correction);
         // Corrections fall at least by half until they are rounding.
         let falls = own <= 0.5 * before;
-        if !(falls || own.is_finite() && (rounded.joint || done)) {
+        if !(falls || own.is_finite() && (rounded.joint || done || own <= turned)) {
             break;
         }
         before = own;
@@ -269,6 +285,7 @@ fn stage<T: Real>(
 /// The equations of one site.
 struct Site<'a, T, F> {
     n: usize,
+    turns: &'a [bool],
     momenta: F,
     tangent: &'a mut [T],
     factors: &'a mut [T],
@@ -284,6 +301,10 @@ impl<T: Real, F: FnMut(&[T], &mut [T], &mut [T])> Momenta<T> for Site<'_, T, F> 
     #[inline(always)]
     fn scales(&self, scales: &mut [f64]) {
         scales_of(self.n, self.tangent, scales);
+    }
+
+    fn turns(&self, component: usize) -> bool {
+        self.turns.get(component).is_some_and(|turns| *turns)
     }
 
     #[inline(always)]
@@ -309,13 +330,15 @@ pub(super) fn scales_of<T: Real>(n: usize, tangent: &[T], scales: &mut [f64]) {
     }
 }
 
-/// The velocity of a site whose momentum is `known`; `momenta` gives momentum and derivative at a velocity.
+/// The velocity of a site whose momentum is `known`; `turns` says which components are those of the vector of a rotation,
+/// `momenta` gives momentum and derivative at a velocity.
 ///
 /// # Errors
 /// [`NoRoot`] where no velocity follows from rest.
 #[inline]
 pub fn root<T: Real, const N: usize>(
     known: &SVector<T, N>,
+    turns: [bool; N],
     momenta: impl Fn(&SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
 ) -> Result<SVector<T, N>, NoRoot> {
     let mut lists = [SVector::<T, N>::zeros(); 5];
@@ -325,6 +348,7 @@ pub fn root<T: Real, const N: usize>(
     let (mut scales, mut pivots) = ([0.0; N], [0; N]);
     let mut site = Site {
         n: N,
+        turns: &turns,
         momenta: |v: &[T], p: &mut [T], tangent: &mut [T]| {
             let (found, derivative) = momenta(&SVector::from_column_slice(v));
             p.copy_from_slice(found.as_slice());
@@ -353,6 +377,7 @@ pub fn root<T: Real, const N: usize>(
 /// As [`root`].
 pub fn root_of<T: Real>(
     known: &[T],
+    turns: &[bool],
     momenta: impl FnMut(&[T], &mut [T], &mut [T]),
 ) -> Result<Vec<T>, NoRoot> {
     let n = known.len();
@@ -363,6 +388,7 @@ pub fn root_of<T: Real>(
     let (mut scales, mut pivots) = (vec![0.0; n], vec![0; n]);
     let mut site = Site {
         n,
+        turns,
         momenta,
         tangent: &mut tangent,
         factors: &mut factors,
@@ -393,7 +419,7 @@ mod tests {
                 SMatrix::from([[m + 3.0 * b * v * v]]),
             )
         };
-        root(&SVector::from([p]), momenta).map(|v| v[0])
+        root(&SVector::from([p]), [false], momenta).map(|v| v[0])
     }
 
     /// However stiff: the derivative is nowhere below m, so that the root is the only one.
@@ -446,7 +472,8 @@ mod tests {
             let size = 10.0_f64.powf(-18.0 + 6.0 * drawn());
             let moving = SVector::from([drawn() - 0.5, 1e-2 * (drawn() - 0.5)]) * size;
             let known = momenta(&SVector::zeros()).0 + moving;
-            let found = root(&known, momenta).unwrap_or_else(|e| panic!("{place} {moving}: {e}"));
+            let found = root(&known, [false; 2], momenta)
+                .unwrap_or_else(|e| panic!("{place} {moving}: {e}"));
             // Rounding of the place in the potential, and some of the larger component.
             let off = (known - momenta(&found).0).norm();
             let rounding = f64::EPSILON * (m * axis * place + 64.0 * known.norm());

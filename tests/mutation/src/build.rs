@@ -1,7 +1,7 @@
 //! Builds the copy by cargo: which mutants the compiler refuses, and where the binaries of the tests are.
 
-use crate::plant::Planted;
 use crate::place;
+use crate::plant::Planted;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,11 +11,22 @@ use std::process::{Command, Stdio};
 /// The tests that judge, in the order in which they are asked: mutants of a folder, arguments of cargo.
 pub const TESTS: [(&str, &[&str]); 4] = [
     ("macros/core/src", &["-p", "clebsch-core", "--lib"]),
-    ("macros/core/src", &["-p", "clebsch-tests", "--test", "derivation"]),
+    (
+        "macros/core/src",
+        &["-p", "clebsch-tests", "--test", "derivation"],
+    ),
     ("macros/core/src", &["-p", "clebsch-interpret", "--tests"]),
     (
         "runtime/src",
-        &["-p", "clebsch", "--lib", "--tests", "--all-features", "--config", QUICKLY],
+        &[
+            "-p",
+            "clebsch",
+            "--lib",
+            "--tests",
+            "--all-features",
+            "--config",
+            QUICKLY,
+        ],
     ),
 ];
 
@@ -34,14 +45,27 @@ fn cargo(copy: &Path, arguments: &[&str]) -> Result<Vec<Value>, String> {
         .output()
         .map_err(|e| format!("cargo: {e}"))?;
     let text = String::from_utf8_lossy(&done.stdout);
-    Ok(text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect())
+    Ok(text
+        .lines()
+        .filter_map(|line| serde_json::from_str(line).ok())
+        .collect())
 }
 
 /// The mutants in whose expressions the compiler finds an error.
 pub fn refused(copy: &Path, planted: &Planted) -> Result<BTreeSet<usize>, String> {
     let mut refused = BTreeSet::new();
     for package in ["clebsch-core", "clebsch"] {
-        let told = cargo(copy, &["check", "--release", "-p", package, "--lib", "--all-features"])?;
+        let told = cargo(
+            copy,
+            &[
+                "check",
+                "--release",
+                "-p",
+                package,
+                "--lib",
+                "--all-features",
+            ],
+        )?;
         let mut broken = false;
         for message in told.iter().map(|t| &t["message"]) {
             if message["level"] != "error" {
@@ -57,7 +81,9 @@ pub fn refused(copy: &Path, planted: &Planted) -> Result<BTreeSet<usize>, String
             }
         }
         if broken && refused.is_empty() {
-            return Err(format!("{package} does not build, and no mutant is at fault"));
+            return Err(format!(
+                "{package} does not build, and no mutant is at fault"
+            ));
         }
         if broken {
             return Ok(refused);

@@ -46,7 +46,8 @@ fn passes(test: &Test, mutant: usize) -> Result<(bool, Duration), String> {
 
 /// The tests, each run once without a mutant.
 fn tests() -> Result<Vec<Test>, String> {
-    let text = fs::read_to_string(place().join("tests.tsv")).map_err(|e| format!("tests.tsv: {e}"))?;
+    let text =
+        fs::read_to_string(place().join("tests.tsv")).map_err(|e| format!("tests.tsv: {e}"))?;
     let mut all = Vec::new();
     for line in text.lines() {
         let mut parts = line.split('\t').map(str::to_owned);
@@ -61,7 +62,12 @@ fn tests() -> Result<Vec<Test>, String> {
             limit: Duration::from_secs(3600),
         };
         let (passed, took) = passes(&test, 0)?;
-        eprintln!("{} {:.1} s without a mutant{}", test.binary, took.as_secs_f64(), if passed { "" } else { ": FAILS, left out" });
+        eprintln!(
+            "{} {:.1} s without a mutant{}",
+            test.binary,
+            took.as_secs_f64(),
+            if passed { "" } else { ": FAILS, left out" }
+        );
         test.limit = took * 5 + Duration::from_secs(10);
         if passed {
             all.push(test);
@@ -74,7 +80,9 @@ fn tests() -> Result<Vec<Test>, String> {
 pub fn judge(jobs: usize) -> Result<(), String> {
     let read = |name: &str| fs::read_to_string(place().join(name)).unwrap_or_default();
     let first = |text: &str| -> Vec<usize> {
-        text.lines().filter_map(|l| l.split('\t').next()?.parse().ok()).collect()
+        text.lines()
+            .filter_map(|l| l.split('\t').next()?.parse().ok())
+            .collect()
     };
     let known = first(&read("verdicts.tsv"));
     let listed = read("mutants.tsv");
@@ -112,7 +120,9 @@ pub fn judge(jobs: usize) -> Result<(), String> {
         let workers: Vec<_> = (0..jobs.max(1))
             .map(|_| {
                 scope.spawn(|| -> Result<(), String> {
-                    while let Some((number, file)) = waiting.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    while let Some((number, file)) =
+                        waiting.get(next.fetch_add(1, Ordering::Relaxed))
+                    {
                         let line = one(*number, file)?;
                         let mut out = out.lock().map_err(|e| e.to_string())?;
                         out.write_all(line.as_bytes()).map_err(|e| e.to_string())?;
@@ -121,7 +131,9 @@ pub fn judge(jobs: usize) -> Result<(), String> {
                 })
             })
             .collect();
-        let done = workers.into_iter().map(|w| w.join().unwrap_or(Err("a thread failed".to_owned())));
+        let done = workers
+            .into_iter()
+            .map(|w| w.join().unwrap_or(Err("a thread failed".to_owned())));
         done.collect::<Result<Vec<()>, String>>()
     })?;
     Ok(())

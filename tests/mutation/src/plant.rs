@@ -99,7 +99,11 @@ fn choose(folder: &str, count: usize, seed: u64) -> Result<Vec<Mutant>, String> 
     let mut all = Vec::new();
     for path in files {
         let text = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-        let file = path.strip_prefix(root()).unwrap_or(&path).to_string_lossy().into_owned();
+        let file = path
+            .strip_prefix(root())
+            .unwrap_or(&path)
+            .to_string_lossy()
+            .into_owned();
         let found = sites(&text).map_err(|e| format!("{file}: {e}"))?;
         for site in found {
             let before = text.get(..site.range.start).unwrap_or_default();
@@ -119,7 +123,11 @@ fn choose(folder: &str, count: usize, seed: u64) -> Result<Vec<Mutant>, String> 
     for mutant in all {
         let own = taken.entry(mutant.file.clone()).or_default();
         let range = mutant.site.range.clone();
-        if chosen.len() < count && own.iter().all(|r| r.end <= range.start || range.end <= r.start) {
+        if chosen.len() < count
+            && own
+                .iter()
+                .all(|r| r.end <= range.start || range.end <= r.start)
+        {
             own.push(range);
             chosen.push(mutant);
         }
@@ -148,7 +156,11 @@ fn write_all(copy: &Path, mutants: &[Mutant]) -> Result<Planted, String> {
         let mut files = Vec::new();
         sources(&root().join(folder), &mut files);
         for path in files {
-            let file = path.strip_prefix(root()).unwrap_or(&path).to_string_lossy().into_owned();
+            let file = path
+                .strip_prefix(root())
+                .unwrap_or(&path)
+                .to_string_lossy()
+                .into_owned();
             let text = fs::read_to_string(&path).map_err(|e| format!("{file}: {e}"))?;
             let mut own: Vec<&Mutant> = mutants.iter().filter(|m| m.file == file).collect();
             own.sort_by_key(|m| m.site.range.start);
@@ -160,7 +172,10 @@ fn write_all(copy: &Path, mutants: &[Mutant]) -> Result<Planted, String> {
                     "(if crate::mutant({}) {{ {} }} else {{ {} }})",
                     m.number, m.site.instead, m.original
                 ));
-                planted.entry(file.clone()).or_default().push((start..out.len(), m.number));
+                planted
+                    .entry(file.clone())
+                    .or_default()
+                    .push((start..out.len(), m.number));
                 at = m.site.range.end;
             }
             out.push_str(text.get(at..).unwrap_or_default());
@@ -187,14 +202,20 @@ pub fn plant(count: usize, seed: u64) -> Result<(), String> {
     for round in 1..=ROUNDS {
         let planted = write_all(&copy, &mutants)?;
         let refused = build::refused(&copy, &planted)?;
-        eprintln!("round {round}: {} mutants, {} do not compile", mutants.len(), refused.len());
+        eprintln!(
+            "round {round}: {} mutants, {} do not compile",
+            mutants.len(),
+            refused.len()
+        );
         if refused.is_empty() {
             build::tests(&copy)?;
             return list(&mutants);
         }
         mutants.retain(|m| !refused.contains(&m.number));
     }
-    Err(format!("after {ROUNDS} rounds some mutants still do not compile"))
+    Err(format!(
+        "after {ROUNDS} rounds some mutants still do not compile"
+    ))
 }
 
 /// Writes `mutants.tsv`: number, file, line, what, expression, second form.

@@ -6,9 +6,8 @@ use std::fs;
 
 /// Prints the result.
 pub fn report() -> Result<(), String> {
-    let read = |name: &str| {
-        fs::read_to_string(place().join(name)).map_err(|e| format!("{name}: {e}"))
-    };
+    let read =
+        |name: &str| fs::read_to_string(place().join(name)).map_err(|e| format!("{name}: {e}"));
     let (mutants, verdicts) = (read("mutants.tsv")?, read("verdicts.tsv")?);
     let judged: BTreeMap<&str, Vec<&str>> = verdicts
         .lines()
@@ -27,7 +26,10 @@ pub fn report() -> Result<(), String> {
             continue;
         };
         let caught = verdict.get(1).is_some_and(|v| *v != "survived");
-        seconds += verdict.get(2).and_then(|s| s.parse::<f64>().ok()).unwrap_or(0.0);
+        seconds += verdict
+            .get(2)
+            .and_then(|s| s.parse::<f64>().ok())
+            .unwrap_or(0.0);
         let mut steps = file.split('/');
         let folder: Vec<&str> = match file.starts_with("macros") {
             true => steps.by_ref().take(4).collect(),
@@ -41,11 +43,20 @@ pub fn report() -> Result<(), String> {
             count[1] += usize::from(caught);
         }
         if !caught {
-            survivors.push(format!("- `{file}:{at}` {what}: `{original}` → `{instead}`"));
+            survivors.push(format!(
+                "- `{file}:{at}` {what}: `{original}` → `{instead}`"
+            ));
         }
     }
-    let total = folders.values().fold([0, 0], |t, c| [t[0] + c[0], t[1] + c[1]]);
-    println!("{} of {} mutants are caught, in {:.1} hours of computing time.\n", total[1], total[0], seconds / 3600.0);
+    let total = folders
+        .values()
+        .fold([0, 0], |t, c| [t[0] + c[0], t[1] + c[1]]);
+    println!(
+        "{} of {} mutants are caught, in {:.1} hours of computing time.\n",
+        total[1],
+        total[0],
+        seconds / 3600.0
+    );
     println!("| where | mutants | caught |\n|---|---|---|");
     for (folder, count) in &folders {
         println!("| `{folder}` | {} | {} |", count[0], count[1]);

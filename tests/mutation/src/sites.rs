@@ -38,8 +38,7 @@ pub fn sites(text: &str) -> Result<Vec<Site>, String> {
 fn of_tests(attributes: &[syn::Attribute]) -> bool {
     attributes.iter().any(|a| {
         a.path().is_ident("test")
-            || a.path().is_ident("cfg")
-                && a.parse_args::<syn::Ident>().is_ok_and(|i| i == "test")
+            || a.path().is_ident("cfg") && a.parse_args::<syn::Ident>().is_ok_and(|i| i == "test")
     })
 }
 
@@ -139,10 +138,9 @@ impl Finder<'_> {
         ) {
             self.push(node, inner.clone(), what);
         }
-        if let (Some((_, what)), [.., a, b]) = (
-            EXCHANGED.iter().find(|(n, _)| *n == name),
-            given.as_slice(),
-        ) {
+        if let (Some((_, what)), [.., a, b]) =
+            (EXCHANGED.iter().find(|(n, _)| *n == name), given.as_slice())
+        {
             let before: Vec<String> = given.iter().take(given.len() - 2).cloned().collect();
             let all = [before, vec![b.clone(), a.clone()]].concat();
             self.push(node, format!("{whole}({})", all.join(", ")), what);
@@ -163,7 +161,11 @@ impl Finder<'_> {
             self.push(node, receiver.clone(), what);
         }
         if name == "cross" {
-            self.push(node, format!("-({})", self.source(node)), "the order of factors");
+            self.push(
+                node,
+                format!("-({})", self.source(node)),
+                "the order of factors",
+            );
         }
         if name == "tr_mul" {
             self.push(node, format!("({receiver}) * ({given})"), "a transpose");

@@ -24,8 +24,10 @@ impl Line {
     fn prove_one(&self, lone: &Lone, mover: &Mover) -> Result<(), Refused> {
         let refused = || {
             Refused::Form(format!(
-                "the equation of `{}` at a site is not that of the site alone and of its neighbours",
-                mover.name
+                "the equation of `{name}` at a site was not shown to be what the site alone and its neighbours give: of terms that \
+                 join both ends of a step to places, some forms only are recognised, such as those written by the velocity in \
+                 the middle of the step",
+                name = mover.name
             ))
         };
         let part = &self.representative;

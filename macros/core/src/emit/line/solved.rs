@@ -217,7 +217,7 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     let (locals, mut bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
     let velocities = taken_apart(members, &letters, &mut bindings);
     let (lets, results) = l.program(s, &values, &bindings);
-    let size = number(n);
+    let (size, turns) = (number(n), super::tied::turns(members));
     let (mut fill, mut given) = (TokenStream::new(), TokenStream::new());
     let mut row = 0;
     let mut results = values.iter().zip(results);
@@ -278,7 +278,7 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
             fn #kernel(&self, #h: T, site: usize, at: &#places<T>, edges: &#edges<T>) -> Result<SVector<T, #size>, StepCause> {
                 let mut known = SVector::<T, #size>::zeros();
                 #given
-                line::root(&known, |velocity| self.#momenta(#h, site, at, velocity)).map_err(StepCause::NoRoot)
+                line::root(&known, #turns, |velocity| self.#momenta(#h, site, at, velocity)).map_err(StepCause::NoRoot)
             }
         },
     };

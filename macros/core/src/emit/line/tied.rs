@@ -47,7 +47,21 @@ pub(super) fn band_value(l: &Lines) -> Option<TokenStream> {
     let (count, ring) = (l.count_of(&first.mover.name), ring(l));
     let tied = adds(l).then(|| quote!(tied: ::std::vec![SVector::<T, #n>::zeros(); #count],));
     let constant = is_constant(l, &members);
-    Some(quote!(band: line::Band::<T, #n>::new(#count, #ring, #constant), #tied))
+    let turning = members.iter().any(Moving::is_rotation);
+    let turns = turning.then(|| {
+        let turns = turns(&members);
+        quote!(.with_turns(#turns))
+    });
+    Some(quote!(band: line::Band::<T, #n>::new(#count, #ring, #constant)#turns, #tied))
+}
+
+/// Which components of a velocity are those of the vector of a rotation.
+pub(super) fn turns(members: &[Moving]) -> TokenStream {
+    let each = members.iter().flat_map(|m| {
+        let turns = m.is_rotation();
+        vec![turns; m.components()]
+    });
+    quote!([#(#each),*])
 }
 
 /// Whether the derivatives of momenta are the same at all places and velocities: they are factored once.
