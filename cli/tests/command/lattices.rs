@@ -216,6 +216,13 @@ fn every_model_is_derived_and_runs_its_case() {
         assert_eq!(sample.code, 0, "{}", sample.err);
         let own = folder.write("own.toml", &sample.out);
         let done = clebsch(&["run", &model, "--case", &own, "--steps", "20"]);
+        // Sample attitudes are those of a straight line, whose ends no motion brings nearer: it says what to give.
+        if text(&format!("{name}.clebsch")).contains("sum(") {
+            assert_eq!(done.code, 2, "{name}: {}{}", done.out, done.err);
+            assert!(done.err.contains("off the constraint"), "{}", done.err);
+            assert!(sample.out.contains("must satisfy them"), "{}", sample.out);
+            continue;
+        }
         assert_eq!(
             done.code, 0,
             "{name}: {}{}\n{}",
