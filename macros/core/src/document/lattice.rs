@@ -4,11 +4,11 @@
 mod card;
 mod ends;
 mod functionals;
+mod holds;
 mod invariants;
 mod sums;
 
 use super::folded::{Folded, From, Part};
-use crate::check::spec::Hold;
 use crate::derive::warnings::Warning;
 use crate::diagnostic::Errors;
 use crate::expr::{self, Expr, Node, Shift};
@@ -282,7 +282,7 @@ fn terms(folded: &mut Folded, part: &Part, doc: &mut Document) {
     if !part.d.action.nodal.is_zero() {
         section.text("Terms of a node in time are split evenly between the two adjacent steps.");
     }
-    for stated in stated_holds(part) {
+    for stated in holds::stated_holds(part) {
         let name = stated.name;
         section.text(&format!(
             "Beside it the action of a step contains, at every site, the work of the multiplier {name}: the step times {name} paired with what it holds, left side less right side, at the node where the step begins."
@@ -329,98 +329,7 @@ fn constraints(folded: &mut Folded, part: &Part, doc: &mut Document) {
             Err(both) => Formula::List(both),
         });
     }
-    holds(folded, part, section);
-}
-
-/// The constraints that are held at every site, each seen from the middle one.
-fn holds(folded: &mut Folded, part: &Part, section: &mut Section) {
-    for stated in stated_holds(part) {
-        let Some(hold) = part.d.spec.holds.get(stated.shown) else {
-            continue;
-        };
-        let from = From::Site(stated.site);
-        let multiplier = folded.letter(part, hold.multiplier, Shift::HERE, from);
-        let mut line: Vec<Inline> =
-            vec!["The multiplier ".into(), multiplier.into(), " holds".into()];
-        if let Some(l) = folded.lattice.line_label() {
-            let (first, last) = (stated.first, stated.last);
-            let (i, n) = (&l.index.text, &l.count.text);
-            let count = part.choice.counts.first().copied().unwrap_or(0);
-            let by = isize::try_from(last).unwrap_or(0) - isize::try_from(count).unwrap_or(0);
-            line.push(match part.choice.periodic {
-                true => format!(", {i} = 0, ..., {n}-1, indices modulo {n}:").into(),
-                false => format!(", {i} = {first}, ..., {}:", beyond(n, by)).into(),
-            });
-        }
-        section.paragraph(line);
-        let left = folded.expression(part, &hold.left, from);
-        let right = folded.expression(part, &hold.right, from);
-        let math = |e: Expr| Formula::Expr(expr::collect(&folded.symbols, &e));
-        section.equation(Formula::equal(math(left), math(right)));
-    }
-    for stated in &part.unfolded.totals {
-        let symbols = &part.d.letters.symbols;
-        let own = |h: &&Hold| symbols.get(h.multiplier).name == stated.name;
-        let Some(hold) = part.d.spec.holds.iter().find(own) else {
-            continue;
-        };
-        let multiplier = folded.letter(part, hold.multiplier, Shift::HERE, From::First);
-        section.paragraph(vec![
-            "The multiplier ".into(),
-            multiplier.into(),
-            ", one for all sites, holds:".into(),
-        ]);
-        let mut side = |e: &Expr| match sums::told(folded, part, e) {
-            Some(sum) => sum,
-            None => folded.derived(part, e, From::First),
-        };
-        let both = [side(&hold.left), side(&hold.right)];
-        let [left, right] = both;
-        section.equation(Formula::equal(left, right));
-    }
-}
-
-/// A constraint as stated, held at several sites.
-pub(super) struct StatedHold {
-    /// The name of its multiplier.
-    pub name: String,
-    /// Number of the copy that is shown, nearest to the middle.
-    pub shown: usize,
-    /// The site of that copy.
-    pub site: usize,
-    /// The first and the last site.
-    first: usize,
-    last: usize,
-}
-
-/// The constraints as stated; of those at one site alone there is none.
-pub(super) fn stated_holds(part: &Part) -> Vec<StatedHold> {
-    let mut out: Vec<StatedHold> = Vec::new();
-    let middle = part.choice.counts.first().copied().unwrap_or(0) / 2;
-    for (j, hold) in part.d.spec.holds.iter().enumerate() {
-        let name = &part.d.letters.symbols.get(hold.multiplier).name;
-        let Some(copy) = part.unfolded.copy(name) else {
-            continue;
-        };
-        let site = copy.site;
-        match out.iter_mut().find(|s| s.name == copy.of) {
-            None => out.push(StatedHold {
-                name: copy.of.clone(),
-                shown: j,
-                site,
-                first: site,
-                last: site,
-            }),
-            Some(s) => {
-                s.first = s.first.min(site);
-                s.last = s.last.max(site);
-                if site.abs_diff(middle) < s.site.abs_diff(middle) {
-                    (s.shown, s.site) = (j, site);
-                }
-            }
-        }
-    }
-    out
+    holds::holds(folded, part, section);
 }
 
 /// A configuration as stated, and its copies that move.

@@ -3,7 +3,7 @@
 
 use crate::derive::invariants::{Family, Invariant, Kind as InvariantKind};
 use crate::document::folded::{Folded, From, Part};
-use crate::document::lattice::{stated_holds, sums};
+use crate::document::lattice::{holds::stated_holds, sums};
 use crate::expr::{self, Expr};
 use crate::lattice::Lattice;
 use crate::line::{Line, Written};
