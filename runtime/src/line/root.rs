@@ -109,38 +109,44 @@ fn largest<T: Real>(x: &[T], scales: &[f64]) -> f64 {
     most
 }
 
-/// Whether a residual is rounding.
-#[derive(Clone, Copy)]
-struct Rounded {
-    /// Every component that of its own terms.
-    own: bool,
-    /// Every component that of the largest one, in units of scales: what a term of one component is rounded to moves the
-    /// velocity, and by it the others, as near rest in a vector potential that is large along one direction.
-    joint: bool,
+/// What is aimed at in a component at the end of a stage: `known - (1 - end) whole`, near rest from there.
+#[inline(always)]
+fn aim<T: Real>(known: &[T], end: f64, lists: &Lists<'_, T>, i: usize) -> T {
+    let (left, gone) = (T::from_f64(1.0 - end), T::from_f64(end));
+    match end {
+        1.0.. => known[i],
+        0.5.. => known[i] - left * lists.whole[i],
+        _ => (known[i] - lists.whole[i]) + gone * lists.whole[i],
+    }
 }
 
-/// `correction = momenta aimed at, less those there`: `known - (1 - end) whole - momenta`, near rest from there, and whether
-/// that is rounding.
+/// `correction = momenta aimed at, less those there`, and whether every component of that is rounding of its own terms.
 #[inline(always)]
-fn residual<T: Real>(known: &[T], end: f64, lists: &mut Lists<'_, T>) -> Rounded {
-    let (left, gone) = (T::from_f64(1.0 - end), T::from_f64(end));
-    let mut own = true;
-    let (mut most, mut reached) = (0.0_f64, 0.0_f64);
+fn residual<T: Real>(known: &[T], end: f64, lists: &mut Lists<'_, T>) -> bool {
+    let mut rounded = true;
     for i in 0..known.len() {
-        let aim = match end {
-            1.0.. => known[i],
-            0.5.. => known[i] - left * lists.whole[i],
-            _ => (known[i] - lists.whole[i]) + gone * lists.whole[i],
-        };
+        let aim = aim(known, end, lists, i);
         let r = aim - lists.momenta[i];
         let terms = aim.magnitude() + lists.momenta[i].magnitude();
-        own &= r.magnitude() <= ROUNDINGS * T::EPSILON * terms;
-        most = most.max(r.magnitude() / lists.scales[i]);
-        reached = reached.max(terms / lists.scales[i]);
+        rounded &= r.magnitude() <= ROUNDINGS * T::EPSILON * terms;
         lists.correction[i] = r;
     }
-    let joint = own || most <= ROUNDINGS * T::EPSILON * reached;
-    Rounded { own, joint }
+    rounded
+}
+
+/// Whether what is left of the momenta is rounding of the largest component, in units of scales: what a term of one is
+/// rounded to moves the velocity, and by it the others, as near rest in a vector potential that is large along one
+/// direction. Asked only where corrections no longer fall.
+#[cold]
+fn rounded_together<T: Real>(known: &[T], end: f64, lists: &Lists<'_, T>) -> bool {
+    let (mut most, mut reached) = (0.0_f64, 0.0_f64);
+    for i in 0..known.len() {
+        let aim = aim(known, end, lists, i);
+        let terms = aim.magnitude() + lists.momenta[i].magnitude();
+        most = most.max((aim - lists.momenta[i]).magnitude() / lists.scales[i]);
+        reached = reached.max(terms / lists.scales[i]);
+    }
+    most <= ROUNDINGS * T::EPSILON * reached
 }
 
 #[inline(always)]
@@ -235,7 +241,8 @@ fn stage<T: Real>(
     if !(first.is_finite() && second.is_finite()) {
         return Some(WORSE);
     }
-    if !rounded.joint && second > turned && second > FALLS * first {
+    if !rounded && second > turned && second > FALLS * first && !rounded_together(known, end, lists)
+    {
         return Some((0.8 * FALLS * first / second).clamp(0.1, 0.8));
     }
     let small = |own: f64, velocity: &[T], scales: &[f64]| {
@@ -243,7 +250,7 @@ fn stage<T: Real>(
     };
     // That correction was by an older derivative: the next falls by as much as this one did.
     let linear = second <= LAST * first;
-    let mut done = rounded.own || linear && small(second, lists.velocity, lists.scales);
+    let mut done = rounded || linear && small(second, lists.velocity, lists.scales);
     if done || !last && second <= NEAR * first {
         corrected(lists.velocity, lists.correction);
         done = true;
@@ -268,12 +275,13 @@ fn stage<T: Real>(
         corrected(lists.velocity, lists.correction);
         // Corrections fall at least by half until they are rounding.
         let falls = own <= 0.5 * before;
-        if !(falls || own.is_finite() && (rounded.joint || done || own <= turned)) {
+        let noise = |lists: &Lists<'_, T>| own <= turned || rounded_together(known, end, lists);
+        if !(falls || own.is_finite() && (rounded || done || noise(lists))) {
             break;
         }
         before = own;
         if !done {
-            done = rounded.own || !falls || small(own, lists.velocity, lists.scales);
+            done = rounded || !falls || small(own, lists.velocity, lists.scales);
             if !done {
                 equations.at(lists.velocity, lists.momenta);
             }
