@@ -107,10 +107,9 @@ pub(crate) fn read(
 
 /// How many sites there are and how the line ends: as the case says, if one is given by a file.
 fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>, Failure> {
-    match (case, stated.default_choice()) {
-        // A model that cannot be written out is told of by its derivation, with the place in its text.
-        (None, choice) | (_, choice @ None) => Ok(choice),
-        (Some((file, text)), _) => labels::choice(file, text, stated).map(Some),
+    match case {
+        None => Ok(stated.default_choice()),
+        Some((file, text)) => labels::choice(file, text, stated),
     }
 }
 

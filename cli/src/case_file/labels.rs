@@ -82,15 +82,16 @@ impl Stated {
     }
 }
 
-/// The choice that a case makes in its tables `[labels]` and `[ends]`.
+/// The choice that a case makes in its tables `[labels]` and `[ends]`; none for a model that cannot be written out, which its
+/// derivation tells of, with the place in its text.
 ///
 /// # Errors
 /// Usage: no TOML, an unknown label or end condition, a number of sites that is none.
-pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Choice, Failure> {
+pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<Choice>, Failure> {
     let file = File::new(name, text);
     let lattice = &stated.lattice;
     let Some(mut choice) = stated.default_choice() else {
-        return Err(file.wrong(None, "the model's lattice cannot be written out"));
+        return Ok(None);
     };
     let document = file.document()?;
     let top = document.get_ref();
@@ -139,7 +140,7 @@ pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Choice, 
             choice = ended(&file, lattice, choice, key.get_ref().as_ref(), value)?;
         }
     }
-    Ok(choice)
+    Ok(Some(choice))
 }
 
 /// `i = "periodic"`, `i = "pinned"` at both ends, or `i = ["clamped", "free"]`.
@@ -229,9 +230,10 @@ pub(crate) fn written_out(
     stated: &Stated,
     card: &Card,
 ) -> Result<WrittenOut, Failure> {
-    let choice = choice(name, text, stated)?;
+    let chosen = choice(name, text, stated)?;
     let file = File::new(name, text);
-    let Some(copies) = stated.copies(&choice) else {
+    let copies = chosen.as_ref().and_then(|choice| stated.copies(choice));
+    let (Some(choice), Some(copies)) = (chosen, copies) else {
         return Err(file.wrong(None, "the model's lattice cannot be written out"));
     };
     let document = file.document()?;

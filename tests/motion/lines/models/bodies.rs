@@ -1,10 +1,10 @@
 //! Bodies whose velocities stand in one term with those of their neighbours, found together along the line: those of the
 //! gallery, and some stated here that are held at their ends.
 
-use super::{Line, Random, c, keeping, stepped, vector};
+use super::{Line, Random, attitudes, c, keeping, stepped, vector};
 use crate::action::{Configuration, D, trace};
+use clebsch::Rotation;
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
-use clebsch::{BodyMomentum, Rotation};
 use clebsch_models::lattices::coupled_body_chain::*;
 
 clebsch::model! {
@@ -54,12 +54,6 @@ fn moments(i: usize) -> Matrix3<f64> {
 
 fn arm() -> Vector3<f64> {
     Vector3::new(0.3, 0.4, 0.5)
-}
-
-fn attitudes(n: usize, r: &mut Random) -> (Vec<Rotation>, Vec<BodyMomentum>) {
-    let turns = (0..n).map(|_| Rotation::exp(&(r.vector() * 0.7)));
-    let turns = turns.collect();
-    (turns, (0..n).map(|_| BodyMomentum(r.vector())).collect())
 }
 
 /// Minus `e` times the products of changes of `Λ d` over the step, of neighbours.

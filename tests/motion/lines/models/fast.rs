@@ -1,9 +1,8 @@
 //! Rotations whose kinetic energy is no quadratic form, each found by Newton's method at its site; stated here.
 
-use super::{Line, Random, c, stepped, vector};
+use super::{Line, Random, attitudes, c, stepped, vector};
 use crate::action::{Configuration, D, trace};
 use clebsch::nalgebra::{Matrix3, Vector3};
-use clebsch::{BodyMomentum, Rotation};
 
 clebsch::model! {
     /// Bodies with a kinetic energy of second and fourth order, and moments that depend on where the vertical is seen.
@@ -74,14 +73,10 @@ impl Fast {
         FastTops::new(parameters, FastTopsSites { N: self.n, ends }).expect("bodies")
     }
     fn initial(&self, seed: u64) -> FastTopsInitial {
-        let mut r = Random::new(seed);
+        let (turns, momenta) = attitudes(self.nodes(), &mut Random::new(seed));
         FastTopsInitial {
-            Λ: (0..self.nodes())
-                .map(|_| Rotation::exp(&(r.vector() * 0.7)))
-                .collect(),
-            body_momentum_Λ: (0..self.nodes())
-                .map(|_| BodyMomentum(r.vector()))
-                .collect(),
+            Λ: turns,
+            body_momentum_Λ: momenta,
         }
     }
     fn seen(&self, s: &FastTopsState) -> Configuration<f64> {

@@ -1,8 +1,8 @@
 //! The lines that are tried: their steppers, random states, and their actions as sums typed by hand.
 
 use super::action::{Configuration, D};
-use clebsch::Dual;
 use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::{BodyMomentum, Dual, Rotation};
 
 mod bent;
 mod beta;
@@ -221,6 +221,13 @@ impl Random {
     pub fn vector(&mut self) -> Vector3<f64> {
         Vector3::from_fn(|_, _| self.number())
     }
+}
+
+/// Attitudes of so many bodies, and their momenta.
+fn attitudes(n: usize, r: &mut Random) -> (Vec<Rotation>, Vec<BodyMomentum>) {
+    let turns = (0..n).map(|_| Rotation::exp(&(r.vector() * 0.7)));
+    let turns = turns.collect();
+    (turns, (0..n).map(|_| BodyMomentum(r.vector())).collect())
 }
 
 fn c(x: f64) -> D {

@@ -1,9 +1,8 @@
 //! Coupled heavy tops.
 
-use super::{Line, Random, c, keeping, stepped, vector};
+use super::{Line, Random, attitudes, c, keeping, stepped, vector};
 use crate::action::{Configuration, D, trace};
 use clebsch::nalgebra::{Matrix3, Vector3};
-use clebsch::{BodyMomentum, Rotation};
 use clebsch_models::lattices::coupled_tops::*;
 
 /// Coupled heavy tops.
@@ -37,14 +36,10 @@ impl Tops {
         CoupledTops::new(Self::parameters(), CoupledTopsSites { N: self.n, ends }).expect("tops")
     }
     fn initial(&self, seed: u64) -> CoupledTopsInitial {
-        let mut r = Random::new(seed);
+        let (turns, momenta) = attitudes(self.nodes(), &mut Random::new(seed));
         CoupledTopsInitial {
-            Λ: (0..self.nodes())
-                .map(|_| Rotation::exp(&(r.vector() * 0.7)))
-                .collect(),
-            body_momentum_Λ: (0..self.nodes())
-                .map(|_| BodyMomentum(r.vector()))
-                .collect(),
+            Λ: turns,
+            body_momentum_Λ: momenta,
         }
     }
     fn seen(&self, s: &CoupledTopsState) -> Configuration<f64> {
