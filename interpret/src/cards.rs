@@ -7,9 +7,10 @@ use crate::opened::{Opened, Text};
 use crate::signs::Agreement;
 use clebsch::card::{Card, Invariant, Open, OpenError, Settings, Trajectory};
 use clebsch_core::derive::warnings::Warning;
+use clebsch_core::document::{self, InvariantWords};
 use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::{Model, Statement};
-use clebsch_core::{document, pipeline};
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::{Arc, PoisonError, RwLock};
@@ -177,13 +178,7 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
     let d = &text.derivation;
     let warnings = unfolded.told(choice, &d.warnings);
     let words = document::card_words(&lattice, choice, unfolded, d, card.solver);
-    let named = card.invariants.iter().zip(&words.invariants);
-    let invariants = named.map(|(own, (name, formula))| Invariant {
-        name: crate::text(name),
-        formula: crate::text(formula),
-        ..*own
-    });
-    let invariants: Vec<Invariant> = invariants.collect();
+    let invariants = named(card.invariants, words.invariants);
     let card = Card {
         source: crate::text(source),
         summary: crate::text(&match written_out {
@@ -198,6 +193,22 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
         ..card
     };
     Ok((card, warnings))
+}
+
+/// Invariants of a lattice that is written out as they are told: what is alike at several sites is one of more rows.
+pub(crate) fn named(own: &[Invariant], words: Vec<InvariantWords>) -> Vec<Invariant> {
+    let mut own = own.iter();
+    let of = |told: InvariantWords| {
+        let first = own.next()?;
+        let others = own.by_ref().take(told.count.saturating_sub(1));
+        Some(Invariant {
+            name: crate::text(&told.name),
+            formula: crate::text(&told.formula),
+            rows: others.map(|i| i.rows).sum::<usize>() + first.rows,
+            ..*first
+        })
+    };
+    words.into_iter().filter_map(of).collect()
 }
 
 /// The card of a line.

@@ -265,3 +265,51 @@ fn tops_in_phase_with_free_ends_are_one_top() {
         }
     }
 }
+
+/// Beads on hoops that a drive along the hoops does not act on, with springs across: places along and across.
+const BEADS: &str = "model Beads { label i in 0..N; periodic; param m, k: Real; field x: Real at nodes; field q: Real at nodes;
+    lagrangian = m*((next(x) - x)^2 + (1 + (x^2 + next(x)^2)/2)*(next(q) - q)^2)/(2*h) - (h*k/2)*(next(x, i) - x)^2; }";
+
+#[test]
+fn what_every_site_keeps_is_one_invariant_with_a_row_for_each_and_of_a_line_their_sum() {
+    for (count, rows) in [(7, 7), (60, 1)] {
+        let read = card(BEADS, count, true, ["free", "free"]);
+        let told: Vec<_> = read.invariants.iter().map(|i| (i.name, i.rows)).collect();
+        assert_eq!(told, [("energy", 1), ("momentum_q", rows)]);
+        let formula = read.invariants[1].formula;
+        assert!(formula.ends_with("at every site"), "{formula}");
+        assert_eq!(formula.starts_with("the sum of"), rows == 1, "{formula}");
+        let value = |name: &str, site: Option<usize>| {
+            let turn = site.unwrap_or(0) as f64;
+            vec![match name {
+                "m" | "k" => 1.0,
+                "x" => (1.3 * turn).sin(),
+                "q" => 0.0,
+                "momentum_x" => 0.2,
+                _ => 1.0 + 0.1 * turn,
+            }]
+        };
+        let (parameters, initial) = (
+            values(read.parameters, &value),
+            values(read.initial, &value),
+        );
+        let mut t = (read.open)(&parameters, &initial, Settings::step(0.05)).expect("starts");
+        let mut all = vec![0.0; read.invariant_count()];
+        t.invariants(&mut all);
+        let momenta: Vec<f64> = (0..count).map(|i| 1.0 + 0.1 * i as f64).collect();
+        let known = match rows {
+            1 => vec![momenta.iter().sum()],
+            _ => momenta,
+        };
+        for _ in 0..100 {
+            // A rounding of a momentum a step, in either direction, added over the sites.
+            let size = clebsch::scalar::largest(known.iter().map(|p: &f64| p.abs()));
+            for (own, p) in all[1..].iter().zip(&known) {
+                assert!((own - p).abs() <= 100.0 * f64::EPSILON * size, "{own} {p}");
+            }
+            t.step().expect("steps");
+            t.invariants(&mut all);
+        }
+        assert!((observed(&*t, "q_0")[0]).abs() > 1.0);
+    }
+}

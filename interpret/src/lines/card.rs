@@ -2,6 +2,7 @@
 //! repeated for all sites. Takes a model with labels and a choice; gives what the command reads and starts.
 
 use super::LineModel;
+use crate::cards::named;
 use crate::constants::Constants;
 use crate::opened::Text;
 use crate::{Refused, text};
@@ -123,11 +124,16 @@ impl Carded {
             &whole.derivation,
             card.solver,
         );
-        let named = card.invariants.iter().zip(&words.invariants);
-        let named = named.map(|(own, (name, formula))| Invariant {
-            name: text(name),
-            formula: text(formula),
-            ..*own
+        let rows = |name: &str| model.conserved().find(|(own, ..)| *own == name);
+        let named = named(card.invariants, words.invariants).into_iter();
+        // Of what every site keeps the sum is taken.
+        let named = named.map(|i| match rows(i.name) {
+            Some((_, rows, _)) if rows != i.rows => Invariant {
+                formula: text(&format!("the sum of {}", i.formula)),
+                rows,
+                ..i
+            },
+            _ => i,
         });
         // Constraints are told of all sites together, not of those of the short line.
         let of_holds = |name: &str| name.starts_with("constraint_");

@@ -117,7 +117,11 @@ pub fn beside(
             // Of one choice of ends only: no total of every line.
             continue;
         };
-        pairs.extend(own.iter().zip(&values).map(|(x, y)| [*x, *y]));
+        match own.len() == values.len() {
+            true => pairs.extend(own.iter().zip(&values).map(|(x, y)| [*x, *y])),
+            // What every site keeps: of a line the sum is told.
+            false => pairs.extend(values.iter().map(|y| [own.iter().sum(), *y])),
+        }
     }
     pairs
 }

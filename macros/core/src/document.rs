@@ -19,7 +19,9 @@ mod structure;
 pub mod thesis;
 
 pub use compose::{Telling, document, document_telling};
-pub use lattice::{CardWords, Printed, card_words, default_choice, printed_lattice};
+pub use lattice::{
+    CardWords, InvariantWords, Printed, card_words, default_choice, printed_lattice,
+};
 pub use proof::proof;
 #[cfg(feature = "egraph")]
 pub use proof::second_proof;

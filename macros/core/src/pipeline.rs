@@ -1,6 +1,9 @@
 //! The whole way from text to derivation, one line a stage.
 
-use crate::check;
+use crate::check::{
+    self,
+    spec::{CopyOf, Spec},
+};
 use crate::derive::{self, Derivation};
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::emit;
@@ -58,9 +61,31 @@ pub fn derive_lattice(
 ) -> Result<(Unfolded, Derivation), Errors> {
     let unfolded = lattice::unfold(model, line, choice)?;
     let _room = work::room(room(&unfolded));
-    let spec = check::check_written_out(&unfolded.model)?;
+    let spec = written_out(&unfolded)?;
     let derived = derive::derive(spec).map_err(Errors::first_at_each_place)?;
     Ok((unfolded, derived))
+}
+
+/// A lattice that is written out, checked: its configurations know of what they are copies.
+fn written_out(unfolded: &Unfolded) -> Result<Spec, Errors> {
+    let mut spec = check::check_written_out(&unfolded.model)?;
+    let mut families: Vec<(String, usize)> = Vec::new();
+    for (i, c) in spec.configurations.iter_mut().enumerate() {
+        let name = &spec.symbols.get(c.element).name;
+        let Some(own) = unfolded.copy(name) else {
+            continue;
+        };
+        let known = families.iter().find(|(of, _)| *of == own.of);
+        let family = known.map_or(i, |(_, first)| *first);
+        if family == i {
+            families.push((own.of.clone(), i));
+        }
+        c.copy = Some(CopyOf {
+            family,
+            site: own.site,
+        });
+    }
+    Ok(spec)
 }
 
 /// The beginning of the same.
@@ -71,7 +96,7 @@ pub fn outline_lattice(
 ) -> Result<(Unfolded, derive::Outline), Errors> {
     let unfolded = lattice::unfold(model, line, choice)?;
     let _room = work::room(room(&unfolded));
-    let spec = check::check_written_out(&unfolded.model)?;
+    let spec = written_out(&unfolded)?;
     let outline = derive::outline(spec).map_err(Errors::first_at_each_place)?;
     Ok((unfolded, outline))
 }

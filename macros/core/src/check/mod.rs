@@ -288,6 +288,7 @@ fn finish(
                 place,
                 name_place: g.place,
                 group_place: g.group_place,
+                copy: None,
             }),
             None => errors.push(messages::not_a_reconstruction(&declared.symbols, g, place)),
         }

@@ -85,6 +85,17 @@ pub struct Configuration {
     pub name_place: Place,
     /// Where its group stands.
     pub group_place: Place,
+    /// Of what it is a copy, in a lattice that is written out.
+    pub copy: Option<CopyOf>,
+}
+
+/// A configuration of a lattice at one of its sites.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct CopyOf {
+    /// The configuration as stated: the number of its first copy.
+    pub family: usize,
+    /// The site, counted from 0.
+    pub site: usize,
 }
 
 /// A quantity carried by the group.

@@ -165,6 +165,7 @@ fn configuration(s: &Symbols, hold: &Hold, held: &Held) -> Configuration {
         place: hold.place,
         name_place: hold.name_place,
         group_place: hold.place,
+        copy: None,
     }
 }
 

@@ -6,6 +6,7 @@ mod ends;
 mod functionals;
 mod holds;
 mod invariants;
+mod sites;
 mod sums;
 
 use super::folded::{Folded, From, Part};
@@ -19,7 +20,7 @@ use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression};
 use crate::syntax::ast::Model;
 
-pub use card::{CardWords, card_words};
+pub use card::{CardWords, InvariantWords, card_words};
 
 /// A derivation on a lattice, printed.
 pub struct Printed {

@@ -153,24 +153,57 @@ fn of_part(
         false if lattice.line.is_none() => "always".to_owned(),
         false => part.choice.held(lattice),
     };
-    let each = invariants.iter().filter_map(|v| {
-        let value = v.value.as_ref()?;
-        // Constraints are told for all sites together.
-        if !v.exact || v.family == Family::Held {
-            return None;
-        }
-        let densities = densities(lattice, part, value)?;
-        let moved = densities
-            .into_iter()
-            .map(|(label, sites, e)| Some((label, sites, part.in_letters_of(base, &e)?)));
-        Some(Total {
-            name: part.unfolded.plain(&v.name).replace(' ', "_"),
-            reason: v.reason.clone(),
-            on: on.clone(),
-            densities: moved.collect::<Option<_>>()?,
-        })
-    });
+    // Constraints are told for all sites together.
+    let exact = invariants.iter();
+    let exact = exact.filter(|v| v.exact && v.family != Family::Held);
+    let each = summed(part, exact.collect())
+        .into_iter()
+        .filter_map(|(v, value)| {
+            let densities = densities(lattice, part, &value)?;
+            let moved = densities
+                .into_iter()
+                .map(|(label, sites, e)| Some((label, sites, part.in_letters_of(base, &e)?)));
+            Some(Total {
+                name: part.unfolded.plain(&v.name).replace(' ', "_"),
+                reason: v.reason.clone(),
+                on: on.clone(),
+                densities: moved.collect::<Option<_>>()?,
+            })
+        });
     each.collect()
+}
+
+/// The values of invariants. What single sites keep is added up, one for all of them.
+fn summed<'v>(part: &Written, invariants: Vec<&'v Invariant>) -> Vec<(&'v Invariant, Expr)> {
+    let site = |v: &Invariant| {
+        let letters = expr::letters(v.value.as_ref()?).into_iter();
+        let mut sites = letters
+            .filter_map(|l| part.sited(l.symbol))
+            .map(|at| at.site);
+        let first = sites.next()?;
+        sites.all(|s| s == first).then_some(first)
+    };
+    let mut out: Vec<(&Invariant, Expr, Vec<usize>)> = Vec::new();
+    for v in invariants {
+        let Some(value) = v.value.clone() else {
+            continue;
+        };
+        let own = site(v);
+        let name = part.unfolded.plain(&v.name);
+        let alike = |(first, sum, sites): &&mut (&Invariant, Expr, Vec<usize>)| {
+            let same = sum.shape() == value.shape() && first.reason == v.reason;
+            let another = own.is_some_and(|own| !sites.is_empty() && !sites.contains(&own));
+            same && another && part.unfolded.plain(&first.name) == name
+        };
+        match (out.iter_mut().find(alike), own) {
+            (Some((_, sum, sites)), Some(own)) => {
+                *sum = expr::add(sum.clone(), value);
+                sites.push(own);
+            }
+            _ => out.push((v, value, own.into_iter().collect())),
+        }
+    }
+    out.into_iter().map(|(v, e, _)| (v, e)).collect()
 }
 
 /// The density of a sum over all sites of each kind, at the base.

@@ -2,6 +2,7 @@
 //! change over no step. Takes random steps in exact arithmetic; gives all solutions in small whole
 //! numbers, and for fixed parameters how many there are in any numbers.
 
+use super::columns::Column;
 use super::draws::Roots;
 use super::motions::{Motion, Sort};
 use super::passage::{Passage, completed, start};
@@ -185,17 +186,24 @@ pub(super) struct Kernel<'a> {
 }
 
 impl<'a> Kernel<'a> {
-    /// Solves for the coefficients of all motions at once, total differences left out of account;
+    /// Solves for the coefficients of all columns at once, total differences left out of account;
     /// nothing where that is too much work.
     pub(super) fn new(
         x: &Inputs<'a>,
         roots: &Roots,
-        motions: &[Motion],
+        columns: &[Column],
         attempt: u64,
     ) -> Option<Kernel<'a>> {
-        let own: Vec<&Motion> = motions.iter().filter(|m| !m.spanned).collect();
+        // Each with what its motions have together.
+        let own = columns.iter().filter_map(|list| {
+            let first = list.first()?;
+            let values = list.iter().map(|m| m.value.clone());
+            let shape = first.value.shape();
+            Some((*first, expr::sum(values.collect::<Vec<_>>(), shape)))
+        });
+        let own: Vec<(&Motion, Expr)> = own.collect();
         let base = start(x, roots, x.assumed, attempt)?;
-        let width: usize = own.iter().map(|m| coordinates(&base, m)).sum();
+        let width: usize = own.iter().map(|(m, _)| coordinates(&base, m)).sum();
         let times = usize::try_from(crate::work::times()).unwrap_or(1);
         let most = WORK.saturating_mul(times.min(2));
         if width > WIDEST * times || work(x, &base).saturating_mul(2 * (width + MORE)) > most {
@@ -204,8 +212,8 @@ impl<'a> Kernel<'a> {
         let steps = chain(x, roots, &base, width + MORE)?;
         let row = |entries: &dyn Fn(&Expr) -> Option<Matrix>| -> Option<Vec<u64>> {
             let mut out = Vec::new();
-            for m in &own {
-                let value = entries(&m.value)?;
+            for (m, sum) in &own {
+                let value = entries(sum)?;
                 out.extend(independent_entries(m.sort, &value));
             }
             Some(out)

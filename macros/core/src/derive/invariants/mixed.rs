@@ -17,10 +17,14 @@ pub(super) struct Component {
     pub(super) entry: u8,
 }
 
-/// Every component of a field in proportion to every one, where there are few of them.
+/// Every component of a field in proportion to every one, where there are few of them. On a lattice these are of
+/// one site, and alike at all sites.
 pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
     let components = components(x);
-    if components.len() < 2 || components.len() > MIXED {
+    let copy = |c: &Component| x.spec.configurations[c.configuration].copy;
+    let is_first = |c: &&Component| copy(c).is_none_or(|own| own.family == c.configuration);
+    let stated = components.iter().filter(is_first).count();
+    if !(2..=MIXED).contains(&stated) {
         return Vec::new();
     }
     let number = |c: &Component| {
@@ -52,7 +56,8 @@ pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
     // Vectors turn together in their angular momenta; what mixes them otherwise mostly tells of the
     // centre of mass, which moves along the total momentum.
     let told = |(by, to): &(&Component, &Component)| {
-        by.configuration == to.configuration || number(by) || number(to)
+        let at_one_site = copy(by).map(|c| c.site) == copy(to).map(|c| c.site);
+        at_one_site && (by.configuration == to.configuration || number(by) || number(to))
     };
     pairs.filter(told).map(of_pair).collect()
 }

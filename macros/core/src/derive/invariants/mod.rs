@@ -4,6 +4,7 @@
 //! integrals where the step has a Lax form; the energy is exact where that is proved, else bounded.
 
 mod casimirs;
+mod columns;
 mod difference;
 mod draws;
 mod energy;
@@ -166,13 +167,15 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     let large = too_large(x);
     let small = large.is_none();
     out.extend(energy::energy(x, if small { &passages } else { &[] }));
-    let (momenta, body) = noether::momenta(x, &roots, &passages);
+    let momenta = noether::momenta(x, &roots, &passages);
+    out.extend(momenta.of_sites);
     let elements = x.bracket.holds_elements;
     let casimirs = match small && !elements {
         true => casimirs::casimirs(x, x.assumed, &passages),
         false => casimirs::Casimirs::default(),
     };
     let (vectors, about_axes): (Vec<_>, Vec<_>) = momenta
+        .space
         .into_iter()
         .partition(|v| !matches!(v.kind, Kind::Value));
     out.extend(vectors);
@@ -184,7 +187,7 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     out.extend(spectrum);
     // A momentum about an axis may be a Casimir already, written by advected quantities.
     let mut linear: Vec<Invariant> = out.clone();
-    for v in about_axes.into_iter().chain(body) {
+    for v in about_axes.into_iter().chain(momenta.body) {
         if independence::is_new(x, &passages, &linear, &v) {
             linear.push(v.clone());
             out.push(v);

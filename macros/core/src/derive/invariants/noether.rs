@@ -3,6 +3,7 @@
 //! is a linear problem; they are then sought by what the parameters and the basis single out. That
 //! each one is conserved is proved itself.
 
+use super::columns::{Column, Columns};
 use super::difference;
 use super::draws::Roots;
 use super::kernel::{Kernel, Samples};
@@ -77,19 +78,35 @@ fn touched(x: &Inputs) -> BTreeMap<SymbolId, Vec<usize>> {
     out
 }
 
-/// Momenta as seen from space, then those that bodies have a part in.
-pub(super) fn momenta(
-    x: &Inputs,
-    roots: &Roots,
-    passages: &[Passage],
-) -> (Vec<Invariant>, Vec<Invariant>) {
+/// Noether momenta.
+#[derive(Default)]
+pub(super) struct Momenta {
+    /// Those that single sites of a lattice keep.
+    pub(super) of_sites: Vec<Invariant>,
+    /// Those as seen from space.
+    pub(super) space: Vec<Invariant>,
+    /// Those that bodies have a part in.
+    pub(super) body: Vec<Invariant>,
+}
+
+/// All that are found.
+pub(super) fn momenta(x: &Inputs, roots: &Roots, passages: &[Passage]) -> Momenta {
     if passages.is_empty() {
-        return (Vec::new(), Vec::new());
+        return Momenta::default();
     }
     let motions = motions(x);
-    let kernels = kernels(x, roots, &motions);
+    let columns = Columns {
+        x,
+        motions: &motions,
+        sets: match x.spec.configurations.len() > FEW {
+            true => components(x),
+            false => Vec::new(),
+        },
+        passages,
+    };
+    let kernels = kernels(x, roots, &columns.basis());
     if !kernels.is_empty() && kernels.iter().all(|k| k.dimension == 0) {
-        return (Vec::new(), Vec::new());
+        return Momenta::default();
     }
     let mut sorts: Vec<Sort> = Vec::new();
     for m in &motions {
@@ -101,35 +118,39 @@ pub(super) fn momenta(
     let mut search = Search {
         x,
         passages,
-        motions: &motions,
+        columns,
         readings: &readings,
         spanned: vec![0; kernels.len()],
         kernels: &kernels,
         found: Vec::new(),
-        sets: match x.spec.configurations.len() > FEW {
-            true => components(x),
-            false => Vec::new(),
-        },
+        of_sites: 0,
         wholes: Vec::new(),
     };
-    search.of_one_reading(&mut Samples::of_steps(x, roots, passages));
+    let mut steps = Samples::of_steps(x, roots, passages);
+    search.of_every_site();
+    search.of_one_reading(&mut steps);
     if !kernels.is_empty() && !search.is_complete() {
         let mut samples = Samples::of_differences(x, roots);
         search.of_one_reading(&mut samples);
         search.of_several_readings(&mut samples);
         search.prune();
     }
-    let (space, others): (Vec<_>, Vec<_>) = search.found.into_iter().partition(|(space, _)| *space);
     let only = |list: Vec<(bool, Invariant)>| list.into_iter().map(|(_, v)| v).collect();
-    (only(space), only(others))
+    let rest = search.found.split_off(search.of_sites);
+    let (space, body) = rest.into_iter().partition(|(space, _)| *space);
+    Momenta {
+        of_sites: only(search.found),
+        space: only(space),
+        body: only(body),
+    }
 }
 
 /// The symmetries at fixed parameters; with assumptions at several, whose branches take turns.
-fn kernels<'a>(x: &Inputs<'a>, roots: &Roots, motions: &[Motion]) -> Vec<Kernel<'a>> {
+fn kernels<'a>(x: &Inputs<'a>, roots: &Roots, columns: &[Column]) -> Vec<Kernel<'a>> {
     let wanted = if x.assumed.is_empty() { 1 } else { 3 };
     // Even attempts take the smallest size where it has only a name.
     let attempts = (0..20).map(|turn| 2 * turn);
-    let found = attempts.filter_map(|attempt| Kernel::new(x, roots, motions, attempt));
+    let found = attempts.filter_map(|attempt| Kernel::new(x, roots, columns, attempt));
     found.take(wanted).collect()
 }
 
@@ -144,15 +165,15 @@ pub(super) struct Term<'s> {
 struct Search<'a, 's> {
     x: &'s Inputs<'a>,
     passages: &'s [Passage<'a>],
-    motions: &'s [Motion],
+    columns: Columns<'a, 's>,
     readings: &'s [Reading],
     kernels: &'s [Kernel<'a>],
     /// Each with whether it is one of space alone.
     found: Vec<(bool, Invariant)>,
     /// How many are independent at the parameters of each kernel.
     spanned: Vec<usize>,
-    /// Sets of configurations that the action couples, where there are many.
-    sets: Vec<Vec<usize>>,
+    /// How many of them single sites of a lattice keep: they come first.
+    of_sites: usize,
     /// Motions whose whole momentum has been found.
     wholes: Vec<(usize, Way, Sort)>,
 }
@@ -175,57 +196,15 @@ impl<'a, 's> Search<'a, 's> {
         !self.kernels.is_empty() && all.into_iter().all(|(k, n)| *n >= k.dimension)
     }
 
-    /// Motions of a sort that may be combined, each by itself; of many configurations those that the
-    /// action couples, each set for itself and its members added. A turn about a place or about its
-    /// own origin is one of the others of the set too, which have no place.
-    fn columns(&self, sort: Sort) -> Vec<Vec<Vec<&'s Motion>>> {
-        let own = || self.motions.iter().filter(|m| m.sort == sort);
-        if self.sets.is_empty() {
-            return vec![own().map(|m| vec![m]).collect()];
-        }
-        let mut out: Vec<Vec<Vec<&Motion>>> = vec![Vec::new(); self.sets.len()];
-        for m in own() {
-            let set = self.sets.iter().position(|s| s.contains(&m.configuration));
-            let Some(columns) = set.and_then(|i| out.get_mut(i)) else {
-                continue;
-            };
-            match columns.iter_mut().find(|list| list[0].way == m.way) {
-                Some(list) => list.push(m),
-                None => columns.push(vec![m]),
-            }
-        }
-        for (columns, set) in out.iter_mut().zip(&self.sets) {
-            let whole: Vec<Vec<&Motion>> = columns
-                .iter()
-                .filter(|list| matches!(list[0].way, Way::Spin | Way::About(_)))
-                .filter_map(|list| {
-                    let missing = |m: &&Motion| {
-                        m.way == Way::Space
-                            && set.contains(&m.configuration)
-                            && list.iter().all(|l| l.configuration != m.configuration)
-                    };
-                    let rest: Vec<&Motion> = own().filter(missing).collect();
-                    (!rest.is_empty()).then(|| [list.clone(), rest].concat())
-                })
-                .collect();
-            columns.extend(whole);
-        }
-        out
-    }
-
     /// Takes out what vanishes and what is the same as one before: a moment about a place, read along
     /// the axis through it.
-    fn distinct(
-        &self,
-        columns: Vec<Vec<&'s Motion>>,
-        reading: &'s Reading,
-    ) -> Vec<Vec<&'s Motion>> {
-        let placed = |c: &Vec<&Motion>| c.iter().any(|m| matches!(m.way, Way::About(_)));
+    fn distinct(&self, columns: Vec<Column<'s>>, reading: &'s Reading) -> Vec<Column<'s>> {
+        let placed = |c: &Column| c.iter().any(|m| matches!(m.way, Way::About(_)));
         if !columns.iter().any(placed) {
             return columns;
         }
         let mut known: Vec<Vec<Matrix>> = Vec::new();
-        let fresh = |c: &Vec<&'s Motion>| {
+        let fresh = |c: &Column<'s>| {
             let value = self.value(reading, c);
             let at = self.passages.iter().map(|p| p.before.value(&value));
             let Some(at) = at.collect::<Option<Vec<Matrix>>>() else {
@@ -238,31 +217,60 @@ impl<'a, 's> Search<'a, 's> {
         columns.into_iter().filter(fresh).collect()
     }
 
+    /// What every single site of a lattice keeps, before sums over sites that it spans.
+    fn of_every_site(&mut self) {
+        for reading in self.readings {
+            for column in self.columns.of_every_site(reading.sort) {
+                let value = self.value(reading, &column);
+                if self.is_covered(&column) || !is_conserved(self.passages, &value) {
+                    continue;
+                }
+                let term = |motion| Term {
+                    reading,
+                    motion,
+                    times: 1,
+                };
+                self.accept(&column.into_iter().map(term).collect::<Vec<_>>());
+            }
+        }
+        self.of_sites = self.found.len();
+    }
+
     /// Combinations of one reading of several motions.
     fn of_one_reading(&mut self, samples: &mut Samples) {
         for reading in self.readings {
             if self.is_complete() {
                 return;
             }
-            for mut columns in self.columns(reading.sort) {
+            for mut columns in self.columns.of_sort(reading.sort) {
                 columns.retain(|c| !self.is_covered(c));
-                let columns = self.distinct(columns, reading);
-                let values: Vec<Expr> = columns.iter().map(|c| self.value(reading, c)).collect();
-                let mut combinations = samples.combinations(&values);
-                // Of those that say the same that of the fewest motions is told.
-                combinations.sort_by_key(|v| v.iter().filter(|times| **times != 0).count());
-                for v in combinations {
-                    let terms = columns.iter().zip(&v).filter(|(_, times)| **times != 0);
-                    let terms = terms.flat_map(|(c, times)| {
-                        c.iter().map(|motion| Term {
-                            reading,
-                            motion,
-                            times: *times,
-                        })
-                    });
-                    self.accept(&terms.collect::<Vec<_>>());
-                }
+                self.combine(columns, reading, samples);
             }
+        }
+    }
+
+    /// Combinations of one reading of these.
+    fn combine(&mut self, columns: Vec<Column<'s>>, reading: &'s Reading, samples: &mut Samples) {
+        let columns = self.distinct(columns, reading);
+        let values: Vec<Expr> = columns.iter().map(|c| self.value(reading, c)).collect();
+        let mut combinations = samples.combinations(&values);
+        // Of those that say the same that of the fewest motions is told, and of these that about the origin.
+        combinations.sort_by_key(|v| {
+            let taken = columns.iter().zip(v).filter(|(_, times)| **times != 0);
+            let motions = taken.flat_map(|(c, _)| c.iter());
+            let about = |m: &&&Motion| matches!(m.way, Way::About(_));
+            (motions.clone().count(), motions.filter(about).count())
+        });
+        for v in combinations {
+            let terms = columns.iter().zip(&v).filter(|(_, times)| **times != 0);
+            let terms = terms.flat_map(|(c, times)| {
+                c.iter().map(|motion| Term {
+                    reading,
+                    motion,
+                    times: *times,
+                })
+            });
+            self.accept(&terms.collect::<Vec<_>>());
         }
     }
 
@@ -273,7 +281,7 @@ impl<'a, 's> Search<'a, 's> {
         }
         let mut terms: Vec<Vec<Term>> = Vec::new();
         for reading in self.readings.iter().filter(|r| r.is_number()) {
-            for column in self.columns(reading.sort).into_iter().flatten() {
+            for column in self.columns.of_sort(reading.sort).into_iter().flatten() {
                 if column.iter().any(|m| m.spanned) || terms.len() >= numbers() {
                     continue;
                 }
@@ -303,7 +311,7 @@ impl<'a, 's> Search<'a, 's> {
 
     /// Takes out what the others span: a part that was found before the whole.
     fn prune(&mut self) {
-        let mut i = 0;
+        let mut i = self.of_sites;
         while i < self.found.len() {
             let others = |k: &Kernel| {
                 let list = self.found.iter().enumerate().filter(|(j, _)| *j != i);

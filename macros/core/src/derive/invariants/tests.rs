@@ -1,6 +1,7 @@
 //! Which invariants are found, and which are refused. Takes models as text; compares the names of
 //! what is found.
 
+mod lattices;
 mod mixed_fields;
 mod scales;
 mod singular;

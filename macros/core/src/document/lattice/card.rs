@@ -2,9 +2,9 @@
 //! over sites in the place of lists of copies.
 
 use super::invariants::total;
-use super::{ranged, stated_configurations};
+use super::{ranged, sites, stated_configurations};
 use crate::derive::Derivation;
-use crate::derive::invariants::Kind as InvariantKind;
+use crate::derive::invariants::{Invariant, Kind as InvariantKind};
 use crate::document::folded::{Folded, From, Part};
 use crate::document::riccati_words;
 use crate::expr::{self, Expr, Node};
@@ -18,8 +18,18 @@ pub struct CardWords {
     pub summary: String,
     /// How the velocities are found.
     pub solver: String,
-    /// Name and formula of each invariant, in the order of the derivation.
-    pub invariants: Vec<(String, String)>,
+    /// What is said of invariants, in the order of the derivation.
+    pub invariants: Vec<InvariantWords>,
+}
+
+/// What is said of one invariant, or of one at several sites.
+pub struct InvariantWords {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub formula: String,
+    /// How many of the derivation it is, one after another.
+    pub count: usize,
 }
 
 /// The words of a derived lattice; `solver` is how its copies are solved.
@@ -63,14 +73,30 @@ pub fn card_words(
             lines.push(format!("Riccati form         {words}"));
         }
     }
-    let mut invariants: Vec<(String, String)> = Vec::new();
-    for v in &d.invariants {
+    let mut invariants: Vec<InvariantWords> = Vec::new();
+    let list: Vec<&Invariant> = d.invariants.iter().collect();
+    let mut at_sites = sites::of_sites(&mut folded, &part, &list);
+    at_sites.retain(|o| o.members.windows(2).all(|w| w[0] + 1 == w[1]));
+    for (i, v) in list.into_iter().enumerate() {
+        let alike = at_sites.iter().find(|o| o.members.contains(&i));
+        if alike.is_some_and(|o| o.members.first() != Some(&i)) {
+            continue;
+        }
         let name = part.unfolded.plain(&v.name).replace(' ', "_");
         let mut own = name.clone();
-        let mut count = 1;
-        while invariants.iter().any(|(taken, _)| *taken == own) {
-            count += 1;
-            own = format!("{name}_{count}");
+        let mut number = 1;
+        while invariants.iter().any(|known| known.name == own) {
+            number += 1;
+            own = format!("{name}_{number}");
+        }
+        if let Some(alike) = alike {
+            let value = text(&folded, &alike.value);
+            invariants.push(InvariantWords {
+                name: own,
+                formula: format!("{value} {}", alike.at),
+                count: alike.members.len(),
+            });
+            continue;
         }
         let formula = match (&v.value, &v.kind) {
             (Some(e), _) => {
@@ -83,9 +109,13 @@ pub fn card_words(
             }
             (None, _) => "kinetic plus potential energy of the limit".to_owned(),
         };
-        invariants.push((own, formula));
+        invariants.push(InvariantWords {
+            name: own,
+            formula,
+            count: 1,
+        });
     }
-    let names: Vec<&str> = invariants.iter().map(|(name, _)| name.as_str()).collect();
+    let names: Vec<&str> = invariants.iter().map(|v| v.name.as_str()).collect();
     lines.push(format!("invariants           {}", names.join(", ")));
     lines.push(format!(
         "time reversal        {}",

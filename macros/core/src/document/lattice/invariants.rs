@@ -3,7 +3,7 @@
 
 use crate::derive::invariants::{Family, Invariant, Kind as InvariantKind};
 use crate::document::folded::{Folded, From, Part};
-use crate::document::lattice::{holds::stated_holds, sums};
+use crate::document::lattice::{holds::stated_holds, sites, sums};
 use crate::expr::{self, Expr};
 use crate::lattice::Lattice;
 use crate::line::{Line, Written};
@@ -192,38 +192,52 @@ fn of_part(folded: &mut Folded, part: &Part, kept: &[&Invariant]) -> (Vec<Known>
     let style = Style::new(&part.d.spec.time_index);
     let mut out: Vec<Known> = Vec::new();
     let mut untold: Vec<&Invariant> = Vec::new();
-    let mut push = |folded: &Folded, v: &Invariant, before: &str, f: Option<Formula>| {
+    let told = |folded: &Folded, v: &Invariant, before: &str, f: Option<Formula>| {
         let name = part.unfolded.plain(&v.name);
         let shown = |f: &Formula| formula(f, &folded.symbols, &style, Format::Text);
         let text = f.as_ref().map_or_else(String::new, shown);
         let mut value: Vec<Inline> = vec![before.into()];
         value.extend(f.map(Inline::Math));
-        out.push(Known {
+        Known {
             name,
             value,
             text: format!("{before}{text}"),
             how: if v.exact { "exact" } else { "bounded" },
             reason: v.reason.clone(),
-        });
+        }
     };
-    for v in kept {
+    let at_sites = sites::of_sites(folded, part, kept);
+    let shown = |folded: &Folded, f: &Formula| formula(f, &folded.symbols, &style, Format::Text);
+    for (i, v) in kept.iter().enumerate() {
+        if let Some(alike) = at_sites.iter().find(|o| o.members.contains(&i)) {
+            if alike.members.first() == Some(&i) {
+                let text = format!("{} {}", shown(folded, &alike.value), alike.at);
+                out.push(Known {
+                    name: alike.name.clone(),
+                    value: vec![
+                        Inline::Math(alike.value.clone()),
+                        format!(" {}", alike.at).into(),
+                    ],
+                    text,
+                    how: if v.exact { "exact" } else { "bounded" },
+                    reason: v.reason.clone(),
+                });
+            }
+            continue;
+        }
         let (before, e) = match (&v.value, &v.kind) {
             (Some(e), _) => ("", e),
             (None, InvariantKind::ConstraintRate(j)) => {
                 ("rate of change of ", &part.d.spec.holds[*j].value)
             }
             (None, _) => {
-                push(
-                    folded,
-                    v,
-                    "kinetic plus potential energy of the limit",
-                    None,
-                );
+                let energy = "kinetic plus potential energy of the limit";
+                out.push(told(folded, v, energy, None));
                 continue;
             }
         };
         match total(folded, part, e) {
-            Some(f) => push(folded, v, before, Some(f)),
+            Some(f) => out.push(told(folded, v, before, Some(f))),
             None => untold.push(v),
         }
     }
@@ -244,7 +258,7 @@ fn of_part(folded: &mut Folded, part: &Part, kept: &[&Invariant]) -> (Vec<Known>
         }
         let f = sum(v).and_then(|e| total(folded, part, &e));
         if f.is_some() {
-            push(folded, v, "", f);
+            out.push(told(folded, v, "", f));
         }
     }
     (out, !untold.is_empty())
