@@ -173,42 +173,20 @@ impl<T: Lowered> Lower<'_, '_, T> {
         })))
     }
 
+    /// A chain of operators is taken from its first operand on, not by recursion: sums over sites have hundreds of terms.
     fn binary(&mut self, b: &syn::ExprBinary) -> Result<Code<T>, Refused> {
-        use syn::BinOp;
-        let operator = match b.op {
-            BinOp::Add(_) => Operator::Add,
-            BinOp::Sub(_) => Operator::Sub,
-            BinOp::Mul(_) => Operator::Mul,
-            BinOp::Div(_) => Operator::Div,
-            BinOp::Rem(_) => Operator::Rem,
-            BinOp::Eq(_) => Operator::Equal,
-            BinOp::Ne(_) => Operator::Differs,
-            BinOp::Lt(_) => Operator::Less,
-            BinOp::Le(_) => Operator::AtMost,
-            BinOp::Gt(_) => Operator::More,
-            BinOp::Ge(_) => Operator::AtLeast,
-            BinOp::And(_) | BinOp::BitAnd(_) | BinOp::Or(_) | BinOp::BitOr(_) => {
-                let settles = matches!(b.op, BinOp::Or(_) | BinOp::BitOr(_));
-                let (x, y) = (
-                    self.expression(&b.left, None)?,
-                    self.expression(&b.right, None)?,
-                );
-                return Ok(Code::Lazy(settles, Box::new(x), Box::new(y)));
-            }
-            BinOp::AddAssign(_) => {
-                let (x, y) = (
-                    self.expression(&b.left, None)?,
-                    self.expression(&b.right, None)?,
-                );
-                return Ok(Code::Increase(Box::new(x), Box::new(y)));
-            }
-            _ => return Err(refuse(b)),
-        };
-        let (x, y) = (
-            self.expression(&b.left, None)?,
-            self.expression(&b.right, None)?,
-        );
-        Ok(Code::Binary(operator, Box::new(x), Box::new(y)))
+        let mut chain = vec![b];
+        let mut first = &*b.left;
+        while let syn::Expr::Binary(inner) = first {
+            chain.push(inner);
+            first = &inner.left;
+        }
+        let mut value = self.expression(first, None)?;
+        for b in chain.into_iter().rev() {
+            let right = self.expression(&b.right, None)?;
+            value = joined(b, value, right)?;
+        }
+        Ok(value)
     }
 
     fn field(&mut self, f: &syn::ExprField) -> Result<Code<T>, Refused> {
@@ -475,4 +453,29 @@ fn function(name: &str) -> Option<domain::Function> {
         "Inverse" => domain::Function::Inverse,
         _ => return None,
     })
+}
+
+/// Two operands and what stands between them.
+fn joined<T: Lowered>(b: &syn::ExprBinary, x: Code<T>, y: Code<T>) -> Result<Code<T>, Refused> {
+    use syn::BinOp;
+    let operator = match b.op {
+        BinOp::Add(_) => Operator::Add,
+        BinOp::Sub(_) => Operator::Sub,
+        BinOp::Mul(_) => Operator::Mul,
+        BinOp::Div(_) => Operator::Div,
+        BinOp::Rem(_) => Operator::Rem,
+        BinOp::Eq(_) => Operator::Equal,
+        BinOp::Ne(_) => Operator::Differs,
+        BinOp::Lt(_) => Operator::Less,
+        BinOp::Le(_) => Operator::AtMost,
+        BinOp::Gt(_) => Operator::More,
+        BinOp::Ge(_) => Operator::AtLeast,
+        BinOp::And(_) | BinOp::BitAnd(_) | BinOp::Or(_) | BinOp::BitOr(_) => {
+            let settles = matches!(b.op, BinOp::Or(_) | BinOp::BitOr(_));
+            return Ok(Code::Lazy(settles, Box::new(x), Box::new(y)));
+        }
+        BinOp::AddAssign(_) => return Ok(Code::Increase(Box::new(x), Box::new(y))),
+        _ => return Err(refuse(b)),
+    };
+    Ok(Code::Binary(operator, Box::new(x), Box::new(y)))
 }

@@ -219,7 +219,10 @@ compiled!(
         "momentum_Y" => flat(s.momentum_Y()),
         _ => Vec::new(),
     },
-    |m, s| vec![("total_momentum", vec![m.total_momentum(s)])]
+    |m, s| vec![
+        ("total_momentum_X", vec![m.total_momentum_X(s)]),
+        ("momentum_Y", vec![m.momentum_Y(s)])
+    ]
 );
 compiled!(
     TopsLine,

@@ -73,48 +73,49 @@ pub fn card_words(
             lines.push(format!("Riccati form         {words}"));
         }
     }
-    let mut invariants: Vec<InvariantWords> = Vec::new();
     let list: Vec<&Invariant> = d.invariants.iter().collect();
     let mut at_sites = sites::of_sites(&mut folded, &part, &list);
     at_sites.retain(|o| o.members.windows(2).all(|w| w[0] + 1 == w[1]));
+    // Each with whether it is told for all sites.
+    let mut told: Vec<(InvariantWords, bool)> = Vec::new();
     for (i, v) in list.into_iter().enumerate() {
         let alike = at_sites.iter().find(|o| o.members.contains(&i));
         if alike.is_some_and(|o| o.members.first() != Some(&i)) {
             continue;
         }
         let name = part.unfolded.plain(&v.name).replace(' ', "_");
-        let mut own = name.clone();
-        let mut number = 1;
-        while invariants.iter().any(|known| known.name == own) {
-            number += 1;
-            own = format!("{name}_{number}");
-        }
-        if let Some(alike) = alike {
-            let value = text(&folded, &alike.value);
-            invariants.push(InvariantWords {
-                name: own,
-                formula: format!("{value} {}", alike.at),
-                count: alike.members.len(),
-            });
-            continue;
-        }
-        let formula = match (&v.value, &v.kind) {
-            (Some(e), _) => {
-                let f = explicit(&mut folded, &part, e);
-                text(&folded, &f)
+        let (formula, whole, count) = match (alike, &v.value, &v.kind) {
+            (Some(alike), ..) => {
+                let value = text(&folded, &alike.value);
+                let formula = format!("{value} {}", alike.at);
+                (formula, true, alike.members.len())
             }
-            (None, InvariantKind::ConstraintRate(j)) => {
-                let f = explicit(&mut folded, &part, &part.d.spec.holds[*j].value);
-                format!("rate of change of {}", text(&folded, &f))
+            (None, Some(e), _) => {
+                let sum = total(&mut folded, &part, e);
+                let whole = sum.is_some();
+                let f = sum.unwrap_or_else(|| folded.derived(&part, e, From::First));
+                (text(&folded, &f), whole, 1)
             }
-            (None, _) => "kinetic plus potential energy of the limit".to_owned(),
+            (None, None, InvariantKind::ConstraintRate(j)) => {
+                let held = &part.d.spec.holds[*j].value;
+                let sum = total(&mut folded, &part, held);
+                let f = sum.unwrap_or_else(|| folded.derived(&part, held, From::First));
+                let formula = format!("rate of change of {}", text(&folded, &f));
+                (formula, true, 1)
+            }
+            (None, None, _) => {
+                let formula = "kinetic plus potential energy of the limit".to_owned();
+                (formula, true, 1)
+            }
         };
-        invariants.push(InvariantWords {
-            name: own,
+        let words = InvariantWords {
+            name,
             formula,
-            count: 1,
-        });
+            count,
+        };
+        told.push((words, whole));
     }
+    let invariants = numbered(told);
     let names: Vec<&str> = invariants.iter().map(|v| v.name.as_str()).collect();
     lines.push(format!("invariants           {}", names.join(", ")));
     lines.push(format!(
@@ -132,9 +133,26 @@ pub fn card_words(
     }
 }
 
-/// A total of this lattice: as sums over sites, or site by site.
-fn explicit(folded: &mut Folded, part: &Part, e: &Expr) -> Formula {
-    total(folded, part, e).unwrap_or_else(|| folded.derived(part, e, From::First))
+/// Those of one name told apart by a number. Parts of a total, as of the even and of the odd sites, all have one: none of
+/// them is the whole.
+fn numbered(told: Vec<(InvariantWords, bool)>) -> Vec<InvariantWords> {
+    let names: Vec<(String, bool)> = told.iter().map(|(w, b)| (w.name.clone(), *b)).collect();
+    let number = |i: usize, name: &str| {
+        let same = || names.iter().enumerate().filter(|(_, (own, _))| own == name);
+        let whole_first = same().next().is_some_and(|(_, (_, whole))| *whole);
+        match same().filter(|(j, _)| *j < i).count() {
+            0 if whole_first || same().count() == 1 => None,
+            before => Some(before + 1),
+        }
+    };
+    let each = told.into_iter().enumerate().map(|(i, (words, _))| {
+        let name = match number(i, &words.name) {
+            Some(n) => format!("{}_{n}", words.name),
+            None => words.name.clone(),
+        };
+        InvariantWords { name, ..words }
+    });
+    each.collect()
 }
 
 fn terms(folded: &mut Folded, part: &Part) -> Formula {
