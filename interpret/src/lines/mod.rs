@@ -96,6 +96,8 @@ pub struct LineModel {
     energy_sizes: Option<Routine<f64>>,
     totals: Asked,
     total_sizes: Asked,
+    /// The state as sizes are taken of it, where impulses act at nodes.
+    enlarged: Option<Routine<f64>>,
     observers: Asked,
     functionals: Asked,
     momenta: Asked,
@@ -199,6 +201,11 @@ impl LineModel {
             true => Some(lower(name, "energies", &[at::MODEL, at::STATE])?),
             false => None,
         };
+        let enlarge = "not_less_than_impulses";
+        let enlarged = match program.function(name, enlarge) {
+            Some(_) => Some(lower(name, enlarge, &[at::MODEL, at::STATE, at::WORK])?),
+            None => None,
+        };
         let mut asked = |ty: &str, names: Vec<String>, given: &[usize]| -> Result<Asked, Refused> {
             let all = names.into_iter();
             all.map(|f| Ok((f.clone(), lower(ty, &f, given)?)))
@@ -239,7 +246,8 @@ impl LineModel {
         let of_state = of_state.chain(&functionals).chain(&momenta);
         let of_state = of_state.map(|(_, r)| r.places);
         let own = [&new, &start, &step].into_iter();
-        let own = own.chain(&energies).chain(&energy_sizes).map(|r| r.places);
+        let own = own.chain(&energies).chain(&energy_sizes).chain(&enlarged);
+        let own = own.map(|r| r.places);
         let places = own.chain(of_state).max();
         Ok(Arc::new(LineModel {
             name: name.to_owned(),
@@ -261,6 +269,7 @@ impl LineModel {
             energy_sizes,
             totals,
             total_sizes,
+            enlarged,
             observers,
             functionals,
             momenta,
@@ -481,6 +490,25 @@ impl LineTrajectory {
     pub fn energies(&mut self) -> Option<[f64; 2]> {
         let model = self.model.clone();
         self.two(model.energies.as_ref()?)
+    }
+
+    /// What is asked of the state as sizes are taken of it: momenta that are what is left of impulses that cancel count
+    /// as these.
+    pub fn measured<R>(&mut self, of: impl FnOnce(&mut Self) -> R) -> R {
+        let model = self.model.clone();
+        let enlarged = model.enlarged.as_ref().and_then(|e| self.ask(e));
+        let Some(enlarged) = enlarged else {
+            return of(self);
+        };
+        let state = self
+            .places
+            .get_mut(at::STATE)
+            .map(|s| std::mem::replace(s, enlarged));
+        let found = of(self);
+        if let Some(state) = state {
+            put(&mut self.places, at::STATE, state);
+        }
+        found
     }
 
     /// The sums of the sizes of their terms.
