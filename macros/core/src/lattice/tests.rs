@@ -440,3 +440,22 @@ fn first_order_is_said_once_for_all_sites() {
     assert_eq!(warning.matches("cos(q_{").count(), 1, "{warning}");
     assert!(warning.contains("at other sites"), "{warning}");
 }
+
+#[test]
+fn momenta_bear_a_letter_that_the_model_does_not() {
+    for (param, hold, momentum) in [
+        ("k", "hold p: sum(m*q) = X;", "ϖ_{i,k} = "),
+        ("p", "", "ϖ_{i,k} = "),
+        ("k", "", "p_{i,k} = "),
+    ] {
+        let source = format!(
+            "model Line {{ label i in 0..N; param m: Real at nodes; param {param}, X: Real; field q: Real at nodes; {hold}
+             lagrangian = m*(next(q) - q)^2/(2*h) - (h/2)*{param}*(next(q, i) - q - X)^2; }}"
+        );
+        let model = parse_source(&source).unwrap();
+        let text = document::printed_lattice(&model, &source, Format::Text, 100)
+            .unwrap()
+            .text;
+        assert!(text.contains(momentum), "{hold}: {text}");
+    }
+}
