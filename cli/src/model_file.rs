@@ -62,27 +62,26 @@ pub(crate) fn read(
     let in_file = case.filter(|c| plan::is_file(c));
     let case_text = in_file.map(plan::case_text).transpose()?;
     let of_case = in_file.zip(case_text.as_deref());
-    let text = case_file::functions::put_in(&text, of_case)?;
-    let stated = Stated::read(&text);
+    let filled = case_file::functions::put_in(&text, of_case)?;
+    let text = filled.text.as_str();
+    let stated = Stated::read(text);
     let choice = match &stated {
         None => None,
         Some(stated) => chosen(stated, of_case)?,
     };
     let read = match &choice {
-        None => clebsch_interpret::card_and_warnings(&text),
-        Some(choice) => clebsch_interpret::card_on_lattice(&text, choice),
+        None => clebsch_interpret::card_and_warnings(text),
+        Some(choice) => clebsch_interpret::card_on_lattice(text, choice),
     };
     let (card, warnings) = read.map_err(|refused| match refused {
-        Refused::Model(errors) => Failure::Usage(format!("\n{}", errors.render(&text, &name))),
+        Refused::Model(errors) => filled
+            .wrong_in(&errors, of_case)
+            .unwrap_or_else(|| Failure::Usage(format!("\n{}", errors.render(text, &name)))),
         other => Failure::Usage(format!("{name}: {other}")),
     })?;
     for warning in warnings {
         // What cannot be written there stands in the derivation too.
-        let _ = write!(
-            err,
-            "{}",
-            warning.diagnostic.render("warning", &text, &name)
-        );
+        let _ = write!(err, "{}", warning.diagnostic.render("warning", text, &name));
     }
     let cases = match stated.zip(choice) {
         None => vec![sample(&card, &name)],

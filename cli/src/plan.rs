@@ -143,7 +143,11 @@ impl Plan {
         (card.open)(parameters, initial, settings).map_err(|error| match error {
             OpenError::Parameter(wrong) | OpenError::Start(StartError::Initial(wrong)) => {
                 let place = self.place(card, &wrong);
-                Failure::Usage(format!("{place}: {}; {}", wrong.problem, wrong.remedy))
+                let sample = self.sample().unwrap_or_default();
+                Failure::Usage(format!(
+                    "{place}: {}; {}{sample}",
+                    wrong.problem, wrong.remedy
+                ))
             }
             OpenError::Start(StartError::Refused(cause)) => {
                 Failure::Failed(format!("cannot take the first step: {cause}"))
@@ -155,6 +159,19 @@ impl Plan {
             }
             OpenError::Compensation { .. } => Failure::Usage(format!("--compensated: {error}")),
             _ => Failure::Usage(error.to_string()),
+        })
+    }
+
+    /// How to give other values than the samples with which a model in a file runs.
+    fn sample(&self) -> Option<String> {
+        let model = self.arguments.get("model")?.as_str()?;
+        let is_sample = self.origin.is_none() && self.case.name == "sample";
+        is_sample.then(|| {
+            let model = shown(model);
+            format!(
+                "; these are sample values: print them by `clebsch case {model} > my.toml`, change them there, and run \
+                 with `--case my.toml`"
+            )
         })
     }
 

@@ -1489,7 +1489,7 @@ pub mod mixed_four {
         }
     }
     impl<T: Real> MixedFour<T> {
-        /// `(R_k μ_{1,k} + rot(G_k) ang(μ_{2,k}) + pos(G_k) × (rot(G_k) lin(μ_{2,k})) + rot(q_k) μ_{3,k} + X_k × p_{4,k})·g`: Noether: the action is invariant under rotations about the axis in space.
+        /// `(R_k μ_{1,k} + rot(G_k) ang(μ_{2,k}) + pos(G_k) × (rot(G_k) lin(μ_{2,k})) + rot(q_k) μ_{3,k} + X_k × ϖ_{4,k})·g`: Noether: the action is invariant under rotations about the axis in space.
         pub fn total_momentum_angular_g(&self, state: &MixedFourState<T>) -> T {
             let MixedFourParameters { g, .. } = self.parameters;
             let R = state.R.matrix();
@@ -1499,11 +1499,11 @@ pub mod mixed_four {
             let μ1 = state.body_momentum_R().0;
             let μ2 = state.body_momentum_G().0;
             let μ3 = state.body_momentum_q().0;
-            let p4 = state.momentum_X().0;
+            let ϖ4 = state.momentum_X().0;
             let t1 = motion_rotation(&G);
             (R * μ1 + t1 * rows_from::<T, 6, 3, 1>(&μ2, 0)
                 + motion_translation(&G).cross(&(t1 * rows_from::<T, 6, 3, 1>(&μ2, 3)))
-                + quaternion_rotation(&q) * μ3 + X.cross(&p4))
+                + quaternion_rotation(&q) * μ3 + X.cross(&ϖ4))
                 .dot(&g)
         }
     }
@@ -1704,7 +1704,7 @@ pub mod mixed_four {
             let μ1 = state.body_momentum_R().0;
             let μ2 = state.body_momentum_G().0;
             let μ3 = state.body_momentum_q().0;
-            let p4 = state.momentum_X().0;
+            let ϖ4 = state.momentum_X().0;
             let t1 = R * μ1;
             let t2 = g.dot(&g).sqrt();
             let t3 = rows_from::<T, 6, 3, 1>(&μ2, 0);
@@ -1716,7 +1716,7 @@ pub mod mixed_four {
                 [t1.dot(&t1).sqrt() * t2
                     + (t3.dot(&t3).sqrt() + t4.dot(&t4).sqrt() * t5.dot(&t5).sqrt()) * t2
                     + t6.dot(&t6).sqrt() * t2
-                    + p4.dot(&p4).sqrt() * X.dot(&X).sqrt() * t2; 1usize],
+                    + ϖ4.dot(&ϖ4).sqrt() * X.dot(&X).sqrt() * t2; 1usize],
             );
             let _ = (state, h, out);
         }
@@ -1826,7 +1826,7 @@ pub mod mixed_four {
             invariants: &[
                 Invariant::exact(
                     "total_momentum_angular_g",
-                    "(R_k μ_{1,k} + rot(G_k) ang(μ_{2,k}) + pos(G_k) × (rot(G_k) lin(μ_{2,k})) + rot(q_k) μ_{3,k} + X_k × p_{4,k})·g",
+                    "(R_k μ_{1,k} + rot(G_k) ang(μ_{2,k}) + pos(G_k) × (rot(G_k) lin(μ_{2,k})) + rot(q_k) μ_{3,k} + X_k × ϖ_{4,k})·g",
                     1usize,
                 ),
             ],

@@ -7,29 +7,65 @@ use super::space::Space;
 use crate::failure::Failure;
 use crate::plain::shown;
 use crate::suggestion::did_you_mean;
+use clebsch_core::diagnostic::Errors;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::{Model, Name, Statement};
 use clebsch_core::syntax::formula::{self, Open};
 use std::fmt::Write as _;
+use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeValue;
 
 /// The table of a case.
 pub(super) const TABLE: &str = "functions";
 
+/// The text of a model with what its functions are, and where each of them stands in it.
+pub(crate) struct Filled {
+    /// The text.
+    pub text: String,
+    /// Bytes of the text, and the key of the case that stands there.
+    put: Vec<(Range<usize>, String)>,
+}
+
+impl Filled {
+    fn unchanged(text: &str) -> Self {
+        Filled {
+            text: text.to_owned(),
+            put: Vec::new(),
+        }
+    }
+
+    /// What is wrong of a function of the case: the first mistake that stands in one, told at its key.
+    pub(crate) fn wrong_in(&self, errors: &Errors, case: Option<(&str, &str)>) -> Option<Failure> {
+        let (name, text) = case?;
+        let (diagnostic, key) = errors.iter().find_map(|d| {
+            let at = offset(&self.text, d.place.line_and_column()?)?;
+            let mut put = self.put.iter();
+            let (_, key) = put.find(|(range, _)| range.contains(&at))?;
+            Some((d, key))
+        })?;
+        let file = File::new(name, text);
+        let document = file.document().ok()?;
+        let given = table(&file, document.get_ref(), TABLE).ok()??;
+        let span = given.get(key.as_str())?.span();
+        let message = format!("{TABLE}.{key}: {}", diagnostic.text());
+        Some(file.wrong(Some(&span), &message))
+    }
+}
+
 /// The text of a model with what its functions are: by the case in the file `case`, or by samples. Unchanged where the
 /// case gives none, or where the text does not read: what is wrong of it is told later.
 ///
 /// # Errors
 /// Usage: a function is missing, unknown, or no expression in its argument.
-pub(crate) fn put_in(text: &str, case: Option<(&str, &str)>) -> Result<String, Failure> {
+pub(crate) fn put_in(text: &str, case: Option<(&str, &str)>) -> Result<Filled, Failure> {
     let Ok(model) = pipeline::parse_source(text) else {
-        return Ok(text.to_owned());
+        return Ok(Filled::unchanged(text));
     };
     let mut open = formula::open(&model).unwrap_or_default();
     open.retain(|f| !f.is_filled);
     if open.is_empty() {
-        return Ok(text.to_owned());
+        return Ok(Filled::unchanged(text));
     }
     let stated = Stated::read(text);
     let sides = stated.as_ref().and_then(Space::sample).is_some();
@@ -176,27 +212,44 @@ fn with_lengths(text: &str, lengths: Option<&[f64]>) -> String {
 }
 
 /// The text of the model with the expressions after the word `case`, from its end to its beginning, so that places before stay.
-fn replaced(text: &str, open: &[Open], written: &[Vec<String>]) -> String {
+fn replaced(text: &str, open: &[Open], written: &[Vec<String>]) -> Filled {
     let mut out = text.to_owned();
-    let mut all: Vec<(usize, String)> = open
+    let mut all: Vec<(usize, &str, String)> = open
         .iter()
         .zip(written)
-        .filter_map(|(f, each)| Some((after_word(text, f.at?)?, formula::in_quotes(each))))
+        .filter_map(|(f, each)| {
+            let list = format!(" {}", formula::in_quotes(each));
+            Some((after_word(text, f.at?)?, f.name.text.as_str(), list))
+        })
         .collect();
-    all.sort_by_key(|(at, _)| std::cmp::Reverse(*at));
-    for (at, list) in all {
-        out.insert_str(at, &format!(" {list}"));
+    all.sort_by_key(|(at, ..)| *at);
+    for (at, _, list) in all.iter().rev() {
+        out.insert_str(*at, list);
     }
-    out
+    let mut before = 0;
+    let put = all.iter().map(|(at, name, list)| {
+        let start = at + before;
+        before += list.len();
+        (start..start + list.len(), (*name).to_owned())
+    });
+    Filled {
+        put: put.collect(),
+        text: out,
+    }
 }
 
 /// Where the word `case` that begins at a line and a column ends, in bytes.
-fn after_word(text: &str, (line, column): (usize, usize)) -> Option<usize> {
+fn after_word(text: &str, place: (usize, usize)) -> Option<usize> {
+    let at = offset(text, place)?;
+    text.get(at..)?.starts_with("case").then_some(at + 4)
+}
+
+/// A line and a column, counted from 1, in bytes.
+fn offset(text: &str, (line, column): (usize, usize)) -> Option<usize> {
     let mut start = 0;
     for (index, own) in text.split_inclusive('\n').enumerate() {
         if index + 1 == line {
-            let at = start + own.char_indices().nth(column - 1)?.0;
-            return text.get(at..)?.starts_with("case").then_some(at + 4);
+            return Some(start + own.char_indices().nth(column.checked_sub(1)?)?.0);
         }
         start += own.len();
     }

@@ -221,6 +221,10 @@ fn every_model_is_derived_and_runs_its_case() {
             assert_eq!(done.code, 2, "{name}: {}{}", done.out, done.err);
             assert!(done.err.contains("off the constraint"), "{}", done.err);
             assert!(sample.out.contains("must satisfy them"), "{}", sample.out);
+            let done = clebsch(&["run", &model]);
+            assert_eq!(done.code, 2, "{name}: {}{}", done.out, done.err);
+            let way = "print them by `clebsch case ";
+            assert!(done.err.contains(way), "{}", done.err);
             continue;
         }
         assert_eq!(

@@ -14,6 +14,7 @@ mod functions;
 mod lattices;
 mod longest_step;
 mod model_files;
+mod multipliers;
 mod names;
 mod npz;
 mod own_models;

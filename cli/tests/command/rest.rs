@@ -127,3 +127,46 @@ fn a_held_rod_at_rest_falls() {
     let done = clebsch(&["run", &model, "--case", &case, "--steps", "20"]);
     assert_eq!(done.code, 0, "{}", done.err);
 }
+
+/// A ring in a plane that stands still, forces of neighbours and the reaction of a sum in balance: what rounding leaves of momenta
+/// is measured by these forces, whether loops over sites run or bodies.
+#[test]
+fn totals_of_a_line_at_rest_are_measured_by_the_impulses_that_cancel() {
+    let folder = Folder::new("line at rest");
+    for n in [4, 40] {
+        let model = format!(
+            "model Still {{
+                label i in 0..N;
+                periodic;
+                param m, k: Real;
+                field q: Vec<2> at nodes;
+                hold p: sum(dot(q, q)) = {n};
+                let r = next(q, i) - q;
+                lagrangian = m*dot(next(q) - q, next(q) - q)/(2*h) - (h/2)*k*dot(r, r);
+            }}"
+        );
+        let model = folder.write("still.clebsch", &model);
+        let case = format!(
+            "model = \"still\"\nh = 0.01\nsteps = 200\n[labels]\ni = {n}\n[ends]\ni = \"periodic\"\n\
+             [parameters]\nm = 1.0\nk = 3.0\n[initial]\nq = [\"cos(2*pi*i/N)\", \"sin(2*pi*i/N)\"]\n\
+             momentum_q = [0.0, 0.0]\n"
+        );
+        let case = folder.write("still.toml", &case);
+        let done = clebsch(&["run", &model, "--case", &case, "--json"]);
+        assert_eq!(done.code, 0, "{}\n{}", done.err, done.out);
+        let json: serde_json::Value = serde_json::from_str(&done.out).expect("JSON");
+        let all = json["results"]["invariants"].as_array().expect("a list");
+        let angular = all.iter().find(|v| {
+            let name = v["name"].as_str().unwrap_or("");
+            name.contains("momentum_angular")
+        });
+        let scale = angular.expect("is conserved")["scale"].as_f64();
+        // Each of n bodies gets h k |r| = 0.03 |r| from either neighbour, at a distance 1 from the origin.
+        let link = 2.0 * (std::f64::consts::PI / f64::from(n)).sin();
+        let least = f64::from(n) * 0.03 * link;
+        assert!(
+            scale.is_some_and(|s| s > 0.5 * least),
+            "{n}: {scale:?} of {least}"
+        );
+    }
+}

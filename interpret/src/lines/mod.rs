@@ -1,6 +1,7 @@
 //! Models with labels for every number of sites: the program with loops over sites that is emitted for
 //! them, executed. Takes the text of a model; gives lines that start from data at sites, and run.
 
+mod asked;
 mod card;
 mod given;
 mod running;
@@ -96,6 +97,8 @@ pub struct LineModel {
     energy_sizes: Option<Routine<f64>>,
     totals: Asked,
     total_sizes: Asked,
+    /// The state as sizes are taken of it, where impulses act at nodes.
+    enlarged: Option<Routine<f64>>,
     observers: Asked,
     functionals: Asked,
     momenta: Asked,
@@ -199,6 +202,11 @@ impl LineModel {
             true => Some(lower(name, "energies", &[at::MODEL, at::STATE])?),
             false => None,
         };
+        let enlarge = "not_less_than_impulses";
+        let enlarged = match program.function(name, enlarge) {
+            Some(_) => Some(lower(name, enlarge, &[at::MODEL, at::STATE, at::WORK])?),
+            None => None,
+        };
         let mut asked = |ty: &str, names: Vec<String>, given: &[usize]| -> Result<Asked, Refused> {
             let all = names.into_iter();
             all.map(|f| Ok((f.clone(), lower(ty, &f, given)?)))
@@ -239,7 +247,8 @@ impl LineModel {
         let of_state = of_state.chain(&functionals).chain(&momenta);
         let of_state = of_state.map(|(_, r)| r.places);
         let own = [&new, &start, &step].into_iter();
-        let own = own.chain(&energies).chain(&energy_sizes).map(|r| r.places);
+        let own = own.chain(&energies).chain(&energy_sizes).chain(&enlarged);
+        let own = own.map(|r| r.places);
         let places = own.chain(of_state).max();
         Ok(Arc::new(LineModel {
             name: name.to_owned(),
@@ -261,6 +270,7 @@ impl LineModel {
             energy_sizes,
             totals,
             total_sizes,
+            enlarged,
             observers,
             functionals,
             momenta,
@@ -471,60 +481,6 @@ impl LineTrajectory {
         run(&model.step, &mut self.places)
             .map(|_| ())
             .map_err(Failure::line)
-    }
-
-    fn ask(&mut self, routine: &Routine<f64>) -> Option<Value<f64>> {
-        run(routine, &mut self.places).ok()
-    }
-
-    /// The kinetic and the potential energy at the node.
-    pub fn energies(&mut self) -> Option<[f64; 2]> {
-        let model = self.model.clone();
-        self.two(model.energies.as_ref()?)
-    }
-
-    /// The sums of the sizes of their terms.
-    pub fn energy_sizes(&mut self) -> Option<[f64; 2]> {
-        let model = self.model.clone();
-        self.two(model.energy_sizes.as_ref()?)
-            .map(|[kinetic, potential]| [kinetic.abs(), potential.abs()])
-    }
-
-    fn two(&mut self, routine: &Routine<f64>) -> Option<[f64; 2]> {
-        match self.ask(routine)? {
-            Value::List(both) => match both.as_slice() {
-                [Value::Real(kinetic), Value::Real(potential)] => Some([*kinetic, *potential]),
-                _ => None,
-            },
-            _ => None,
-        }
-    }
-
-    /// A conserved total by its name.
-    pub fn total(&mut self, name: &str) -> Option<Vec<f64>> {
-        let model = self.model.clone();
-        let (_, routine) = model.totals.iter().find(|(own, _)| own == name)?;
-        numbers(&self.ask(routine)?)
-    }
-
-    /// The sums of the sizes of the terms of sites of a conserved total.
-    pub fn total_sizes(&mut self, name: &str) -> Option<Vec<f64>> {
-        let model = self.model.clone();
-        let (_, routine) = model.total_sizes.iter().find(|(own, _)| own == name)?;
-        let all = numbers(&self.ask(routine)?)?;
-        Some(all.into_iter().map(f64::abs).collect())
-    }
-
-    /// What is observed at all sites, one site after the other, matrices row after row.
-    pub fn observe(&mut self, name: &str) -> Option<Vec<f64>> {
-        let model = self.model.clone();
-        let values = format!("values_{name}");
-        let own = model.observers.iter().find(|(own, _)| own == name);
-        let (_, routine) =
-            own.or_else(|| model.functionals.iter().find(|(own, _)| *own == values))?;
-        let value = self.ask(routine)?;
-        // What belongs to the whole line is one value.
-        columns(&value).or_else(|| numbers(&value))
     }
 }
 

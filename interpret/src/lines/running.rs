@@ -225,8 +225,7 @@ struct Running {
 
 impl Running {
     /// Writes the invariants, or the sums of the sizes of what they are made of.
-    fn sums(&self, out: &mut [f64], sizes: bool) {
-        let mut line = self.line.borrow_mut();
+    fn sums(&self, line: &mut LineTrajectory, out: &mut [f64], sizes: bool) {
         let mut out = out.iter_mut();
         for invariant in self.carded.card.invariants {
             let values = match (invariant.name, sizes) {
@@ -284,11 +283,12 @@ impl Trajectory for Running {
     }
 
     fn invariants(&self, out: &mut [f64]) {
-        self.sums(out, false);
+        self.sums(&mut self.line.borrow_mut(), out, false);
     }
 
     fn scales(&self, out: &mut [f64]) {
-        self.sums(out, true);
+        let mut line = self.line.borrow_mut();
+        line.measured(|line| self.sums(line, out, true));
     }
 
     fn words(&mut self, words: &mut Words) {

@@ -3,7 +3,7 @@
 
 use crate::card::Card;
 use crate::saved::{Saved, Words};
-use crate::scalar::larger;
+use crate::scalar::{Real, larger};
 use nalgebra::SMatrix;
 
 /// The drift of one component of one invariant since the run began.
@@ -60,15 +60,15 @@ const SHARE: f64 = 1e9;
 /// a node, of this size, all of their entries are made as large. What is left of impulses that cancel is rounding.
 #[doc(hidden)]
 #[must_use]
-pub fn not_less<const R: usize, const C: usize>(
-    momentum: SMatrix<f64, R, C>,
+pub fn not_less<T: Real, const R: usize, const C: usize>(
+    momentum: SMatrix<T, R, C>,
     (from, count): (usize, usize),
-    impulse: f64,
-) -> SMatrix<f64, R, C> {
+    impulse: T,
+) -> SMatrix<T, R, C> {
     let mut taken = momentum;
     let rows = momentum.rows(from, count);
-    if let Some(x) = filled(rows.iter().map(|x| x.abs()), impulse) {
-        taken.rows_mut(from, count).fill(x);
+    if let Some(x) = filled(rows.iter().map(|x| x.value().abs()), impulse.value()) {
+        taken.rows_mut(from, count).fill(T::from_f64(x));
     }
     taken
 }

@@ -132,7 +132,10 @@ pub struct Derivation {
 fn letters(spec: &Spec) -> Letters {
     let mut symbols = spec.symbols.clone();
     let many = spec.configurations.len() > 1;
-    let mut numbered = |base: &str, i: usize, shape: Shape, structure, role| {
+    // Letters of a paper, another one where the model bears the first: two that differ by a number alone are confused.
+    let free = |letters: &[&'static str]| spec.symbols.free_letter(letters, many);
+    let mut numbered = |letters: &[&'static str], i: usize, shape: Shape, structure, role| {
+        let base = free(letters);
         let name = if many {
             format!("{base}{}", i + 1)
         } else {
@@ -146,22 +149,34 @@ fn letters(spec: &Spec) -> Letters {
     for (i, c) in spec.configurations.iter().enumerate() {
         let shape = c.group.shape();
         let (algebra, structure) = c.group.variation();
-        variation.push(numbered("ξ", i, algebra, structure, Role::Variation));
-        direction.push(numbered("η", i, algebra, structure, Role::Variation));
+        variation.push(numbered(
+            &["ξ", "χ"],
+            i,
+            algebra,
+            structure,
+            Role::Variation,
+        ));
+        direction.push(numbered(
+            &["η", "θ"],
+            i,
+            algebra,
+            structure,
+            Role::Variation,
+        ));
         momentum.push(numbered(
-            "P",
+            &["P", "Y"],
             i,
             shape,
             Structure::General,
             Role::Multiplier,
         ));
-        edge.push(numbered("M", i, algebra, structure, Role::Derived));
+        edge.push(numbered(&["M", "Π"], i, algebra, structure, Role::Derived));
         let (covector, structure) = c.group.dual();
         let name = match c.group.is_additive() {
-            true => "p",
-            false => c.side.of("μ", "m"),
+            true => ["p", "ϖ"],
+            false => c.side.of(["μ", "ν"], ["m", "ϖ"]),
         };
-        node.push(numbered(name, i, covector, structure, Role::Derived));
+        node.push(numbered(&name, i, covector, structure, Role::Derived));
     }
     let (mut multiplier, mut placeholder) = (Vec::new(), Vec::new());
     for a in &spec.advected {
@@ -194,9 +209,10 @@ fn letters(spec: &Spec) -> Letters {
         } else {
             String::new()
         };
-        let name = symbols.fresh_name(&format!("ζ{number}"));
+        let letter = free(&["ζ", "υ"]);
+        let name = symbols.fresh_name(&format!("{letter}{number}"));
         rate.push(symbols.add(&name, shape, structure, Role::Variation));
-        let name = symbols.fresh_name(&format!("dζ{number}"));
+        let name = symbols.fresh_name(&format!("d{letter}{number}"));
         acceleration.push(symbols.add(&name, shape, structure, Role::Variation));
     }
     let held = holds::letters(spec, &mut symbols);

@@ -40,7 +40,7 @@ impl Variation {
     }
 }
 
-pub(super) fn at(symbol: SymbolId, shift: Shift) -> Letter {
+pub(crate) fn at(symbol: SymbolId, shift: Shift) -> Letter {
     Letter { symbol, shift }
 }
 

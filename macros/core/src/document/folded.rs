@@ -179,12 +179,20 @@ impl<'a> Folded<'a> {
         id
     }
 
-    /// Terms of the Lagrangian where they are shown.
+    /// Terms of the Lagrangian where they are shown; none for constants, which move nothing.
     pub(super) fn terms(&mut self, part: &Part) -> Vec<Option<Expr>> {
         let shown: Vec<_> = part.unfolded.summands.iter().map(|s| &s.shown).collect();
         let elaborated = check::numbers(&part.unfolded.model, &shown);
         let each = part.unfolded.summands.iter().zip(elaborated);
+        let symbols = &part.d.letters.symbols;
+        let moves = |e: &Expr| {
+            let letters = expr::letters(e);
+            let is_given =
+                |l: &Letter| matches!(symbols.get(l.symbol).role, Role::Parameter | Role::Step);
+            !letters.iter().all(is_given)
+        };
         each.map(|(s, e)| {
+            let e = e.filter(moves);
             let from = match s.end {
                 None => From::Site(s.site),
                 Some((false, _)) => From::First,
@@ -245,10 +253,17 @@ fn origin(lattice: &Lattice, part: &Part, symbol: SymbolId) -> Option<Origin> {
         if c.velocity == symbol {
             return of_copy(element, "Δ{}".to_owned());
         }
-        if d.letters.node_momentum.get(i) == Some(&symbol) {
+        let numbered = [&d.letters.rate, &d.letters.node_momentum];
+        if numbered.iter().any(|all| all.get(i) == Some(&symbol)) {
             let letter: String = name.chars().take_while(|c| !c.is_ascii_digit()).collect();
             let copy = part.unfolded.copy(element)?;
             return of_copy(element, format!("{letter}{}", number(part, &copy.of)));
+        }
+    }
+    for (hold, held) in d.spec.holds.iter().zip(&d.letters.held) {
+        if held.variation == symbol {
+            let multiplier = &d.letters.symbols.get(hold.multiplier).name;
+            return of_copy(multiplier, "δ_{}".to_owned());
         }
     }
     None

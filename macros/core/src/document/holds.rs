@@ -2,7 +2,12 @@
 //! is projected on arrival. Takes the sheet; gives paragraphs of sections, and a section.
 
 use super::sheet::Sheet;
-use crate::derive::holds;
+use crate::algebra::Algebra;
+use crate::check::spec::Hold;
+use crate::derive::balance::shorter;
+use crate::derive::limit::Limit;
+use crate::derive::variation::at;
+use crate::derive::{Derivation, holds};
 use crate::expr::shape::Shape;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::print::document::{Document, Inline, Section};
@@ -80,44 +85,81 @@ pub fn held(sheet: &Sheet, doc: &mut Document) {
         );
         return;
     };
-    let impulses = (0..d.spec.holds.len()).map(|j| holds::rate_paired(d, j));
-    let paired = expr::sum(impulses.collect::<Vec<_>>(), Shape::SCALAR);
-    section.text(
-        "On arrival the momentum is projected (RATTLE): impulses along the reactions are added,",
-    );
-    let here = |symbol| Letter {
-        symbol,
-        shift: Shift::HERE,
-    };
-    let zeta: Vec<(Letter, Expr)> = (d.spec.configurations.iter())
-        .zip(d.letters.variation.iter().zip(&d.letters.rate))
-        .map(|(c, (xi, zeta))| {
-            let velocity = crate::derive::continuous::velocity(&d.letters, c.group, *zeta);
-            (here(*xi), velocity)
-        })
-        .collect();
-    let kinetic = expr::add(limit.kinetic.clone(), limit.linear.clone());
-    for (i, c) in d.spec.configurations.iter().enumerate() {
-        let along = |e: &Expr| {
-            let y = expr::gradient(s, e, here(d.letters.variation[i]));
-            expr::substitute(s, &c.group.of_gradient(s, y), &zeta)
-        };
-        let kick = along(&paired);
-        if kick.is_zero() {
-            continue;
+    section.text(ON_ARRIVAL);
+    for i in 0..d.spec.configurations.len() {
+        if let Some([left, right]) = projected(d, limit, i) {
+            section.equation(Formula::equal(sheet.math(&left), sheet.math(&right)));
         }
-        let momentum = expr::here(s, d.letters.node_momentum[i]);
-        let right = expr::sub(momentum, kick);
-        section.equation(Formula::equal(
-            sheet.math(&along(&kinetic)),
-            sheet.math(&right),
-        ));
     }
-    section.text("so that the velocity on the left moves along the constraints:");
+    section.text(ALONG);
     for hold in &d.spec.holds {
-        let rate = expr::substitute(s, &holds::rate(d, hold), &zeta);
+        let rate = rate_on_arrival(d, hold);
         let zero = expr::zero(rate.shape());
         section.equation(Formula::equal(sheet.math(&rate), Formula::Expr(zero)));
     }
-    section.text("The projection changes no configuration: the multiplier of the next step would supply the same impulse. The multiplier in the state is that of the step that ended at the node, including the impulse of the projection; it approximates the multiplier at the middle of the step to second order.");
+    section.text(&no_change(d));
+    for j in 0..d.spec.holds.len() {
+        section.equation(sheet.math(&told(d, j)));
+    }
+    section.text(MIDDLE);
+}
+
+/// How momenta are projected.
+pub(super) const ON_ARRIVAL: &str =
+    "On arrival the momentum is projected (RATTLE): impulses along the reactions are added,";
+pub(super) const ALONG: &str = "so that the velocity on the left moves along the constraints:";
+/// What the state tells of multipliers, before the equations and behind them.
+pub(super) fn no_change(d: &Derivation) -> String {
+    format!(
+        "The projection changes no configuration: the multiplier of the next step would supply the same impulse. The multiplier that the state shows at node {} is that of the step that ended there with the impulse of the projection over the step:",
+        d.spec.time_index
+    )
+}
+pub(super) const MIDDLE: &str = "It approximates the multiplier at the middle of that step to second order; each of its two parts is about a half of it.";
+
+/// Velocities in the place of variations.
+fn velocities(d: &Derivation) -> Vec<(Letter, Expr)> {
+    let all = d.spec.configurations.iter();
+    all.zip(d.letters.variation.iter().zip(&d.letters.rate))
+        .map(|(c, (xi, zeta))| {
+            let velocity = crate::derive::continuous::velocity(&d.letters, c.group, *zeta);
+            (at(*xi, Shift::HERE), velocity)
+        })
+        .collect()
+}
+
+/// The momentum of configuration `i` by the velocity, and what it is on arrival after the projection; none where no
+/// reaction acts on it.
+pub(super) fn projected(d: &Derivation, limit: &Limit, i: usize) -> Option<[Expr; 2]> {
+    let s = &d.letters.symbols;
+    let (c, xi) = (d.spec.configurations.get(i)?, d.letters.variation.get(i)?);
+    let (velocities, algebra) = (velocities(d), Algebra::new(s));
+    let along = |e: &Expr| {
+        let y = expr::gradient(s, e, at(*xi, Shift::HERE));
+        let covector = expr::substitute(s, &c.group.of_gradient(s, y), &velocities);
+        shorter(&algebra, covector)
+    };
+    let impulses = (0..d.spec.holds.len()).map(|j| holds::rate_paired(d, j));
+    let kick = along(&expr::sum(impulses.collect::<Vec<_>>(), Shape::SCALAR));
+    if kick.is_zero() {
+        return None;
+    }
+    let momentum = expr::here(s, *d.letters.node_momentum.get(i)?);
+    let kinetic = expr::add(limit.kinetic.clone(), limit.linear.clone());
+    Some([along(&kinetic), expr::sub(momentum, kick)])
+}
+
+/// The rate of change of what is held, by velocities.
+pub(super) fn rate_on_arrival(d: &Derivation, hold: &Hold) -> Expr {
+    expr::substitute(&d.letters.symbols, &holds::rate(d, hold), &velocities(d))
+}
+
+/// The multiplier of constraint `j` that the state shows: that of the step before, less the impulse of the projection over
+/// the step.
+pub(super) fn told(d: &Derivation, j: usize) -> Expr {
+    let s = &d.letters.symbols;
+    let own = expr::here(s, d.spec.holds[j].multiplier);
+    let own = expr::shift_time(s, &own, -Shift::NEXT.time);
+    let impulse = expr::here(s, d.letters.held[j].variation);
+    expr::sub(own, expr::quotient(impulse, expr::here(s, d.spec.step)))
 }

@@ -58,6 +58,7 @@ pub fn printed_lattice(
     functionals::functionals(&mut folded, first, &mut doc);
     interior(&mut folded, first, &mut doc);
     ends::ends(&mut folded, &parts, &mut doc);
+    holds::held(&mut folded, first, &mut doc);
     invariants::invariants(&mut folded, model, &parts, &mut doc);
     certificate(&lattice, &parts, &mut doc);
     let style = Style {
@@ -254,9 +255,13 @@ fn terms(folded: &mut Folded, part: &Part, doc: &mut Document) {
     let terms = folded.terms(part);
     let scaled = part.d.spec.scale.is_some();
     let ring = part.choice.periodic;
-    let mut shown = Vec::new();
+    let (mut shown, mut without_constants) = (Vec::new(), false);
     for (s, e) in part.unfolded.summands.iter().zip(terms) {
-        let Some(e) = e.filter(|_| s.end.is_none()) else {
+        if s.end.is_some() {
+            continue;
+        }
+        let Some(e) = e else {
+            without_constants = true;
             continue;
         };
         let e = expr::collect(&folded.symbols, &e);
@@ -280,6 +285,9 @@ fn terms(folded: &mut Folded, part: &Part, doc: &mut Document) {
         Err(several) => Formula::Sum(several),
     };
     section.equation(Formula::defined(Formula::name(&name), sum));
+    if without_constants {
+        section.text("Constants, which do not enter the equations of motion, are left out.");
+    }
     if !part.d.action.nodal.is_zero() {
         section.text("Terms of a node in time are split evenly between the two adjacent steps.");
     }

@@ -4,7 +4,9 @@
 use super::sheet::Sheet;
 use crate::derive::Derivation;
 use crate::derive::invariants::{Count, Known};
-use crate::expr::Expr;
+use crate::derive::variation::at;
+use crate::expr::shape::Dim;
+use crate::expr::{self, Expr, Node, Shift};
 use crate::print::document::{Document, Section};
 use crate::print::formula::Formula;
 
@@ -30,6 +32,12 @@ pub fn reduction(sheet: &Sheet, doc: &mut Document) {
             section.equation(Formula::defined(own, sheet.math(definition)));
         }
     }
+    for a in d.spec.advected.iter().filter(|a| a.found) {
+        if let Some(meaning) = a.definition.as_ref().and_then(|e| meaning(sheet, e)) {
+            let own = sheet.here(a.quantity);
+            section.paragraph([own.into(), format!(" is {meaning}.").into()]);
+        }
+    }
     section.equation(Formula::equal(
         Formula::name("ℓ"),
         sheet.math(&d.spec.typed),
@@ -37,6 +45,41 @@ pub fn reduction(sheet: &Sheet, doc: &mut Document) {
     section.noted(
         "As stated; substituting the definitions gives the reduced discrete Lagrangian below.",
     );
+}
+
+/// What a quantity is that no parameter of the model names: it is made of one configuration alone.
+fn meaning(sheet: &Sheet, definition: &Expr) -> Option<String> {
+    let d = sheet.d;
+    let mut all = d.spec.configurations.iter();
+    let c = all.find(|c| expr::contains(definition, at(c.element, Shift::HERE)))?;
+    let letters = expr::letters(definition);
+    if letters.iter().any(|l| l.symbol != c.element) {
+        return None;
+    }
+    let (of, seen) = c.side.of(("space", "body"), ("the body", "space"));
+    let from = match seen {
+        "body" => "the body",
+        other => other,
+    };
+    let units = unit(definition);
+    Some(match units {
+        Some((n, axis)) if c.group.rigid().is_some() && axis == expr::last_axis(n) => {
+            format!("the origin of {of} seen from {from}, in homogeneous coordinates")
+        }
+        Some((_, axis)) => format!("the unit vector E{} of {of} seen from {from}", axis + 1),
+        None if definition.shape().is_square() => {
+            format!("the scalar product of {of} seen from {from}")
+        }
+        None => return None,
+    })
+}
+
+/// A unit vector in an expression.
+fn unit(e: &Expr) -> Option<(Dim, u8)> {
+    match e.node() {
+        Node::Unit(n, axis) => Some((*n, *axis)),
+        _ => e.children().into_iter().find_map(unit),
+    }
 }
 
 /// The bracket, row by row.

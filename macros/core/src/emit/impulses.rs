@@ -8,7 +8,8 @@ use super::names::{Names, per_configuration, variable};
 use super::sizes::size;
 use super::step::{at, here};
 use crate::derive::Derivation;
-use crate::expr::symbol::Role;
+use crate::derive::balance::Balance;
+use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::{Literal, TokenStream};
@@ -29,16 +30,27 @@ fn stands(role: Role) -> bool {
     )
 }
 
-/// The impulses that what stands at a node gives, where they depend on nothing else.
-fn impulses(d: &Derivation) -> Vec<Impulse> {
-    let s = &d.letters.symbols;
-    let at_node = |e: &Expr| {
+/// The two parts of the impulse of a balance at its node, where they depend on what stands there alone; letters of
+/// reactions are put to `rest`.
+pub(super) fn at_node(s: &Symbols, rest: &[(Letter, Expr)], b: &Balance) -> Vec<Expr> {
+    let stands_at_node = |e: &Expr| {
         let letters = expr::letters(e);
         !letters.is_empty()
             && letters
                 .iter()
                 .all(|l| l.shift == Shift::HERE && stands(s.get(l.symbol).role))
     };
+    let arrived = expr::shift_time(s, &b.node_in, -Shift::NEXT.time);
+    [b.node_out.clone(), arrived]
+        .iter()
+        .map(|e| expr::substitute(s, e, rest))
+        .filter(stands_at_node)
+        .collect()
+}
+
+/// The impulses that what stands at a node gives, where they depend on nothing else.
+fn impulses(d: &Derivation) -> Vec<Impulse> {
+    let s = &d.letters.symbols;
     // Reactions of what is held balance the rest: they are as large.
     let multipliers: Vec<(Letter, Expr)> = d
         .spec
@@ -50,12 +62,7 @@ fn impulses(d: &Derivation) -> Vec<Impulse> {
         .collect();
     let mut all = Vec::new();
     for (configuration, (c, b)) in d.spec.configurations.iter().zip(&d.balances).enumerate() {
-        let arrived = expr::shift_time(s, &b.node_in, -Shift::NEXT.time);
-        let parts: Vec<Expr> = [b.node_out.clone(), arrived]
-            .iter()
-            .map(|e| expr::substitute(s, e, &multipliers))
-            .filter(at_node)
-            .collect();
+        let parts = at_node(s, &multipliers, b);
         let mut push = |rows, of: &dyn Fn(&Expr) -> Expr| {
             let sizes = parts.iter().map(|e| expr::magnitude(s, &of(e)));
             let sizes: Vec<Expr> = sizes.filter(|e| !e.is_zero()).collect();

@@ -204,6 +204,20 @@ impl Symbols {
         (0..self.list.len() as u32).map(SymbolId)
     }
 
+    /// The first of these letters that no symbol bears; where it is to be numbered, with a number neither. The first one
+    /// if all are taken.
+    pub fn free_letter<'a>(&self, letters: &[&'a str], is_numbered: bool) -> &'a str {
+        let digit = |c: char| c.is_ascii_digit() || c == '_';
+        let bears = |s: &Symbol, letter: &str| match s.name.strip_prefix(letter) {
+            Some("") => true,
+            Some(rest) => is_numbered && rest.chars().all(digit),
+            None => false,
+        };
+        let free = |letter: &&&str| !self.list.iter().any(|s| bears(s, letter));
+        let found = letters.iter().find(free).or(letters.first());
+        found.copied().unwrap_or("")
+    }
+
     /// A name that no symbol bears yet, in print either: `base`, or `base` with a number.
     pub fn fresh_name(&self, base: &str) -> String {
         let mut name = base.to_owned();

@@ -7,6 +7,7 @@ mod choice;
 mod declared;
 mod mesh;
 mod names;
+mod parts;
 mod put;
 mod range;
 mod summands;

@@ -2,6 +2,7 @@
 
 use super::choice::Choice;
 use super::declared::{Lattice, Sites};
+use super::parts::{LINEAR, has_sum, parts};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::syntax::ast::{Expression, Kind};
 
@@ -98,6 +99,13 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
                 found.label = found.label.or(lattice.line);
                 walk(lattice, inner, by, found)
             }
+            ("sum", [_, _, more, ..]) => Err(Diagnostic::new(
+                more.place,
+                "a sum over sites takes what is summed, and `nodes` or `segments`; nothing further",
+            )
+            .help("write `sum(expr)`, or `sum(expr, nodes)`; terms are added within: `sum(a + b)`")),
+            ("sum", []) => Err(Diagnostic::new(e.place, "nothing is summed over sites here")
+                .help("write what is summed: `sum(m*x)`, or `sum(m*x, nodes)`")),
             ("sum", [_]) => Err(Diagnostic::new(
                 e.place,
                 "a sum over all sites is a number or a vector of the whole line, which a held constraint alone may contain",
@@ -107,6 +115,50 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
                 .iter()
                 .try_for_each(|a| walk(lattice, a, by, found)),
         },
+    }
+}
+
+/// Where a term of the Lagrangian is not linear in its sum over stated sites, if so: such a sum says over which sites the
+/// term is summed, and is no number of the whole line.
+pub(super) fn beside_sum(lattice: &Lattice, e: &Expression) -> Option<Diagnostic> {
+    let refused = |at: &Expression, what: &str| {
+        let message = format!(
+            "{what} joins all sites with one another, and stands in no Lagrangian: `sum(expr, nodes)` states the sites over \
+             which a term is summed"
+        );
+        let d = Diagnostic::new(at.place, message);
+        Some(d.help("write what stands at a site into the sum, as in `sum(x^2, nodes)`; a constraint holds functions of sums, as in `hold p: dot(sum(x), sum(x)) = a^2;`"))
+    };
+    let differs = |e: &Expression| reach(lattice, e).is_ok_and(|r| !r.letters.is_empty());
+    if !has_sum(e) || matches!(&e.kind, Kind::Call(f, _) if f.text == "sum") {
+        return None;
+    }
+    match &e.kind {
+        Kind::Neg(a) | Kind::Shaped(a, _) | Kind::Transpose(a) | Kind::Component(a, _) => {
+            beside_sum(lattice, a)
+        }
+        Kind::Sum(terms) => terms.iter().find_map(|(_, t)| match has_sum(t) {
+            true => beside_sum(lattice, t),
+            false => differs(t)
+                .then(|| refused(t, "a quantity of a site beside a sum over sites"))
+                .flatten(),
+        }),
+        Kind::Quotient(_, b) if has_sum(b) => refused(e, "a quotient by a sum over sites"),
+        Kind::Power(..) => refused(e, "a power of a sum over sites"),
+        Kind::Call(f, _) if !LINEAR.contains(&f.text.as_str()) => {
+            refused(e, "a function of a sum over sites")
+        }
+        _ => {
+            let all = parts(e);
+            let with_sum: Vec<&&Expression> = all.iter().filter(|p| has_sum(p)).collect();
+            match with_sum.as_slice() {
+                [only] => match all.iter().find(|p| !has_sum(p) && differs(p)) {
+                    Some(other) => refused(other, "a quantity of a site times a sum over sites"),
+                    None => beside_sum(lattice, only),
+                },
+                _ => refused(e, "a product of sums over sites"),
+            }
+        }
     }
 }
 

@@ -350,6 +350,9 @@ fn sums_are_refused_where_they_mean_nothing() {
             "follows from the others",
         ),
         ("scale sum(m);", "which a held constraint alone may contain"),
+        ("hold c: sum(y) = X;", "`y`"),
+        ("hold c: sum(φ, nodes, 3) = X;", "nothing further"),
+        ("hold c: sum() = X;", "nothing is summed"),
     ] {
         let source = beads(hold);
         let model = parse_source(&source).unwrap();
@@ -358,5 +361,101 @@ fn sums_are_refused_where_they_mean_nothing() {
         let told = told.expect_err(hold).to_string();
         assert!(told.contains(wanted), "{hold}: {told}");
         assert!(lattice.line.is_some());
+    }
+}
+
+#[test]
+fn a_sum_over_stated_sites_is_a_term_of_the_lagrangian_and_no_number_in_it() {
+    let told = |term: &str| {
+        let source = format!(
+            "model Beads {{ label i in 0..N; param m: Real at nodes; param k: Real; field x: Real at nodes;
+             lagrangian = m*(next(x) - x)^2/(2*h) - h*k*{term}; }}"
+        );
+        let model = parse_source(&source).unwrap();
+        document::printed_lattice(&model, &source, Format::Text, 100)
+    };
+    for (term, wanted) in [
+        ("sum(x, nodes)^2", "a power of a sum over sites"),
+        ("cos(sum(x, nodes))", "a function of a sum over sites"),
+        (
+            "x*sum(x, nodes)",
+            "a quantity of a site times a sum over sites",
+        ),
+        ("m/sum(m, nodes)", "a quotient by a sum over sites"),
+        ("sum(x, nodes)*sum(m, nodes)", "stands within another one"),
+        ("sum(x, nodes, 3)", "nothing further"),
+    ] {
+        let found = told(term).map(|_| ()).expect_err(term).to_string();
+        assert!(found.contains(wanted), "{term}: {found}");
+    }
+    for term in ["sum(x^2, nodes)", "2*sum(x, nodes)/3", "(-sum(x*m, nodes))"] {
+        assert!(told(term).is_ok(), "{term}");
+    }
+}
+
+#[test]
+fn a_parameter_of_nodes_that_stands_at_segments_is_used() {
+    let told = |term: &str| {
+        let source = format!(
+            "model Springs {{ label i in 0..N; param m, a: Real at nodes; field q: Real at nodes;
+             lagrangian = m*(next(q) - q)^2/(2*h) - (h/2){term}*(next(q, i) - q)^2; }}"
+        );
+        let model = parse_source(&source).unwrap();
+        document::printed_lattice(&model, &source, Format::Text, 100)
+            .unwrap()
+            .text
+    };
+    // Of an open line the last node has no segment.
+    let used = told("*a");
+    assert!(!used.contains("never used"), "{used}");
+    assert!(told("").contains("the parameter `a` is never used"));
+}
+
+#[test]
+fn constants_of_a_line_are_left_out_of_what_is_printed() {
+    let source = "model Pendula { label i in 0..N; param m, g, k: Real; field q: Real at nodes;
+         lagrangian = m*(next(q) - q)^2/(2*h) - h*m*g*(1 - cos(q)) - (h*k/2)*(next(q, i) - q)^2; }";
+    let model = parse_source(source).unwrap();
+    let text = document::printed_lattice(&model, source, Format::Text, 100)
+        .unwrap()
+        .text;
+    assert!(text.contains("+ ∑_{i=0}^N h m g cos(q_{i,k})"), "{text}");
+    assert!(
+        !text.contains("- h m g\n") && !text.contains("- h m g +"),
+        "{text}"
+    );
+    assert!(text.contains("Constants, which do not enter"), "{text}");
+}
+
+#[test]
+fn first_order_is_said_once_for_all_sites() {
+    let source = "model Line { label i in 0..N; periodic; param m, c: Real; field q: Real at nodes;
+         lagrangian = m*(next(q) - q)^2*(1 + c*cos(q))/(2*h) - (h/2)*(next(q, i) - q)^2; }";
+    let model = parse_source(source).unwrap();
+    let text = document::printed_lattice(&model, source, Format::Text, 100)
+        .unwrap()
+        .text;
+    let at = text.find("of first order only").expect("is warned of");
+    let warning = &text[at..text[at..].find("\n\n").map_or(text.len(), |end| at + end)];
+    assert_eq!(warning.matches("cos(q_{").count(), 1, "{warning}");
+    assert!(warning.contains("at other sites"), "{warning}");
+}
+
+#[test]
+fn momenta_bear_a_letter_that_the_model_does_not() {
+    for (param, hold, momentum) in [
+        ("k", "hold p: sum(m*q) = X;", "ϖ_{i,k} = "),
+        ("p", "", "ϖ_{i,k} = "),
+        ("k", "", "p_{i,k} = "),
+    ] {
+        let source = format!(
+            "model Line {{ label i in 0..N; param m: Real at nodes; param {param}, X: Real; field q: Real at nodes; {hold}
+             lagrangian = m*(next(q) - q)^2/(2*h) - (h/2)*{param}*(next(q, i) - q - X)^2; }}"
+        );
+        let model = parse_source(&source).unwrap();
+        let text = document::printed_lattice(&model, &source, Format::Text, 100)
+            .unwrap()
+            .text;
+        assert!(text.contains(momentum), "{hold}: {text}");
     }
 }

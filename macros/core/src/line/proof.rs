@@ -59,8 +59,14 @@ impl Line {
             Some(both) => expr::sub(e, both[own].clone()),
             None => e,
         };
-        let out = expr::sub(whole.outgoing.clone(), here(&own.outgoing)?);
-        let into = expr::sub(whole.incoming.clone(), here(&own.incoming)?);
+        let out = expr::sub(
+            whole.outgoing.clone(),
+            here(&lone.outline.defined(&own.outgoing))?,
+        );
+        let into = expr::sub(
+            whole.incoming.clone(),
+            here(&lone.outline.defined(&own.incoming))?,
+        );
         let (out, into) = (without(out, 0), without(into, 1));
         let reacted = self.reacted(&mover.name, site).ok_or_else(refused)?;
         let mut written = super::held::written_out(part, i);

@@ -7,6 +7,7 @@ use super::tie::{self, Tie};
 use super::{Refused, Written, written};
 use crate::derive::action;
 use crate::derive::balance::{pairing, shorter};
+use crate::derive::reduction::is_singular;
 use crate::derive::transport::Transport;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::Role;
@@ -128,7 +129,7 @@ pub(super) fn pulls(lattice: &Lattice, part: &Written) -> Result<(Vec<Pull>, Vec
     let mut ties: Vec<Tie> = Vec::new();
     let inner = part.unfolded.summands.iter().filter(|t| t.end.is_none());
     for summand in inner.filter(|t| lone_at(t).is_none() && !t.of_functionals) {
-        let [edge, nodal] = in_two(part, summand)?;
+        let [edge, nodal] = gathered(part, summand)?;
         if !edge.is_zero()
             && let Some(placed) = placed(lattice, part, summand, &edge)?
         {
@@ -212,14 +213,44 @@ fn keeps(lattice: &Lattice, part: &Written, term: &Expr) -> bool {
     })
 }
 
-/// A summand as it is shown: its part that stands on the edge, and the one at a node.
-pub(super) fn in_two(part: &Written, summand: &Summand) -> Result<[Expr; 2], Refused> {
+/// A summand as it is shown.
+fn read(part: &Written, summand: &Summand) -> Result<Expr, Refused> {
     let found = check::numbers(&part.unfolded.model, &[&summand.shown]);
-    let Some(Some(term)) = found.into_iter().next() else {
-        return Err(Refused::Form("a term of neighbours is not read".to_owned()));
-    };
-    let (edge, nodal) = action::split(&part.d.letters.symbols, &term);
+    match found.into_iter().next() {
+        Some(Some(term)) => Ok(term),
+        _ => Err(Refused::Form("a term of neighbours is not read".to_owned())),
+    }
+}
+
+/// Its part that stands on the edge, and the one at a node.
+pub(super) fn in_two(part: &Written, summand: &Summand) -> Result<[Expr; 2], Refused> {
+    let (edge, nodal) = action::split(&part.d.letters.symbols, &read(part, summand)?);
     Ok([edge, nodal])
+}
+
+/// The same where the derivation takes terms of negative powers of the step together: what of a difference over the step
+/// stands at a node is then a part of the edge, at the end at which it is stated.
+fn gathered(part: &Written, summand: &Summand) -> Result<[Expr; 2], Refused> {
+    let s = &part.d.letters.symbols;
+    let reduction = part.d.spec.reduction.as_ref();
+    let nodal = reduction.map(|r| action::summands(&r.nodal));
+    let gathers = nodal.is_some_and(|all| !all.iter().any(|t| is_singular(s, t)));
+    if !gathers {
+        return in_two(part, summand);
+    }
+    let (mut on_edge, mut at_node) = (Vec::new(), Vec::new());
+    for term in action::summands(&read(part, summand)?) {
+        let (edge, nodal) = action::split(s, &term);
+        match !nodal.is_zero() && is_singular(s, &term) {
+            true => on_edge.push(term),
+            false => {
+                on_edge.push(edge);
+                at_node.push(nodal);
+            }
+        }
+    }
+    let sum = |terms: Vec<Expr>| expr::sum(terms, Shape::SCALAR);
+    Ok([sum(on_edge), sum(at_node)])
 }
 
 /// A summand as it is shown, which must stand at one node in time.

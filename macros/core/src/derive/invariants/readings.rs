@@ -155,10 +155,17 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
                     );
                 }
             }
-            Sort::Shifts(_) => {
+            Sort::Shifts(shape) => {
                 for a in &axes {
                     let along = What::Along(a.value.clone());
                     push(a.name.clone(), along, a.length.clone());
+                }
+                // In the plane there is one direction across an axis.
+                let told = axes.iter().filter(|a| told(a));
+                for a in told.filter(|_| shape == Shape::vector(Dim::Fixed(2))) {
+                    let turn = expr::quarter_turn(&x.letters.symbols);
+                    let across = What::Along(expr::mul(turn, a.value.clone()));
+                    push(format!("across_{}", a.name), across, a.length.clone());
                 }
             }
             Sort::Angular | Sort::Linear => {

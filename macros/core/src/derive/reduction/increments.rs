@@ -63,7 +63,7 @@ pub(super) fn gathered(spec: &Spec, algebra: &Algebra, ends: &[(Letter, Expr)]) 
 }
 
 /// Whether it is divided by the step.
-fn is_singular(s: &Symbols, e: &Expr) -> bool {
+pub(crate) fn is_singular(s: &Symbols, e: &Expr) -> bool {
     let holds_step = |e: &Expr| expr::contains_role(s, e, Role::Step);
     match e.node() {
         Node::Quotient(a, b) => holds_step(b) || is_singular(s, a),

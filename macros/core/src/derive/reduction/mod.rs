@@ -20,6 +20,7 @@ use crate::derive::balance::shorter;
 use crate::derive::variation::at;
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::{self, Expr, Letter, Shift};
+pub(crate) use increments::is_singular;
 use terms::Reducer;
 
 /// The reduced model; a model that has its velocities already is given back as it is. What no

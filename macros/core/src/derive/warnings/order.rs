@@ -53,8 +53,14 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
     if suspects.iter().all(|term| is_undecided(x, term)) {
         return None;
     }
-    let terms: Vec<String> = blamed.iter().map(|(term, _)| x.text(term)).collect();
-    let left = match terms.is_empty() {
+    let all: Vec<String> = blamed.iter().map(|(term, _)| x.text(term)).collect();
+    let terms = one_of_each(&all);
+    let alike = match (all.len() - terms.len(), terms.len()) {
+        (0, _) => "",
+        (_, 1) => " and of those like it at other sites",
+        _ => " and of those like them at other sites",
+    };
+    let left = match all.is_empty() {
         true => left,
         false => shown(x, &blamed),
     };
@@ -65,12 +71,19 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
     let because = match terms.as_slice() {
         [] => left.map_or_else(String::new, |sum| format!(": their sum is {sum}")),
         [one] => {
-            let sum = reverses("its reverse adds up to", left);
-            format!(" because of the term {one}{sum}")
+            let sum = match alike.is_empty() {
+                true => reverses("its reverse adds up to", left),
+                false => reverses("their reverses add up to", left),
+            };
+            format!(" because of the term {one}{alike}{sum}")
         }
         several => {
+            let several: Vec<&str> = several.iter().map(|t| t.as_str()).collect();
             let sum = reverses("their reverses add up to", left);
-            format!(" because of the terms {}{sum}", several.join(" and "))
+            format!(
+                " because of the terms {}{alike}{sum}",
+                several.join(" and ")
+            )
         }
     };
     let d = Diagnostic::new(
@@ -86,6 +99,25 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
          change none that holds both ends; a scheme that is meant to be of first order may stand so",
     );
     Some(Warning::new(Topic::FirstOrder, d))
+}
+
+/// One text of those that differ by indices of sites alone, `q_{3,k}` and `q_{4,k}`.
+fn one_of_each(terms: &[String]) -> Vec<&String> {
+    let mut seen: Vec<String> = Vec::new();
+    let mut out = Vec::new();
+    for term in terms {
+        let mut parts = term.split("_{");
+        let mut form = parts.next().unwrap_or("").to_owned();
+        for part in parts {
+            form.push_str("_{#");
+            form.push_str(part.trim_start_matches(|c: char| c.is_ascii_digit()));
+        }
+        if !seen.contains(&form) {
+            seen.push(form);
+            out.push(term);
+        }
+    }
+    out
 }
 
 /// Whether the step stands inside a root or an absolute value, as in `sqrt(h^2 - x)`: that is `h` times a

@@ -1,11 +1,14 @@
 //! What is held along a line or ring, as stated: constraints at every site, seen from the middle one, and those on sums
 //! over all sites, with their multipliers.
 
-use super::{beyond, sums};
+use super::{beyond, stated_configurations, sums};
 use crate::check::spec::Hold;
 use crate::document::folded::{Folded, From, Part};
+use crate::document::holds::{
+    ALONG, MIDDLE, ON_ARRIVAL, no_change, projected, rate_on_arrival, told,
+};
 use crate::expr::{self, Expr, Shift};
-use crate::print::document::{Inline, Section};
+use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::Formula;
 
 /// The constraints that are held at every site, each seen from the middle one.
@@ -54,6 +57,62 @@ pub(super) fn holds(folded: &mut Folded, part: &Part, section: &mut Section) {
         let [left, right] = both;
         section.equation(Formula::equal(left, right));
     }
+}
+
+/// How they are held in a step, and what the state tells of their multipliers; seen from a middle site.
+pub(super) fn held(folded: &mut Folded, part: &Part, doc: &mut Document) {
+    let d = &part.d;
+    if d.spec.holds.is_empty() {
+        return;
+    }
+    let section = doc.section("Held constraints");
+    section.text("The multipliers are found with the step, so that the constraints hold at its end (SHAKE); of several solutions the one is taken that follows from rest with zero multipliers.");
+    let Ok(limit) = &d.limit else {
+        section.text(
+            "The momentum is not projected on arrival: the velocity is not known from it in closed form.",
+        );
+        return;
+    };
+    section.text(ON_ARRIVAL);
+    for stated in stated_configurations(part) {
+        let from = From::Site(stated.site);
+        if let Some([left, right]) = projected(d, limit, stated.shown) {
+            let both = [left, right].map(|e| folded.derived(part, &e, from));
+            let [left, right] = both;
+            section.equation(Formula::equal(left, right));
+        }
+    }
+    section.text(ALONG);
+    let shown = shown(part);
+    for (j, from) in &shown {
+        let rate = rate_on_arrival(d, &d.spec.holds[*j]);
+        let zero = expr::zero(rate.shape());
+        let rate = match from {
+            From::Site(_) => None,
+            _ => sums::told(folded, part, &rate),
+        };
+        let rate = rate
+            .unwrap_or_else(|| folded.derived(part, &rate_on_arrival(d, &d.spec.holds[*j]), *from));
+        section.equation(Formula::equal(rate, Formula::Expr(zero)));
+    }
+    section.text(&no_change(d));
+    for (j, from) in &shown {
+        let told = folded.expression(part, &told(d, *j), *from);
+        section.equation(Formula::Expr(told));
+    }
+    section.text(MIDDLE);
+}
+
+/// The constraints that are shown, by number, and from where.
+fn shown(part: &Part) -> Vec<(usize, From)> {
+    let of_sites = stated_holds(part).into_iter();
+    let of_sites = of_sites.map(|h| (h.shown, From::Site(h.site)));
+    let symbols = &part.d.letters.symbols;
+    let mut all = part.unfolded.totals.iter().filter_map(|total| {
+        let own = |h: &Hold| symbols.get(h.multiplier).name == total.name;
+        Some((part.d.spec.holds.iter().position(own)?, From::First))
+    });
+    of_sites.chain(&mut all).collect()
 }
 
 /// A constraint as stated, held at several sites.

@@ -29,13 +29,24 @@ const BAR: char = '\u{304}';
 const ARROW: char = '\u{20d7}';
 
 /// Letters of an angular and of a linear part, by the letter of the whole; the first pair that is free is taken.
-const TWISTS: [(&str, &[(&str, &str)]); 5] = [
-    ("μ", &[("π", "p"), ("π", "f"), ("π", "n"), ("κ", "ν")]),
-    ("M", &[("Π", "Q"), ("Σ", "T"), ("Φ", "Ψ")]),
-    ("ξ", &[("φ", "ψ"), ("θ", "χ"), ("ε", "δ")]),
-    ("η", &[("α", "β"), ("ρ", "σ"), ("ϕ", "ϖ")]),
-    ("ζ", &[("ω", "v"), ("ω", "w"), ("ϖ", "u")]),
+const TWISTS: [(&str, &[(&str, &str)]); 11] = [
+    ("μ", MOMENTA),
+    ("ν", MOMENTA),
+    ("ϖ", MOMENTA),
+    ("M", EDGES),
+    ("Π", EDGES),
+    ("ξ", VARIATIONS),
+    ("χ", VARIATIONS),
+    ("η", DIRECTIONS),
+    ("θ", DIRECTIONS),
+    ("ζ", RATES),
+    ("υ", RATES),
 ];
+const MOMENTA: &[(&str, &str)] = &[("π", "p"), ("π", "f"), ("π", "n"), ("κ", "ν")];
+const EDGES: &[(&str, &str)] = &[("Π", "Q"), ("Σ", "T"), ("Φ", "Ψ")];
+const VARIATIONS: &[(&str, &str)] = &[("φ", "ψ"), ("θ", "χ"), ("ε", "δ")];
+const DIRECTIONS: &[(&str, &str)] = &[("α", "β"), ("ρ", "σ"), ("ϕ", "ϖ")];
+const RATES: &[(&str, &str)] = &[("ω", "v"), ("ω", "w"), ("ϖ", "u")];
 
 /// Letters of a rotation and a translation, of configurations and of velocities.
 const MOTIONS: [&[(&str, &str)]; 2] = [

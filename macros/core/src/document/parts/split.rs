@@ -53,6 +53,9 @@ impl Names {
 
     /// A product that takes parts of its factors.
     fn product(&mut self, list: &[Expr]) -> Option<Expr> {
+        if let Some(e) = self.row(list) {
+            return Some(e);
+        }
         let at = list.iter().position(|f| taken(f).is_some())?;
         let (before, rest) = list.split_at_checked(at)?;
         let (head, rest) = rest.split_first()?;
@@ -61,8 +64,12 @@ impl Names {
         }
         let (part, used) = match taken(head)? {
             Inclusion::Twist(which) => {
-                let whole = expr::product(rest.iter().cloned());
-                (self.twist(&whole)?.get(which)?.clone(), rest.len())
+                // Of a column that is put into a matrix, only the factors of the column.
+                let (parts, used) = (1..=rest.len()).rev().find_map(|n| {
+                    let column = expr::product(rest.get(..n)?.iter().cloned());
+                    Some((self.twist(&column)?, n))
+                })?;
+                (parts.get(which)?.clone(), used)
             }
             Inclusion::Point => self.of_points(rest)?,
         };
@@ -75,6 +82,25 @@ impl Names {
         Some(expr::product(
             before.into_iter().chain([part]).chain(behind),
         ))
+    }
+
+    /// A product with a part of a row, `ξᵀ ι`.
+    fn row(&mut self, list: &[Expr]) -> Option<Expr> {
+        let (at, which, whole) = list.windows(2).enumerate().find_map(|(at, pair)| {
+            let [row, puts] = pair else { return None };
+            match (row.node(), inclusion(puts)) {
+                (Node::Transpose(whole), Some(Inclusion::Twist(which))) => {
+                    Some((at, which, whole.clone()))
+                }
+                _ => None,
+            }
+        })?;
+        let part = self.twist(&whole)?.get(which)?.clone();
+        let part = self.turned(part);
+        let before = list.get(..at)?.iter().cloned();
+        let behind = list.get(at + 2..)?.iter().cloned();
+        let all: Vec<Expr> = before.chain([part]).chain(behind).collect();
+        Some(self.rewritten(&expr::product(all)))
     }
 
     pub(super) fn each(&mut self, list: &[Expr]) -> Vec<Expr> {

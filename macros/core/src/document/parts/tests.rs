@@ -231,3 +231,23 @@ fn letters_of_sites_are_introduced_once() {
     assert_eq!(page.matches("We write").count(), 2, "{page}");
     assert!(page.contains("\\pi_{N,k} & = "), "{page}");
 }
+
+#[test]
+fn what_no_parameter_names_is_told_and_its_variation_has_letters_for_its_parts() {
+    let d = derive_source(
+        "model Tied { param J: Sym<3>; param m, k: Real; param a: Vec<3>; group G: SE<3> velocity V;
+         constraint next(G) = G*V;
+         let end = pos(G) + rot(G)*a; let y = pos(next(G)) - pos(G);
+         lagrangian = -tr(J*rot(V))/h + m*dot(y, y)/(2*h) - h*k*dot(end, end)/2; }",
+    )
+    .expect("a model");
+    let text = printed(&d, Format::Text);
+    for said in [
+        "metric_{G,k} is the scalar product of space seen from the body.",
+        "E_{4,body,k} is the origin of space seen from the body, in homogeneous coordinates.",
+    ] {
+        assert!(text.contains(said), "{said}\n{text}");
+    }
+    let page = printed(&d, Format::Markdown);
+    assert!(!page.contains("lin}(\\xi)"), "{page}");
+}

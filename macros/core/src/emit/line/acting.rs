@@ -46,8 +46,8 @@ impl Lines<'_> {
         }
     }
 
-    /// What neighbours add to a configuration at a site, if anything.
-    fn collected(&self, name: &str) -> Option<TokenStream> {
+    /// What neighbours add to a configuration at a site, term by term.
+    pub(super) fn collected(&self, name: &str) -> Vec<TokenStream> {
         let mut terms: Vec<TokenStream> = Vec::new();
         for (n, pull) in self.line.pulls.iter().enumerate() {
             let array = format_ident!("pull_{}", n + 1);
@@ -62,9 +62,7 @@ impl Lines<'_> {
             let array = super::meshes::collected(name);
             terms.push(quote!(pulls.#array[site]));
         }
-        let first = terms.first()?.clone();
-        let rest = terms.iter().skip(1);
-        Some(quote!(#first #(+ #rest)*))
+        terms
     }
 }
 
@@ -102,6 +100,7 @@ fn one(l: &Lines, m: Moving) -> TokenStream {
     let wanted: Vec<Expr> = wanted.iter().map(|e| expr::parted(s, e)).collect();
     let (lets, results) = l.computed(s, &l.of_site(d, &wanted), &wanted);
     let collected = l.collected(&m.mover.name);
+    let collected = (!collected.is_empty()).then(|| quote!(#(#collected)+*));
     let shared = |value: &TokenStream, e: &Expr, share: Rational| -> TokenStream {
         let own = (!e.is_zero()).then(|| m.array(value.clone()));
         let pulled =

@@ -11,6 +11,7 @@ mod energy;
 mod forms;
 mod given;
 mod held;
+mod impulses;
 mod inertia;
 mod items;
 mod locals;
@@ -73,6 +74,7 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
         held::held(&l),
         constraints::told(&l),
         energy::energy(&l, of_meshes),
+        impulses::not_less_than_impulses(&l).unwrap_or_default(),
         of_meshes.map(|m| m.items.clone()).unwrap_or_default(),
         walls.map(|w| w.items).unwrap_or_default(),
     ];

@@ -1,11 +1,11 @@
 //! Held constraints at the sites that they have: one with a multiplier of its own at each.
 
 use super::definitions::inlined;
-use super::totals::has_sum;
 use super::{StatedHold, Writer};
 use crate::diagnostic::Place;
 use crate::lattice::declared::Sites;
 use crate::lattice::names::{Copied, copy};
+use crate::lattice::parts::has_sum;
 use crate::lattice::put::any_name;
 use crate::lattice::range::{Range, reach};
 use crate::syntax::ast::{Expression, Kind, Name, Statement};

@@ -6,7 +6,7 @@ use super::{LARGEST, Summand, Writer};
 use crate::diagnostic::Diagnostic;
 use crate::lattice::names::copy_name;
 use crate::lattice::put::Put;
-use crate::lattice::range::{of_one_neighbour, reach};
+use crate::lattice::range::{beside_sum, of_one_neighbour, reach};
 use crate::lattice::summands::summands;
 use crate::syntax::ast::{Alternative, Expression, Kind, Statement};
 
@@ -23,6 +23,10 @@ impl Writer<'_> {
                     continue;
                 }
             };
+            if let Some(d) = found.over.and_then(|_| beside_sum(self.lattice, &stated)) {
+                self.errors.push(d);
+                continue;
+            }
             if found.over.is_none() && of_one_neighbour(self.lattice, &stated) {
                 self.out.warnings.push(one_neighbour(&stated));
             }

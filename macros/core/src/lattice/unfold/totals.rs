@@ -4,13 +4,9 @@
 use super::{LARGEST, Writer};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::lattice::declared::{Lattice, Sites};
+use crate::lattice::parts::{LINEAR, has_sum, names, parts, summand, with_parts};
 use crate::lattice::range::{Range, Reach, reach};
 use crate::syntax::ast::{Expression, Kind, Name, Statement};
-
-/// Functions that are linear in each of their arguments.
-const LINEAR: [&str; 12] = [
-    "dot", "cross", "hat", "vee", "tr", "Tr", "sym", "skew", "diag", "perp", "re", "im",
-];
 
 /// A constraint on sums over sites as stated.
 #[derive(Clone, Debug)]
@@ -36,14 +32,6 @@ pub struct Summed {
     pub letters: Vec<(Sites, isize)>,
 }
 
-/// The summand of a call of `sum`.
-fn summand(e: &Expression) -> Option<&Expression> {
-    match &e.kind {
-        Kind::Call(f, arguments) if f.text == "sum" => arguments.first(),
-        _ => None,
-    }
-}
-
 /// Where the letters of a sum stand, and the sites that it states.
 fn over(lattice: &Lattice, call: &Expression) -> Result<Reach, Diagnostic> {
     match &call.kind {
@@ -53,45 +41,6 @@ fn over(lattice: &Lattice, call: &Expression) -> Result<Reach, Diagnostic> {
         },
         _ => reach(lattice, call),
     }
-}
-
-/// Whether an expression holds a sum over sites.
-pub(super) fn has_sum(e: &Expression) -> bool {
-    summand(e).is_some() || parts(e).into_iter().any(has_sum)
-}
-
-/// The expressions that one is made of.
-fn parts(e: &Expression) -> Vec<&Expression> {
-    match &e.kind {
-        Kind::Number(_) | Kind::Constant(_) | Kind::Name(_) => Vec::new(),
-        Kind::Shaped(a, _)
-        | Kind::Neg(a)
-        | Kind::Transpose(a)
-        | Kind::Power(a, _)
-        | Kind::Component(a, _) => vec![a],
-        Kind::Quotient(a, b) => vec![a, b],
-        Kind::Sum(terms) => terms.iter().map(|(_, t)| t).collect(),
-        Kind::Product(list) | Kind::Call(_, list) => list.iter().collect(),
-    }
-}
-
-/// The same expression of other parts, in the order of [`parts`].
-fn with_parts(e: &Expression, mut new: impl Iterator<Item = Expression>) -> Expression {
-    let mut one = |a: &Expression| Box::new(new.next().unwrap_or_else(|| a.clone()));
-    let kind = match &e.kind {
-        Kind::Number(_) | Kind::Constant(_) | Kind::Name(_) => e.kind.clone(),
-        Kind::Shaped(a, shape) => Kind::Shaped(one(a), shape.clone()),
-        Kind::Neg(a) => Kind::Neg(one(a)),
-        Kind::Transpose(a) => Kind::Transpose(one(a)),
-        Kind::Power(a, q) => Kind::Power(one(a), *q),
-        Kind::Component(a, indices) => Kind::Component(one(a), indices.clone()),
-        Kind::Quotient(a, b) => Kind::Quotient(one(a), one(b)),
-        Kind::Sum(terms) => Kind::Sum(terms.iter().map(|(m, t)| (*m, *one(t))).collect()),
-        Kind::Product(list) => Kind::Product(list.iter().map(|t| *one(t)).collect()),
-        Kind::Call(f, list) => Kind::Call(f.clone(), list.iter().map(|t| *one(t)).collect()),
-    };
-    let place = e.place;
-    Expression { kind, place }
 }
 
 /// A sum of terms with their signs; of none, zero.
@@ -246,6 +195,14 @@ impl Writer<'_> {
         }
         let found = over(self.lattice, e).map_err(Box::new)?;
         let range = found.range(self.lattice, self.choice);
+        // Of a name that is not declared the check says more.
+        if found.letters.is_empty()
+            && names(inner)
+                .iter()
+                .any(|n| !self.lattice.declared.contains(*n))
+        {
+            return Ok(inner.clone());
+        }
         let Some(range) = range.filter(|_| !found.letters.is_empty()) else {
             let d = Diagnostic::new(
                 e.place,

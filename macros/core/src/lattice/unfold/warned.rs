@@ -45,12 +45,29 @@ impl Unfolded {
             if partial && of_this_choice && !stated || out.iter().any(known) {
                 continue;
             }
+            if of_this_choice && !self.of_all_copies(w, found) {
+                continue;
+            }
             let mut d = w.diagnostic.clone();
             d.message = self.without_sites(&d.message);
             d.help = d.help.iter().map(|h| self.without_sites(h)).collect();
             out.push(Warning::new(w.topic, d));
         }
         out
+    }
+
+    /// Whether what is said of a copy of a quantity is said of all of them: the terms of a line may leave out its last site.
+    fn of_all_copies(&self, w: &Warning, found: &[Warning]) -> bool {
+        let of = |w: &Warning| {
+            let name = w.diagnostic.message.split('`').nth(1)?;
+            self.copy(name).map(|c| c.of.as_str())
+        };
+        let Some(own) = of(w) else { return true };
+        let told = found
+            .iter()
+            .filter(|o| o.topic == w.topic && of(o) == Some(own));
+        let copies = self.copies.iter().filter(|c| c.of == own);
+        told.count() >= copies.count()
     }
 
     /// A text with the names of quantities in the place of those of copies.

@@ -356,3 +356,12 @@ fn wide_bodies_share_an_axis() {
         &[],
     );
 }
+
+#[test]
+fn a_fall_in_the_plane_keeps_the_momentum_across_the_vertical() {
+    let names = momenta(
+        "model Fall { param m: Real; param g: Vec<2>; field X: Vec<2>;
+         lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + h*m*dot(g, X); }",
+    );
+    assert_eq!(names, ["momentum_across_g"]);
+}

@@ -107,7 +107,7 @@ fn about_a_place_the_whole_momentum_is_found_and_no_term_of_it_is_zero() {
     assert_eq!(
         shown(text, Family::Noether),
         [
-            "joint_momentum_angular_about_b: A_k μ_{1,k} + B_k μ_{2,k} + m_{3,k} + rot(q_k) μ_{4,k} \
+            "joint_momentum_angular_about_b: A_k μ_{1,k} + B_k μ_{2,k} + ϖ_{3,k} + rot(q_k) μ_{4,k} \
              + rot(G_k) ang(μ_{5,k}) + pos(G_k) × (rot(G_k) lin(μ_{5,k})) + b × (rot(G_k) lin(μ_{5,k}))"
         ]
     );

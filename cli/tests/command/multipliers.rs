@@ -1,0 +1,124 @@
+//! Multipliers as they are recorded and as derivations print them: what the equations of a step and of the projection on
+//! arrival leave for them, solved by hand from recorded places and momenta.
+
+use crate::common::{Folder, clebsch};
+
+/// The columns of a run by name, at two nodes.
+fn two_nodes(folder: &Folder, model: &str, case: &str) -> impl Fn(&str, usize) -> f64 {
+    let (model, case) = (
+        folder.write("own.clebsch", model),
+        folder.write("own.toml", case),
+    );
+    let out = folder.path("out");
+    let done = clebsch(&[
+        "run", &model, "--case", &case, "--every", "1", "--out", &out, "--force",
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let text = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
+    let mut lines = text
+        .lines()
+        .map(|l| l.split(',').map(str::to_owned).collect::<Vec<_>>());
+    let names = lines.next().expect("names");
+    let rows: Vec<Vec<String>> = lines.collect();
+    move |name, node| {
+        let at = names.iter().position(|n| n == name);
+        let at = at.unwrap_or_else(|| panic!("{name} of {names:?}"));
+        rows[node][at].parse().expect("a number")
+    }
+}
+
+/// Roundings of momenta and places by the step, of multipliers of size one to ten.
+const ROUNDED: f64 = 1e-10;
+
+#[test]
+fn the_multiplier_of_a_pendulum_is_that_of_the_printed_equations() {
+    let folder = Folder::new("multiplier");
+    let model = "model Pendulum {
+        param m, L, g: Real;
+        field x: Vec<3>;
+        hold p: dot(x, x) = L^2;
+        lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*m*g*x[3];
+    }";
+    let case = "model = \"pendulum\"\nh = 0.01\nsteps = 4\n[parameters]\nm = 1.3\nL = 1.0\ng = 9.81\n\
+                [initial]\nx = [0.6, 0.0, -0.8]\nmomentum = [0.0, 0.7, 0.0]\n";
+    let at = two_nodes(&folder, model, case);
+    let (m, g, h) = (1.3, 9.81, 0.01);
+    let of = |name: &str, node: usize| [1, 2, 3].map(|i| at(&format!("{name}_{i}"), node));
+    for k in 0..4 {
+        let (x, y) = (of("x", k), of("x", k + 1));
+        let (p, q) = (of("momentum", k), of("momentum", k + 1));
+        let weight = |i: usize| if i == 2 { 0.5 * h * m * g } else { 0.0 };
+        let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+        // p_k = m Δx/h + h m g E3/2 - 2 h λ x_k, along x_k; x_k is of length one.
+        let leaving: [f64; 3] = core::array::from_fn(|i| m * (y[i] - x[i]) / h + weight(i) - p[i]);
+        let own = dot(leaving, x) / (2.0 * h);
+        // m ζ = m Δx/h - h m g E3/2 - 2 δ x_{k+1}.
+        let arriving: [f64; 3] = core::array::from_fn(|i| m * (y[i] - x[i]) / h - weight(i) - q[i]);
+        let impulse = dot(arriving, y) / 2.0;
+        let told = at("p", k + 1);
+        assert!(
+            (told - (own - impulse / h)).abs() < ROUNDED * told.abs(),
+            "{k}: {told} {own} {impulse}"
+        );
+        // Neither part is the whole.
+        assert!((told - own).abs() > 0.3 * told.abs(), "{k}: {told} {own}");
+    }
+}
+
+#[test]
+fn the_multiplier_of_a_sum_is_that_of_the_printed_equations() {
+    let folder = Folder::new("multiplier of a sum");
+    let model = "model Balanced {
+        label i in 0..N;
+        param m, f: Real at nodes;
+        param X: Real;
+        field q: Real at nodes;
+        hold p: sum(m*q) = X;
+        lagrangian = m*(next(q) - q)^2/(2*h) + h*f*q - (h/2)*(next(q, i) - q)^2;
+    }";
+    for n in [3, 40] {
+        let case = format!(
+            "model = \"balanced\"\nh = 0.05\nsteps = 3\n[labels]\ni = {n}\n[ends]\ni = [\"free\", \"free\"]\n\
+             [parameters]\nm = \"1 + 0.5*i/N\"\nf = \"i/N\"\nX = 0.0\n[initial]\nq = 0.0\nmomentum_q = 0.0\n"
+        );
+        let at = two_nodes(&folder, model, &case);
+        let h = 0.05;
+        for k in 0..3 {
+            let of = |name: &str, i: usize, node: usize| at(&format!("{name}_{i}"), node);
+            let (mut own, mut impulse, mut squares) = (0.0, 0.0, 0.0);
+            for i in 0..=n {
+                let part = i as f64 / f64::from(n as u32);
+                let (m, f) = (1.0 + 0.5 * part, part);
+                let force = |node: usize| {
+                    let here = of("q", i, node);
+                    let before = if i > 0 {
+                        of("q", i - 1, node) - here
+                    } else {
+                        0.0
+                    };
+                    let behind = if i < n {
+                        of("q", i + 1, node) - here
+                    } else {
+                        0.0
+                    };
+                    f + before + behind
+                };
+                let moved = m * (of("q", i, k + 1) - of("q", i, k)) / h;
+                // p_k = m Δq/h - h F_k/2 - h λ m, and m ζ = m Δq/h + h F_{k+1}/2 - δ m.
+                own += m * (moved - 0.5 * h * force(k) - of("momentum_q", i, k)) / h;
+                impulse += m * (moved + 0.5 * h * force(k + 1) - of("momentum_q", i, k + 1));
+                squares += m * m;
+            }
+            let (own, impulse) = (own / squares, impulse / squares);
+            let told = at("p", k + 1);
+            assert!(
+                (told - (own - impulse / h)).abs() < ROUNDED,
+                "{n}, {k}: {told} {own} {impulse}"
+            );
+            assert!(
+                (told - own).abs() > 0.3 * told.abs(),
+                "{n}, {k}: {told} {own}"
+            );
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! What a line is asked at its node: energies, conserved totals and the sizes of their terms, and what is observed at sites.
+//! Takes the routines of the model; gives numbers.
+
+use super::{LineTrajectory, columns, numbers, put, run};
+use crate::code::Routine;
+use crate::opened::at;
+use crate::value::Value;
+
+impl LineTrajectory {
+    fn ask(&mut self, routine: &Routine<f64>) -> Option<Value<f64>> {
+        run(routine, &mut self.places).ok()
+    }
+
+    /// The kinetic and the potential energy at the node.
+    pub fn energies(&mut self) -> Option<[f64; 2]> {
+        let model = self.model.clone();
+        self.two(model.energies.as_ref()?)
+    }
+
+    /// What is asked of the state as sizes are taken of it: momenta that are what is left of impulses that cancel count
+    /// as these.
+    pub fn measured<R>(&mut self, of: impl FnOnce(&mut Self) -> R) -> R {
+        let model = self.model.clone();
+        let enlarged = model.enlarged.as_ref().and_then(|e| self.ask(e));
+        let Some(enlarged) = enlarged else {
+            return of(self);
+        };
+        let state = self
+            .places
+            .get_mut(at::STATE)
+            .map(|s| std::mem::replace(s, enlarged));
+        let found = of(self);
+        if let Some(state) = state {
+            put(&mut self.places, at::STATE, state);
+        }
+        found
+    }
+
+    /// The sums of the sizes of their terms.
+    pub fn energy_sizes(&mut self) -> Option<[f64; 2]> {
+        let model = self.model.clone();
+        self.two(model.energy_sizes.as_ref()?)
+            .map(|[kinetic, potential]| [kinetic.abs(), potential.abs()])
+    }
+
+    fn two(&mut self, routine: &Routine<f64>) -> Option<[f64; 2]> {
+        match self.ask(routine)? {
+            Value::List(both) => match both.as_slice() {
+                [Value::Real(kinetic), Value::Real(potential)] => Some([*kinetic, *potential]),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// A conserved total by its name.
+    pub fn total(&mut self, name: &str) -> Option<Vec<f64>> {
+        let model = self.model.clone();
+        let (_, routine) = model.totals.iter().find(|(own, _)| own == name)?;
+        numbers(&self.ask(routine)?)
+    }
+
+    /// The sums of the sizes of the terms of sites of a conserved total.
+    pub fn total_sizes(&mut self, name: &str) -> Option<Vec<f64>> {
+        let model = self.model.clone();
+        let (_, routine) = model.total_sizes.iter().find(|(own, _)| own == name)?;
+        let all = numbers(&self.ask(routine)?)?;
+        Some(all.into_iter().map(f64::abs).collect())
+    }
+
+    /// What is observed at all sites, one site after the other, matrices row after row.
+    pub fn observe(&mut self, name: &str) -> Option<Vec<f64>> {
+        let model = self.model.clone();
+        let values = format!("values_{name}");
+        let own = model.observers.iter().find(|(own, _)| own == name);
+        let (_, routine) =
+            own.or_else(|| model.functionals.iter().find(|(own, _)| *own == values))?;
+        let value = self.ask(routine)?;
+        // What belongs to the whole line is one value.
+        columns(&value).or_else(|| numbers(&value))
+    }
+}

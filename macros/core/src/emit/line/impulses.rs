@@ -1,0 +1,70 @@
+//! Momenta by which totals of a line are measured: of a line at rest, impulses of neighbours that cancel leave their
+//! rounding as momenta, which is no scale.
+//! Gives a state whose momenta are not less than the impulses of its node.
+
+use super::{Lines, Moving};
+use crate::emit::impulses::at_node;
+use crate::expr;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// The function; none where nothing acts at a node.
+pub(super) fn not_less_than_impulses(l: &Lines) -> Option<TokenStream> {
+    let each: Vec<TokenStream> = l.moving().filter_map(|m| of_mover(l, &m)).collect();
+    if each.is_empty() {
+        return None;
+    }
+    let [name, state, work] = ["", "State", "Workspace"].map(|suffix| l.item(suffix));
+    Some(quote! {
+        impl<T: Real> #name<T> {
+            /// The state as scales take it: its momenta not less than the impulses of its node, which are those of
+            /// the workspace with which the state was reached.
+            #[doc(hidden)]
+            pub fn not_less_than_impulses(&self, state: &#state<T>, work: &#work<T>) -> #state<T> {
+                let mut enlarged = state.clone();
+                let (at, pulls) = (&state.places, &work.pulls);
+                let _ = (at, pulls);
+                #(#each)*
+                enlarged
+            }
+        }
+    })
+}
+
+/// The momenta of one configuration.
+fn of_mover(l: &Lines, m: &Moving) -> Option<TokenStream> {
+    let d = m.outline();
+    let s = &d.letters.symbols;
+    let own: Vec<_> = d
+        .balances
+        .get(m.mover.index)
+        .map(|b| at_node(s, &[], b))
+        .into_iter()
+        .flatten()
+        .map(|e| expr::magnitude(s, &expr::parted(s, &d.defined(&e))))
+        .collect();
+    let (lets, results) = l.computed(s, &l.of_site(d, &own), &own);
+    let pulled = l.collected(&m.mover.name).into_iter();
+    let sizes: Vec<TokenStream> = results
+        .into_iter()
+        .chain(pulled.map(|one| quote!(length(&#one))))
+        .collect();
+    if sizes.is_empty() {
+        return None;
+    }
+    let (name, range) = (m.name(), super::step::range_name(m));
+    let (rows, _) = m.dims();
+    let step = super::locals::step(d);
+    Some(quote! {
+        {
+            let [first, last] = self.#range();
+            let #step = work.h;
+            let _ = #step;
+            line::fill(self.threads, &mut enlarged.momenta.#name[first..last], |i| {
+                let site = first + i;
+                #lets
+                not_less(state.momenta.#name[site], (0, #rows), #(#sizes)+*)
+            });
+        }
+    })
+}
