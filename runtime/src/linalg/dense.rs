@@ -589,4 +589,28 @@ mod tests {
         }
         assert!(Dense::<f64>::zeros(n, n).solved(&b).is_none());
     }
+
+    #[test]
+    fn inverses_of_badly_scaled_matrices_have_all_their_digits() {
+        // Rows and columns of 1e-12, 1 and 1e9 of a matrix that is well conditioned without them.
+        let sizes = [1e-12, 1.0, 1e9];
+        let plain = [[4.0, 1.0, -1.0], [2.0, 3.0, 0.5], [0.25, -1.0, 5.0]];
+        let a = Dense::from_fn(3, 3, |i, j| sizes[i] * plain[i][j] * sizes[j]);
+        let back = a.balanced_inverse().expect("invertible");
+        let wanted = Dense::from_fn(3, 3, |i, j| plain[i][j])
+            .inverse()
+            .expect("invertible");
+        for i in 0..3 {
+            for j in 0..3 {
+                let scaled = sizes[i] * back.at(i, j) * sizes[j];
+                assert!((scaled - wanted.at(i, j)).abs() < 1e-14, "{i} {j}");
+            }
+        }
+        let b = [1e-12, 2.0, -1e9];
+        let x = a.balanced_solution(&b).expect("a solution");
+        for (i, right) in b.iter().enumerate() {
+            let left: f64 = (0..3).map(|j| a.at(i, j) * x[j]).sum();
+            assert!((left / right - 1.0).abs() < 1e-14, "{i}");
+        }
+    }
 }
