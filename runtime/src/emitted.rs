@@ -451,3 +451,19 @@ pub fn rows<const R: usize, const C: usize>(a: SMatrix<f64, R, C>) -> impl Itera
     let t = a.transpose();
     (0..R * C).map(move |i| t.as_slice().get(i).copied().unwrap_or(f64::NAN))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{diagonal_part, skew_part, symmetric_part};
+    use nalgebra::Matrix3;
+
+    #[test]
+    fn a_matrix_is_the_sum_of_its_parts() {
+        let a = Matrix3::new(1.0, 2.0, 4.0, -8.0, 16.0, 32.0, 0.5, 0.25, -2.0);
+        let (even, odd) = (symmetric_part(&a), skew_part(&a));
+        assert_eq!(even + odd, a);
+        assert_eq!((even.transpose(), odd.transpose()), (even, -odd));
+        assert_eq!(diagonal_part(&a).diagonal(), a.diagonal());
+        assert_eq!(diagonal_part(&odd), Matrix3::zeros());
+    }
+}

@@ -170,3 +170,18 @@ impl<const R: usize, const C: usize, T: Real> Placed<T> for Additive<R, C, T> {
         Self::new(between((&self.array, rest), (&next.array, next_rest)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Additive;
+    use crate::Group;
+    use nalgebra::Vector2;
+
+    #[test]
+    fn values_are_extrapolated_entry_by_entry() {
+        // Of a parabola three values give the next.
+        let at = |t: f64| Additive::new(Vector2::new(1.0 + t, t * t - 3.0));
+        let made = Additive::combined(&[3.0, -3.0, 1.0], |i| at(5.0 - i as f64));
+        assert_eq!(made.matrix(), at(6.0).matrix());
+    }
+}

@@ -314,3 +314,27 @@ impl<T: Real> SpatialPlaneImpulse<T> {
         BodyPlaneImpulse(motion.covector_to_body(&self.0))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::PlaneMotion;
+    use crate::Group;
+    use nalgebra::Vector2;
+
+    #[test]
+    fn retractions_turn_by_twice_the_angle_whose_tangent_is_half_the_coordinate() {
+        let start = PlaneMotion::new(0.3, Vector2::new(1.0, -2.0));
+        for omega in [0.0, 1e-3, -0.4, 2.0] {
+            let moved = start.retract(&[omega, 0.5, 0.25]);
+            let turned = PlaneMotion::new(2.0 * f64::atan(0.5 * omega), Vector2::new(0.5, 0.25));
+            let wanted = start * turned;
+            // A few roundings of numbers below 3.
+            let apart = moved.rotation.matrix() - wanted.rotation.matrix();
+            assert!(apart.norm() < 4e-15, "{omega}");
+            assert!(
+                (moved.translation - wanted.translation).norm() < 4e-15,
+                "{omega}"
+            );
+        }
+    }
+}

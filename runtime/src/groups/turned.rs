@@ -87,3 +87,26 @@ impl<T: Real> TurnedRotation<T> {
         Vector3::new(turned(0, first), turned(1, second), turned(2, third))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::Rotation;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn a_rotation_on_its_way_is_the_product() {
+        let r = Rotation::exp(&Vector3::new(0.4, -1.1, 0.7));
+        // Of any length: here that of (1, 2, -3, 5)/4.
+        let omega = [0.25, 0.5, -0.75, 1.25];
+        let square = omega.iter().map(|x| x * x).sum::<f64>();
+        let unit = omega.map(|x| x / square.sqrt());
+        let product = (r * Rotation::from_quaternion(unit).expect("a unit quaternion")).matrix();
+        let v = Vector3::new(0.3, 2.0, -1.5);
+        for turned in [r.turned(omega), r.turned_at(omega, 1.0 / square)] {
+            // Some ten roundings of numbers below 3.
+            assert!((turned.matrix() - product).norm() < 1e-14);
+            assert!((turned.rotation().matrix() - product).norm() < 1e-14);
+            assert!((turned.inverse_rotate(&v) - product.transpose() * v).norm() < 1e-14);
+        }
+    }
+}

@@ -142,3 +142,19 @@ pub fn total<T: Real, const R: usize, const C: usize>(
     }
     total + rest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{sum, total};
+    use nalgebra::Vector2;
+
+    #[test]
+    fn sums_keep_what_large_terms_hide() {
+        // The large ones cancel; of the small ones a plain sum keeps none.
+        let values = [1.0, 1e20, 0.5, -1e20, 0.25];
+        assert_eq!(sum(values.len(), |i| values[i]), 1.75);
+        let both = total(values.len(), |i| Vector2::new(values[i], -2.0 * values[i]));
+        assert_eq!(both, Vector2::new(1.75, -3.5));
+        assert_eq!(sum(0, |_| f64::NAN), 0.0);
+    }
+}

@@ -291,6 +291,21 @@ mod tests {
     }
 
     #[test]
+    fn headers_end_where_the_format_of_numpy_wants_data_to_begin() {
+        let arrays = [
+            Array::of_nodes("node", 5),
+            Array::of_nodes("a_longer_name", 123_456_789),
+        ];
+        for array in arrays {
+            let header = array.header();
+            let length = u16::from_le_bytes([header[8], header[9]]);
+            assert_eq!(usize::from(length), header.len() - 10);
+            assert!(header.len().is_multiple_of(64) && header.len() <= 128);
+            assert!(header.ends_with(b" \n") || header.ends_with(b"}\n"));
+        }
+    }
+
+    #[test]
     fn arrays_of_other_lengths_are_refused() {
         let told = write(
             &mut Cursor::new(Vec::new()),

@@ -372,3 +372,24 @@ impl Real for DoubleDouble {
         exact(num) / exact(den)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::DoubleDouble;
+    use crate::Real;
+
+    #[test]
+    fn operators_that_assign_do_what_the_others_do() {
+        let (a, b) = (
+            DoubleDouble::from_ratio(22, 7),
+            DoubleDouble::from_ratio(-5, 3),
+        );
+        let (mut sum, mut difference, mut product, mut quotient) = (a, a, a, a);
+        sum += b;
+        difference -= b;
+        product *= b;
+        quotient /= b;
+        let wanted = [a + b, a - b, a * b, a / b];
+        assert_eq!([sum, difference, product, quotient], wanted);
+    }
+}

@@ -8,17 +8,34 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// The tests that judge, in the order in which they are asked: mutants of a folder, arguments of cargo.
-pub const TESTS: [(&str, &[&str]); 4] = [
-    ("macros/core/src", &["-p", "clebsch-core", "--lib"]),
-    (
-        "macros/core/src",
-        &["-p", "clebsch-tests", "--test", "derivation"],
-    ),
-    ("macros/core/src", &["-p", "clebsch-interpret", "--tests"]),
-    (
-        "runtime/src",
-        &[
+/// A set of tests that judges mutants.
+pub struct Judge {
+    /// What it is called in the verdicts.
+    pub name: &'static str,
+    /// The folders whose mutants it judges.
+    pub folders: &'static [&'static str],
+    /// The tests of the binary whose names begin so.
+    pub filter: &'static str,
+    /// What builds it.
+    pub arguments: &'static [&'static str],
+}
+
+const ENGINE: &str = "macros/core/src";
+const RUNTIME: &str = "runtime/src";
+
+/// The judges, in the order in which they are asked: those near the code first, then the quickest that see much.
+pub const JUDGES: [Judge; 7] = [
+    Judge {
+        name: "unit tests",
+        folders: &[ENGINE],
+        filter: "",
+        arguments: &["-p", "clebsch-core", "--lib", "--all-features"],
+    },
+    Judge {
+        name: "unit tests",
+        folders: &[RUNTIME],
+        filter: "",
+        arguments: &[
             "-p",
             "clebsch",
             "--lib",
@@ -27,7 +44,37 @@ pub const TESTS: [(&str, &[&str]); 4] = [
             "--config",
             QUICKLY,
         ],
-    ),
+    },
+    Judge {
+        name: "generated files",
+        folders: &[ENGINE],
+        filter: "generated_fresh::",
+        arguments: &["-p", "clebsch-tests", "--test", "derivation"],
+    },
+    Judge {
+        name: "motion",
+        folders: &[RUNTIME],
+        filter: "",
+        arguments: &["-p", "clebsch-motion", "--tests"],
+    },
+    Judge {
+        name: "interpreted gallery",
+        folders: &[ENGINE, RUNTIME],
+        filter: "",
+        arguments: &["-p", "clebsch-interpret", "--test", "gallery"],
+    },
+    Judge {
+        name: "interpreted",
+        folders: &[ENGINE, RUNTIME],
+        filter: "",
+        arguments: &["-p", "clebsch-interpret", "--tests"],
+    },
+    Judge {
+        name: "derivation",
+        folders: &[ENGINE, RUNTIME],
+        filter: "",
+        arguments: &["-p", "clebsch-tests", "--test", "derivation"],
+    },
 ];
 
 /// With a mutant in every other line, code takes long to optimise.
@@ -92,11 +139,11 @@ pub fn refused(copy: &Path, planted: &Planted) -> Result<BTreeSet<usize>, String
     Ok(refused)
 }
 
-/// Builds the tests and writes `tests.tsv`: folder, binary, directory it is run in.
+/// Builds the tests and writes `tests.tsv`: the number of the judge, binary, directory it is run in.
 pub fn tests(copy: &Path) -> Result<(), String> {
-    let mut out = String::new();
-    for (folder, arguments) in TESTS {
-        let all = [&["test", "--release", "--no-run"], arguments].concat();
+    let (mut out, mut known) = (String::new(), BTreeSet::new());
+    for (number, judge) in JUDGES.iter().enumerate() {
+        let all = [&["test", "--release", "--no-run"], judge.arguments].concat();
         for message in cargo(copy, &all)? {
             let (Some(binary), true) = (
                 message["executable"].as_str(),
@@ -106,7 +153,10 @@ pub fn tests(copy: &Path) -> Result<(), String> {
             };
             let manifest = message["manifest_path"].as_str().unwrap_or_default();
             let within = Path::new(manifest).parent().unwrap_or(copy);
-            out.push_str(&format!("{folder}\t{binary}\t{}\n", within.display()));
+            // A binary that an earlier judge asks as a whole is not asked again.
+            if known.insert((binary.to_owned(), judge.filter)) {
+                out.push_str(&format!("{number}\t{binary}\t{}\n", within.display()));
+            }
         }
     }
     fs::write(place().join("tests.tsv"), out).map_err(|e| format!("tests.tsv: {e}"))

@@ -12,10 +12,12 @@ mod build;
 mod judge;
 mod plant;
 mod report;
+mod runs;
 mod sites;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 /// Where the copy, the list of mutants and the verdicts are kept, below the folder of the workspace.
 pub fn place() -> PathBuf {
@@ -49,10 +51,14 @@ fn run() -> Result<(), String> {
         }
         Some("judge") => {
             let jobs = number(&arguments, "--jobs", 2)?;
-            judge::judge(jobs as usize)
+            let longest = number(&arguments, "--longest", 600)?;
+            judge::judge(jobs as usize, Duration::from_secs(longest))
         }
         Some("report") => report::report(),
-        _ => Err("one of: plant [--count 500] [--seed 1], judge [--jobs 2], report".to_owned()),
+        _ => Err(
+            "one of: plant [--count 500] [--seed 1], judge [--jobs 2] [--longest 600], report"
+                .to_owned(),
+        ),
     }
 }
 

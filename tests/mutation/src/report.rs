@@ -1,71 +1,109 @@
-//! The table of what was caught by which tests, and the list of survivors, on standard output in Markdown.
+//! The table of what was caught by which judges, and the list of survivors, on standard output in Markdown.
 
 use crate::place;
+use crate::runs::judges;
 use std::collections::BTreeMap;
 use std::fs;
+
+/// What became of a mutant: the judge that caught it, and the seconds spent on it.
+#[derive(Default)]
+struct Verdict {
+    by: Option<String>,
+    seconds: f64,
+}
+
+/// The names of the judges, each once, in the order in which they are asked.
+fn names() -> Vec<&'static str> {
+    let mut names = Vec::new();
+    for (_, judge) in judges() {
+        if !names.contains(&judge.name) {
+            names.push(judge.name);
+        }
+    }
+    names
+}
+
+/// The folder of a source file, without what is below `src/` twice.
+fn folder(file: &str) -> String {
+    let depth = if file.starts_with("macros") { 4 } else { 3 };
+    let steps: Vec<&str> = file.split('/').collect();
+    let within = steps.split_last().map_or(&[][..], |(_, before)| before);
+    within
+        .iter()
+        .take(depth)
+        .copied()
+        .collect::<Vec<_>>()
+        .join("/")
+}
+
+fn table(title: &str, rows: &BTreeMap<String, Vec<usize>>) {
+    let names = names();
+    println!("| {title} | mutants | {} | survive |", names.join(" | "));
+    println!("|---|---|{}---|", "---|".repeat(names.len()));
+    for (row, counts) in rows {
+        let counts: Vec<String> = counts.iter().map(usize::to_string).collect();
+        println!("| {row} | {} |", counts.join(" | "));
+    }
+    println!();
+}
 
 /// Prints the result.
 pub fn report() -> Result<(), String> {
     let read =
         |name: &str| fs::read_to_string(place().join(name)).map_err(|e| format!("{name}: {e}"));
-    let (mutants, verdicts) = (read("mutants.tsv")?, read("verdicts.tsv")?);
-    let judged: BTreeMap<&str, Vec<&str>> = verdicts
-        .lines()
-        .map(|l| l.split('\t').collect::<Vec<_>>())
-        .filter_map(|parts| Some((*parts.first()?, parts)))
-        .collect();
-    let mut folders: BTreeMap<String, [usize; 2]> = BTreeMap::new();
-    let mut kinds: BTreeMap<&str, [usize; 2]> = BTreeMap::new();
-    let (mut survivors, mut seconds) = (Vec::new(), 0.0);
+    let (mutants, told) = (read("mutants.tsv")?, read("verdicts.tsv")?);
+    let mut verdicts: BTreeMap<&str, Verdict> = BTreeMap::new();
+    for line in told.lines() {
+        let parts: Vec<&str> = line.split('\t').collect();
+        let [number, judge, how, seconds] = parts.as_slice() else {
+            continue;
+        };
+        let verdict = verdicts.entry(number).or_default();
+        verdict.seconds += seconds.parse::<f64>().unwrap_or(0.0);
+        if *how != "passes" {
+            verdict.by = Some((*judge).to_owned());
+        }
+    }
+    let names = names();
+    let mut folders: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    let mut kinds: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    let (mut survivors, mut judged, mut seconds) = (Vec::new(), 0, 0.0);
     for line in mutants.lines() {
         let parts: Vec<&str> = line.split('\t').collect();
         let [number, file, at, what, original, instead] = parts.as_slice() else {
             continue;
         };
-        let Some(verdict) = judged.get(number) else {
+        let Some(verdict) = verdicts.get(number) else {
             continue;
         };
-        let caught = verdict.get(1).is_some_and(|v| *v != "survived");
-        seconds += verdict
-            .get(2)
-            .and_then(|s| s.parse::<f64>().ok())
-            .unwrap_or(0.0);
-        let mut steps = file.split('/');
-        let folder: Vec<&str> = match file.starts_with("macros") {
-            true => steps.by_ref().take(4).collect(),
-            false => steps.by_ref().take(3).collect(),
-        };
-        for count in [
-            folders.entry(folder.join("/")).or_default(),
-            kinds.entry(what).or_default(),
+        judged += 1;
+        seconds += verdict.seconds;
+        let by = names
+            .iter()
+            .position(|n| Some(*n) == verdict.by.as_deref())
+            .unwrap_or(names.len());
+        for counts in [
+            folders.entry(format!("`{}`", folder(file))).or_default(),
+            kinds.entry((*what).to_owned()).or_default(),
         ] {
-            count[0] += 1;
-            count[1] += usize::from(caught);
+            counts.resize(names.len() + 2, 0);
+            counts[0] += 1;
+            counts[by + 1] += 1;
         }
-        if !caught {
+        if verdict.by.is_none() {
             survivors.push(format!(
-                "- `{file}:{at}` {what}: `{original}` → `{instead}`"
+                "- {number}: `{file}:{at}` {what}: `{original}` → `{instead}`"
             ));
         }
     }
-    let total = folders
-        .values()
-        .fold([0, 0], |t, c| [t[0] + c[0], t[1] + c[1]]);
     println!(
-        "{} of {} mutants are caught, in {:.1} hours of computing time.\n",
-        total[1],
-        total[0],
+        "{} of {judged} mutants are caught, in {:.1} hours of computing time.\n",
+        judged - survivors.len(),
         seconds / 3600.0
     );
-    println!("| where | mutants | caught |\n|---|---|---|");
-    for (folder, count) in &folders {
-        println!("| `{folder}` | {} | {} |", count[0], count[1]);
-    }
-    println!("\n| what is changed | mutants | caught |\n|---|---|---|");
-    for (what, count) in &kinds {
-        println!("| {what} | {} | {} |", count[0], count[1]);
-    }
-    println!("\n## Survivors\n");
+    table("where", &folders);
+    table("what is changed", &kinds);
+    println!("## Survivors\n");
     for line in survivors {
         println!("{line}");
     }

@@ -212,11 +212,7 @@ impl<'ast> Visit<'ast> for Finder<'_> {
 
     fn visit_expr(&mut self, node: &'ast Expr) {
         match node {
-            Expr::Binary(binary) => {
-                if !self.source(binary).contains("let ") {
-                    self.binary(binary);
-                }
-            }
+            Expr::Binary(binary) if !self.source(binary).contains("let ") => self.binary(binary),
             Expr::Call(call) => self.call(call),
             Expr::MethodCall(method) => self.method(method),
             Expr::If(node) => self.condition(&node.cond),

@@ -221,3 +221,23 @@ fn is_parted(e: &Expr) -> bool {
         _ => e.children().into_iter().all(is_parted),
     }
 }
+
+#[test]
+fn diagonals_are_those_of_the_entries() {
+    let l = Letters::new();
+    let (k, v) = (l.at("K"), l.at("J"));
+    let diagonal = |e: Expr| expr::part(expr::Part::Diagonal, e);
+    let agree = |a: Expr, b: Expr| assert!(l.known(a, b).is_some());
+    // diag(A) = diag(A^T), tr diag(A) = tr A, tr(diag(A) B) = tr(diag(A) diag(B)), diag of it once more.
+    for a in [k.clone(), v.clone()] {
+        let d = diagonal(a.clone());
+        let turned = diagonal(l.t(a.clone()));
+        assert_eq!(l.known(d.clone(), turned), Some(Known::NormalForm));
+        agree(expr::trace(d.clone()), expr::trace(a.clone()));
+        agree(diagonal(d.clone()), d.clone());
+        let square = expr::mul(a.clone(), a.clone());
+        let both = expr::mul(d.clone(), diagonal(square.clone()));
+        agree(expr::trace(expr::mul(d.clone(), square)), expr::trace(both));
+        assert_eq!(l.known(d, a), None);
+    }
+}

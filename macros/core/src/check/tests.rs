@@ -44,6 +44,13 @@ fn same(a: &str, b: &str) {
 }
 
 #[test]
+fn multiples_of_unit_vectors_have_the_size_of_what_is_beside_them() {
+    same("dot(2*E1, w)", "2*w[1]");
+    same("dot(w, 2*E4 - E1)", "2*w[4] - w[1]");
+    same("dot(2*E3, v)", "2*v[3]");
+}
+
+#[test]
 fn numbers_glued_to_names_are_refused() {
     for (text, spelled, remedies) in [
         ("2m", "2m", vec!["`2*m`"]),

@@ -285,3 +285,53 @@ impl Parts {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Parts, THREE, Velocity};
+    use crate::algebra::Algebra;
+    use crate::expr;
+    use crate::pipeline::derive_source;
+
+    #[test]
+    fn quaternions_multiply_and_turn_by_their_parts() {
+        let text = "model M { param J, K: Sym<3>; group P: SU<2> velocity V; group Q: SU<2> velocity W; \
+            constraint next(P) = P*V; constraint next(Q) = Q*W; \
+            lagrangian = 2*(dot(im(V), J*im(V)) + dot(im(W), K*im(W)))/h; }";
+        let d = derive_source(text).unwrap_or_else(|e| panic!("{e}"));
+        let parts = Parts::of(&d.spec, &d.letters).expect("groups of space");
+        let s = &parts.symbols;
+        let algebra = Algebra::new(s);
+        let [(a, u), (b, v)] = [0, 1].map(|i| match parts.velocities[i] {
+            Velocity::Quaternion(re, im) => (expr::here(s, re), expr::here(s, im)),
+            other => panic!("{other:?}"),
+        });
+        let [p, q] = [0, 1].map(|i| expr::here(s, d.spec.configurations[i].velocity));
+        let product = parts.quaternion(&expr::mul(p.clone(), q)).expect("parts");
+        let dot = expr::dot(u.clone(), v.clone());
+        let real = expr::sub(expr::mul(a.clone(), b.clone()), dot.clone());
+        assert!(algebra.equal(&product.0, &real));
+        let flat = expr::add(
+            expr::mul(a.clone(), v.clone()),
+            expr::mul(b.clone(), u.clone()),
+        );
+        let across = expr::cross(u.clone(), v);
+        assert!(algebra.equal(&product.1, &expr::add(flat.clone(), across.clone())));
+        // The other order, and the product with the conjugate, are others.
+        assert!(!algebra.equal(&product.1, &expr::sub(flat, across)));
+        assert!(!algebra.equal(&product.0, &expr::add(expr::mul(a.clone(), b), dot)));
+        // Rodrigues: Id + 2 a hat(u) + 2 hat(u)^2.
+        let turn = parts.lowered(&expr::rotation(s, p));
+        let hat = expr::hat(u);
+        let rodrigues = |sign: i64| {
+            let terms = [
+                expr::identity(THREE),
+                expr::product([expr::integer(2), a.clone(), hat.clone()]),
+                expr::product([expr::integer(2 * sign), hat.clone(), hat.clone()]),
+            ];
+            expr::sum(terms, hat.shape())
+        };
+        assert!(algebra.equal(&turn, &rodrigues(1)));
+        assert!(!algebra.equal(&turn, &rodrigues(-1)));
+    }
+}

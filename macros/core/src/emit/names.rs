@@ -416,5 +416,7 @@ mod tests {
         assert_eq!(kebab("ShallowWater2D"), "shallow-water-2d");
         assert_eq!(kebab("ParticleMesh2DTall"), "particle-mesh-2d-tall");
         assert_eq!(kebab("Top2Deep"), "top2-deep");
+        assert_eq!(kebab("Top23"), "top23");
+        assert_eq!(kebab("RodA2D"), "rod-a2-d");
     }
 }

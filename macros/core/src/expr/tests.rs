@@ -4,8 +4,8 @@
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{Role, Symbols};
 use super::{
-    Expr, add, dot, here, identity, integer, inverse, mul, neg, quotient, scale, sub, sum,
-    transpose,
+    Expr, Function, add, call, dot, here, identity, integer, inverse, mul, neg, quotient, scale,
+    sub, sum, transpose,
 };
 use crate::algebra::Rational;
 
@@ -67,4 +67,51 @@ fn the_inverse_of_a_transposed_inverse_is_the_transpose() {
     let q = here(&s, id);
     let seen = transpose(&s, inverse(&s, q.clone()));
     assert_eq!(inverse(&s, seen), transpose(&s, q));
+}
+
+#[test]
+fn functions_of_numbers_are_numbers_where_these_are_rational() {
+    use Function::{Abs, Cos, Cosh, Exp, Log, Sign, Sin, Sinh, Tanh};
+    for (function, at, value) in [
+        (Sin, 0, 0),
+        (Sinh, 0, 0),
+        (Tanh, 0, 0),
+        (Cos, 0, 1),
+        (Cosh, 0, 1),
+        (Exp, 0, 1),
+        (Log, 1, 0),
+        (Abs, -2, 2),
+        (Abs, 2, 2),
+        (Sign, -2, -1),
+        (Sign, 0, 0),
+        (Sign, 3, 1),
+    ] {
+        assert_eq!(
+            call(function, integer(at)),
+            integer(value),
+            "{function:?}({at})"
+        );
+    }
+    for function in [Sin, Cos, Exp, Tanh] {
+        let one = call(function, integer(1));
+        assert_ne!(one, integer(0));
+        assert_ne!(one, integer(1));
+    }
+}
+
+#[test]
+fn the_gradient_of_a_logarithm_of_a_determinant_is_the_transposed_inverse() {
+    let mut s = Symbols::default();
+    let shape = Shape::square(THREE);
+    let a = s.add("A", shape, Structure::Invertible, Role::Parameter);
+    let letter = super::Letter {
+        symbol: a,
+        shift: super::Shift::HERE,
+    };
+    let a = here(&s, a);
+    let gradient = super::gradient(&s, &call(Function::Log, super::det(a.clone())), letter);
+    let algebra = crate::algebra::Algebra::new(&s);
+    let wanted = transpose(&s, inverse(&s, a.clone()));
+    assert!(algebra.equal(&gradient, &wanted));
+    assert!(!algebra.equal(&gradient, &inverse(&s, a)));
 }

@@ -106,3 +106,16 @@ fn covectors_brackets_and_coadjoint_actions_follow_from_the_inclusion() {
     }
     assert!(tested >= 36, "{tested}");
 }
+
+#[test]
+fn families_have_all_sizes_or_those_of_the_table() {
+    for (family, few) in [
+        ("SO", false),
+        ("GL", false),
+        ("SU", true),
+        ("SE", true),
+        ("SP", false),
+    ] {
+        assert_eq!(super::has_few_sizes(family), few, "{family}");
+    }
+}

@@ -459,3 +459,18 @@ fn momenta_bear_a_letter_that_the_model_does_not() {
         assert!(text.contains(momentum), "{hold}: {text}");
     }
 }
+
+#[test]
+fn an_offset_is_warned_of_where_the_line_is_no_ring() {
+    let warned = |source: &str| {
+        let model = parse_source(source).unwrap();
+        let lattice = Lattice::read(&model).unwrap();
+        let choice = representative(&model, &lattice).unwrap();
+        let (unfolded, _) = derive_lattice(&model, &lattice, &choice).unwrap();
+        let told = unfolded.warnings.iter().map(|w| w.diagnostic.text());
+        told.filter(|t| t.contains("is not said to be periodic"))
+            .count()
+    };
+    assert_eq!(warned(CHAIN), 0);
+    assert_eq!(warned(&CHAIN.replace(" periodic;", "")), 1);
+}

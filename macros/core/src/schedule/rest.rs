@@ -225,6 +225,11 @@ fn signed(e: &Expr) -> (i64, &Expr) {
 
 #[cfg(test)]
 mod tests {
+    use super::{by_imaginary, is_difference};
+    use crate::algebra::Algebra;
+    use crate::expr::shape::{Dim, Shape, Structure};
+    use crate::expr::symbol::{Role, Symbols};
+    use crate::expr::{here, identity, integer, neg, real, sub, sum, trace};
     use crate::pipeline::derive_source;
 
     /// Whether a step of this Lagrangian keeps the digits of differences.
@@ -254,6 +259,55 @@ mod tests {
             "-tr(J*u)/h - k*h*sqrt(1 + tr(Id - u)/h^2)",
         ] {
             assert!(kept(quartic), "{quartic}");
+        }
+    }
+
+    #[test]
+    fn a_difference_from_rest_is_one_in_either_order() {
+        let mut s = Symbols::default();
+        s.keep_differences(true);
+        let three = Dim::Fixed(3);
+        let mut add = |name, role| s.add(name, Shape::square(three), Structure::Orthogonal, role);
+        let (o, q) = (add("O", Role::Velocity), add("Q", Role::Element));
+        let (o, q) = (here(&s, o), here(&s, q));
+        let one = || identity(three);
+        let of = |a, b| sum([a, b], Shape::square(three));
+        for (a, b, known) in [
+            (o.clone(), neg(one()), true),
+            (neg(one()), o.clone(), true),
+            (one(), neg(o.clone()), true),
+            (neg(o.clone()), one(), true),
+            (o.clone(), one(), false),
+            (q.clone(), neg(one()), false),
+            (o, neg(q), false),
+        ] {
+            let difference = of(a, b);
+            assert_eq!(is_difference(&s, &difference), known, "{difference:?}");
+        }
+    }
+
+    #[test]
+    fn quaternions_near_rest_are_told_by_their_imaginary_part() {
+        let mut s = Symbols::default();
+        s.keep_differences(true);
+        let four = Dim::Fixed(4);
+        let q = s.add(
+            "q",
+            Shape::square(four),
+            Structure::UnitQuaternion,
+            Role::Velocity,
+        );
+        let q = here(&s, q);
+        let algebra = Algebra::new(&s);
+        for fallen in [
+            sub(real(q.clone()), integer(1)),
+            sub(integer(1), real(q.clone())),
+            trace(sub(q.clone(), identity(four))),
+            trace(sub(identity(four), q)),
+        ] {
+            let made = by_imaginary(&s, &fallen);
+            assert_ne!(made, fallen);
+            assert!(algebra.equal(&made, &fallen), "{fallen:?}");
         }
     }
 }

@@ -359,3 +359,20 @@ fn body_check(j: &Matrix3<f64>) -> Result<f64, PoinsotError> {
 fn power_of_two_near(x: f64) -> f64 {
     x.log2().floor().clamp(-1000.0, 1000.0).exp2()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Poinsot;
+    use nalgebra::Matrix3;
+
+    #[test]
+    fn one_product_of_inertia_is_enough_to_be_not_diagonal() {
+        let moments = Matrix3::from_diagonal(&[1.0, 2.0, 3.0].into());
+        assert!(Poinsot::new(moments).expect("a body").diagonal);
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            let mut a = moments;
+            (a[(i, j)], a[(j, i)]) = (0.25, 0.25);
+            assert!(!Poinsot::new(a).expect("a body").diagonal, "{i} {j}");
+        }
+    }
+}

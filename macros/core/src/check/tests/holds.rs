@@ -133,6 +133,9 @@ fn fields_of_symmetric_and_skew_matrices_are_their_entries() {
             algebra.equal(&a.spec.lagrangian, &b.spec.lagrangian),
             "{shape}"
         );
+        // It is kept by its entries, each once.
+        let source = crate::document::source(&a);
+        assert!(source.contains(&format!("field S: {kept};")), "{source}");
     };
     same(
         [

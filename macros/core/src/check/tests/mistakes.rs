@@ -57,3 +57,84 @@ fn unit_vectors_have_the_size_of_what_is_beside_them() {
     );
     assert!(found.contains("derives"), "{found}");
 }
+
+#[test]
+fn names_that_are_nearly_right_are_told_with_those_that_are_meant() {
+    for (statements, term, wanted) in [
+        // Two letters in the wrong order, at the beginning and behind it.
+        ("", "isn(q)", Some("`sin`")),
+        ("", "snih(q)", Some("`sinh`")),
+        // Of a long name two letters may be wrong, of a short one but one.
+        ("param gravity: Real;", "gravtyy*q", Some("`gravity`")),
+        ("param mass: Real;", "mqqs*q", None),
+    ] {
+        let found = said(statements, term);
+        match wanted {
+            Some(name) => {
+                let wanted = format!("did you mean {name}?");
+                assert!(found.contains(&wanted), "{term}\n{found}");
+            }
+            None => assert!(!found.contains("did you mean `mass`"), "{term}\n{found}"),
+        }
+    }
+}
+
+#[test]
+fn a_wrong_constraint_is_not_told_to_be_missing_as_well() {
+    let found = derive_source(
+        "model M { param J: Sym<3>; group Q: SO<3> velocity W; advected Y: Vec<3>; \
+         constraint next(Q) = Q*W; constraint next(Y) = W^T*Z; lagrangian = -tr(J*W)/h - h*dot(Y, Y); }",
+    );
+    let found = found.map_or_else(|e| e.to_string(), |_| "derives".to_owned());
+    assert!(found.contains("`Z`"), "{found}");
+    assert!(!found.contains("no evolution constraint"), "{found}");
+}
+
+#[test]
+fn the_transpose_of_what_is_needed_is_told_to_be_transposed() {
+    let of = |update: &str| {
+        let text = format!(
+            "model M {{ param J: Sym<3>; group Q: SO<3> velocity W; advected Y: Vec<3>; constraint next(Q) = Q*W; \
+             constraint next(Y) = {update}; lagrangian = -tr(J*W)/h - h*dot(Y, Y); }}"
+        );
+        derive_source(&text).map_or_else(|e| e.to_string(), |_| "derives".to_owned())
+    };
+    let found = of("Y^T*W");
+    assert!(found.contains("transpose it with `^T`"), "{found}");
+    let found = of("W^T");
+    assert!(!found.contains("transpose it with `^T`"), "{found}");
+}
+
+/// What stands in a terminal: of a very long line only what is around the mistake.
+#[cfg(feature = "locations")]
+#[test]
+fn long_lines_are_cut_around_a_mistake() {
+    let filler = "q + ".repeat(100);
+    for (term, before, behind) in [
+        (format!("wrong + {filler}q"), false, true),
+        (format!("{filler}wrong + {filler}q"), true, true),
+        (format!("{filler}wrong"), true, false),
+    ] {
+        let text = format!("model M {{ field q: Real; lagrangian =\n{term}\n; }}");
+        let errors = derive_source(&text).err().unwrap_or_default();
+        let told = errors
+            .iter()
+            .next()
+            .map(|d| d.render("error", &text, "m.model"));
+        let told = told.unwrap_or_default();
+        let line = told
+            .lines()
+            .find(|l| l.contains("wrong +") || l.contains("+ wrong"));
+        let line = line.unwrap_or_else(|| panic!("{told}"));
+        let shown = line.split_once("| ").map_or("", |(_, rest)| rest);
+        assert_eq!(
+            (shown.starts_with("..."), shown.ends_with("...")),
+            (before, behind),
+            "{told}"
+        );
+        let marked = told
+            .lines()
+            .find_map(|l| Some((l.find('^')?, l.matches('^').count())));
+        assert_eq!(marked, line.find("wrong").map(|at| (at, 5)), "{told}");
+    }
+}

@@ -134,3 +134,56 @@ fn rotation(n: usize, draw: &mut Draw) -> Vec<f64> {
     }
     r
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Draw, natural};
+    use crate::expr::shape::{Dim, Shape, Structure};
+    use crate::expr::symbol::{Role, Symbols};
+
+    /// Entry by entry, whether `A^T A` is the identity up to the rounding of some products of numbers of size 1.
+    fn is_orthogonal(n: usize, a: &[f64]) -> bool {
+        let product = |i: usize, j: usize| (0..n).map(|k| a[k * n + i] * a[k * n + j]).sum::<f64>();
+        let one = |i, j| f64::from(u8::from(i == j));
+        (0..n * n).all(|k| (product(k / n, k % n) - one(k / n, k % n)).abs() < 1e-14)
+    }
+
+    #[test]
+    fn values_have_the_structure_of_their_letter() {
+        let mut s = Symbols::default();
+        let mut draw = Draw::new(7);
+        let mut drawn = |n: u32, structure: Structure| {
+            let shape = Shape::square(Dim::Fixed(n));
+            let id = s.add(
+                &format!("{structure:?}{n}"),
+                shape,
+                structure,
+                Role::Parameter,
+            );
+            natural(&s, id, 0.25, &mut draw)
+        };
+        for n in [2, 3, 4] {
+            let size = n as usize;
+            let rotation = drawn(n, Structure::Orthogonal);
+            assert!(is_orthogonal(size, &rotation));
+            // No axis is left where it is.
+            assert!((0..size).all(|i| rotation[i * size + i].abs() < 1.0));
+            let skew = drawn(n, Structure::Skew);
+            let symmetric = drawn(n, Structure::Symmetric);
+            for i in 0..size {
+                for j in 0..size {
+                    let (here, there) = (i * size + j, j * size + i);
+                    assert!(skew[here] == -skew[there] && (i == j) == (skew[here] == 0.0));
+                    assert!(symmetric[here] == symmetric[there]);
+                }
+            }
+        }
+        let q = drawn(4, Structure::UnitQuaternion);
+        assert!(is_orthogonal(4, &q));
+        assert!([q[5], q[10], q[15]] == [q[0]; 3] && q[4] == -q[1] && q[14] == -q[11]);
+        let shape = Shape::vector(Dim::Fixed(5));
+        let id = s.add("v", shape, Structure::General, Role::Parameter);
+        let v = natural(&s, id, 0.25, &mut draw);
+        assert!(v.len() == 5 && v.iter().all(|x| *x != 0.0 && x.abs() <= 0.25));
+    }
+}

@@ -256,6 +256,20 @@ fn rustdoc_gets_every_formula_on_one_line() {
     assert_eq!(formulas, 9);
 }
 
+#[test]
+fn rows_of_rustdoc_begin_with_the_left_side_once() {
+    let s = Sample::new();
+    let mut d = Document::titled("Rows");
+    let equation = Formula::equal(Formula::name("L_long"), long(&s));
+    d.section("One").equation(equation);
+    let md = render(&d, &s.symbols, &Style::default(), Format::MathMl);
+    let rows: Vec<&str> = md.split("<mtr>").skip(1).collect();
+    assert!(rows.len() > 1, "{md}");
+    let told = |row: &&str| row.contains("<mi>L</mi>");
+    assert!(rows.first().is_some_and(told), "{md}");
+    assert_eq!(rows.iter().filter(|r| told(r)).count(), 1, "{md}");
+}
+
 /// Skips one JSON value; panics where it is none.
 fn skip(text: &str) -> &str {
     let text = text.trim_start();

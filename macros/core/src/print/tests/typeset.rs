@@ -166,3 +166,15 @@ fn documentation_in_wrong_places_is_refused_with_words() {
     let trailing = "model M { param J: Sym<3>; /// last\n }";
     assert!(derive_source(trailing).is_err());
 }
+
+#[test]
+fn signs_in_a_row_are_one_formula_and_a_price_is_none() {
+    let said = |words: &str| {
+        let text = TOP.replace("/// The top.", &format!("/// {words}"));
+        printed(&derived(&text), Format::Latex)
+    };
+    let found = said("With αβ and x⁴² inside.");
+    assert!(found.contains("With $\\alpha\\beta$ and"), "{found}");
+    let found = said("For 5 $α.");
+    assert!(found.contains("For 5 \\$$\\alpha$."), "{found}");
+}
