@@ -110,3 +110,9 @@ fn inverses_of_badly_scaled_matrices_have_all_their_digits() {
         assert!((left / right - 1.0).abs() < 1e-14, "{i}");
     }
 }
+
+#[test]
+fn sizes_fit_where_both_are_the_same() {
+    let [a, b, c] = [(2, 3), (3, 2), (2, 3)].map(|(rows, cols)| Dense::<f64>::zeros(rows, cols));
+    assert!(a.fits(&c) && !a.fits(&b));
+}

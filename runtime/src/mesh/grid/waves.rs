@@ -44,3 +44,27 @@ pub fn fastest_wave<const D: usize>(
     let square = along.sum::<f64>();
     Ok((coriolis * coriolis + speed * speed * square).sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_wave_that_a_grid_or_its_particles_hold_is_faster() {
+        for ratio in [0.0, 0.5, 1.0, 2.0, 10.0] {
+            let bound = steepest(ratio);
+            // Twice as many waves as are tried, by their number on the grid.
+            let all = (1..4096).map(|i| {
+                let q = PI * f64::from(i) / 2048.0;
+                let seen = q.min(2.0 * PI - q);
+                let spline = ((0.5 * q).sin() / (0.5 * q)).powi(8);
+                q * q * spline / (1.0 + ratio * ratio * seen * seen)
+            });
+            let largest = all.fold(0.0, larger);
+            assert!(
+                largest <= bound && bound < 1.01 * largest,
+                "{ratio}: {largest} {bound}"
+            );
+        }
+    }
+}

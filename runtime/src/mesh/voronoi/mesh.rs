@@ -227,3 +227,28 @@ impl<T: Real> Voronoi<T> {
         (edges.origin[e] as usize, edges.origin[next(e)] as usize)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_domain_is_no_thread_along_either_period() {
+        let domain = |lengths| Domain {
+            lengths,
+            walls: [Wall::Periodic; 2],
+        };
+        for lengths in [[1.0, 3e6], [3e6, 1.0]] {
+            assert!(
+                Voronoi::<f64>::new(&domain(lengths), 10).is_err(),
+                "{lengths:?}"
+            );
+        }
+        for lengths in [[1.0, 3e5], [3e5, 1.0]] {
+            assert!(
+                Voronoi::<f64>::new(&domain(lengths), 10).is_ok(),
+                "{lengths:?}"
+            );
+        }
+    }
+}
