@@ -304,3 +304,31 @@ fn no_model_bears_a_name_that_emitted_code_imports() {
     }
     assert!(seen > 40, "{seen}");
 }
+
+#[test]
+fn two_bodies_of_different_groups_that_are_solved_together_have_a_stepper() {
+    let fields = |count: usize| -> (String, String) {
+        let numbers = 0..count;
+        let declared = numbers
+            .clone()
+            .map(|i| format!("field x{i}: Vec<{}>; ", i + 1));
+        let first = |i: usize| format!("dot(next(x{i}) - x{i}, E1)");
+        let kinetic = numbers.map(|i| {
+            let quartic = format!("({0}^2*{1}^2)/(4*h^3)", first(i), first((i + 1) % count));
+            format!(" + dot(next(x{i}) - x{i}, next(x{i}) - x{i})/(2*h) + {quartic}")
+        });
+        (declared.collect(), kinetic.collect())
+    };
+    let refused = |count: usize| {
+        let (declared, kinetic) = fields(count);
+        let text = format!("model Joined {{ {declared} lagrangian = 0{kinetic}; }}");
+        let text = text
+            .replace("Vec<1>", "Real")
+            .replace("dot(next(x0) - x0, E1)", "(next(x0) - x0)");
+        let text = text.replace("dot(next(x0) - x0, next(x0) - x0)", "(next(x0) - x0)^2");
+        let d = crate::pipeline::derive_source(&text).unwrap_or_else(|e| panic!("{text}: {e}"));
+        super::refusal(&d).is_some()
+    };
+    assert!(!refused(2));
+    assert!(refused(7));
+}

@@ -1,6 +1,7 @@
-//! Statements of functionals of all sites: `mesh`, and `on` behind a field of places.
+//! Statements of functionals of all sites: `mesh`, and `on` behind a field of places. A smoother that names no length
+//! smooths over `alpha`.
 
-use super::ast::{Extent, Statement};
+use super::ast::{Extent, Kindred, Model, Name, Statement};
 use super::label;
 use super::statement::{kindred, path_goes_on};
 use super::token::Cursor;
@@ -35,6 +36,48 @@ pub(super) fn mesh(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         path,
         arguments,
     })
+}
+
+/// The length over which a smoother smooths that names none.
+const LENGTH: &str = "alpha";
+
+/// With `alpha` behind the argument of smoothers that have no length, a parameter of the model: its own, where it declares
+/// one.
+pub(super) fn with_lengths(mut model: Model) -> Model {
+    let mut asked = None;
+    for s in &mut model.statements {
+        if let Statement::Mesh {
+            path, arguments, ..
+        } = s
+            && matches!(path.text.as_str(), "smooth" | "smooth_isotropic")
+            && arguments.len() == 1
+        {
+            asked = Some(path.place);
+            arguments.push(Name {
+                text: LENGTH.to_owned(),
+                place: path.place,
+                typeset: None,
+            });
+        }
+    }
+    let mut names = model.statements.iter().flat_map(Statement::declared);
+    let known = names.any(|n| n.text == LENGTH);
+    if let Some(place) = asked.filter(|_| !known) {
+        let name = Name {
+            text: LENGTH.to_owned(),
+            place,
+            typeset: None,
+        };
+        let length = Statement::Param {
+            names: vec![name],
+            shape: Kindred::number(place),
+            at: None,
+        };
+        model.statements.insert(0, length);
+        let remark = " length over which the depth is smoothed".to_owned();
+        model.remarks.insert(0, vec![remark]);
+    }
+    model
 }
 
 /// `on torus(L)`, `on box`, if it comes next.

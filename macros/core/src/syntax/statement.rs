@@ -60,6 +60,7 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
         statements,
         remarks,
     };
+    let stated = super::mesh::with_lengths(stated);
     called::written_out(stated).map(circle::named)
 }
 

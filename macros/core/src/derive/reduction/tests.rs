@@ -271,3 +271,17 @@ fn several_bodies_are_carried_relative_to_one_another() {
         ["relative_A_B = A_k B_kᵀ; vA_k relative_{A,B,k} vB_kᵀ"]
     );
 }
+
+#[test]
+fn a_number_that_stands_linearly_is_divided_for() {
+    let how = |kinetic: &str| {
+        let d = derive(&format!(
+            "model Pendulum {{ param m, g: Real; field q: Real; let v = next(q) - q;
+             lagrangian = {kinetic}/(2*h) + h*m*g*cos(q); }}"
+        ));
+        d.how_solved()
+    };
+    assert!(how("m*v^2").contains("one division"), "{}", how("m*v^2"));
+    let quartic = how("(m*v^2 + v^4/h^2)");
+    assert!(!quartic.contains("division"), "{quartic}");
+}

@@ -154,6 +154,22 @@ fn isotropic_bodies_keep_the_sum_of_their_body_momenta() {
 }
 
 #[test]
+fn what_moves_space_and_body_is_told_as_joint() {
+    let d = derive(
+        "model Angle {
+            param c, k: Real; group Λ: SO<3> velocity Ω; constraint next(Λ) = Λ*Ω;
+            lagrangian = -c*tr(Ω)/h + h*k*tr(Λ);
+        }",
+    );
+    let v = d.invariants.iter().find(|v| v.name == "joint_momentum");
+    let reason = v.map_or("", |v| &v.reason);
+    assert!(
+        reason.ends_with("joint motions of space and bodies"),
+        "{reason}"
+    );
+}
+
+#[test]
 fn space_and_body_turn_together() {
     // What depends on the angle of a turn alone.
     compare(
