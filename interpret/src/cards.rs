@@ -27,6 +27,9 @@ enum Known {
     Line(&'static str, &'static Carded),
 }
 
+/// Most sites of a label.
+pub const MOST_SITES: usize = 10_000_000;
+
 /// Most segments or sites of a label for which a lattice is derived body by body: the work of that grows
 /// with the square of their number, a second or two here.
 pub const MOST_BODY_BY_BODY: usize = 32;
@@ -125,6 +128,15 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
     let model = pipeline::parse_source(source).map_err(Refused::Model)?;
     let lattice = Lattice::read(&model).map_err(Refused::Model)?;
     let mut written_out = None;
+    let sites = lattice.labels.iter().zip(&choice.counts);
+    if let Some((label, n)) = sites.max_by_key(|(_, n)| **n)
+        && *n > MOST_SITES
+    {
+        return Err(Refused::TooManySites {
+            asked: (label.index.text.clone(), *n),
+            most: MOST_SITES,
+        });
+    }
     // Functionals of all sites have no form body by body.
     if !lattice.meshes.is_empty() {
         return match LineModel::read(source) {

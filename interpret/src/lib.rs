@@ -63,6 +63,13 @@ pub enum Refused {
         /// Most of them that are written out body by body.
         most: usize,
     },
+    /// More sites than any model is run with.
+    TooManySites {
+        /// How many are asked for, by the name of their number.
+        asked: (String, usize),
+        /// Most of them.
+        most: usize,
+    },
     /// An operation that is not known here.
     Construct(String),
     /// More models than one process holds.
@@ -90,6 +97,14 @@ impl fmt::Display for Refused {
                 f,
                 "`{label} = {asked}` is more than a model without loops over sites is run with, which is written out body by body: at most \
                  `{label} = {most}`; loops over sites, which run any number of them, do not take this model: {why}"
+            ),
+            Self::TooManySites {
+                asked: (label, asked),
+                most,
+            } => write!(
+                f,
+                "`{label} = {asked}` is more than a model file is run with: at most `{label} = {most}`, some hundred bytes \
+                 for each site"
             ),
             Self::Functional { path } => write!(
                 f,

@@ -313,3 +313,75 @@ fn what_every_site_keeps_is_one_invariant_with_a_row_for_each_and_of_a_line_thei
         assert!((observed(&*t, "q_0")[0]).abs() > 1.0);
     }
 }
+
+#[test]
+fn more_sites_than_fit_into_memory_are_refused_at_once() {
+    let model = pipeline::parse_source(TODA).unwrap();
+    let lattice = Lattice::read(&model).unwrap();
+    let choice = Choice::representative(&lattice, 1);
+    let choice = choice.with_count(&lattice, "i", 1_000_000_000_000).unwrap();
+    let told = clebsch_interpret::card_on_lattice(TODA, &choice).expect_err("is refused");
+    assert!(told.to_string().contains("`i = 1000000000000`"), "{told}");
+}
+
+/// What joins two fields at different sites of a line: their momenta are sums that leave an end out.
+const CROSSED: &str = "model Crossed { label i in 0..N; periodic; param m, k, f: Real; field x, y: Real at nodes;
+    lagrangian = m*((next(x)-x)^2 + (next(y)-y)^2)/(2*h) + f*(x+next(x))/2*(next(next(y,i))-next(y,i))
+        - h*k*((next(x,i)-x)^2+(next(y,i)-y)^2)/2; }";
+
+#[test]
+fn a_total_of_an_open_line_is_not_taken_for_that_of_all_sites() {
+    for (ring, count, totals) in [(true, 40, 2), (false, 40, 0), (false, 5, 2)] {
+        let read = card(CROSSED, count, ring, ["free", "free"]);
+        let names = read.invariants.iter().map(|i| i.name);
+        assert_eq!(names.filter(|n| *n != "energy").count(), totals, "{count}");
+        let value = |name: &str, site: Option<usize>| {
+            let turn = site.unwrap_or(0) as f64;
+            vec![match name {
+                "m" | "k" | "f" => 0.7,
+                "x" => (1.3 * turn).sin(),
+                "y" => (0.7 * turn).cos(),
+                _ => 0.2 * (0.4 * turn).cos(),
+            }]
+        };
+        let (parameters, initial) = (
+            values(read.parameters, &value),
+            values(read.initial, &value),
+        );
+        let mut t = (read.open)(&parameters, &initial, Settings::step(0.05)).expect("starts");
+        let mut all = vec![0.0; read.invariant_count()];
+        t.invariants(&mut all);
+        let start = all.clone();
+        for _ in 0..50 {
+            t.step().expect("steps");
+        }
+        t.invariants(&mut all);
+        for (i, own) in read.invariants.iter().enumerate() {
+            // Sums of a hundred terms of size one, a rounding of each a step.
+            let exact = own.name == "energy" || (all[i] - start[i]).abs() < 1e-11;
+            assert!(exact, "{} {} {}", own.name, start[i], all[i]);
+        }
+    }
+}
+
+/// One component of a vector that nothing acts on.
+const SHEET: &str = "model Sheet { label i in 0..N; periodic; param m: Real at nodes; param k: Real at segments; field x_a: Vec<3> at nodes;
+    lagrangian = m*dot(next(x_a)-x_a,next(x_a)-x_a)/(2*h) - h*k*(next(x_a,i)[1]-x_a[1])^4/4; }";
+
+#[test]
+fn components_that_every_site_keeps_are_told_of_every_site() {
+    for count in [7, 40] {
+        let read = card(SHEET, count, true, ["free", "free"]);
+        let told: Vec<_> = read
+            .invariants
+            .iter()
+            .map(|i| (i.name, i.rows, i.formula))
+            .collect();
+        println!("{told:?}");
+        for name in ["momentum_x_a_E2", "momentum_x_a_E3"] {
+            let (_, rows, formula) = told.iter().find(|(n, ..)| *n == name).expect(name);
+            assert_eq!(*rows, if count > 32 { 1 } else { count });
+            assert!(formula.ends_with("at every site"), "{formula}");
+        }
+    }
+}

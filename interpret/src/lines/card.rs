@@ -10,6 +10,7 @@ use clebsch::card::{Card, Field, Invariant, Kind, Open};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Choice, Kind as QuantityKind, Lattice, Unfolded};
+use clebsch_core::line::totals_on;
 use clebsch_core::syntax::ast::Model;
 use clebsch_core::{document, pipeline};
 use std::collections::BTreeMap;
@@ -140,9 +141,16 @@ impl Carded {
         let of_sums = !unfolded.totals.is_empty();
         let has_holds = !unfolded.holds.is_empty() || of_sums;
         let named = named.filter(|i| !(has_holds && of_holds(i.name)));
+        // Sums of this line that leave sites out, as ends may make them, are not those of all sites.
+        let own = totals_on(lattice, &short, &unfolded, &whole.derivation);
+        let is_same = |name: &str| {
+            let there = model.density(name);
+            let mut here = own.iter().filter(|(own, _)| own == name);
+            there.is_none_or(|there| here.any(|(_, here)| here == there))
+        };
         let (kept, lost): (Vec<Invariant>, Vec<Invariant>) = named.partition(|i| match i.name {
             "energy" => model.has_energies(),
-            name => model.totals().any(|t| t == name),
+            name => model.totals().any(|t| t == name) && is_same(name),
         });
         let mut kept = kept;
         // What functionals of all sites leave as it is, the short line does not tell.

@@ -104,6 +104,8 @@ pub struct LineModel {
     momenta: Asked,
     /// Name, number of components, and why it is conserved.
     conserved: Vec<(String, usize, String)>,
+    /// What totals sum over all sites, as text, by their names.
+    densities: Vec<(String, String)>,
     node: u32,
     places: usize,
 }
@@ -188,6 +190,9 @@ impl LineModel {
             };
             Some((ascii(f), 1, reason))
         });
+        // Of functionals one site stands for all.
+        let sums = line.totals.iter().filter(|t| !t.text.is_empty());
+        let densities = sums.map(|t| (t.name.clone(), t.text.clone()));
         let conserved = conserved.chain(of_constraints.collect::<Vec<_>>());
         let observers = own(&state, &|f| f != "node");
         let functionals = own(name, &|f| f.starts_with("values_"));
@@ -275,6 +280,7 @@ impl LineModel {
             functionals,
             momenta,
             conserved: conserved.collect(),
+            densities: densities.collect(),
             node,
             places: places.unwrap_or(at::FIRST),
         }))
@@ -304,6 +310,12 @@ impl LineModel {
     pub fn conserved(&self) -> impl Iterator<Item = (&str, usize, &str)> {
         let all = self.conserved.iter();
         all.map(|(name, rows, reason)| (name.as_str(), *rows, reason.as_str()))
+    }
+
+    /// What a total sums over all sites, as text.
+    pub(crate) fn density(&self, name: &str) -> Option<&str> {
+        let found = self.densities.iter().find(|(own, _)| own == name);
+        found.map(|(_, text)| text.as_str())
     }
 
     /// The names of what is observed at sites, as [`LineTrajectory::observe`] takes them: what moves and its

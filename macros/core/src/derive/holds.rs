@@ -3,6 +3,8 @@
 //! whatever solves equations a multiplier is then one more velocity, of an additive group.
 //! Takes the model; gives the reactions, what is solved with them, and which invariants they leave.
 
+mod together;
+
 use super::action::Action;
 use super::balance::{Balance, pairing};
 use super::invariants::{Family, Integrability, Invariant, Kind, Known};
@@ -323,7 +325,7 @@ pub(super) fn kept(
     found: Found,
 ) -> Found {
     let Found {
-        mut invariants,
+        invariants,
         mut integrability,
     } = found;
     if spec.holds.is_empty() {
@@ -347,17 +349,22 @@ pub(super) fn kept(
             .iter()
             .all(|kick| algebra.is_zero(&expr::directional(s, value, kick)))
     };
-    invariants.retain_mut(|v| match (&v.kind, &v.value) {
-        (Kind::Energy, _) => {
-            if v.exact {
-                v.exact = false;
-                v.reason = "the stepper is symplectic".to_owned();
-            }
-            true
-        }
+    let is_left = |v: &Invariant| match (&v.kind, &v.value) {
+        (Kind::Energy, _) => true,
         (Kind::Spectrum, _) | (_, None) => false,
         (_, Some(value)) => unmoved(value),
-    });
+    };
+    let (mut invariants, changed): (Vec<Invariant>, Vec<Invariant>) =
+        invariants.into_iter().partition(is_left);
+    for v in invariants
+        .iter_mut()
+        .filter(|v| v.kind == Kind::Energy && v.exact)
+    {
+        v.exact = false;
+        v.reason = "the stepper is symplectic".to_owned();
+    }
+    let sums = together::sums(spec, letters, &changed).into_iter();
+    invariants.extend(sums.filter(is_left));
     integrability.lax = None;
     integrability.discrete_energy.exact = false;
     integrability.casimirs = Known::NotSought(

@@ -150,31 +150,37 @@ fn letters(spec: &Spec) -> Letters {
         let shape = c.group.shape();
         let (algebra, structure) = c.group.variation();
         variation.push(numbered(
-            &["ξ", "χ"],
+            &["ξ", "χ", "ϱ"],
             i,
             algebra,
             structure,
             Role::Variation,
         ));
         direction.push(numbered(
-            &["η", "θ"],
+            &["η", "θ", "ϑ"],
             i,
             algebra,
             structure,
             Role::Variation,
         ));
         momentum.push(numbered(
-            &["P", "Y"],
+            &["P", "Y", "Ξ"],
             i,
             shape,
             Structure::General,
             Role::Multiplier,
         ));
-        edge.push(numbered(&["M", "Π"], i, algebra, structure, Role::Derived));
+        edge.push(numbered(
+            &["M", "Π", "Φ"],
+            i,
+            algebra,
+            structure,
+            Role::Derived,
+        ));
         let (covector, structure) = c.group.dual();
         let name = match c.group.is_additive() {
-            true => ["p", "ϖ"],
-            false => c.side.of(["μ", "ν"], ["m", "ϖ"]),
+            true => ["p", "ϖ", "ς"],
+            false => c.side.of(["μ", "ν", "κ"], ["m", "ϖ", "ς"]),
         };
         node.push(numbered(&name, i, covector, structure, Role::Derived));
     }
@@ -209,7 +215,7 @@ fn letters(spec: &Spec) -> Letters {
         } else {
             String::new()
         };
-        let letter = free(&["ζ", "υ"]);
+        let letter = free(&["ζ", "υ", "ϕ"]);
         let name = symbols.fresh_name(&format!("{letter}{number}"));
         rate.push(symbols.add(&name, shape, structure, Role::Variation));
         let name = symbols.fresh_name(&format!("d{letter}{number}"));

@@ -92,8 +92,11 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
             ("sum", [inner, sites]) => {
                 let over = summed_over(sites)?;
                 if found.over.is_some() {
-                    let d = Diagnostic::new(e.place, "a sum over sites stands within another one");
-                    return Err(d.help("write one sum, over nodes or over segments"));
+                    let d = Diagnostic::new(
+                        e.place,
+                        "a second sum over sites in one term would join all sites with one another, and stands in no Lagrangian",
+                    );
+                    return Err(d.help("write one sum in a term, as in `sum(m*x^2, nodes)`; a constraint holds products of sums, as in `hold p: dot(sum(x), sum(x)) = a^2;`"));
                 }
                 found.over = Some(over);
                 found.label = found.label.or(lattice.line);

@@ -382,7 +382,7 @@ fn a_sum_over_stated_sites_is_a_term_of_the_lagrangian_and_no_number_in_it() {
             "a quantity of a site times a sum over sites",
         ),
         ("m/sum(m, nodes)", "a quotient by a sum over sites"),
-        ("sum(x, nodes)*sum(m, nodes)", "stands within another one"),
+        ("sum(x, nodes)*sum(m, nodes)", "a second sum over sites"),
         ("sum(x, nodes, 3)", "nothing further"),
     ] {
         let found = told(term).map(|_| ()).expect_err(term).to_string();
@@ -446,11 +446,12 @@ fn momenta_bear_a_letter_that_the_model_does_not() {
     for (param, hold, momentum) in [
         ("k", "hold p: sum(m*q) = X;", "ϖ_{i,k} = "),
         ("p", "", "ϖ_{i,k} = "),
+        ("p, ϖ", "", "ς_{i,k} = "),
         ("k", "", "p_{i,k} = "),
     ] {
         let source = format!(
-            "model Line {{ label i in 0..N; param m: Real at nodes; param {param}, X: Real; field q: Real at nodes; {hold}
-             lagrangian = m*(next(q) - q)^2/(2*h) - (h/2)*{param}*(next(q, i) - q - X)^2; }}"
+            "model Line {{ label i in 0..N; param m: Real at nodes; param {param}, X, b: Real; field q: Real at nodes; {hold}
+             lagrangian = m*(next(q) - q)^2/(2*h) - (h/2)*b*(next(q, i) - q - X)^2; }}"
         );
         let model = parse_source(&source).unwrap();
         let text = document::printed_lattice(&model, &source, Format::Text, 100)
@@ -473,4 +474,28 @@ fn an_offset_is_warned_of_where_the_line_is_no_ring() {
     };
     assert_eq!(warned(CHAIN), 0);
     assert_eq!(warned(&CHAIN.replace(" periodic;", "")), 1);
+}
+
+#[test]
+fn a_smoother_without_a_length_smooths_over_alpha() {
+    let fluid = |parameter: &str, length: &str| {
+        let source = format!(
+            "model Fluid {{ time k step dt; label a in 0..N; grid n; {parameter} param m: Real at a; param w: Real at n;
+             param c0: Real; given R(Vec<2>): Vec<2> = case; field X: Vec<2> at a on box;
+             mesh H: Real at n = deposit(X, m); mesh S: Real at n = smooth(H{length});
+             lagrangian = (m/(2*dt))*dot(next(X) - X, next(X) - X) + m*dot(R((X + next(X))/2), next(X) - X)
+                 - dt*(c0^2/2)*w*H*S; }}"
+        );
+        let model = parse_source(&source).unwrap();
+        let printed = document::printed_lattice(&model, &source, Format::Text, 100);
+        // What follows the statement.
+        let text = printed.unwrap().text;
+        text.split_once("Sites\n").map(|(_, rest)| rest.to_owned())
+    };
+    let remark = "/** length over which the depth is smoothed */ param alpha: Real;";
+    let stated = fluid(remark, ", alpha");
+    assert!(stated.as_ref().is_some_and(|t| t.contains("alpha")));
+    for parameter in ["", remark] {
+        assert_eq!(fluid(parameter, ""), stated);
+    }
 }

@@ -536,30 +536,51 @@ impl Unfolded {
     /// The name of an invariant without the list of all copies, its words apart.
     pub fn plain(&self, name: &str) -> String {
         let mut words: Vec<&str> = Vec::new();
-        let mut parts = name.split('_').peekable();
-        while let Some(word) = parts.next() {
-            let number = parts.peek().filter(|n| n.parse::<usize>().is_ok());
-            let site = number.is_some();
-            let own = number.map(|n| format!("{word}_{n}"));
-            let of_end = |(name, ..): &(String, String, bool)| Some(ascii(name)) == own;
-            if self.end_parameters.iter().any(of_end) {
-                parts.next();
-                words.push(word);
-                continue;
-            }
+        let mut rest = name;
+        while !rest.is_empty() {
             // A place that a turn is about is named beside the copies that turn.
             let place = words.last() == Some(&"about");
-            let spelt = |c: &Copied| ascii(&c.of) == word || c.of == word;
-            if site && self.copies.iter().any(spelt) {
-                parts.next();
-                if place || !words.contains(&word) {
-                    words.push(word);
+            match self.copied(rest) {
+                Some((word, behind, copy)) => {
+                    if place || !copy || !words.contains(&word) {
+                        words.push(word);
+                    }
+                    rest = behind;
                 }
-                continue;
+                None => {
+                    let (word, behind) = rest.split_once('_').unwrap_or((rest, ""));
+                    words.push(word);
+                    rest = behind;
+                }
             }
-            words.push(word);
         }
         words.join(" ")
+    }
+
+    /// What a name begins with, a copy or a parameter of an end: the name as stated, what is behind it, and whether it is
+    /// a copy. Names may hold underscores: the longest counts.
+    fn copied<'n>(&self, name: &'n str) -> Option<(&'n str, &'n str, bool)> {
+        let sited = |of: &str| {
+            let behind = name.strip_prefix(of)?.strip_prefix('_')?;
+            let (site, behind) = behind.split_once('_').unwrap_or((behind, ""));
+            site.parse::<usize>().ok()?;
+            Some((name.get(..of.len())?, behind))
+        };
+        let end = self.end_parameters.iter().find_map(|(own, ..)| {
+            let own = ascii(own);
+            let behind = name.strip_prefix(own.as_str())?;
+            let behind = match behind.is_empty() {
+                true => behind,
+                false => behind.strip_prefix('_')?,
+            };
+            let stem = own.rsplit_once('_')?.0;
+            Some((name.get(..stem.len())?, behind, false))
+        });
+        let copies = self.copies.iter().filter_map(|c| {
+            let (word, behind) = sited(&ascii(&c.of)).or_else(|| sited(&c.of))?;
+            Some((word, behind, true))
+        });
+        end.or_else(|| copies.max_by_key(|(word, ..)| word.len()))
     }
 
     /// The copy of this name.

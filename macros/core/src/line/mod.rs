@@ -25,7 +25,7 @@ pub use pull::{EndTerm, Force, Pull};
 pub use signs::{Signs, Wall, signs};
 pub use site::{BASE, Sited};
 pub use tie::{Part, Tie};
-pub use total::Total;
+pub use total::{Total, totals_on};
 
 use crate::algebra::Rational;
 use crate::derive::Outline;

@@ -59,10 +59,17 @@ impl<'a, 's> Columns<'a, 's> {
         out
     }
 
-    /// Motions of a sort of single copies, where something of every single momentum is conserved.
+    /// Motions of a sort of single copies, where something of every single momentum is conserved, and of single bodies
+    /// that constraints hold.
     pub(super) fn of_every_site(&self, sort: Sort) -> Vec<Column<'s>> {
-        if !self.is_lattice() {
-            return Vec::new();
+        // What constraints join is added up afterwards, of which each part is wanted.
+        let held = !self.x.spec.holds.is_empty();
+        let own = self.motions.iter();
+        let own = own.filter(|m| m.sort == sort && m.way == Way::Space && !m.spanned);
+        match self.is_lattice() {
+            false if held => return own.map(|m| vec![m]).collect(),
+            false => return Vec::new(),
+            true => {}
         }
         let all = self.by_key(sort).into_iter().flatten();
         let single = |c: &Column| c.len() == 1 && self.copy(c[0].configuration).is_some();

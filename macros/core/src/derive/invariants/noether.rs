@@ -95,10 +95,12 @@ pub(super) fn momenta(x: &Inputs, roots: &Roots, passages: &[Passage]) -> Moment
         return Momenta::default();
     }
     let motions = motions(x);
+    let mut all = x.spec.configurations.iter();
+    let is_lattice = all.any(|c| c.copy.is_some());
     let columns = Columns {
         x,
         motions: &motions,
-        sets: match x.spec.configurations.len() > FEW {
+        sets: match x.spec.configurations.len() > FEW || is_lattice {
             true => components(x),
             false => Vec::new(),
         },

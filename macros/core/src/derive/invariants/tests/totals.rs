@@ -1,7 +1,7 @@
 //! Sums of momenta that advected rotations carry into one frame, whatever else the action couples, on
 //! either side and for either group of turns; and momenta without terms that are zero.
 
-use super::{Family, derive};
+use super::{Family, derive, found};
 use crate::algebra::{assumed, exact::Point};
 use crate::expr::{self, Expr, Node};
 use crate::print::{Format, Style, expression};
@@ -122,4 +122,33 @@ fn about_a_place_the_whole_momentum_is_found_and_no_term_of_it_is_zero() {
             }
         }
     }
+}
+
+#[test]
+fn constraints_between_bodies_leave_the_sums_of_momenta() {
+    let pair = |held: &str| {
+        let names = found(&format!(
+            "model Pair {{ param m, n, a: Real; field x, y: Vec<3>; hold l: {held} = a^2;
+             lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) + n*dot(next(y) - y, next(y) - y)/(2*h); }}"
+        ));
+        let momenta = names.into_iter().filter(|n| n.contains("momentum"));
+        momenta.collect::<Vec<String>>()
+    };
+    let both = ["total_momentum", "total_momentum_angular"];
+    assert_eq!(pair("dot(y - x, y - x)"), both);
+    // A reaction that pulls at one of them twice as hard changes the sum, and turns nothing.
+    assert_eq!(pair("dot(y - 2*x, y - 2*x)"), both[1..]);
+    // A chain: links between neighbours.
+    let chain = found(
+        "model Chain { param m, a: Real; param g: Vec<3>; field x, y, z: Vec<3>;
+            hold l: dot(y - x, y - x) = a^2; hold k: dot(z - y, z - y) = a^2;
+            lagrangian = m*(dot(next(x) - x, next(x) - x) + dot(next(y) - y, next(y) - y) + dot(next(z) - z, next(z) - z))/(2*h)
+                + h*m*dot(g, x + y + z); }",
+    );
+    let momenta = chain.iter().filter(|n| n.contains("momentum"));
+    let momenta: Vec<&String> = momenta.collect();
+    assert_eq!(
+        momenta,
+        ["total_momentum_across_g", "total_momentum_angular_g"]
+    );
 }
