@@ -190,11 +190,22 @@ macro_rules! square_to_square {
     };
 }
 
+fn length<T: Real>(x: &Value<T>) -> Option<T> {
+    let x = x.dense()?;
+    Some(x.dot(&x).sqrt())
+}
+
 pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
     Some(match (name, arguments) {
         ("dot", 2) => |a, _| match (a.first()?, a.get(1)?) {
             (Value::Vector(x), Value::Vector(y)) => Some(Value::Real(x.dot(y))),
             (x, y) => Some(Value::Real(x.dense()?.dot(&y.dense()?))),
+        },
+        // What products are at most, whatever the angle.
+        ("dot_sizes", 2) => |a, _| Some(Value::Real(length(a.first()?)? * length(a.get(1)?)?)),
+        ("cross_sizes", 2) => |a, _| {
+            let size = length(a.first()?)? * length(a.get(1)?)?;
+            Some(Value::Vector(SVector::repeat(size)))
         },
         ("cross", 2) => |a, _| Some(Value::Vector(three(a.first()?)?.cross(three(a.get(1)?)?))),
         ("tr_mul", 2) => |a, _| match (a.first()?, a.get(1)?) {

@@ -234,6 +234,7 @@ impl LineModel {
                 Some((multiplier, false)) => format!("constraint_size_{multiplier}"),
                 None => f.clone(),
             };
+            shared.by_length = held(line, f).is_none();
             let routine = entry(&mut shared, (name, &own), &of, at::FIRST)?;
             Ok((f.clone(), routine))
         });

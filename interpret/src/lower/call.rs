@@ -230,6 +230,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
         receiver: Option<Code<T>>,
         sizes: Vec<usize>,
     ) -> Result<Option<Code<T>>, Refused> {
+        let name = match (self.shared.by_length, name) {
+            (true, "dot") => "dot_sizes",
+            (true, "cross") => "cross_sizes",
+            _ => name,
+        };
         let mut arguments: Vec<Code<T>> = receiver.into_iter().collect();
         for e in list {
             arguments.push(self.argument(e)?);

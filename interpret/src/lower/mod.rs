@@ -39,6 +39,8 @@ pub struct Shared<'a, T: Real> {
     layouts: BTreeMap<String, Arc<Layout>>,
     /// Whether sums over sites are those of the sizes of their terms.
     pub by_size: bool,
+    /// Whether products of vectors are those of their lengths: what is read of a momentum has the size of the whole.
+    pub by_length: bool,
     /// The first place that no function uses.
     free: usize,
     routines: Routines<T>,
@@ -56,6 +58,7 @@ impl<'a, T: Real> Shared<'a, T> {
             )),
             layouts: BTreeMap::new(),
             by_size: false,
+            by_length: false,
             free: 0,
             routines: BTreeMap::new(),
         }
@@ -76,6 +79,7 @@ impl<'a, T: Real> Shared<'a, T> {
             names: self.names.clone(),
             layouts: BTreeMap::new(),
             by_size: self.by_size,
+            by_length: self.by_length,
             free: 0,
             routines: BTreeMap::new(),
         }
