@@ -385,3 +385,13 @@ fn components_that_every_site_keeps_are_told_of_every_site() {
         }
     }
 }
+
+#[test]
+fn the_total_of_a_ring_is_told_where_even_and_odd_sites_have_their_own() {
+    let water = include_str!("../../models/lattices/shallow-water-1d.clebsch");
+    for count in [41, 64] {
+        let read = card(water, count, true, ["free", "free"]);
+        let names: Vec<&str> = read.invariants.iter().map(|i| i.name).collect();
+        assert_eq!(names, ["energy", "momentum_Y", "total_momentum_X"]);
+    }
+}

@@ -79,7 +79,13 @@ impl Carded {
         let short = Choice {
             // Of functionals one site stands for all.
             counts: match lattice.meshes.is_empty() {
-                true => counts.map(|(n, most)| (*n).max(4).min(*most)).collect(),
+                true => counts
+                    .map(|(n, most)| {
+                        // Of an even ring the even and the odd sites may be two.
+                        let odd = usize::from(choice.periodic);
+                        ((*n).max(4) | odd).min(*most)
+                    })
+                    .collect(),
                 false => representative.counts.clone(),
             },
             ..choice.clone()
