@@ -60,6 +60,16 @@ fn values(
     each.collect()
 }
 
+/// A trajectory from the values of fields, as [`values`] takes them.
+fn started(
+    card: &Card,
+    of: &dyn Fn(&str, Option<usize>) -> Vec<f64>,
+    h: f64,
+) -> Box<dyn Trajectory> {
+    let [parameters, initial] = [card.parameters, card.initial].map(|fields| values(fields, of));
+    (card.open)(&parameters, &initial, Settings::step(h)).expect("starts")
+}
+
 fn observed(t: &dyn Trajectory, name: &str) -> Vec<f64> {
     let card = t.card();
     let mut all = vec![0.0; card.observable_count()];
@@ -138,11 +148,7 @@ fn soliton_error(h: f64, steps: u64) -> f64 {
             _ => p,
         }]
     };
-    let (parameters, initial) = (
-        values(read.parameters, &value),
-        values(read.initial, &value),
-    );
-    let mut t = (read.open)(&parameters, &initial, Settings::step(h)).expect("starts");
+    let mut t = started(&read, &value, h);
     let mut before = vec![0.0; read.invariant_count()];
     t.invariants(&mut before);
     for _ in 0..steps {
@@ -199,11 +205,7 @@ fn mode_error(ends: [&str; 2], shape: &dyn Fn(f64) -> f64) -> f64 {
             _ => 0.0,
         }]
     };
-    let (parameters, initial) = (
-        values(read.parameters, &value),
-        values(read.initial, &value),
-    );
-    let mut t = (read.open)(&parameters, &initial, Settings::step(h)).expect("starts");
+    let mut t = started(&read, &value, h);
     let steps = 300;
     for _ in 0..steps {
         t.step().expect("steps");
@@ -245,12 +247,7 @@ fn tops_in_phase_with_free_ends_are_one_top() {
     };
     for count in [1, 4] {
         let read = card(TOPS, count, false, ["free", "free"]);
-        let settings = Settings::step(0.05);
-        let start = |c: &Card| {
-            let (p, i) = (values(c.parameters, &value), values(c.initial, &value));
-            (c.open)(&p, &i, settings).expect("starts")
-        };
-        let (mut one, mut row) = (start(&lone), start(&read));
+        let [mut one, mut row] = [&lone, &read].map(|c| started(c, &value, 0.05));
         for _ in 0..200 {
             one.step().expect("steps");
             row.step().expect("steps");
@@ -289,11 +286,7 @@ fn what_every_site_keeps_is_one_invariant_with_a_row_for_each_and_of_a_line_thei
                 _ => 1.0 + 0.1 * turn,
             }]
         };
-        let (parameters, initial) = (
-            values(read.parameters, &value),
-            values(read.initial, &value),
-        );
-        let mut t = (read.open)(&parameters, &initial, Settings::step(0.05)).expect("starts");
+        let mut t = started(&read, &value, 0.05);
         let mut all = vec![0.0; read.invariant_count()];
         t.invariants(&mut all);
         let momenta: Vec<f64> = (0..count).map(|i| 1.0 + 0.1 * i as f64).collect();
@@ -344,11 +337,7 @@ fn a_total_of_an_open_line_is_not_taken_for_that_of_all_sites() {
                 _ => 0.2 * (0.4 * turn).cos(),
             }]
         };
-        let (parameters, initial) = (
-            values(read.parameters, &value),
-            values(read.initial, &value),
-        );
-        let mut t = (read.open)(&parameters, &initial, Settings::step(0.05)).expect("starts");
+        let mut t = started(&read, &value, 0.05);
         let mut all = vec![0.0; read.invariant_count()];
         t.invariants(&mut all);
         let start = all.clone();
@@ -377,7 +366,6 @@ fn components_that_every_site_keeps_are_told_of_every_site() {
             .iter()
             .map(|i| (i.name, i.rows, i.formula))
             .collect();
-        println!("{told:?}");
         for name in ["momentum_x_a_E2", "momentum_x_a_E3"] {
             let (_, rows, formula) = told.iter().find(|(n, ..)| *n == name).expect(name);
             assert_eq!(*rows, if count > 32 { 1 } else { count });

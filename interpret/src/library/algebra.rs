@@ -191,8 +191,8 @@ macro_rules! square_to_square {
 }
 
 fn length<T: Real>(x: &Value<T>) -> Option<T> {
-    let x = x.dense()?;
-    Some(x.dot(&x).sqrt())
+    let all = numbers(x)?;
+    Some(all.iter().fold(T::zero(), |s, x| s + *x * *x).sqrt())
 }
 
 pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
@@ -322,12 +322,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 a.first()?,
             )?))))
         },
-        ("length", 1) => |a, _| {
-            let all = numbers(a.first()?)?;
-            Some(Value::Real(
-                all.iter().fold(T::zero(), |s, x| s + *x * *x).sqrt(),
-            ))
-        },
+        ("length", 1) => |a, _| Some(Value::Real(length(a.first()?)?)),
         ("sum_of_sizes", 1) => |a, _| match a.first()? {
             Value::List(both) => {
                 let (kinetic, potential) = (number(both.first()?)?, number(both.get(1)?)?);

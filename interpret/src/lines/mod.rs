@@ -191,8 +191,8 @@ impl LineModel {
             Some((ascii(f), 1, reason))
         });
         // Of functionals one site stands for all.
-        let sums = line.totals.iter().filter(|t| !t.text.is_empty());
-        let densities = sums.map(|t| (t.name.clone(), t.text.clone()));
+        let sums = line.totals.iter().filter(|_| lattice.meshes.is_empty());
+        let densities = sums.map(|t| (t.name.clone(), t.text(&line.representative)));
         let conserved = conserved.chain(of_constraints.collect::<Vec<_>>());
         let observers = own(&state, &|f| f != "node");
         let functionals = own(name, &|f| f.starts_with("values_"));

@@ -26,8 +26,36 @@ pub struct Total {
     pub on: String,
     /// What is summed, over which sites: letters at the base of the representative.
     pub densities: Vec<(usize, Sites, Expr)>,
-    /// The same as text, by which a total of another line is known to be this one.
-    pub text: String,
+}
+
+impl Total {
+    /// What is summed, as text, by which a total of another lattice is known to be this one; letters are of `part`.
+    pub fn text(&self, part: &Written) -> String {
+        let style = Style::new(&part.d.spec.time_index);
+        let each = self.densities.iter().map(|(label, sites, e)| {
+            // In names that are those of any lattice of the model.
+            let mut s = part.d.letters.symbols.clone();
+            let name = |l: &Letter| match part.sited(l.symbol) {
+                Some(at) => format!("{} at {}", at.of, at.site),
+                None => part.d.letters.symbols.get(l.symbol).name.clone(),
+            };
+            let letters = expr::letters(e).into_iter();
+            let mut letters: Vec<(String, Letter)> = letters.map(|l| (name(&l), l)).collect();
+            letters.sort_by(|a, b| a.0.cmp(&b.0));
+            let renamed: Vec<(Letter, Expr)> = letters
+                .into_iter()
+                .map(|(name, l)| {
+                    let own = s.get(l.symbol).clone();
+                    let id = s.add(&name, own.shape, own.structure, own.role);
+                    (l, expr::letter(&s, id, l.shift))
+                })
+                .collect();
+            let e = expr::substitute(&s, e, &renamed);
+            let density = expression(&e, &s, &style, Format::Text);
+            format!("{label} {sites:?} {density}")
+        });
+        each.collect::<Vec<_>>().join("; ")
+    }
 }
 
 /// The totals on the line that a case has by default: a ring where `periodic` stands alone, else the first
@@ -79,7 +107,6 @@ pub(super) fn beside_functionals(
                 reason: v.reason.clone(),
                 on: "always".to_owned(),
                 densities: vec![(one.label, one.sites, density)],
-                text: String::new(),
             });
         }
     }
@@ -165,7 +192,6 @@ fn of_part(
         .into_iter()
         .filter_map(|(v, value)| {
             let densities = densities(lattice, part, &value)?;
-            let text = text(part, &densities);
             let moved = densities
                 .into_iter()
                 .map(|(label, sites, e)| Some((label, sites, part.in_letters_of(base, &e)?)));
@@ -174,39 +200,9 @@ fn of_part(
                 reason: v.reason.clone(),
                 on: on.clone(),
                 densities: moved.collect::<Option<_>>()?,
-                text,
             })
         });
     each.collect()
-}
-
-/// Densities as text, in names that are those of any lattice of the model.
-fn text(part: &Written, densities: &[(usize, Sites, Expr)]) -> String {
-    let style = Style::new(&part.d.spec.time_index);
-    let each = densities.iter().map(|(label, sites, e)| {
-        let mut s = part.d.letters.symbols.clone();
-        let name = |l: &Letter| match part.sited(l.symbol) {
-            Some(at) => format!("{} at {}", at.of, at.site),
-            None => part.d.letters.symbols.get(l.symbol).name.clone(),
-        };
-        let mut letters: Vec<(String, Letter)> = expr::letters(e)
-            .into_iter()
-            .map(|l| (name(&l), l))
-            .collect();
-        letters.sort_by(|a, b| a.0.cmp(&b.0));
-        let renamed: Vec<(Letter, Expr)> = letters
-            .into_iter()
-            .map(|(name, l)| {
-                let own = s.get(l.symbol).clone();
-                let id = s.add(&name, own.shape, own.structure, own.role);
-                (l, expr::letter(&s, id, l.shift))
-            })
-            .collect();
-        let e = expr::substitute(&s, e, &renamed);
-        let density = expression(&e, &s, &style, Format::Text);
-        format!("{label} {sites:?} {density}")
-    });
-    each.collect::<Vec<_>>().join("; ")
 }
 
 /// The totals of a lattice that is written out, by name, with the text of their densities: a sum that leaves sites out is
@@ -222,8 +218,10 @@ pub fn totals_on(
         unfolded: unfolded.clone(),
         d: d.outline(),
     };
-    let all = of_part(lattice, &part, &d.invariants, &part).into_iter();
-    all.map(|t| (t.name, t.text)).collect()
+    let all = of_part(lattice, &part, &d.invariants, &part);
+    all.iter()
+        .map(|t| (t.name.clone(), t.text(&part)))
+        .collect()
 }
 
 /// The values of invariants. What single sites keep is added up, one for all of them.

@@ -5,8 +5,12 @@
 use super::Inputs;
 use super::mixed::Component;
 use super::motions::{Motion, Sort, Way};
+use super::noether::components;
 use super::passage::Passage;
 use crate::check::spec::CopyOf;
+
+/// Most configurations whose momenta are combined one by one; of more, all that the action couples.
+const FEW: usize = 4;
 
 /// Most numbers of one set whose shifts are combined one by one.
 const SINGLES: usize = 32;
@@ -22,86 +26,147 @@ struct Key {
     way: Way,
 }
 
-/// The motions of a model, with the sets of configurations that are moved together.
-pub(super) struct Columns<'a, 's> {
-    pub(super) x: &'s Inputs<'a>,
-    pub(super) motions: &'s [Motion],
-    /// Sets of configurations that the action couples; empty where each is moved by itself.
-    pub(super) sets: Vec<Vec<usize>>,
-    pub(super) passages: &'s [Passage<'a>],
+/// The motions of a model by their sorts, as they are combined.
+pub(super) struct Columns<'s>(Vec<OfSort<'s>>);
+
+/// Those of one sort.
+struct OfSort<'s> {
+    sort: Sort,
+    /// What may be combined, for each set of configurations that the action couples.
+    combined: Vec<Vec<Column<'s>>>,
+    /// Single ones that are told before.
+    single: Vec<Column<'s>>,
+    /// Those of which all others are combinations.
+    basis: Vec<Column<'s>>,
 }
 
-impl<'a, 's> Columns<'a, 's> {
-    /// Motions of a sort that may be combined, for each set. A turn about a place or about its own origin is one of the
-    /// others of the set too, which have no place.
-    pub(super) fn of_sort(&self, sort: Sort) -> Vec<Vec<Column<'s>>> {
-        let own = || self.motions.iter().filter(|m| m.sort == sort);
-        if self.sets.is_empty() {
-            return vec![own().map(|m| vec![m]).collect()];
+impl<'s> Columns<'s> {
+    /// Of these motions.
+    pub(super) fn new(x: &Inputs, motions: &'s [Motion], passages: &[Passage]) -> Self {
+        let is_lattice = x.spec.configurations.iter().any(|c| c.copy.is_some());
+        let coupled = Coupled {
+            x,
+            passages,
+            is_lattice,
+            sets: match x.spec.configurations.len() > FEW || is_lattice {
+                true => components(x),
+                false => Vec::new(),
+            },
+        };
+        let mut sorts: Vec<(Sort, Vec<&Motion>)> = Vec::new();
+        for m in motions {
+            match sorts.iter_mut().find(|(sort, _)| *sort == m.sort) {
+                Some((_, own)) => own.push(m),
+                None => sorts.push((m.sort, vec![m])),
+            }
         }
-        let mut out = self.by_key(sort);
-        for (columns, set) in out.iter_mut().zip(&self.sets) {
+        let of_sort = |(sort, own): (Sort, Vec<&'s Motion>)| coupled.of_sort(sort, &own);
+        Columns(sorts.into_iter().map(of_sort).collect())
+    }
+
+    /// The sorts, in the order of the motions.
+    pub(super) fn sorts(&self) -> Vec<Sort> {
+        self.0.iter().map(|own| own.sort).collect()
+    }
+
+    /// Motions of a sort that may be combined, for each set.
+    pub(super) fn of_sort(&self, sort: Sort) -> &[Vec<Column<'s>>] {
+        self.own(sort).map_or(&[], |own| &own.combined)
+    }
+
+    /// Motions of a sort of single copies, where something of every single momentum is conserved, and of single bodies
+    /// that constraints hold.
+    pub(super) fn of_every_site(&self, sort: Sort) -> &[Column<'s>] {
+        self.own(sort).map_or(&[], |own| &own.single)
+    }
+
+    /// Those of all sorts of which all others are combinations.
+    pub(super) fn basis(&self) -> impl Iterator<Item = &Column<'s>> {
+        self.0.iter().flat_map(|own| &own.basis)
+    }
+
+    fn own(&self, sort: Sort) -> Option<&OfSort<'s>> {
+        self.0.iter().find(|own| own.sort == sort)
+    }
+}
+
+/// What says which motions are made together.
+struct Coupled<'x, 'a> {
+    x: &'x Inputs<'a>,
+    passages: &'x [Passage<'a>],
+    /// Whether a lattice is written out.
+    is_lattice: bool,
+    /// Sets of configurations that the action couples; none where each is moved by itself.
+    sets: Vec<Vec<usize>>,
+}
+
+impl Coupled<'_, '_> {
+    fn of_sort<'s>(&self, sort: Sort, own: &[&'s Motion]) -> OfSort<'s> {
+        let alone = |m: &&'s Motion| vec![*m];
+        let by_key = self.by_key(own);
+        let unspanned = own.iter().filter(|m| !m.spanned);
+        let (single, basis) = match self.is_lattice {
+            true => {
+                let all = || by_key.iter().flatten();
+                let is_single =
+                    |c: &&Column| c.len() == 1 && self.copy(c[0].configuration).is_some();
+                let is_basis = |c: &&Column| c.iter().all(|m| !m.spanned);
+                (
+                    all().filter(is_single).cloned().collect(),
+                    all().filter(is_basis).cloned().collect(),
+                )
+            }
+            // Of bodies that are listed one by one each is counted. What constraints join is added up afterwards, of
+            // which each part is wanted.
+            false => {
+                let held = !self.x.spec.holds.is_empty();
+                let of_space = unspanned.clone().filter(|m| held && m.way == Way::Space);
+                (
+                    of_space.map(alone).collect(),
+                    unspanned.map(alone).collect(),
+                )
+            }
+        };
+        OfSort {
+            sort,
+            combined: match self.sets.is_empty() {
+                true => vec![own.iter().map(alone).collect()],
+                false => self.with_wholes(own, by_key),
+            },
+            single,
+            basis,
+        }
+    }
+
+    /// A turn about a place or about its own origin is one of the others of the set too, which have no place.
+    fn with_wholes<'s>(
+        &self,
+        own: &[&'s Motion],
+        mut columns: Vec<Vec<Column<'s>>>,
+    ) -> Vec<Vec<Column<'s>>> {
+        for (columns, set) in columns.iter_mut().zip(&self.sets) {
             let whole: Vec<Column> = columns
                 .iter()
                 .filter(|list| matches!(list[0].way, Way::Spin | Way::About(_)))
                 .filter_map(|list| {
-                    let missing = |m: &&Motion| {
+                    let missing = |m: &&&Motion| {
                         m.way == Way::Space
                             && set.contains(&m.configuration)
                             && list.iter().all(|l| l.configuration != m.configuration)
                     };
-                    let rest: Column = own().filter(missing).collect();
+                    let rest: Column = own.iter().filter(missing).copied().collect();
                     (!rest.is_empty()).then(|| [list.clone(), rest].concat())
                 })
                 .collect();
             columns.extend(whole);
         }
-        out
+        columns
     }
 
-    /// Motions of a sort of single copies, where something of every single momentum is conserved, and of single bodies
-    /// that constraints hold.
-    pub(super) fn of_every_site(&self, sort: Sort) -> Vec<Column<'s>> {
-        // What constraints join is added up afterwards, of which each part is wanted.
-        let held = !self.x.spec.holds.is_empty();
-        let own = self.motions.iter();
-        let own = own.filter(|m| m.sort == sort && m.way == Way::Space && !m.spanned);
-        match self.is_lattice() {
-            false if held => return own.map(|m| vec![m]).collect(),
-            false => return Vec::new(),
-            true => {}
-        }
-        let all = self.by_key(sort).into_iter().flatten();
-        let single = |c: &Column| c.len() == 1 && self.copy(c[0].configuration).is_some();
-        all.filter(single).collect()
-    }
-
-    /// Those of which all others are combinations.
-    pub(super) fn basis(&self) -> Vec<Column<'s>> {
-        let own = self.motions.iter().filter(|m| !m.spanned);
-        // Of many bodies that are listed one by one each is counted.
-        if !self.is_lattice() {
-            return own.map(|m| vec![m]).collect();
-        }
-        let mut sorts: Vec<Sort> = Vec::new();
-        for m in own {
-            if !sorts.contains(&m.sort) {
-                sorts.push(m.sort);
-            }
-        }
-        let all = sorts.into_iter().flat_map(|sort| self.by_key(sort));
-        let all = all.flatten();
-        all.filter(|c| c.iter().all(|m| !m.spanned)).collect()
-    }
-
-    fn is_lattice(&self) -> bool {
-        !self.sets.is_empty() && self.x.spec.configurations.iter().any(|c| c.copy.is_some())
-    }
-
-    /// Motions of a sort by what is moved and how, for each set.
-    fn by_key(&self, sort: Sort) -> Vec<Vec<Column<'s>>> {
+    /// Motions by what is moved and how, for each set.
+    fn by_key<'s>(&self, own: &[&'s Motion]) -> Vec<Vec<Column<'s>>> {
         let mut out: Vec<Vec<(Key, Column)>> = vec![Vec::new(); self.sets.len()];
-        for m in self.motions.iter().filter(|m| m.sort == sort) {
+        for m in own.iter().copied() {
             let set = self.sets.iter().position(|s| s.contains(&m.configuration));
             let Some(columns) = set.and_then(|i| out.get_mut(i)) else {
                 continue;
@@ -153,7 +218,7 @@ impl<'a, 's> Columns<'a, 's> {
     fn is_told_of_each(&self, key: Key, list: &Column) -> bool {
         // Numbers that are listed one by one may be coordinates along several axes.
         let number = |m: &&Motion| m.direction().0.is_scalar() && m.way == Way::Space;
-        if list.iter().all(number) && !self.is_lattice() {
+        if list.iter().all(number) && !self.is_lattice {
             return list.len() <= SINGLES;
         }
         let told = key.family.is_some() && matches!(key.way, Way::Space | Way::Body);

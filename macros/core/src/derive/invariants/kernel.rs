@@ -2,7 +2,7 @@
 //! change over no step. Takes random steps in exact arithmetic; gives all solutions in small whole
 //! numbers, and for fixed parameters how many there are in any numbers.
 
-use super::columns::Column;
+use super::columns::Columns;
 use super::draws::Roots;
 use super::motions::{Motion, Sort};
 use super::passage::{Passage, completed, start};
@@ -191,11 +191,11 @@ impl<'a> Kernel<'a> {
     pub(super) fn new(
         x: &Inputs<'a>,
         roots: &Roots,
-        columns: &[Column],
+        columns: &Columns,
         attempt: u64,
     ) -> Option<Kernel<'a>> {
         // Each with what its motions have together.
-        let own = columns.iter().filter_map(|list| {
+        let own = columns.basis().filter_map(|list| {
             let first = list.first()?;
             let values = list.iter().map(|m| m.value.clone());
             let shape = first.value.shape();

@@ -19,9 +19,6 @@ use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Most configurations whose momenta are combined one by one; of more, all that the action couples.
-const FEW: usize = 4;
-
 /// Most single numbers that are combined.
 const NUMBERS: usize = 48;
 
@@ -81,7 +78,7 @@ fn touched(x: &Inputs) -> BTreeMap<SymbolId, Vec<usize>> {
 /// Noether momenta.
 #[derive(Default)]
 pub(super) struct Momenta {
-    /// Those that single sites of a lattice keep.
+    /// Those that single sites of a lattice keep, and single bodies before constraints hold them.
     pub(super) of_sites: Vec<Invariant>,
     /// Those as seen from space.
     pub(super) space: Vec<Invariant>,
@@ -95,32 +92,16 @@ pub(super) fn momenta(x: &Inputs, roots: &Roots, passages: &[Passage]) -> Moment
         return Momenta::default();
     }
     let motions = motions(x);
-    let mut all = x.spec.configurations.iter();
-    let is_lattice = all.any(|c| c.copy.is_some());
-    let columns = Columns {
-        x,
-        motions: &motions,
-        sets: match x.spec.configurations.len() > FEW || is_lattice {
-            true => components(x),
-            false => Vec::new(),
-        },
-        passages,
-    };
-    let kernels = kernels(x, roots, &columns.basis());
+    let columns = Columns::new(x, &motions, passages);
+    let kernels = kernels(x, roots, &columns);
     if !kernels.is_empty() && kernels.iter().all(|k| k.dimension == 0) {
         return Momenta::default();
     }
-    let mut sorts: Vec<Sort> = Vec::new();
-    for m in &motions {
-        if !sorts.contains(&m.sort) {
-            sorts.push(m.sort);
-        }
-    }
-    let readings = readings(x, &sorts);
+    let readings = readings(x, &columns.sorts());
     let mut search = Search {
         x,
         passages,
-        columns,
+        columns: &columns,
         readings: &readings,
         spanned: vec![0; kernels.len()],
         kernels: &kernels,
@@ -148,7 +129,7 @@ pub(super) fn momenta(x: &Inputs, roots: &Roots, passages: &[Passage]) -> Moment
 }
 
 /// The symmetries at fixed parameters; with assumptions at several, whose branches take turns.
-fn kernels<'a>(x: &Inputs<'a>, roots: &Roots, columns: &[Column]) -> Vec<Kernel<'a>> {
+fn kernels<'a>(x: &Inputs<'a>, roots: &Roots, columns: &Columns) -> Vec<Kernel<'a>> {
     let wanted = if x.assumed.is_empty() { 1 } else { 3 };
     // Even attempts take the smallest size where it has only a name.
     let attempts = (0..20).map(|turn| 2 * turn);
@@ -167,14 +148,14 @@ pub(super) struct Term<'s> {
 struct Search<'a, 's> {
     x: &'s Inputs<'a>,
     passages: &'s [Passage<'a>],
-    columns: Columns<'a, 's>,
+    columns: &'s Columns<'s>,
     readings: &'s [Reading],
     kernels: &'s [Kernel<'a>],
     /// Each with whether it is one of space alone.
     found: Vec<(bool, Invariant)>,
     /// How many are independent at the parameters of each kernel.
     spanned: Vec<usize>,
-    /// How many of them single sites of a lattice keep: they come first.
+    /// How many of them are of single sites or bodies: they come first.
     of_sites: usize,
     /// Motions whose whole momentum has been found.
     wholes: Vec<(usize, Way, Sort)>,
@@ -223,16 +204,12 @@ impl<'a, 's> Search<'a, 's> {
     fn of_every_site(&mut self) {
         for reading in self.readings {
             for column in self.columns.of_every_site(reading.sort) {
-                let value = self.value(reading, &column);
-                if self.is_covered(&column) || !is_conserved(self.passages, &value) {
-                    continue;
+                let terms = terms_of(reading, column, 1);
+                // No total differences are taken here.
+                let strict = || is_conserved(self.passages, &sum(self.x, &terms));
+                if !self.is_covered(column) && strict() {
+                    self.accept(&terms);
                 }
-                let term = |motion| Term {
-                    reading,
-                    motion,
-                    times: 1,
-                };
-                self.accept(&column.into_iter().map(term).collect::<Vec<_>>());
             }
         }
         self.of_sites = self.found.len();
@@ -244,9 +221,9 @@ impl<'a, 's> Search<'a, 's> {
             if self.is_complete() {
                 return;
             }
-            for mut columns in self.columns.of_sort(reading.sort) {
-                columns.retain(|c| !self.is_covered(c));
-                self.combine(columns, reading, samples);
+            for columns in self.columns.of_sort(reading.sort) {
+                let uncovered = columns.iter().filter(|c| !self.is_covered(c));
+                self.combine(uncovered.cloned().collect(), reading, samples);
             }
         }
     }
@@ -265,13 +242,7 @@ impl<'a, 's> Search<'a, 's> {
         });
         for v in combinations {
             let terms = columns.iter().zip(&v).filter(|(_, times)| **times != 0);
-            let terms = terms.flat_map(|(c, times)| {
-                c.iter().map(|motion| Term {
-                    reading,
-                    motion,
-                    times: *times,
-                })
-            });
+            let terms = terms.flat_map(|(c, times)| terms_of(reading, c, *times));
             self.accept(&terms.collect::<Vec<_>>());
         }
     }
@@ -283,16 +254,11 @@ impl<'a, 's> Search<'a, 's> {
         }
         let mut terms: Vec<Vec<Term>> = Vec::new();
         for reading in self.readings.iter().filter(|r| r.is_number()) {
-            for column in self.columns.of_sort(reading.sort).into_iter().flatten() {
+            for column in self.columns.of_sort(reading.sort).iter().flatten() {
                 if column.iter().any(|m| m.spanned) || terms.len() >= numbers() {
                     continue;
                 }
-                let term = |motion| Term {
-                    reading,
-                    motion,
-                    times: 1,
-                };
-                terms.push(column.into_iter().map(term).collect());
+                terms.push(terms_of(reading, column, 1));
             }
         }
         let values: Vec<Expr> = terms.iter().map(|list| sum(self.x, list)).collect();
@@ -329,15 +295,7 @@ impl<'a, 's> Search<'a, 's> {
     }
 
     fn value(&self, reading: &'s Reading, column: &[&'s Motion]) -> Expr {
-        let terms: Vec<Term> = column
-            .iter()
-            .map(|motion| Term {
-                reading,
-                motion,
-                times: 1,
-            })
-            .collect();
-        sum(self.x, &terms)
+        sum(self.x, &terms_of(reading, column, 1))
     }
 
     /// Adds an invariant if it is one, and if those before do not span it.
@@ -397,6 +355,16 @@ impl<'a, 's> Search<'a, 's> {
         }
         self.found.push((space, invariant));
     }
+}
+
+/// What a reading gives of each motion of a column, so many times.
+fn terms_of<'s>(reading: &'s Reading, column: &[&'s Motion], times: i64) -> Vec<Term<'s>> {
+    let term = |motion: &&'s Motion| Term {
+        reading,
+        motion,
+        times,
+    };
+    column.iter().map(term).collect()
 }
 
 fn summands_of(e: &Expr) -> Vec<Expr> {

@@ -80,7 +80,7 @@ pub fn card_words(
     let mut told: Vec<(InvariantWords, bool)> = Vec::new();
     for (i, v) in list.into_iter().enumerate() {
         let alike = at_sites.iter().find(|o| o.members.contains(&i));
-        if alike.is_some_and(|o| o.members.first() != Some(&i)) {
+        if alike.is_some_and(|o| !o.begins_with(i)) {
             continue;
         }
         let name = part.unfolded.plain(&v.name).replace(' ', "_");
@@ -91,15 +91,11 @@ pub fn card_words(
                 (formula, true, alike.members.len())
             }
             (None, Some(e), _) => {
-                let sum = total(&mut folded, &part, e);
-                let whole = sum.is_some();
-                let f = sum.unwrap_or_else(|| folded.derived(&part, e, From::First));
+                let (f, whole) = explicit(&mut folded, &part, e);
                 (text(&folded, &f), whole, 1)
             }
             (None, None, InvariantKind::ConstraintRate(j)) => {
-                let held = &part.d.spec.holds[*j].value;
-                let sum = total(&mut folded, &part, held);
-                let f = sum.unwrap_or_else(|| folded.derived(&part, held, From::First));
+                let (f, _) = explicit(&mut folded, &part, &part.d.spec.holds[*j].value);
                 let formula = format!("rate of change of {}", text(&folded, &f));
                 (formula, true, 1)
             }
@@ -130,6 +126,14 @@ pub fn card_words(
         summary: lines.join("\n"),
         solver: without_sites(&part, solver),
         invariants,
+    }
+}
+
+/// A total of this lattice, as sums over sites or site by site; with it whether it is such sums.
+fn explicit(folded: &mut Folded, part: &Part, e: &Expr) -> (Formula, bool) {
+    match total(folded, part, e) {
+        Some(sum) => (sum, true),
+        None => (folded.derived(part, e, From::First), false),
     }
 }
 

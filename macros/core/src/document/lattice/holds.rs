@@ -8,6 +8,7 @@ use crate::document::holds::{
     ALONG, MIDDLE, ON_ARRIVAL, no_change, projected, rate_on_arrival, told,
 };
 use crate::expr::{self, Expr, Shift};
+use crate::lattice::StatedTotal;
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::Formula;
 
@@ -38,9 +39,7 @@ pub(super) fn holds(folded: &mut Folded, part: &Part, section: &mut Section) {
         section.equation(Formula::equal(math(left), math(right)));
     }
     for stated in &part.unfolded.totals {
-        let symbols = &part.d.letters.symbols;
-        let own = |h: &&Hold| symbols.get(h.multiplier).name == stated.name;
-        let Some(hold) = part.d.spec.holds.iter().find(own) else {
+        let Some(hold) = number_of(part, stated).map(|j| &part.d.spec.holds[j]) else {
             continue;
         };
         let multiplier = folded.letter(part, hold.multiplier, Shift::HERE, From::First);
@@ -87,12 +86,11 @@ pub(super) fn held(folded: &mut Folded, part: &Part, doc: &mut Document) {
     for (j, from) in &shown {
         let rate = rate_on_arrival(d, &d.spec.holds[*j]);
         let zero = expr::zero(rate.shape());
-        let rate = match from {
+        let sum = match from {
             From::Site(_) => None,
             _ => sums::told(folded, part, &rate),
         };
-        let rate = rate
-            .unwrap_or_else(|| folded.derived(part, &rate_on_arrival(d, &d.spec.holds[*j]), *from));
+        let rate = sum.unwrap_or_else(|| folded.derived(part, &rate, *from));
         section.equation(Formula::equal(rate, Formula::Expr(zero)));
     }
     section.text(&no_change(d));
@@ -107,12 +105,16 @@ pub(super) fn held(folded: &mut Folded, part: &Part, doc: &mut Document) {
 fn shown(part: &Part) -> Vec<(usize, From)> {
     let of_sites = stated_holds(part).into_iter();
     let of_sites = of_sites.map(|h| (h.shown, From::Site(h.site)));
+    let totals = part.unfolded.totals.iter();
+    let of_totals = totals.filter_map(|total| Some((number_of(part, total)?, From::First)));
+    of_sites.chain(of_totals).collect()
+}
+
+/// The number of a constraint on sums.
+fn number_of(part: &Part, stated: &StatedTotal) -> Option<usize> {
     let symbols = &part.d.letters.symbols;
-    let mut all = part.unfolded.totals.iter().filter_map(|total| {
-        let own = |h: &Hold| symbols.get(h.multiplier).name == total.name;
-        Some((part.d.spec.holds.iter().position(own)?, From::First))
-    });
-    of_sites.chain(&mut all).collect()
+    let own = |h: &Hold| symbols.get(h.multiplier).name == stated.name;
+    part.d.spec.holds.iter().position(own)
 }
 
 /// A constraint as stated, held at several sites.

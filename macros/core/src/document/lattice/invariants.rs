@@ -192,38 +192,30 @@ fn of_part(folded: &mut Folded, part: &Part, kept: &[&Invariant]) -> (Vec<Known>
     let style = Style::new(&part.d.spec.time_index);
     let mut out: Vec<Known> = Vec::new();
     let mut untold: Vec<&Invariant> = Vec::new();
-    let told = |folded: &Folded, v: &Invariant, before: &str, f: Option<Formula>| {
-        let name = part.unfolded.plain(&v.name);
+    let told = |folded: &Folded, v: &Invariant, [before, after]: [&str; 2], f: Option<Formula>| {
         let shown = |f: &Formula| formula(f, &folded.symbols, &style, Format::Text);
         let text = f.as_ref().map_or_else(String::new, shown);
         let mut value: Vec<Inline> = vec![before.into()];
         value.extend(f.map(Inline::Math));
+        value.push(after.into());
         Known {
-            name,
+            name: part.unfolded.plain(&v.name),
             value,
-            text: format!("{before}{text}"),
+            text: format!("{before}{text}{after}"),
             how: if v.exact { "exact" } else { "bounded" },
             reason: v.reason.clone(),
         }
     };
     let at_sites = sites::of_sites(folded, part, kept);
-    let shown = |folded: &Folded, f: &Formula| formula(f, &folded.symbols, &style, Format::Text);
     for (i, v) in kept.iter().enumerate() {
-        if let Some(alike) = at_sites.iter().find(|o| o.members.contains(&i)) {
-            if alike.members.first() == Some(&i) {
-                let text = format!("{} {}", shown(folded, &alike.value), alike.at);
-                out.push(Known {
-                    name: alike.name.clone(),
-                    value: vec![
-                        Inline::Math(alike.value.clone()),
-                        format!(" {}", alike.at).into(),
-                    ],
-                    text,
-                    how: if v.exact { "exact" } else { "bounded" },
-                    reason: v.reason.clone(),
-                });
+        match at_sites.iter().find(|o| o.members.contains(&i)) {
+            Some(alike) if alike.begins_with(i) => {
+                let after = format!(" {}", alike.at);
+                out.push(told(folded, v, ["", &after], Some(alike.value.clone())));
+                continue;
             }
-            continue;
+            Some(_) => continue,
+            None => {}
         }
         let (before, e) = match (&v.value, &v.kind) {
             (Some(e), _) => ("", e),
@@ -232,12 +224,12 @@ fn of_part(folded: &mut Folded, part: &Part, kept: &[&Invariant]) -> (Vec<Known>
             }
             (None, _) => {
                 let energy = "kinetic plus potential energy of the limit";
-                out.push(told(folded, v, energy, None));
+                out.push(told(folded, v, [energy, ""], None));
                 continue;
             }
         };
         match total(folded, part, e) {
-            Some(f) => out.push(told(folded, v, before, Some(f))),
+            Some(f) => out.push(told(folded, v, [before, ""], Some(f))),
             None => untold.push(v),
         }
     }
@@ -258,7 +250,7 @@ fn of_part(folded: &mut Folded, part: &Part, kept: &[&Invariant]) -> (Vec<Known>
         }
         let f = sum(v).and_then(|e| total(folded, part, &e));
         if f.is_some() {
-            out.push(told(folded, v, "", f));
+            out.push(told(folded, v, [""; 2], f));
         }
     }
     (out, !untold.is_empty())

@@ -27,6 +27,13 @@ pub(super) struct OfSites {
     sites: Vec<usize>,
 }
 
+impl OfSites {
+    /// Whether an invariant of the list is the first of its copies, at which all are told.
+    pub(super) fn begins_with(&self, i: usize) -> bool {
+        self.members.first() == Some(&i)
+    }
+}
+
 /// Invariants of the list that are one quantity at several sites each.
 pub(super) fn of_sites(folded: &mut Folded, part: &Part, list: &[&Invariant]) -> Vec<OfSites> {
     let style = Style::new(&part.d.spec.time_index);
