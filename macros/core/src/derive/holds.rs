@@ -3,7 +3,9 @@
 //! whatever solves equations a multiplier is then one more velocity, of an additive group.
 //! Takes the model; gives the reactions, what is solved with them, and which invariants they leave.
 
-mod together;
+mod solved;
+
+pub(crate) use solved::Solved;
 
 use super::action::Action;
 use super::balance::{Balance, pairing};
@@ -308,14 +310,14 @@ pub(crate) fn scale(s: &Symbols, hold: &Hold) -> Expr {
     expr::sum(terms, Shape::SCALAR)
 }
 
-/// What the search for invariants of the motion without constraints found.
+/// What the search for invariants found: momenta of the motion with its reactions, the others of that without.
 pub(super) struct Found {
     pub invariants: Vec<Invariant>,
     pub integrability: Integrability,
 }
 
-/// The invariants that the reactions leave: those that no momentum along a reaction changes. The
-/// constraints are added, and their rates of change where these are held too.
+/// The invariants that the reactions leave: those that no momentum along a reaction changes where the constraints
+/// hold. The constraints are added, and their rates of change where these are held too.
 pub(super) fn kept(
     spec: &Spec,
     letters: &Letters,
@@ -344,18 +346,17 @@ pub(super) fn kept(
                 .collect()
         })
         .collect();
+    let solved = Solved::of(spec, letters, algebra);
     let unmoved = |value: &Expr| {
-        kicks
-            .iter()
-            .all(|kick| algebra.is_zero(&expr::directional(s, value, kick)))
+        let mut changes = kicks.iter().map(|kick| expr::directional(s, value, kick));
+        changes.all(|change| solved.vanishes(&change, algebra))
     };
     let is_left = |v: &Invariant| match (&v.kind, &v.value) {
         (Kind::Energy, _) => true,
         (Kind::Spectrum, _) | (_, None) => false,
         (_, Some(value)) => unmoved(value),
     };
-    let (mut invariants, changed): (Vec<Invariant>, Vec<Invariant>) =
-        invariants.into_iter().partition(is_left);
+    let mut invariants: Vec<Invariant> = invariants.into_iter().filter(is_left).collect();
     for v in invariants
         .iter_mut()
         .filter(|v| v.kind == Kind::Energy && v.exact)
@@ -363,8 +364,6 @@ pub(super) fn kept(
         v.exact = false;
         v.reason = "the stepper is symplectic".to_owned();
     }
-    let sums = together::sums(spec, letters, &changed).into_iter();
-    invariants.extend(sums.filter(is_left));
     integrability.lax = None;
     integrability.discrete_energy.exact = false;
     integrability.casimirs = Known::NotSought(

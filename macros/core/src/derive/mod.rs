@@ -361,6 +361,7 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         action: &free,
         variations: &variations,
         balances: &free_balances,
+        held: (!spec.holds.is_empty()).then_some((&action, balances.as_slice())),
         bracket: &bracket,
         solve: &solve,
         // Momenta that do not determine the velocities have no energy.

@@ -1,19 +1,25 @@
-//! Random nodes at which the roots of the action exist: in exact arithmetic half of all numbers have a
-//! square root, so that a draw of many bodies at once would almost never serve. Bodies are drawn one by
-//! one, each until the roots that it completes exist. Takes a model; gives nodes, and velocities that
-//! lead to such.
+//! Random nodes at which the roots of the action exist and constraints hold: in exact arithmetic half of all
+//! numbers have a square root, so that a draw of many bodies at once would almost never serve. Bodies are drawn one by
+//! one, each until the roots that it completes exist. Takes a model; gives nodes, and velocities that lead to such.
 
 use super::{Inputs, here};
 use crate::algebra::exact::Point;
 use crate::check::spec::Advected;
+use crate::derive::holds::Solved;
+use crate::derive::variation::at;
 use crate::expr::symbol::Role;
-use crate::expr::{self, Expr, Letter, Node};
+use crate::expr::{self, Expr, Letter, Node, Shift};
 
 /// Most draws of one body: with eight roots one of 256 serves.
 const TRIES: u64 = 2048;
 
-/// Roots at a node, each with the last configuration that it depends on.
-pub(crate) struct Roots(Vec<(usize, Expr)>);
+/// What is asked of nodes.
+pub(crate) struct Roots {
+    /// Roots, each with the last configuration that it depends on.
+    list: Vec<(usize, Expr)>,
+    /// Letters that constraints determine.
+    solved: Solved,
+}
 
 impl Roots {
     /// Those of the action that stand at a node, with advected quantities by their definitions.
@@ -49,12 +55,37 @@ impl Roots {
                 out.push((last, root));
             }
         }
-        Roots(out)
+        Roots {
+            list: out,
+            solved: Solved::of(x.spec, x.letters, x.algebra),
+        }
+    }
+
+    /// Whether every node at which steps end lies on the constraints that could be solved: not where these single out
+    /// parameters, which all nodes share.
+    pub(super) fn hold_everywhere(&self, x: &Inputs) -> bool {
+        let role = |l: &Letter| x.letters.symbols.get(l.symbol).role;
+        let mut letters = self.solved.list().iter().map(|(l, _)| l);
+        letters.all(|l| role(l) == Role::Element)
     }
 
     fn exist(&self, at: &Point, last: usize) -> bool {
-        let mut own = self.0.iter().filter(|(i, _)| *i == last);
+        let mut own = self.list.iter().filter(|(i, _)| *i == last);
         own.all(|(_, root)| at.value(root).is_some())
+    }
+
+    /// The letters that constraints determine are put to what they are there.
+    fn held(&self, node: &mut Point) -> Option<()> {
+        if self.solved.list().is_empty() {
+            return Some(());
+        }
+        for (letter, value) in self.solved.list() {
+            node.set(*letter, node.value(value)?);
+        }
+        let mut roots = self.list.iter();
+        roots
+            .all(|(_, root)| node.value(root).is_some())
+            .then_some(())
     }
 
     /// Draws the elements of a node again, as far as roots are missing there.
@@ -70,12 +101,12 @@ impl Roots {
             });
             drawn.then_some(())?;
         }
-        Some(())
+        self.held(node)
     }
 
     /// Draws the velocities of a step again, as far as roots are missing where it ends.
     pub(super) fn led(&self, x: &Inputs, node: &mut Point, attempt: u64) -> Option<()> {
-        if self.0.is_empty() {
+        if self.list.is_empty() && self.solved.list().is_empty() {
             return Some(());
         }
         let mut end = node.clone();
@@ -93,6 +124,18 @@ impl Roots {
                 self.exist(&end, i)
             });
             drawn.then_some(())?;
+        }
+        self.held(&mut end)?;
+        let s = &x.letters.symbols;
+        for c in &x.spec.configurations {
+            let l = here(c.element);
+            if self.solved.list().iter().any(|(known, _)| *known == l) {
+                let mut ends = node.clone();
+                let next = expr::letter(s, c.element, Shift::NEXT);
+                ends.set(at(c.element, Shift::NEXT), end.letter(l)?);
+                let velocity = c.group.velocity(s, c.side, expr::here(s, c.element), next);
+                node.set(here(c.velocity), ends.value(&velocity)?);
+            }
         }
         Some(())
     }

@@ -90,6 +90,7 @@ impl<'a, 'x> Samples<'a, 'x> {
             let made =
                 start(self.x, self.roots, self.x.assumed, self.attempt).and_then(
                     |mut p| match self.differences {
+                        true if !self.roots.hold_everywhere(self.x) => None,
                         true => chain(self.x, self.roots, &p, 1)?.pop(),
                         false => {
                             self.roots.led(self.x, &mut p, self.attempt)?;
@@ -207,6 +208,9 @@ impl<'a> Kernel<'a> {
         let times = usize::try_from(crate::work::times()).unwrap_or(1);
         let most = WORK.saturating_mul(times.min(2));
         if width > WIDEST * times || work(x, &base).saturating_mul(2 * (width + MORE)) > most {
+            return None;
+        }
+        if !roots.hold_everywhere(x) {
             return None;
         }
         let steps = chain(x, roots, &base, width + MORE)?;
@@ -358,8 +362,10 @@ fn from_origin<'a>(
 ) -> Option<Passage<'a>> {
     let draw = origin.redrawn(attempt);
     let mut p = origin.clone();
-    for c in &x.spec.configurations {
-        p.set(here(c.velocity), draw.letter(here(c.velocity))?);
+    let velocities = x.spec.configurations.iter().map(|c| c.velocity);
+    let multipliers = x.spec.holds.iter().map(|h| h.multiplier);
+    for drawn in velocities.chain(multipliers).map(here) {
+        p.set(drawn, draw.letter(drawn)?);
     }
     roots.led(x, &mut p, attempt)?;
     completed(x, p)

@@ -140,6 +140,8 @@ pub struct Inputs<'a> {
     pub variations: &'a [Variation],
     /// The balances.
     pub balances: &'a [Balance],
+    /// The action and the balances with the reactions of constraints, where some are held; those above are without.
+    pub held: Option<(&'a Action, &'a [Balance])>,
     /// The bracket.
     pub bracket: &'a Bracket,
     /// What is solved.
@@ -167,7 +169,20 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     let large = too_large(x);
     let small = large.is_none();
     out.extend(energy::energy(x, if small { &passages } else { &[] }));
-    let momenta = noether::momenta(x, &roots, &passages);
+    // What single bodies keep reactions change; of several they may leave the sum.
+    let momenta = match x.held {
+        None => noether::momenta(x, &roots, &passages),
+        Some((action, balances)) => {
+            let x = &Inputs {
+                action,
+                balances,
+                held: None,
+                ..*x
+            };
+            let roots = draws::Roots::of(x);
+            noether::momenta(x, &roots, &passage::passages(x, &roots, x.assumed))
+        }
+    };
     out.extend(momenta.of_sites);
     let elements = x.bracket.holds_elements;
     let casimirs = match small && !elements {

@@ -157,3 +157,30 @@ fn bodies_listed_one_by_one_keep_the_momenta_of_their_coordinates_apart() {
         ["total_momentum_x0_x1_x2"]
     );
 }
+
+/// An inextensible rod: places at nodes, frames at segments, and the force that keeps each segment along its frame.
+fn rod(ends: &str, more: &str) -> String {
+    format!(
+        "model Rod {{ label i in 0..N step s; periodic; param m: Real at nodes; param J, B: Sym<3>; param g: Vec<3>;
+            field x: Vec<3> at nodes offset X; group R: SO<3> at segments velocity O; constraint next(R) = R*O;
+            hold n: next(x, i) - x = s*R*E3;
+            let V = (next(x) - x)/h;
+            lagrangian = h*m*dot(V, V)/2 - s*tr(J*O)/h + (h/s)*tr(B*R^T*next(R, i)){more}; {ends} }}"
+    )
+}
+
+#[test]
+fn forces_along_a_rod_leave_its_angular_momentum() {
+    let places = "total momentum x";
+    let free = ["total momentum x", "total momentum angular"];
+    sums(&rod("", ""), false, &free);
+    // A ring that does not close keeps that along its gap.
+    sums(&rod("", ""), true, &[places, "total momentum angular X"]);
+    let weight = "+ h*m*dot(g, x)";
+    let about = ["total momentum x across g", "total momentum angular g"];
+    sums(&rod("", weight), false, &about);
+    sums(&rod("", weight), true, &about[..1]);
+    // Segments that turn against their frames: what is left is to turn these about the axis.
+    let against = rod("", "").replace("= s*R*E3", "= s*R^T*E3");
+    sums(&against, false, &[places, "total momentum R E3"]);
+}
