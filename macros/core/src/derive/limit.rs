@@ -3,7 +3,8 @@
 //! signs and factors, and gives runs their energy.
 
 use super::Letters;
-use super::action::Action;
+use super::action::{Action, summands};
+use super::far;
 use super::lie;
 use super::variation::{Variation, at};
 use crate::algebra::{Algebra, Atom, Monomial, Poly, Rational, Term, assumed as points};
@@ -70,6 +71,7 @@ pub fn limit(
         second.push((w, c.group.second(xi)));
     }
     let l = expr::substitute(s, &action.total, &spec.end_of_edge());
+    let still = expr::substitute(s, &l, &identity);
     let step = expr::here(s, spec.step);
     let d1 = expr::directional(s, &l, &first);
     if d1.size() > LARGEST {
@@ -152,6 +154,7 @@ pub fn limit(
         return Err(STANDING.to_owned());
     }
     let [constant, linear, kinetic] = parts.map(|p| algebra.raise(&p));
+    let constant = as_stated(s, spec, &still, constant, algebra);
     Ok(Limit {
         lagrangian: expr::sum(
             [kinetic.clone(), linear.clone(), constant.clone()],
@@ -161,6 +164,29 @@ pub fn limit(
         linear,
         kinetic,
     })
+}
+
+/// What is in proportion to the step where nothing moves, a step of one put in: as it was stated, where the expanded form
+/// would round more far from the origin.
+fn as_stated(s: &Symbols, spec: &Spec, still: &Expr, expanded: Expr, algebra: &Algebra) -> Expr {
+    let step = at(spec.step, Shift::HERE);
+    let h = Atom::Letter(step);
+    let in_proportion = |e: &Expr| {
+        let orders = algebra.lower(e).terms.into_keys();
+        orders
+            .map(|term| order_in(&term.monomial, &h).0)
+            .all(|order| order.is_one())
+    };
+    let terms = summands(still).into_iter().filter(in_proportion);
+    let stated = expr::sum(terms.collect::<Vec<_>>(), Shape::SCALAR);
+    let stated = expr::substitute(s, &stated, &[(step, expr::integer(1))]);
+    let stated = expr::collect(s, &stated);
+    match far::error(algebra, &stated) < far::error(algebra, &expanded)
+        && algebra.equal(&stated, &expanded)
+    {
+        true => stated,
+        false => expanded,
+    }
 }
 
 /// Refuses an action of which a term over a high power of the step is left in the limit by its third or a higher

@@ -61,7 +61,7 @@ fn bare(symbols: &Symbols, term: &Expr) -> Option<(Rational, Bare)> {
     Some((found.coefficient, kind))
 }
 
-/// Constants that stand in such differences.
+/// Constants that places are taken from in such differences.
 pub(crate) fn centres(symbols: &Symbols, e: &Expr, out: &mut Vec<Letter>) {
     e.children()
         .into_iter()
@@ -70,6 +70,12 @@ pub(crate) fn centres(symbols: &Symbols, e: &Expr, out: &mut Vec<Letter>) {
         return;
     }
     let Node::Sum(terms) = e.node() else { return };
+    let bare_terms = terms.iter().filter_map(|t| bare(symbols, t));
+    let places = bare_terms.filter(|(_, kind)| *kind == Bare::Place);
+    // From places that cancel among themselves a length is subtracted.
+    if is_zero(places.map(|(times, _)| times)) {
+        return;
+    }
     for t in terms {
         if let Some((_, Bare::Constant)) = bare(symbols, t) {
             let letters = super::letters(t).into_iter();

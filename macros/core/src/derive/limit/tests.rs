@@ -2,6 +2,7 @@
 
 use super::NOT_QUADRATIC;
 use crate::derive_source;
+use crate::print::{Format, Style, expression};
 
 /// Why the model of this statement has no limit; nothing if it has one.
 fn reason(statement: &str) -> Option<String> {
@@ -65,5 +66,34 @@ fn powers_that_vanish_with_the_step_are() {
         format!("{BODY} lagrangian = -tr(J*V)/h + (b/h^2)*tr(Id - V)^2;"),
     ] {
         assert_eq!(reason(&statement), None, "{statement}");
+    }
+}
+
+/// Polynomials of differences, which multiplied out lose all that two places have in common.
+#[test]
+fn potentials_of_differences_are_told_by_differences() {
+    let potential = |term: &str| {
+        let source = format!(
+            "model M {{ param a, b, l: Real; field x, y: Vec<3>; field u, v: Real;
+             lagrangian = (dot(next(x) - x, next(x) - x) + dot(next(y) - y, next(y) - y) + (next(u) - u)^2 + (next(v) - v)^2)/(2*h)
+                - {term}; }}"
+        );
+        let d = derive_source(&source).unwrap_or_else(|e| panic!("{term}: {e}"));
+        let limit = d.limit.unwrap_or_else(|e| panic!("{term}: {e}"));
+        let style = Style::new(&d.spec.time_index);
+        expression(&limit.potential, &d.letters.symbols, &style, Format::Text)
+    };
+    let half = "½ a (u_k - v_k - l)² + ¼ b (u_k - v_k)⁴";
+    for (term, expected) in [
+        (
+            "h*a*(dot(x - y, x - y) - l^2)^2",
+            "a ((x_k - y_k)·(x_k - y_k) - l²)²",
+        ),
+        ("h*(a*(u - v - l)^2/2 + b*(u - v)^4/4)", half),
+        ("h*a*(next(u) - next(v) - l)^4", "a (u_k - v_k - l)⁴"),
+        // A place of its own has nothing in common with another.
+        ("h*a*(u + l)^2", "2 a l u_k + a l² + a u_k²"),
+    ] {
+        assert_eq!(potential(term), expected);
     }
 }
