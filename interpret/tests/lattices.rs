@@ -383,3 +383,42 @@ fn the_total_of_a_ring_is_told_where_even_and_odd_sites_have_their_own() {
         assert_eq!(names, ["energy", "momentum_Y", "total_momentum_X"]);
     }
 }
+
+/// Far from the origin the energy of a chain is that near to it, but for the rounding of places: of strains 1e-10 at 1e6.
+#[test]
+fn energies_of_chains_do_not_depend_on_where_they_are() {
+    const CHAIN: &str = "model Stiff { label i in 0..N; periodic; param m, k, l, b: Real; field q: Real at nodes offset L;
+        let r = next(q, i) - q - l;
+        lagrangian = m*(next(q) - q)^2/(2*h) - h*(k*r^2/2 + b*r^4/4); }";
+    for count in [8, 40] {
+        let card = card(CHAIN, count, true, ["free", "free"]);
+        let energy = |place: f64| {
+            let of = |name: &str, site: Option<usize>| {
+                let s = site.unwrap_or(0) as f64;
+                vec![match name {
+                    "q" => place + s + 0.125 * f64::from(site == Some(3)),
+                    "momentum_q" => 0.25,
+                    "L" => count as f64,
+                    _ => 1.0,
+                }]
+            };
+            let line = started(&card, &of, 0.0078125);
+            let mut invariants = vec![0.0; card.invariant_count()];
+            line.invariants(&mut invariants);
+            let mut scales = vec![0.0; card.invariant_count()];
+            line.scales(&mut scales);
+            assert_eq!(card.invariants[0].name, "energy");
+            [invariants[0], scales[0]]
+        };
+        let near = energy(0.0);
+        // Two springs are strained by 1/8.
+        let strain: f64 = 0.125;
+        let expected = count as f64 * 0.03125 + strain.powi(2) + strain.powi(4) / 2.0;
+        for value in near.into_iter().chain(energy(1e6)) {
+            assert!(
+                (value - expected).abs() < 1e-9 * expected,
+                "{count} sites: {value} {expected}"
+            );
+        }
+    }
+}

@@ -166,27 +166,31 @@ pub fn limit(
     })
 }
 
-/// What is in proportion to the step where nothing moves, a step of one put in: as it was stated, where the expanded form
-/// would round more far from the origin.
+/// What is in proportion to the step where nothing moves: as it was stated, where the expanded form would round more far
+/// from the origin.
 fn as_stated(s: &Symbols, spec: &Spec, still: &Expr, expanded: Expr, algebra: &Algebra) -> Expr {
     let step = at(spec.step, Shift::HERE);
-    let h = Atom::Letter(step);
-    let in_proportion = |e: &Expr| {
-        let orders = algebra.lower(e).terms.into_keys();
-        orders
-            .map(|term| order_in(&term.monomial, &h).0)
-            .all(|order| order.is_one())
-    };
-    let terms = summands(still).into_iter().filter(in_proportion);
-    let stated = expr::sum(terms.collect::<Vec<_>>(), Shape::SCALAR);
-    let stated = expr::substitute(s, &stated, &[(step, expr::integer(1))]);
-    let stated = expr::collect(s, &stated);
+    let stated = expr::collect(s, &of_order(algebra, still, step, Rational::ONE));
     match far::error(algebra, &stated) < far::error(algebra, &expanded)
         && algebra.equal(&stated, &expanded)
     {
         true => stated,
         false => expanded,
     }
+}
+
+/// The terms that are as stated of one order in the step, this one put to one: their coefficient.
+pub(crate) fn of_order(algebra: &Algebra, e: &Expr, step: Letter, order: Rational) -> Expr {
+    let h = Atom::Letter(step);
+    let is_of = |e: &Expr| {
+        let terms = algebra.lower(e).terms.into_keys();
+        terms
+            .map(|t| order_in(&t.monomial, &h).0)
+            .all(|q| q == order)
+    };
+    let terms: Vec<Expr> = summands(e).into_iter().filter(is_of).collect();
+    let sum = expr::sum(terms, Shape::SCALAR);
+    expr::substitute(algebra.symbols(), &sum, &[(step, expr::integer(1))])
 }
 
 /// Refuses an action of which a term over a high power of the step is left in the limit by its third or a higher

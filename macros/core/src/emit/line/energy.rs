@@ -4,8 +4,8 @@
 use super::locals::Places;
 use super::pulls::{known, range_of};
 use super::{Lines, Moving, OfMeshes};
-use crate::algebra::Algebra;
-use crate::derive::limit::Limit;
+use crate::algebra::{Algebra, Rational};
+use crate::derive::limit::{Limit, of_order};
 use crate::emit::element;
 use crate::emit::energy::twice_kinetic_of;
 use crate::expr::symbol::Role;
@@ -120,12 +120,16 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
 /// The expression in a form without the step.
 pub(super) fn without_step(algebra: &Algebra, e: &Expr, h: &Expr) -> Option<Expr> {
     let s = algebra.symbols();
-    let free = |e: &Expr| {
-        let step = expr::letters(h).first().copied();
-        step.is_none_or(|step| !expr::contains(e, step))
+    let step = expr::letters(h).first().copied()?;
+    let free = |e: &Expr| !expr::contains(e, step);
+    let collected = Some(expr::collect(s, e)).filter(free);
+    // Multiplied out it would round more far from the origin.
+    let stated = || {
+        let stated = of_order(algebra, e, step, Rational::ZERO);
+        algebra.equal(&stated, e).then_some(stated)
     };
-    let forms = [expr::collect(s, e), algebra.shortest(e)];
-    forms.into_iter().find(free)
+    let shortest = || Some(algebra.shortest(e)).filter(free);
+    collected.or_else(stated).or_else(shortest)
 }
 
 /// The kinetic energy of one site, that of the limit inverted for its momenta; what is found together along the line
