@@ -15,6 +15,7 @@ use crate::groups::Kept;
 use crate::lattice::{Lattice, Sites, StatedHold, StatedTotal};
 use crate::print::formula::Formula;
 use crate::syntax::ast::{self as syntax, Expression};
+use std::cmp::Ordering;
 
 /// A constraint as stated: one at every index of a range, from the first site on, or one on the sum over them.
 #[derive(Clone, Debug)]
@@ -35,7 +36,7 @@ pub struct Held {
     pub value: Expr,
     /// The size of its terms.
     pub scale: Expr,
-    /// The equation, in the letters of the base.
+    /// The equation, seen from the site `i`.
     pub sides: [Formula; 2],
     /// The letters of the equation.
     pub symbols: Symbols,
@@ -148,7 +149,7 @@ pub(super) fn held(lattice: &Lattice, part: &Written, lone: &[Lone]) -> Result<V
         ));
     }
     for stated in &part.unfolded.holds {
-        let found = one(part, stated)?;
+        let found = one(lattice, part, stated)?;
         if let Some(first) = out.first()
             && first.label != found.label
         {
@@ -224,7 +225,7 @@ fn width(name: &str, from: isize, letters: &[(Sites, isize)]) -> Result<usize, R
     }
 }
 
-fn one(part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
+fn one(lattice: &Lattice, part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
     let (d, name) = (&part.d, &stated.name);
     let width = width(name, stated.range.from, &stated.letters)?;
     let multiplier = part.copy(name, BASE);
@@ -234,7 +235,11 @@ fn one(part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
             "`{name}` is held at no site with all its neighbours"
         ));
     };
-    let sides = [&hold.left, &hold.right].map(|e| Formula::Expr(e.clone()));
+    let mut symbols = d.letters.symbols.clone();
+    let label = lattice.labels.get(stated.range.label);
+    let index = label.map_or("", |l| l.index.text.as_str());
+    let sides = [&hold.left, &hold.right];
+    let sides = sides.map(|e| Formula::Expr(seen_from(part, e, index, &mut symbols)));
     let held = Held {
         name: name.clone(),
         label: stated.range.label,
@@ -248,7 +253,7 @@ fn one(part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
         value: hold.value.clone(),
         scale: expr::integer(0),
         sides,
-        symbols: d.letters.symbols.clone(),
+        symbols,
         beside: None,
         reaches: Vec::new(),
     };
@@ -336,9 +341,10 @@ fn seen_from(part: &Written, e: &Expr, index: &str, symbols: &mut Symbols) -> Ex
             continue;
         };
         let own = symbols.get(l.symbol).clone();
-        let site = match at.site - BASE {
-            0 => index.to_owned(),
-            by => format!("{index}+{by}"),
+        let site = match at.site.cmp(&BASE) {
+            Ordering::Equal => index.to_owned(),
+            Ordering::Greater => format!("{index}+{}", at.site - BASE),
+            Ordering::Less => format!("{index}-{}", BASE - at.site),
         };
         let name = format!("{}_{{{site}}}", at.of);
         let id = symbols.add(&name, own.shape, own.structure, own.role);
