@@ -259,6 +259,11 @@ fn of_a_case(command: Command) -> Command {
             "NAME",
             "Solver of the implicit step instead of the model's own, where it offers several",
         ))
+        .arg(flag(
+            "halve",
+            "Make a step that is refused by two, four, ... steps of a part of its length; the result says how many \
+             were, and is no longer symplectic",
+        ))
         .arg(
             option(
                 "dim",

@@ -52,6 +52,7 @@ impl Identity {
                 text(&plan.solver.map(|solver| solver.name())),
             ),
             ("compensated".to_owned(), text(&plan.compensated)),
+            ("halve".to_owned(), text(&plan.halve)),
         ];
         let mut values = |table: &str, fields: &[Field], values: &[Vec<f64>]| {
             let each = fields.iter().zip(values);

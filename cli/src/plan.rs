@@ -8,6 +8,7 @@ use crate::gallery::{self, Case, Entry};
 use crate::plain::shown;
 use clap::ArgMatches;
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory};
+use clebsch::integrate::Halved;
 use clebsch::solvers::Method;
 use clebsch::{ParameterError, StartError};
 use clebsch_core::lattice::Choice;
@@ -32,6 +33,8 @@ pub struct Plan {
     pub solver: Option<Method>,
     /// Whether steps with modified moments are compensated.
     pub compensated: bool,
+    /// Whether refused steps are made by parts.
+    pub halve: bool,
     /// Whether pictures are drawn for a column of a paper.
     pub paper: bool,
     /// How many sites a model with labels has, and how its line ends.
@@ -52,6 +55,7 @@ impl Plan {
         let every = matches.try_get_one::<u64>("every").ok().flatten().copied();
         let order = matches.get_one::<u32>("order").copied();
         let compensated = matches.get_flag("compensated");
+        let halve = matches.get_flag("halve");
         let solver = match matches.get_one::<String>("solver") {
             None => None,
             Some(name) => match name.parse::<Method>() {
@@ -91,10 +95,12 @@ impl Plan {
                 "every": every,
                 "solver": solver.map(Method::name),
                 "compensated": compensated,
+                "halve": halve,
                 "dim": size,
             }),
             solver,
             compensated,
+            halve,
             paper: matches
                 .try_get_one::<bool>("paper")
                 .ok()
@@ -116,6 +122,7 @@ impl Plan {
             arguments: Value::Null,
             solver: None,
             compensated: false,
+            halve: false,
             paper: false,
             choice: None,
             origin: None,
@@ -140,7 +147,12 @@ impl Plan {
             solver: self.solver,
             compensated: self.compensated,
         };
-        (card.open)(parameters, initial, settings).map_err(|error| match error {
+        let opened = match self.halve {
+            true => Halved::open(card, parameters, initial, settings)
+                .map(|t| Box::new(t) as Box<dyn Trajectory>),
+            false => (card.open)(parameters, initial, settings),
+        };
+        opened.map_err(|error| match error {
             OpenError::Parameter(wrong) | OpenError::Start(StartError::Initial(wrong)) => {
                 let place = self.place(card, &wrong);
                 let sample = self.sample().unwrap_or_default();
@@ -158,6 +170,7 @@ impl Plan {
                 Failure::Usage(format!("--solver {}: {error}", shown(name)))
             }
             OpenError::Compensation { .. } => Failure::Usage(format!("--compensated: {error}")),
+            OpenError::Unseen { .. } => Failure::Usage(format!("--halve: {error}")),
             _ => Failure::Usage(error.to_string()),
         })
     }

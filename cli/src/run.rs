@@ -147,6 +147,7 @@ pub fn run(
     }
     let end = following.follow(kept.as_mut())?;
     let summary = following.watch.summary();
+    let halvings = following.trajectory.halvings();
     let why = match &end {
         End::Whole => None,
         // A run without a step has no results.
@@ -168,6 +169,7 @@ pub fn run(
         outcomes: &outcomes,
         samples: summary.samples,
         residual: summary.residual,
+        halvings,
         stopped,
     };
     let stream = kept.map(|kept| kept.stream);
@@ -333,7 +335,7 @@ fn already(
             return Err(wrong(&format!("it holds another run: its {key} differs")));
         }
     }
-    for key in ["order", "solver", "compensated"] {
+    for key in ["order", "solver", "compensated", "halve"] {
         if there["arguments"][key] != plan.arguments[key] {
             return Err(wrong(&format!("it holds another run: its {key} differs")));
         }
@@ -410,7 +412,14 @@ fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
             stopped.node
         )
     });
-    residual.into_iter().chain(stopped).collect()
+    let halved = run.halvings.filter(|h| h.steps > 0).map(|h| {
+        format!(
+            "made by parts: {} of {made}, by up to {} each; this run is not symplectic, and its energy may drift",
+            steps(h.steps),
+            h.parts
+        )
+    });
+    residual.into_iter().chain(halved).chain(stopped).collect()
 }
 
 /// The beginning of the run once more with every node kept, when the record is sparser than that.

@@ -1,7 +1,7 @@
 //! A model as data: what a command line, a test or a binding needs to know of it.
 //! Emitted code gives one [`Card`] per model; it is read by whatever lists, starts and observes.
 
-use crate::integrate::CompositionOrder;
+use crate::integrate::{CompositionOrder, Halvings};
 use crate::kinetic::KineticWarning;
 use crate::saved::Words;
 use crate::solvers::Method;
@@ -327,6 +327,12 @@ pub trait Trajectory: Send {
         None
     }
 
+    /// How many steps were made by parts; none where a refused step ends a run, see
+    /// [`Halved`](crate::integrate::Halved).
+    fn halvings(&self) -> Option<Halvings> {
+        None
+    }
+
     /// Writes all observables, each row-major, one after another.
     fn observe(&self, out: &mut [f64]);
 
@@ -388,6 +394,11 @@ pub enum OpenError {
         order: u32,
         /// Whether the model's orders above the plain one come from modified moments.
         preprocessed: bool,
+    },
+    /// Steps cannot be made by parts: a run would not go on from what it observes.
+    Unseen {
+        /// The initial value that is no observable.
+        field: &'static str,
     },
 }
 
@@ -453,6 +464,10 @@ impl fmt::Display for OpenError {
                     ),
                 }
             }
+            Self::Unseen { field } => write!(
+                f,
+                "steps are not made by parts: `{field}` is given at the start and not observed later; take a shorter step"
+            ),
             Self::Order { asked, offered } => {
                 let list: Vec<String> = offered.iter().map(u32::to_string).collect();
                 write!(
@@ -490,7 +505,8 @@ impl std::error::Error for OpenError {
             Self::Solver { .. }
             | Self::Count { .. }
             | Self::Order { .. }
-            | Self::Compensation { .. } => None,
+            | Self::Compensation { .. }
+            | Self::Unseen { .. } => None,
         }
     }
 }

@@ -27,6 +27,7 @@ mod generated_reference;
 mod generated_scalars;
 mod generated_symplectic;
 mod groups_against_hand;
+mod halved;
 mod handwritten;
 mod handwritten_laws;
 mod handwritten_oracle;

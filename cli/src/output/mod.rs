@@ -26,7 +26,7 @@ use crate::plots;
 use crate::record::Samples;
 use crate::verdict::Outcome;
 use clebsch::card::Card;
-use clebsch::integrate::LargestResidual;
+use clebsch::integrate::{Halvings, LargestResidual};
 use clebsch::record::{Record, Rows as _, npz, write_csv};
 use samples::Rows;
 use std::io::Write;
@@ -54,6 +54,8 @@ pub struct Finished<'a> {
     pub samples: u64,
     /// The largest residual of a step; none where the steps solve other equations.
     pub residual: Option<LargestResidual>,
+    /// Steps that were made by parts; none where a refused step ends a run.
+    pub halvings: Option<Halvings>,
     /// Where it stopped; none for a run that has come to its end.
     pub stopped: Option<Stopped>,
 }

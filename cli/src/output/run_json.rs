@@ -16,10 +16,11 @@ pub fn run_json(run: &Finished<'_>, files: &[String]) -> Value {
         outcomes,
         samples,
         residual,
+        halvings,
         stopped,
     } = run;
     let mut object = plan_json(card, plan);
-    let results = json!({
+    let mut results = json!({
         "samples": samples,
         "complete": stopped.is_none(),
         "invariants": outcomes.iter().map(Outcome::json).collect::<Vec<_>>(),
@@ -28,6 +29,10 @@ pub fn run_json(run: &Finished<'_>, files: &[String]) -> Value {
         "residual": residual.map(|r| json!({"relative": r.relative, "node": r.node})),
         "stopped": stopped.as_ref().map(|s| json!({"node": s.node, "time": s.time, "why": s.why})),
     });
+    if let (Some(h), Some(results)) = (halvings, results.as_object_mut()) {
+        let made = json!({"steps": h.steps, "most": h.parts, "symplectic": h.steps == 0});
+        results.insert("made_by_parts".to_owned(), made);
+    }
     if let Some(object) = object.as_object_mut() {
         object.insert("results".to_owned(), results);
         object.insert("arguments".to_owned(), plan.arguments.clone());

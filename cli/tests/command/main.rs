@@ -11,6 +11,7 @@ mod exit_codes;
 mod figures;
 mod fluids;
 mod functions;
+mod halved;
 mod lattices;
 mod longest_step;
 mod model_files;

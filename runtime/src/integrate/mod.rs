@@ -6,6 +6,7 @@ mod composition;
 mod described;
 mod drift;
 mod ensemble;
+mod halved;
 mod longest_step;
 mod model;
 mod residual;
@@ -22,6 +23,7 @@ pub use drift::Drift;
 #[doc(hidden)]
 pub use drift::{filled, not_less};
 pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
+pub use halved::{Halved, Halvings};
 pub use longest_step::LongestStep;
 pub use model::Model;
 pub use residual::Residual;
