@@ -445,7 +445,8 @@ pub fn is_invertible(symbols: &Symbols, e: &Expr) -> bool {
     let go = |x: &Expr| is_invertible(symbols, x);
     match e.node() {
         Node::Letter(l) => symbols.get(l.symbol).structure.is_invertible(),
-        Node::Identity(_) => true,
+        Node::Identity(_) | Node::Map(Map::Rotation, _) => true,
+        Node::Number(q) => !q.is_zero(),
         Node::Transpose(a) | Node::Inverse(a) | Node::Neg(a) => go(a),
         Node::Product(factors) => factors.iter().all(go),
         _ => false,

@@ -91,16 +91,17 @@ fn solution(
             plain.then_some(found)
         });
     let found = found.or_else(|| {
-        let factor = factor(s, &change, &direction)?;
-        Some(expr::neg(expr::mul(expr::inverse(s, factor), rest)))
+        let (is_negative, factor) = factor(s, &change, &direction)?;
+        let found = expr::mul(expr::inverse(s, factor), rest);
+        Some(if is_negative { found } else { expr::neg(found) })
     })?;
     let checked = expr::substitute(s, value, &[(letter, found.clone())]);
     (!expr::contains(&found, letter) && algebra.is_zero(&checked)).then_some(found)
 }
 
-/// The invertible factor before the direction.
-fn factor(s: &expr::symbol::Symbols, change: &Expr, direction: &Expr) -> Option<Expr> {
-    let (sign, e) = match change.node() {
+/// The invertible factor before the direction, and whether it stands with the opposite sign.
+fn factor(s: &expr::symbol::Symbols, change: &Expr, direction: &Expr) -> Option<(bool, Expr)> {
+    let (is_negative, e) = match change.node() {
         Node::Neg(inner) => (true, inner),
         _ => (false, change),
     };
@@ -110,5 +111,5 @@ fn factor(s: &expr::symbol::Symbols, change: &Expr, direction: &Expr) -> Option<
     let (last, before) = factors.split_last()?;
     let factor = expr::product(before.iter().cloned());
     let fits = last == direction && expr::is_invertible(s, &factor);
-    fits.then(|| if sign { expr::neg(factor) } else { factor })
+    fits.then_some((is_negative, factor))
 }

@@ -27,12 +27,14 @@ fn numbers() -> usize {
     NUMBERS.saturating_mul(usize::try_from(crate::work::times()).unwrap_or(1))
 }
 
-/// Sets of configurations that the action couples, in order of declaration.
+/// Sets of configurations that the action or a constraint couples, in order of declaration.
 pub(super) fn components(x: &Inputs) -> Vec<Vec<usize>> {
     let count = x.spec.configurations.len();
     let mut of: Vec<usize> = (0..count).collect();
     let touched = touched(x);
-    for term in summands(&x.action.total) {
+    // A reaction couples all that its constraint holds, in whatever terms that stands.
+    let held = x.spec.holds.iter().map(|h| h.value.clone());
+    for term in summands(&x.action.total).into_iter().chain(held) {
         let letters = expr::letters(&term);
         let met: BTreeSet<usize> = letters
             .iter()

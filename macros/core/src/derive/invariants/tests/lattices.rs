@@ -184,3 +184,21 @@ fn forces_along_a_rod_leave_its_angular_momentum() {
     let against = rod("", "").replace("= s*R*E3", "= s*R^T*E3");
     sums(&against, false, &[places, "total momentum R E3"]);
 }
+
+#[test]
+fn linear_constraints_leave_what_is_kept_at_sites() {
+    let pairs = |more: &str| {
+        format!(
+            "model P {{ label a in 0..N; param m, k: Real; field x, y: Real at a; hold l: x = 2*y;
+                lagrangian = m*((next(x) - x)^2 + (next(y) - y)^2)/(2*h){more}; }}"
+        )
+    };
+    expect(&pairs(""), false, &[("joint momentum x y", 2)]);
+    let line = pairs(" - h*k*(next(x, i) - x)^4").replace("label a", "label i");
+    let line = line.replace("at a", "at nodes");
+    sums(&line, false, &["joint momentum"]);
+    let ladder = "model L { label i in 0..N; periodic; param m, k: Real; field u, v: Real at nodes; hold p: next(u, i) - u = v;
+        lagrangian = m*((next(u) - u)^2 + (next(v) - v)^2)/(2*h) - h*k*(next(v, i) - v)^4; }";
+    sums(ladder, false, &["total momentum u"]);
+    sums(ladder, true, &["total momentum u"]);
+}

@@ -3,6 +3,7 @@
 
 use super::{Family, derive, found};
 use crate::algebra::{assumed, exact::Point};
+use crate::expr::shape::Dim;
 use crate::expr::{self, Expr, Node};
 use crate::print::{Format, Style, expression};
 
@@ -190,4 +191,24 @@ fn joints_leave_what_is_conserved_where_they_hold() {
         !to_a_wall.iter().any(|n| n.contains("momentum_x_y")),
         "{to_a_wall:?}"
     );
+}
+
+#[test]
+fn joints_of_rigid_motions_leave_their_angular_momentum() {
+    // Of a rigid motion the momentum has both, about the origin and along.
+    let rows = |hold: &str| {
+        let d = derive(&format!(
+            "model Joint {{ param J, K: Sym<3>; param m, n: Real; param d, e: Vec<3>;
+             group A: SE<3> velocity V; group B: SE<3> velocity W; constraint next(A) = A*V; constraint next(B) = B*W;
+             hold l: {hold};
+             lagrangian = -tr(J*rot(V))/h - tr(K*rot(W))/h + m*dot(pos(V), pos(V))/(2*h) + n*dot(pos(W), pos(W))/(2*h); }}"
+        ));
+        let total = d.invariants.iter().find(|v| v.name == "total_momentum");
+        total.and_then(|v| v.value.as_ref().map(|e| e.shape().rows))
+    };
+    let joint = "pos(A) + rot(A)*d = pos(B) + rot(B)*e";
+    assert_eq!(rows(joint), Some(Dim::Fixed(6)));
+    // What turns against its body leaves the sum along alone.
+    let turned = joint.replace("rot(B)*e", "rot(B)^T*e");
+    assert_ne!(rows(&turned), Some(Dim::Fixed(6)));
 }
