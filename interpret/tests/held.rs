@@ -223,3 +223,42 @@ fn matrices_held_to_be_rotations_turn_as_bodies_do() {
     }
     assert!(turning[1].abs() > 0.1);
 }
+
+/// What is held and what pulls are differences of places: how far these are from the origin adds their own rounding and no more.
+#[test]
+fn sizes_of_differences_do_not_grow_with_the_places() {
+    let sizes = |text: &str, place: f64, length: f64| {
+        let card = clebsch_interpret::card(text).expect("is read");
+        let initial = [
+            vec![place, place, place],
+            vec![0.0, 0.3, 0.0],
+            vec![place + length, place, place],
+            vec![0.0, -0.3, 0.0],
+        ];
+        let parameters: Vec<Vec<f64>> = card.parameters.iter().map(|_| vec![0.5]).collect();
+        let opened = (card.open)(&parameters, &initial, clebsch::card::Settings::step(0.01));
+        opened.map(|t| {
+            let mut scales = vec![0.0; card.invariant_count()];
+            t.scales(&mut scales);
+            let names = card.invariants.iter().flat_map(|i| vec![i.name; i.rows]);
+            names.zip(scales).collect::<Vec<_>>()
+        })
+    };
+    let of = |all: &[(&str, f64)], name: &str| {
+        let found = all.iter().find(|(own, _)| *own == name);
+        found.unwrap_or_else(|| panic!("{name} in {all:?}")).1
+    };
+    let link = "model Link { param a: Real; field x, y: Vec<3>; hold l: dot(y - x, y - x) = a^2;
+        lagrangian = (dot(next(x) - x, next(x) - x) + dot(next(y) - y, next(y) - y))/(2*h); }";
+    let near = of(&sizes(link, 0.0, 0.5).expect("opens"), "constraint_l");
+    let far = of(&sizes(link, 1e6, 0.5).expect("opens"), "constraint_l");
+    // The rounding of two places of three components, by twice the length, in either way to count it.
+    assert!(near < 5.0 && far < 2e7, "{near} {far}");
+    assert!(sizes(link, 1e6, 0.51).is_err(), "a link that is too long");
+    let spring = "model Spring { param k: Real; field x, y: Vec<3>;
+        lagrangian = (dot(next(x) - x, next(x) - x) + dot(next(y) - y, next(y) - y))/(2*h) - h*k*dot(x - y, x - y)^2; }";
+    let near = of(&sizes(spring, 0.0, 0.5).expect("opens"), "energy");
+    let far = of(&sizes(spring, 1e3, 0.5).expect("opens"), "energy");
+    // Impulses of 1e-3, whose rounding by places of 1e3 is of this size once more.
+    assert!(far < 3e2 * near, "{near} {far}");
+}

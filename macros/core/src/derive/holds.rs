@@ -295,14 +295,14 @@ fn seen_from_body(spec: &Spec, s: &Symbols, hold: &Hold) -> Expr {
 /// The size of the terms of a constraint, and of what rounding of the configuration changes in units of it:
 /// a logarithm near zero is as uncertain as its argument.
 pub(crate) fn scale(s: &Symbols, hold: &Hold) -> Expr {
-    let mut terms = vec![expr::magnitude(s, &hold.value)];
+    let mut terms = vec![expr::magnitude_by_differences(s, &hold.value)];
     if hold.value.shape().is_scalar() {
         let letters = expr::letters(&hold.value).into_iter();
         for l in letters.filter(|l| s.get(l.symbol).role != Role::Parameter) {
             let own = expr::letter(s, l.symbol, l.shift);
             let gradient = expr::gradient(s, &hold.value, l);
             terms.push(expr::mul(
-                expr::magnitude(s, &gradient),
+                expr::lengths_of_differences(s, &gradient),
                 expr::magnitude(s, &own),
             ));
         }

@@ -64,7 +64,9 @@ fn impulses(d: &Derivation) -> Vec<Impulse> {
     for (configuration, (c, b)) in d.spec.configurations.iter().zip(&d.balances).enumerate() {
         let parts = at_node(s, &multipliers, b);
         let mut push = |rows, of: &dyn Fn(&Expr) -> Expr| {
-            let sizes = parts.iter().map(|e| expr::magnitude(s, &of(e)));
+            let sizes = parts
+                .iter()
+                .map(|e| expr::magnitude_by_differences(s, &of(e)));
             let sizes: Vec<Expr> = sizes.filter(|e| !e.is_zero()).collect();
             if !sizes.is_empty() {
                 all.push(Impulse {

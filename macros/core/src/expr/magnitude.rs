@@ -5,8 +5,8 @@
 use super::shape::{Shape, Structure};
 use super::symbol::{Role, Symbols};
 use super::{
-    Expr, Letter, Map, Node, Rational, add, dot, integer, mul, number, power, quotient, sum, trace,
-    transpose,
+    Expr, Letter, Map, Node, Rational, add, dot, integer, mul, number, places, power, quotient,
+    substitute, sum, trace, transpose,
 };
 
 /// How large the terms of an expression are.
@@ -30,6 +30,27 @@ pub(crate) fn magnitude_between(s: &Symbols, e: &Expr, paths: &[(Letter, Expr)])
     };
     let Size { value, stored } = terms.of(e);
     add(value, stored)
+}
+
+/// How large the terms of an expression at a node are, differences of places by their own lengths, with what the rounding of
+/// the places themselves changes, to first order and in units of rounding.
+pub(crate) fn magnitude_by_differences(s: &Symbols, e: &Expr) -> Expr {
+    let Some(named) = places::named(s, e) else {
+        return magnitude(s, e);
+    };
+    let definitions = named.definitions.iter();
+    let paths: Vec<(Letter, Expr)> = definitions.map(|(l, d)| (*l, magnitude(s, d))).collect();
+    let size = magnitude_between(&named.symbols, &named.whole, &paths);
+    substitute(&named.symbols, &size, &named.definitions)
+}
+
+/// The same without the rounding of places.
+pub(crate) fn lengths_of_differences(s: &Symbols, e: &Expr) -> Expr {
+    let Some(named) = places::named(s, e) else {
+        return magnitude(s, e);
+    };
+    let size = magnitude(&named.symbols, &named.whole);
+    substitute(&named.symbols, &size, &named.definitions)
 }
 
 /// Whether the expression is a product of elements of SU(2).
@@ -108,6 +129,15 @@ impl Terms<'_> {
                 }
             }
             Node::Power(a, q) if *q == Rational::integer(2) => times(of(a), of(a)),
+            // A root where its argument vanishes has no rate; roots stand in what is told by their letters as well.
+            Node::Power(a, q) if self.paths.is_some() && q.value() > 1.0 => {
+                let rate = q.plus(Rational::MINUS_ONE);
+                let rate = rate.map(|less| mul(number(*q), power(length(self.symbols, a), less)));
+                Size {
+                    value: length(self.symbols, e),
+                    stored: rate.map_or_else(|| integer(0), |rate| mul(rate, of(a).stored)),
+                }
+            }
             Node::Letter(_)
             | Node::Quotient(..)
             | Node::Power(..)

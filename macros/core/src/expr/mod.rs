@@ -46,7 +46,9 @@ pub use functional::{
 };
 pub(crate) use functional::{kind, pairing};
 pub use gradient::gradient;
-pub(crate) use magnitude::{length, magnitude, magnitude_between};
+pub(crate) use magnitude::{
+    length, lengths_of_differences, magnitude, magnitude_between, magnitude_by_differences,
+};
 pub use parted::parted;
 pub use projection::projected;
 pub use quaternion::{imaginary, pure, real, rotation};
