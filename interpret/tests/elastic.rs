@@ -1,0 +1,8 @@
+//! Elastic bodies that run from their texts, against sums typed by hand that share nothing with the engine.
+
+#![allow(missing_docs, mixed_script_confusables)]
+
+#[path = "elastic/energy.rs"]
+mod energy;
+#[path = "elastic/hyperelastic.rs"]
+mod hyperelastic;
