@@ -2,6 +2,8 @@
 
 #![allow(missing_docs, mixed_script_confusables)]
 
+#[path = "elastic/beam.rs"]
+mod beam;
 #[path = "elastic/energy.rs"]
 mod energy;
 #[path = "elastic/hyperelastic.rs"]
