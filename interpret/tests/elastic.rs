@@ -8,3 +8,5 @@ mod beam;
 mod energy;
 #[path = "elastic/hyperelastic.rs"]
 mod hyperelastic;
+#[path = "elastic/poisson.rs"]
+mod poisson;
