@@ -2,6 +2,8 @@
 
 #![allow(missing_docs, mixed_script_confusables)]
 
+#[path = "elastic/against_hand.rs"]
+mod against_hand;
 #[path = "elastic/beam.rs"]
 mod beam;
 #[path = "elastic/energy.rs"]
