@@ -6,6 +6,8 @@
 mod against_hand;
 #[path = "elastic/beam.rs"]
 mod beam;
+#[path = "elastic/crossing.rs"]
+mod crossing;
 #[path = "elastic/energy.rs"]
 mod energy;
 #[path = "elastic/hyperelastic.rs"]
