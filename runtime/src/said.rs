@@ -19,6 +19,16 @@ impl fmt::Display for Plain {
     }
 }
 
+/// Four digits of a number that is only looked at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Short(pub f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Plain(format!("{:.3e}", self.0).parse().unwrap_or(self.0)).fmt(f)
+    }
+}
+
 /// Seven digits of a bound, rounded towards zero: a step that is too long by the last digit would
 /// be refused again.
 #[derive(Clone, Copy, Debug)]

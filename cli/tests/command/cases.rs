@@ -50,7 +50,7 @@ fn shipped() -> Vec<(String, Vec<String>)> {
 fn every_shipped_case_runs_by_its_name() {
     let all = shipped();
     let count: usize = all.iter().map(|(_, names)| names.len()).sum();
-    assert!(count >= 12, "{all:?}");
+    assert!(count >= 14, "{all:?}");
     for (model, names) in all {
         for name in names {
             let done = clebsch(&["run", &model, "--case", &name, "--steps", "2"]);
@@ -203,4 +203,32 @@ fn solitons_are_displaced_by_their_encounter() {
         // The step of 0.05 makes them faster by parts in 1000, over 120 sites; places are known to a hundredth of a site.
         assert!((found - moved).abs() < 0.1, "{kappa}: {found} {moved}");
     }
+}
+
+/// The largest part of its own size by which the deflection of a node along a rod leaves that of the start.
+fn wandered(rows: &[Vec<f64>], at: impl Fn(usize) -> f64) -> f64 {
+    let rows = rows.iter().enumerate();
+    let off = rows.map(|(k, row)| (row[0] - at(k)).abs());
+    off.fold(0.0, |most: f64, x| if x > most { x } else { most })
+}
+
+/// The slowest mode of a beam on two supports swings with the frequency of Timoshenko's theory, and a cantilever in the shape
+/// of beam theory stays in it: up to the square of the length of a section, which is 1/40.
+#[test]
+fn beams_swing_and_rest_as_beam_theory_has_it() {
+    let rod = "lattices/geometrically-exact-rod";
+    let rows = trajectory(rod, "supported-beam", "694", "phi_20_1");
+    // The smaller root of 0.01 w^4 - (k^2 + 100 + k^2) w^2 + 100 k^4 = 0, k = pi, over a period.
+    let k = std::f64::consts::PI;
+    let b = 2.0 * k * k + 100.0;
+    let square = (b - (b * b - 4.0 * k.powi(4)).sqrt()) / 0.02;
+    let swings = |k: usize| 1e-3 * (square.sqrt() * 1e-3 * k as f64).cos();
+    let off = wandered(&rows, swings);
+    assert!(off < 1e-5, "{off:e}");
+    // One that only bends is a quarter of a period ahead by then.
+    let bends = wandered(&rows, |n| 1e-3 * (k * k * 1e-3 * n as f64).cos());
+    assert!(bends > 3e-4, "{bends:e}");
+    let rows = trajectory(rod, "resting-cantilever", "1000", "phi_40_1");
+    let off = wandered(&rows, |_| -(0.1 / 16.0 + 0.1 / 1000.0));
+    assert!(off < 3e-3 * 6.35e-3, "{off:e}");
 }

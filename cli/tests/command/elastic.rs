@@ -67,6 +67,51 @@ fn a_rod_at_rest_ends_where_the_reference_does() {
     }
 }
 
+/// A section under a moment m about one axis alone turns by the angle whose sine is h m/K, K the stiffness about that axis:
+/// there is no step where h m exceeds K, of which the message has the share. Of a moment about several axes the bound is
+/// the general one, here that of the axis between them.
+#[test]
+fn a_section_of_a_rod_turns_by_less_than_a_right_angle() {
+    let folder = Folder::new("rod-bound");
+    let model = shipped("kirchhoff-static.clebsch");
+    let text = std::fs::read_to_string(shipped("kirchhoff-static.toml")).expect("is shipped");
+    let with = |moment: &str| {
+        let (force, own) = (
+            "n = [0.0045000000000000005, 0.0, 0.015]",
+            "[0.0012, -0.0008, 0.0036]",
+        );
+        assert!(text.contains(force) && text.contains(own));
+        let text = text.replace(force, "n = [0, 0, 0]").replace(own, moment);
+        folder.write("case.toml", &text)
+    };
+    // K1 = 0.002 against bending, K3 = 0.004 against twist.
+    for (moment, stiffness, axis) in [
+        ("[0.0036, 0, 0]", 0.002, 1),
+        ("[0, 0.0036, 0]", 0.002, 2),
+        ("[0, 0, 0.0036]", 0.004, 3),
+    ] {
+        let case = with(moment);
+        let run = |share: f64| {
+            let h = format!("{}", share * stiffness / 0.0036);
+            clebsch(&["run", &model, "--case", &case, "--h", &h, "--steps", "1"])
+        };
+        assert_eq!(run(0.9999).code, 0, "{}", run(0.9999).err);
+        assert_ne!(run(1.0001).code, 0);
+        let done = run(1.01);
+        let numbers = format!("|h N_{axis}| = 1.01 I_{axis}{axis})");
+        let told = done.err.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(told.contains("by a factor 1.010000"), "{told}");
+        assert!(told.contains(&numbers), "{numbers}: {told}");
+    }
+    let case = with("[0.0036, 0.0036, 0]");
+    let h = format!("{}", 0.9999 * 0.002 / 0.0036);
+    let done = clebsch(&["run", &model, "--case", &case, "--h", &h, "--steps", "1"]);
+    assert_ne!(
+        done.code, 0,
+        "about the axis between them the moment is larger"
+    );
+}
+
 /// A case of sample values obeys what is held: it runs as it is printed. Where only bodies that turn are held they are left
 /// as they are.
 #[test]

@@ -267,7 +267,7 @@ impl Algebra<'_> {
         }
     }
 
-    fn power(&self, a: &Poly, q: Rational, meaning: &Expr) -> Poly {
+    pub(super) fn power(&self, a: &Poly, q: Rational, meaning: &Expr) -> Poly {
         if let Some(n) = q.as_integer() {
             if let Some((t, c)) = Self::single(a)
                 && let (Some(c), Some(m)) = (c.power(n), monomial::power(&t.monomial, q))

@@ -105,21 +105,14 @@ impl Algebra<'_> {
             && word.iter().all(|f| self.shape_of(f).rows != one)
     }
 
-    /// Adds a term whose word is canonical, opening sums that stand to a small positive power.
+    /// Adds a term whose word is canonical, opening sums that stand to a small positive power. What stands to fractional
+    /// powers keeps its coefficients; where their product is a whole power, these come out.
     pub(super) fn push_term(&self, out: &mut Poly, c: Rational, m: Monomial, word: Word) {
-        let open = m.iter().position(|(atom, e)| {
-            matches!(atom, Atom::Base(_)) && e.as_integer().is_some_and(|n| (1..=4).contains(&n))
-        });
-        if let Some(i) = open
-            && let Atom::Base(id) = m[i].0
-        {
-            let mut rest = m.clone();
-            let (_, exponent) = rest.remove(i);
-            let base = self.numbers.borrow()[id as usize].key.clone();
-            let mut value = Poly::constant(Shape::SCALAR, Rational::ONE);
-            for _ in 0..exponent.as_integer().unwrap_or(0) {
-                value = self.mul(&value, &base);
-            }
+        let mut factors = m.iter().enumerate();
+        let opened = factors.find_map(|(i, (atom, e))| Some((i, self.whole_power(atom, *e)?)));
+        if let Some((i, value)) = opened {
+            let mut rest = m;
+            rest.remove(i);
             for (t, c2) in &value.terms {
                 match (monomial::times(&rest, &t.monomial), c.times(*c2)) {
                     (Some(m), Some(c)) => self.push_term(out, c, m, word.clone()),
@@ -131,6 +124,23 @@ impl Algebra<'_> {
         if !out.push(Term { monomial: m, word }, c) {
             self.exhaust();
         }
+    }
+
+    /// The normal form of what stands to a whole power as if it were interned for a fractional one, or opened; `None` if it
+    /// is in normal form.
+    fn whole_power(&self, atom: &Atom, e: Rational) -> Option<Poly> {
+        let Atom::Base(id) = atom else { return None };
+        let n = e.as_integer()?;
+        let (key, meaning) = {
+            let numbers = self.numbers.borrow();
+            let base = &numbers[*id as usize];
+            let leading = base.key.terms.values().next()?;
+            let opens = (1..=4).contains(&n) || base.key.terms.len() == 1 || !leading.is_one();
+            opens.then(|| (base.key.clone(), base.meaning.clone()))?
+        };
+        let value = self.power(&key, e, &meaning);
+        let same = |t: &Term| matches!(&t.monomial[..], [(Atom::Base(other), _)] if other == id);
+        (!value.terms.keys().all(same)).then_some(value)
     }
 
     /// A shortest sub-word that is a number: from a row to a column.

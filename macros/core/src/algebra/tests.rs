@@ -1,5 +1,6 @@
 //! Quaternions and rigid motions: identities that hold, and neighbours of them that do not.
 
+use super::rational::Rational;
 use super::{Algebra, Known};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
@@ -239,5 +240,36 @@ fn diagonals_are_those_of_the_entries() {
         let both = expr::mul(d.clone(), diagonal(square.clone()));
         agree(expr::trace(expr::mul(d.clone(), square)), expr::trace(both));
         assert_eq!(l.known(d, a), None);
+    }
+}
+
+/// Fractional powers of a sum, of a multiple and of a trace multiply to the whole powers of the same.
+#[test]
+fn fractional_powers_multiply_to_whole_ones() {
+    let l = Letters::new();
+    let (j, third) = (l.at("J"), Rational::new(1, 3).expect("a fraction"));
+    let trace = expr::trace(j.clone());
+    let squares = expr::trace(expr::product([j.clone(), j]));
+    let difference = expr::sub(expr::product([trace.clone(), trace.clone()]), squares);
+    let half = Rational::new(1, 2).expect("a fraction");
+    let bases = [
+        trace.clone(),
+        expr::scale(half, trace),
+        difference.clone(),
+        expr::scale(half, difference),
+    ];
+    for base in bases {
+        for n in [-3, -2, -1, 1, 2, 5, 6] {
+            let rest = Rational::integer(n).plus(third).expect("a fraction");
+            let product = expr::product([
+                expr::power(base.clone(), rest),
+                expr::power(base.clone(), third.negated()),
+            ]);
+            let whole = expr::power(base.clone(), Rational::integer(n));
+            let found = l.known(product.clone(), whole.clone());
+            assert_eq!(found, Some(Known::NormalForm), "{n}");
+            let other = expr::scale(half, whole);
+            assert_eq!(l.known(product, other), None, "{n}");
+        }
     }
 }

@@ -5,7 +5,7 @@ use super::forced::turn;
 use super::preprocess::preprocessed;
 use super::{Order, Poinsot, largest_step, reach};
 use crate::Real;
-use crate::said::{Times, in_lane, not_finite, shorter};
+use crate::said::{Short, Times, in_lane, not_finite, shorter};
 use crate::solvers::Method;
 use core::fmt;
 use nalgebra::Vector3;
@@ -23,6 +23,9 @@ pub struct MoserVeselovError {
     pub largest_step: Option<f64>,
     /// Index (0, 1, 2) of the momentum component of largest `|h N_i| / I_ii`.
     pub component: usize,
+    /// `|h N_i| / I_ii` of that component, at most one in a turn about that axis alone; `I_ii` is a body's moment of inertia, and the
+    /// stiffness of a rod that is read along its length.
+    pub share: f64,
     /// The order of the step: above two, the ratio is that of the modified moments, and infinite
     /// where these are no longer positive.
     pub order: Order,
@@ -47,6 +50,7 @@ impl MoserVeselovError {
             h: None,
             largest_step: None,
             component: 0,
+            share: 0.0,
             order: Order::Two,
             solver: Method::Kappa,
             lane: 0,
@@ -57,6 +61,7 @@ impl MoserVeselovError {
             if ratio.is_nan() || ratio > worst.ratio {
                 worst.ratio = ratio;
                 worst.component = fastest(body.moments, &n);
+                worst.share = share(&body, &n, worst.component);
                 worst.lane = index(lane);
             }
             if ratio.is_nan() {
@@ -97,11 +102,13 @@ impl MoserVeselovError {
                 .and_then(|e| e.largest_step)
                 .is_none_or(|smallest| largest < smallest)
             {
+                let component = fastest(body.moments, &n);
                 told = Some(Self {
                     ratio,
                     h: Some(h),
                     largest_step: Some(largest),
-                    component: fastest(body.moments, &n),
+                    component,
+                    share: share(&body, &n, component),
                     order,
                     solver: Method::Kappa,
                     lane: index(lane),
@@ -186,6 +193,11 @@ pub(in crate::solvers) fn fastest(moments: [f64; 3], h_n: &Vector3<f64>) -> usiz
     component
 }
 
+/// `|h N_i| / I_ii`.
+fn share(body: &Poinsot<f64>, h_n: &Vector3<f64>, i: usize) -> f64 {
+    (h_n[i] / body.unit / body.moments[i]).abs()
+}
+
 impl fmt::Display for MoserVeselovError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.ratio.is_nan() {
@@ -211,10 +223,12 @@ impl fmt::Display for MoserVeselovError {
             write!(
                 f,
                 "step too large: the momentum exceeds the solvability bound of the Moser-Veselov \
-                 equation by a factor {} (component {} is the largest)",
+                 equation by a factor {} (component {} is the largest",
                 Times(self.ratio),
                 self.component + 1
             )?;
+            let i = self.component + 1;
+            write!(f, ": |h N_{i}| = {} I_{i}{i})", Short(self.share))?;
             if self.order != Order::Two {
                 write!(f, ", with the moments of order {}", self.order)?;
             }

@@ -42,7 +42,14 @@ pub struct Care {
 
 /// The shortest stage tried, as a part of the way: a root so close to a fold is not taken. Rounding
 /// decides there.
-pub(super) const SHORTEST: f64 = 1e-9;
+const SHORTEST: f64 = 1e-9;
+
+/// The same at this share of the way. Near rest a short stage says nothing of a fold: where a tangent is nearly singular
+/// there and grows, as of a body whose stretches nearly agree, velocities first move as a root of the share. Rounding
+/// of momenta is what remains.
+pub(super) fn shortest(share: f64) -> f64 {
+    (1e-3 * share).clamp(1e-13, SHORTEST)
+}
 
 /// The strain aimed at over a stage: up to a fold each stage then leaves the same part of the way.
 pub(super) const AIM: f64 = 0.65;
@@ -192,7 +199,7 @@ where
         let [most, least] = SHORTER;
         while accepted.is_none() {
             length = length.min(left);
-            if length < SHORTEST {
+            if length < shortest(share) {
                 return Err(fold(share, &whole));
             }
             let end = if length >= left { 1.0 } else { share + length };
@@ -262,7 +269,7 @@ where
         let goal = at_rest * (1.0 - end);
         let toward = stage.toward(&goal);
         let fold = || Fold::at(share, fastest::<G, D>(&toward, &units));
-        if length < SHORTEST {
+        if length < shortest(share) {
             return Err(fold());
         }
         let radii = course(&lengths::<G, D>(&toward), &units, 1.0);

@@ -8,7 +8,7 @@ use super::stage::{MARGIN, Stage, fits};
 use crate::scalar::largest;
 use crate::solvers::newton::node::Spread;
 use crate::solvers::newton::principal::{
-    AIM, Care, Fold, INNER, LITTLE, LONGER, MOST_PROOFS, MOST_STAGES, SHORTER, SHORTEST,
+    AIM, Care, Fold, INNER, LITTLE, LONGER, MOST_PROOFS, MOST_STAGES, SHORTER, shortest,
 };
 
 /// What was found out on a curve.
@@ -107,7 +107,7 @@ fn follow(
         let [most, least] = SHORTER;
         while accepted.is_none() {
             length = length.min(left);
-            if length < SHORTEST {
+            if length < shortest(share) {
                 return Err(fold(share, &whole));
             }
             let end = if length >= left { 1.0 } else { share + length };
@@ -171,7 +171,7 @@ fn closely(curve: &dyn Curve, rest: Stage, solution: Option<Point>) -> Result<Fo
         let goal = times(&at_rest, 1.0 - end);
         let toward = stage.toward(&goal);
         let fold = || Fold::at(share, fastest(parts, &toward, &units));
-        if length < SHORTEST {
+        if length < shortest(share) {
             return Err(fold());
         }
         let radii = course(&parts.lengths(&toward), &units, 1.0);
