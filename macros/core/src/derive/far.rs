@@ -23,7 +23,7 @@ const LARGEST: u32 = 400;
 /// The power of the distance from the origin that the rounding of an expression is of, for places that
 /// are far from it and near to each other: values of fields, the translations of rigid motions, and
 /// constants that are taken from such. Zero where no place stands.
-pub(super) fn error(algebra: &Algebra, e: &Expr) -> f64 {
+pub(crate) fn error(algebra: &Algebra, e: &Expr) -> f64 {
     let symbols = algebra.symbols();
     if !expr::letters(e).iter().any(|l| is_place(symbols, l)) {
         return 0.0;

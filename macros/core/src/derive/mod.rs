@@ -16,7 +16,7 @@ pub mod convex;
 pub mod displaced;
 pub mod eliminated;
 pub mod explicit;
-mod far;
+pub(crate) mod far;
 #[cfg(test)]
 mod functionals;
 pub mod holds;

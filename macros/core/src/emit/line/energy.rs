@@ -5,6 +5,7 @@ use super::locals::Places;
 use super::pulls::{known, range_of};
 use super::{Lines, Moving, OfMeshes};
 use crate::algebra::{Algebra, Rational};
+use crate::derive::far;
 use crate::derive::limit::{Limit, of_order};
 use crate::emit::element;
 use crate::emit::energy::twice_kinetic_of;
@@ -122,14 +123,18 @@ pub(super) fn without_step(algebra: &Algebra, e: &Expr, h: &Expr) -> Option<Expr
     let s = algebra.symbols();
     let step = expr::letters(h).first().copied()?;
     let free = |e: &Expr| !expr::contains(e, step);
-    let collected = Some(expr::collect(s, e)).filter(free);
-    // Multiplied out it would round more far from the origin.
-    let stated = || {
-        let stated = of_order(algebra, e, step, Rational::ZERO);
-        algebra.equal(&stated, e).then_some(stated)
-    };
-    let shortest = || Some(algebra.shortest(e)).filter(free);
-    collected.or_else(stated).or_else(shortest)
+    let collected = expr::collect(s, e);
+    if free(&collected) {
+        return Some(collected);
+    }
+    let shortest = Some(algebra.shortest(e)).filter(free);
+    // Multiplied out it may round more far from the origin.
+    let stated = of_order(algebra, e, step, Rational::ZERO);
+    let is_nearer = |expanded: &Expr| far::error(algebra, &stated) < far::error(algebra, expanded);
+    match shortest.as_ref().is_none_or(is_nearer) && algebra.equal(&stated, e) {
+        true => Some(stated),
+        false => shortest,
+    }
 }
 
 /// The kinetic energy of one site, that of the limit inverted for its momenta; what is found together along the line
