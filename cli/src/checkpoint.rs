@@ -9,7 +9,7 @@
 use crate::plan::Plan;
 use clebsch::card::{Card, Field};
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 /// The name of the file.
@@ -23,6 +23,12 @@ const MAGIC: &str = "clebsch checkpoint ";
 
 /// The version that is written, and the only one that is read.
 const VERSION: &str = "1";
+
+/// Bytes written at once.
+const BUFFER: usize = 1 << 18;
+
+/// Most numbers that are told one by one.
+const TOLD: usize = 100;
 
 /// Which run it is: what must be the same for one to go on from the other.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,7 +63,7 @@ impl Identity {
         let mut values = |table: &str, fields: &[Field], values: &[Vec<f64>]| {
             let each = fields.iter().zip(values);
             all.extend(
-                each.map(|(field, value)| (format!("{table}.{}", field.ascii), text(value))),
+                each.map(|(field, value)| (format!("{table}.{}", field.ascii), listed(value))),
             );
         };
         values("parameters", card.parameters, &case.parameters);
@@ -92,6 +98,17 @@ impl Identity {
     }
 }
 
+/// Numbers as they are told apart: those of a million particles by how many they are and a checksum.
+fn listed(values: &[f64]) -> String {
+    if values.len() <= TOLD {
+        return format!("{values:?}");
+    }
+    let mut sum = crc32fast::Hasher::new();
+    values.iter().for_each(|x| sum.update(&x.to_le_bytes()));
+    let (count, sum) = (values.len(), sum.finalize());
+    format!("{count} numbers with the checksum {sum:08x}")
+}
+
 /// What a checkpoint holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Checkpoint {
@@ -106,30 +123,36 @@ pub(crate) struct Checkpoint {
 }
 
 impl Checkpoint {
-    fn bytes(&self, identity: &Identity) -> Vec<u8> {
+    /// Its bytes, a few at a time: those of a million particles are not held twice.
+    fn put(&self, identity: &Identity, out: impl Write) -> io::Result<()> {
+        let mut out = Summed {
+            out: BufWriter::with_capacity(BUFFER, out),
+            sum: crc32fast::Hasher::new(),
+        };
         let text = identity.text();
-        let mut bytes = format!("{MAGIC}{VERSION}\n").into_bytes();
-        let mut put = |word: u64| bytes.extend(word.to_le_bytes());
-        put(text.len() as u64);
-        bytes.extend(text.into_bytes());
-        let mut put = |word: u64| bytes.extend(word.to_le_bytes());
+        out.write_all(format!("{MAGIC}{VERSION}\n").as_bytes())?;
+        out.write_all(&(text.len() as u64).to_le_bytes())?;
+        out.write_all(text.as_bytes())?;
         for list in [&self.trajectory, &self.watch] {
-            put(list.len() as u64);
-            list.iter().for_each(|word| put(*word));
+            out.write_all(&(list.len() as u64).to_le_bytes())?;
+            for words in list.chunks(BUFFER / 8) {
+                let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+                out.write_all(&bytes)?;
+            }
         }
-        put(self.rows);
-        put(u64::from(self.sum));
-        let sum = crc32fast::hash(&bytes);
-        bytes.extend(u64::from(sum).to_le_bytes());
-        bytes
+        out.write_all(&self.rows.to_le_bytes())?;
+        out.write_all(&u64::from(self.sum).to_le_bytes())?;
+        let Summed { mut out, sum } = out;
+        out.write_all(&u64::from(sum.finalize()).to_le_bytes())?;
+        out.flush()
     }
 
     /// Writes the file beside its name, sees it to the disk, and gives it the name in one step: whenever the
     /// machine stops, the last checkpoint or the one before is there.
     pub(crate) fn write(&self, folder: &Path, identity: &Identity) -> io::Result<()> {
         let unfinished = folder.join(UNFINISHED);
-        let mut file = File::create(&unfinished)?;
-        file.write_all(&self.bytes(identity))?;
+        let file = File::create(&unfinished)?;
+        self.put(identity, &file)?;
         file.sync_all()?;
         fs::rename(&unfinished, folder.join(NAME))?;
         // The name as well, where folders can be synchronised.
@@ -188,6 +211,19 @@ impl Checkpoint {
     }
 }
 
+/// A writer that sums up what it writes.
+struct Summed<W> {
+    out: W,
+    sum: crc32fast::Hasher,
+}
+
+impl<W: Write> Summed<W> {
+    fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.sum.update(bytes);
+        self.out.write_all(bytes)
+    }
+}
+
 /// What is left to read.
 struct Rest<'a>(&'a [u8]);
 
@@ -223,11 +259,17 @@ impl<'a> Rest<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Checkpoint, Identity};
+    use super::{Checkpoint, Identity, listed};
 
     fn identity(h: &str) -> Identity {
         let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
         Identity(vec![pair("model", "top"), pair("h", h)])
+    }
+
+    fn bytes(checkpoint: &Checkpoint, identity: &Identity) -> Vec<u8> {
+        let mut out = Vec::new();
+        checkpoint.put(identity, &mut out).expect("is written");
+        out
     }
 
     fn sample() -> Checkpoint {
@@ -241,13 +283,13 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read() {
-        let bytes = sample().bytes(&identity("0.1"));
+        let bytes = bytes(&sample(), &identity("0.1"));
         assert_eq!(Checkpoint::of_bytes(&bytes, &identity("0.1")), Ok(sample()));
     }
 
     #[test]
     fn every_flipped_bit_and_every_cut_is_noticed() {
-        let bytes = sample().bytes(&identity("0.1"));
+        let bytes = bytes(&sample(), &identity("0.1"));
         for at in 0..bytes.len() {
             for bit in 0..8 {
                 let mut other = bytes.clone();
@@ -266,12 +308,22 @@ mod tests {
 
     #[test]
     fn another_run_is_told_by_what_differs() {
-        let bytes = sample().bytes(&identity("0.1"));
+        let bytes = bytes(&sample(), &identity("0.1"));
         let why = Checkpoint::of_bytes(&bytes, &identity("0.2"));
         assert_eq!(
             why,
             Err("it is of another run: h = 0.1 there, h = 0.2 here".to_owned())
         );
+        let [one, other] = [0.0, 1.0].map(|last| {
+            let mut list = vec![0.5; 1000];
+            list[999] = last;
+            listed(&list)
+        });
+        assert!(
+            one != other && one.starts_with("1000 numbers"),
+            "{one} {other}"
+        );
+        assert_eq!(listed(&[0.5, 1.0]), "[0.5, 1.0]");
         let later = String::from_utf8_lossy(&bytes[..21]).replace('1', "2");
         let why = Checkpoint::of_bytes(later.as_bytes(), &identity("0.1"));
         assert_eq!(

@@ -162,6 +162,10 @@ where
             f.words(words);
         } else if let Some(f) = own.downcast_mut::<mesh::helmholtz_depth<f64>>() {
             f.words(words);
+        } else if let Some(f) = own.downcast_mut::<mesh::helmholtz_twice<f64>>() {
+            f.words(words);
+        } else if let Some(f) = own.downcast_mut::<mesh::kernel_depth<f64>>() {
+            f.words(words);
         } else if let Some(f) = own.downcast_mut::<mesh::pair_core<f64>>() {
             f.words(words);
         }
@@ -241,6 +245,12 @@ pub fn made<T: Real>(name: &str, around: &Around, data: &[Value<T>]) -> Made<T> 
         ("second_moment", Plane(s), []) => held::<T, mesh::second_moment<T>, _, 2>(s, ()),
         ("helmholtz_depth", Plane(s), [m, alpha]) => {
             held::<T, mesh::helmholtz_depth<T>, _, 2>(s, (&numbers(m)?, one(alpha)?))
+        }
+        ("helmholtz_twice", Plane(s), [m, alpha]) => {
+            held::<T, mesh::helmholtz_twice<T>, _, 2>(s, (&numbers(m)?, one(alpha)?))
+        }
+        ("kernel_depth", Plane(s), [m, alpha]) => {
+            held::<T, mesh::kernel_depth<T>, _, 2>(s, (&numbers(m)?, one(alpha)?))
         }
         ("pair_core", Plane(s), [m, radius, strength]) => {
             let data = (&numbers(m)?[..], one(radius)?, one(strength)?);

@@ -82,9 +82,9 @@ fn particles(side: usize, speed: f64) -> Data {
 
 /// Steps both, and compares all that both show.
 macro_rules! compared {
-    ($file:expr, $choice:expr, $data:expr, $model:expr, $initial:expr, [$($name:literal = $values:ident),*], [$($total:ident),*]) => {{
+    ($source:expr, $choice:expr, $data:expr, $model:expr, $initial:expr, [$($name:literal = $values:ident),*], [$($total:ident),*]) => {{
         let (data, model) = ($data, $model);
-        let read = read($file);
+        let read = LineModel::read($source).expect("is read");
         let numbers = |name: &str| data.get(name).cloned();
         let mut line: LineTrajectory = read.start(&$choice, H, &numbers).expect("starts");
         let (mut state, mut work) = model.start($initial, H).expect("starts");
@@ -139,6 +139,11 @@ impl Reflected for ShallowWater2DWorkspace {
         0
     }
 }
+impl Reflected for SmoothedWorkspace {
+    fn reflections_or_none(&self) -> u64 {
+        0
+    }
+}
 impl Reflected for ShallowWater2DRegularisedWorkspace {
     fn reflections_or_none(&self) -> u64 {
         0
@@ -165,7 +170,7 @@ fn cells_equal_the_compiled_ones_to_the_last_bit() {
     };
     let model = ShallowWater2D::new(parameters, sites).expect("is made");
     compared!(
-        2,
+        source(2),
         choice(source(2), n, 1),
         data,
         model,
@@ -198,12 +203,57 @@ fn smoothed_cells_equal_the_compiled_ones_to_the_last_bit() {
     };
     let model = ShallowWater2DRegularised::new(parameters, sites).expect("is made");
     compared!(
-        3,
+        source(3),
         choice(source(3), n, 1),
         data,
         model,
         initial,
         ["phi" = values_phi, "core" = values_core],
+        [momentum]
+    );
+}
+
+clebsch::model! {
+    /// Half of the depth smoothed twice, half by a kernel.
+    model Smoothed {
+        time k step dt;
+        label a in 0..N;
+        param m: Real at a;
+        param g, alpha: Real;
+        field X: Vec<2> at a on torus(L);
+        mesh phi: Real at a = helmholtz_twice(X, m, alpha);
+        mesh chi: Real at a = kernel_depth(X, m, alpha);
+        lagrangian = (m/(2*dt))*dot(next(X) - X, next(X) - X) - dt*g*m*(phi + chi)/4;
+    }
+}
+
+#[test]
+fn depths_of_other_smoothers_equal_the_compiled_ones_to_the_last_bit() {
+    let data = particles(12, 0.1);
+    let n = data["m"].len();
+    let parameters = SmoothedParameters {
+        m: data["m"].clone(),
+        g: 1.0,
+        alpha: 0.1,
+    };
+    let sites = SmoothedSites {
+        N: n,
+        L: [1.0, 1.0],
+        scalar: Default::default(),
+    };
+    let initial = SmoothedInitial {
+        X: vectors(&data["X"]),
+        momentum_X: vectors(&data["momentum_X"]),
+    };
+    let source = Smoothed::<f64>::SOURCE;
+    let model = Smoothed::new(parameters, sites).expect("is made");
+    compared!(
+        source,
+        choice(source, n, 1),
+        data,
+        model,
+        initial,
+        ["phi" = values_phi, "chi" = values_chi],
         [momentum]
     );
 }
@@ -247,7 +297,7 @@ fn particles_on_a_grid_in_a_channel_equal_the_compiled_ones_to_the_last_bit() {
     };
     let model = ParticleMesh2D::new(parameters, sites).expect("is made");
     let reflections = compared!(
-        1,
+        source(1),
         choice(source(1), n, nodes.count()),
         data,
         model,
@@ -304,7 +354,7 @@ fn particles_on_an_interval_equal_the_compiled_ones_to_the_last_bit() {
     };
     let model = ParticleMesh1D::new(parameters, sites).expect("is made");
     let reflections = compared!(
-        0,
+        source(0),
         choice(source(0), n, nodes.count()),
         data,
         model,
@@ -387,9 +437,9 @@ fn a_functional_of_ones_own_needs_a_build() {
 fn a_fluid_that_is_written_down_goes_on_to_the_same_bits() {
     let data = particles(8, 0.3);
     let numbers = |name: &str| data.get(name).cloned();
-    for file in [2, 3] {
-        let model = read(file);
-        let choice = choice(source(file), data["m"].len(), 1);
+    for source in [source(2), source(3), Smoothed::<f64>::SOURCE] {
+        let model = LineModel::read(source).expect("is read");
+        let choice = choice(source, data["m"].len(), 1);
         let start = || model.start(&choice, H, &numbers).expect("starts");
         let mut whole = start();
         for _ in 0..30 {

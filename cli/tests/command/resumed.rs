@@ -165,6 +165,67 @@ fn interrupted_runs_end_bit_equal() {
     killed_and_resumed(&["-INT", "-TERM"]);
 }
 
+/// Particles of the fluid that is killed, `CLEBSCH_PARTICLES`, or few.
+fn particles() -> usize {
+    let asked = std::env::var("CLEBSCH_PARTICLES").ok();
+    asked.and_then(|text| text.parse().ok()).unwrap_or(1024)
+}
+
+/// A channel with four particles in each cell of its grid. A million of them, optimised:
+/// `CLEBSCH_PARTICLES=1000000 cargo test --release -p clebsch-cli --test command of_particles -- --nocapture`
+#[test]
+fn a_fluid_of_particles_that_is_killed_or_interrupted_ends_bit_equal() {
+    let folder = Folder::new("resumed-fluid");
+    let cells = (particles() as f64 / 4.0).sqrt().round() as usize;
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/fluids/");
+    let model = format!("{root}particle-mesh-2d.clebsch");
+    let case = format!(
+        "model = \"ParticleMesh2D\"\nname = \"killed\"\ndoc = \"a bump in a channel\"\nh = {}\nsteps = 12\n\
+         [labels]\na = {}\nn = [{cells}, {cells}]\n[domain]\nlengths = [1.0, 1.0]\nwalls = [\"solid\", \"periodic\"]\n\
+         [parameters]\nm = {{ depth = \"1 + 0.2*cos(pi*x)*cos(2*pi*y)\" }}\nc0 = 1.0\nf = 1.0\nalpha = {}\n\
+         [initial]\nX = {{ lattice = \"square\", jitter = 0.2, seed = 3 }}\nvelocity_X = [0.1, 0.2]\n",
+        0.2 / cells as f64,
+        4 * cells * cells,
+        2.0 / cells as f64,
+    );
+    let case = folder.write("case.toml", &case);
+    let arguments = [&model[..], "--case", &case, "--every", "12"];
+    let whole = folder.path("whole");
+    let from = Instant::now();
+    let done = run(&arguments, &whole, &[]);
+    let told = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(done.status.success(), "{told}");
+    let length = from.elapsed();
+    let out = folder.path("out");
+    let mut seed = 11;
+    let mut stopped = 0;
+    for signal in ["-KILL", "-INT", "-KILL"] {
+        let mut child = begun(&arguments, &out, &["--resume", "--checkpoint", "0.001"]);
+        let wait = length.mul_f64(0.3 + 0.4 * random(&mut seed));
+        std::thread::sleep(wait);
+        let asked = Instant::now();
+        send(signal, &child);
+        let status = child.wait().expect("ends");
+        println!(
+            "{signal} after {wait:.1?}: {status}, {:.1?} later",
+            asked.elapsed()
+        );
+        // A signal before the first step ends the program: there is nothing to be kept yet.
+        assert!(matches!(status.code(), Some(0 | 130) | None), "{status}");
+        stopped += u32::from(!status.success());
+    }
+    assert!(stopped > 0, "no signal met the run at work");
+    let from = Instant::now();
+    let done = run(&arguments, &out, &["--resume"]);
+    let told = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(done.status.success(), "{told}");
+    println!(
+        "the whole run took {length:.1?}, the last part {:.1?}",
+        from.elapsed()
+    );
+    same(&whole, &out, "a fluid");
+}
+
 /// A run of a heavy top that takes minutes, once its folder is there and its work has begun.
 fn long(out: &str, hidden: impl Fn() -> bool, more: &[&str]) -> Child {
     let child = begun(

@@ -15,6 +15,6 @@ pub use grid::{
     Axis, Nodes, deposit, deposit_quintic, fastest_wave, smooth, smooth_isotropic, smoothing_length,
 };
 pub use voronoi::{
-    Between, Counted, Face, Triangle, Voronoi, helmholtz_depth, pair_core, placement,
-    second_moment, voronoi_area,
+    Between, Counted, Face, Triangle, Voronoi, helmholtz_depth, helmholtz_twice, kernel_depth,
+    pair_core, placement, second_moment, voronoi_area,
 };

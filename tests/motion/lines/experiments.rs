@@ -1,9 +1,11 @@
 //! Runs of chapters 4 and 5 of the thesis, with data that are consistent: energies, potential vorticity, orders.
 
 use clebsch::mesh::Domain;
+use clebsch::mesh::placement::{self, Jitter};
 use clebsch::nalgebra::{SMatrix, Vector2};
 use clebsch_models::fluids::particle_mesh_1d::*;
 use clebsch_models::fluids::particle_mesh_2d::*;
+use clebsch_models::fluids::shallow_water_2d_regularised::*;
 use clebsch_models::lattices::shallow_water_1d::*;
 use std::f64::consts::{PI, TAU};
 
@@ -249,4 +251,57 @@ fn vortices_in_a_rotating_channel_keep_their_energy_to_second_order() {
     assert!(long < 3e-8 && of_kinetic < 3e-5, "{long:e} {of_kinetic:e}");
     let order = (long / short).log2();
     assert!((order - 2.0).abs() < 0.15, "{order}");
+}
+
+/// Without a bottom only the rotation acts on all particles together: the sum of their kinetic momenta turns by
+/// 2 atan(f dt/2) in a step.
+#[test]
+fn the_total_kinetic_momentum_turns_by_the_angle_of_a_centred_rotation() {
+    let (side, f, dt) = (12, 3.0, 0.02);
+    let count = side * side;
+    let jitter = Jitter { size: 0.3, seed: 2 };
+    let x = placement::lattice(&Domain::torus([1.0, 1.0]), [side, side], true, jitter);
+    let m: Vec<f64> = (0..count)
+        .map(|a| (1.0 + 0.3 * (a as f64).sin()) / count as f64)
+        .collect();
+    let perp = |x: &Vector2<f64>| Vector2::new(-x[1], x[0]);
+    let velocity = |a: usize| Vector2::new(0.3 + 0.1 * (3.0 * a as f64).sin(), 0.1);
+    let momentum = x.iter().zip(&m).enumerate();
+    let momentum = momentum.map(|(a, (x, m))| (velocity(a) + perp(x) * (f / 2.0)) * *m);
+    let initial = ShallowWater2DRegularisedInitial {
+        X: x.clone(),
+        momentum_X: momentum.collect(),
+    };
+    let parameters = ShallowWater2DRegularisedParameters {
+        m: m.clone(),
+        g: 1.0,
+        f,
+        alpha: 2.0 / side as f64,
+        rc: 0.7 / side as f64,
+        kappa: 0.1,
+    };
+    let sites = ShallowWater2DRegularisedSites {
+        N: count,
+        L: [1.0, 1.0],
+        scalar: Default::default(),
+    };
+    let model = ShallowWater2DRegularised::new(parameters, sites).expect("a torus");
+    let (mut state, mut work) = model.start(initial, dt).expect("starts");
+    let total = |s: &ShallowWater2DRegularisedState| -> Vector2<f64> {
+        let each = s.X().iter().zip(s.momentum_X()).zip(&m);
+        each.map(|((x, p), m)| p - perp(x) * (m * f / 2.0)).sum()
+    };
+    let first = total(&state);
+    let steps = 200;
+    for _ in 0..steps {
+        model.step(&mut state, &mut work).expect("steps");
+    }
+    let (sin, cos) = (f64::from(steps) * 2.0 * (f * dt / 2.0).atan()).sin_cos();
+    let turned = Vector2::new(
+        cos * first[0] + sin * first[1],
+        cos * first[1] - sin * first[0],
+    );
+    // Roundings of 144 momenta in 200 steps, of terms of the size of the momentum of the frame.
+    let off = (total(&state) - turned).norm() / first.norm();
+    assert!(off < 1e-12, "{off:e}");
 }

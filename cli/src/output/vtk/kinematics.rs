@@ -7,7 +7,7 @@ use clebsch::card::Card;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::Choice;
 use clebsch_interpret::lines::LineModel;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// What tells velocities.
@@ -39,13 +39,13 @@ impl Kinematics {
         lengths: &[f64],
     ) -> Option<Self> {
         let mut numbers: HashMap<String, Vec<f64>> = HashMap::new();
+        let names: HashSet<&str> = card.parameters.iter().map(|p| p.ascii).collect();
         for (own, value) in card.parameters.iter().zip(&plan.case.parameters) {
             numbers.insert(own.ascii.to_owned(), value.clone());
             // Copies stand in the order of their sites.
-            let whole = |base: &str| card.parameters.iter().any(|other| other.ascii == base);
             if let Some((base, site)) = own.ascii.rsplit_once('_')
                 && site.parse::<usize>().is_ok()
-                && !whole(base)
+                && !names.contains(base)
             {
                 numbers.entry(base.to_owned()).or_default().extend(value);
             }

@@ -76,9 +76,11 @@ const fn grid(name: &'static str, of_functional: bool) -> Supplied {
     }
 }
 
-const SUPPLIED: [Supplied; 8] = [
+const SUPPLIED: [Supplied; 10] = [
     cells("voronoi_area", 0),
     cells("helmholtz_depth", 2),
+    cells("helmholtz_twice", 2),
+    cells("kernel_depth", 2),
     cells("pair_core", 3),
     cells("second_moment", 0),
     grid("deposit", false),
@@ -475,6 +477,8 @@ fn example(name: &str) -> String {
     let call = match name {
         "voronoi_area" => "mesh A: Real at a = voronoi_area(X)",
         "helmholtz_depth" => "mesh phi: Real at a = helmholtz_depth(X, m, alpha)",
+        "helmholtz_twice" => "mesh phi: Real at a = helmholtz_twice(X, m, alpha)",
+        "kernel_depth" => "mesh phi: Real at a = kernel_depth(X, m, alpha)",
         "pair_core" => "mesh core: Real at a = pair_core(X, m, rc, kappa)",
         "second_moment" => "mesh I: Real at a = second_moment(X)",
         "smooth" | "smooth_isotropic" => "mesh S: Real at n = smooth(H, alpha)",

@@ -105,10 +105,13 @@ where
                 }
             };
             #[cfg(feature = "rayon")]
-            if let Some(least) = self.sorted.least(places.len().div_ceil(2 * stripe)) {
+            if let Some(each) = self.sorted.each(places.len().div_ceil(2 * stripe)) {
                 use rayon::prelude::*;
-                let pairs = places.par_chunks_mut(2 * stripe).enumerate();
-                pairs.with_min_len(least).for_each(spread);
+                let groups = places.par_chunks_mut(2 * stripe * each).enumerate();
+                groups.for_each(|(group, places)| {
+                    let pairs = (group * each..).zip(places.chunks_mut(2 * stripe));
+                    pairs.for_each(spread);
+                });
                 continue;
             }
             places.chunks_mut(2 * stripe).enumerate().for_each(spread);
@@ -137,11 +140,10 @@ where
             .ranges()
             .zip(out.chunks_mut(self.sorted.range()));
         #[cfg(feature = "rayon")]
-        if let Some(least) = self.sorted.least(self.sorted.ranges().count()) {
+        if let Some(each) = self.sorted.each(self.sorted.ranges().count()) {
             use rayon::prelude::*;
-            let ranges: Vec<_> = ranges.collect();
-            let ranges = ranges.into_par_iter().with_min_len(least);
-            ranges.for_each(collect);
+            let groups = super::sorted::grouped(ranges, each).into_par_iter();
+            groups.for_each(|group| group.into_iter().for_each(collect));
             return Ok(());
         }
         ranges.for_each(collect);

@@ -109,10 +109,10 @@ impl<T: Real, const D: usize> Sorted<T, D> {
         }
     }
 
-    /// Of so many pieces of work, the fewest that a thread takes; none if there is one thread.
+    /// Of so many pieces of work, how many each thread takes; none if there is one thread.
     #[cfg(feature = "rayon")]
-    pub fn least(&self, pieces: usize) -> Option<usize> {
-        (self.threads > 1).then(|| pieces.div_ceil(self.threads))
+    pub fn each(&self, pieces: usize) -> Option<usize> {
+        (self.threads > 1).then(|| pieces.div_ceil(self.threads).max(1))
     }
 
     /// Particles of a range.
@@ -132,7 +132,7 @@ impl<T: Real, const D: usize> Sorted<T, D> {
     ) -> Result<(), MeshError> {
         let (share, count) = (self.share, self.count);
         #[cfg(feature = "rayon")]
-        let threads = self.threads;
+        let each = self.each(self.particles.len().div_ceil(share));
         let parts = self.particles.chunks_mut(share).enumerate();
         let parts = parts
             .zip(self.rows.chunks_mut(share))
@@ -147,12 +147,12 @@ impl<T: Real, const D: usize> Sorted<T, D> {
             out,
         });
         #[cfg(feature = "rayon")]
-        if threads > 1 {
+        if let Some(each) = each {
             use rayon::prelude::*;
-            let parts: Vec<_> = parts.collect();
-            let least = parts.len().div_ceil(threads);
-            let parts = parts.into_par_iter().with_min_len(least);
-            let all: Vec<_> = parts.map(|p| p.sort(axes)).collect();
+            let groups = grouped(parts, each).into_par_iter();
+            let all: Vec<_> = groups
+                .map(|group| group.into_iter().try_for_each(|p| p.sort(axes)))
+                .collect();
             return all.into_iter().collect();
         }
         let mut parts = parts;
@@ -174,6 +174,18 @@ impl<T: Real, const D: usize> Sorted<T, D> {
         let both = ranges.zip(self.ends.chunks(self.count));
         both.map(|(particles, ends)| Rows { particles, ends })
     }
+}
+
+/// Pieces of work in groups of so many, one for each thread: an iterator that is told the fewest of a thread leaves an odd
+/// number of them to one.
+#[cfg(feature = "rayon")]
+pub(super) fn grouped<P>(pieces: impl Iterator<Item = P>, each: usize) -> Vec<Vec<P>> {
+    let mut pieces = pieces.peekable();
+    let mut all = Vec::new();
+    while pieces.peek().is_some() {
+        all.push(pieces.by_ref().take(each).collect());
+    }
+    all
 }
 
 /// The particles of one range.
@@ -236,5 +248,24 @@ impl<T: Real, A: Position<T, D>, const D: usize> Part<'_, T, A, D> {
             *place += 1;
         }
         Ok(())
+    }
+}
+
+#[cfg(all(test, feature = "rayon"))]
+mod tests {
+    use super::{Sorted, grouped};
+
+    #[test]
+    fn work_is_shared_by_all_threads_whatever_its_pieces() {
+        for threads in 2..6 {
+            let mut sorted = Sorted::<f64, 2>::new(100, 10);
+            sorted.share(threads);
+            for pieces in threads..40 {
+                let each = sorted.each(pieces).expect("several threads");
+                let groups = grouped(0..pieces, each);
+                assert!(groups.len() > threads / 2 && groups.len() <= threads);
+                assert!(groups.into_iter().flatten().eq(0..pieces));
+            }
+        }
     }
 }

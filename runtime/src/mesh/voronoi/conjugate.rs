@@ -2,7 +2,7 @@
 //! Stiefel, 1952) for plain numbers, and by Chebyshev's iteration for numbers that carry derivatives: it is the same
 //! polynomial for every right side, so that derivatives converge with the values. Takes a start; gives the iterations.
 
-use super::laplacian::Helmholtz;
+use super::rows::Rows;
 use super::shared::Sums;
 use crate::Real;
 use crate::line::Threads;
@@ -42,7 +42,7 @@ impl<T: Real> Iteration<T> {
     /// Solves, from what `x` holds; gives how many times the operator was applied.
     pub fn solve(
         &mut self,
-        operator: &Helmholtz<T>,
+        operator: &Rows<T>,
         right: &[T],
         x: &mut [T],
     ) -> Result<usize, MeshError> {
@@ -55,7 +55,7 @@ impl<T: Real> Iteration<T> {
 
     fn conjugate(
         &mut self,
-        operator: &Helmholtz<T>,
+        operator: &Rows<T>,
         right: &[T],
         x: &mut [T],
     ) -> Result<usize, MeshError> {
@@ -126,7 +126,7 @@ impl<T: Real> Iteration<T> {
 
     /// The scaled operator has its eigenvalues between `least` and `2 - least` (Gershgorin): the iteration is as long
     /// as these ask for, once more for each order of derivatives.
-    fn chebyshev(&mut self, operator: &Helmholtz<T>, right: &[T], x: &mut [T]) -> usize {
+    fn chebyshev(&mut self, operator: &Rows<T>, right: &[T], x: &mut [T]) -> usize {
         let shares = operator.areas.iter().zip(&operator.diagonal);
         let least = shares
             .map(|(area, diagonal)| (*area / *diagonal).value())

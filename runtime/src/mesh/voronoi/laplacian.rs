@@ -3,56 +3,45 @@
 //! and positive definite, because Delaunay triangulations have no negative `l/R`.
 
 use super::mesh::{Plane, Voronoi, left};
+use super::rows::Rows;
+use super::smoothed::Operator;
 use crate::Real;
+use crate::mesh::{MeshError, Setting};
 use nalgebra::SVector;
 
 /// The operator at the places of the last update.
 #[derive(Clone, Debug)]
-pub(super) struct Helmholtz<T> {
-    /// Where each row begins, and the last one ends.
-    start: Vec<u32>,
-    /// The neighbours of each site,
-    columns: Vec<u32>,
-    /// and `-alpha^2 l/R` of the edges to them.
-    entries: Vec<T>,
-    /// Diagonal entries, and one over them.
-    pub diagonal: Vec<T>,
-    pub inverse: Vec<T>,
-    /// Areas of the cells.
-    pub areas: Vec<T>,
+pub struct Cotangents<T> {
+    rows: Rows<T>,
     /// Of each half-edge, half the cotangent of the angle across it.
     halves: Vec<T>,
     alpha_squared: T,
 }
 
-impl<T: Real> Helmholtz<T> {
-    pub fn new(sites: usize, alpha: T) -> Self {
+impl<T: Real> Operator<T> for Cotangents<T> {
+    fn new(setting: &Setting<2>, alpha: T) -> Self {
+        let sites = setting.particles;
         Self {
-            start: vec![0; sites + 1],
-            columns: vec![0; 6 * sites],
-            entries: vec![T::zero(); 6 * sites],
-            diagonal: vec![T::zero(); sites],
-            inverse: vec![T::zero(); sites],
-            areas: vec![T::zero(); sites],
+            rows: Rows::new(sites, 6 * sites),
             halves: vec![T::zero(); 6 * sites],
             alpha_squared: alpha * alpha,
         }
     }
 
-    /// Makes the rows those of a mesh.
-    pub fn update(&mut self, mesh: &Voronoi<T>) {
-        mesh.sum_areas(&mut self.areas);
-        self.diagonal.copy_from_slice(&self.areas);
+    fn update(&mut self, mesh: &Voronoi<T>) -> Result<(), MeshError> {
+        let rows = &mut self.rows;
+        mesh.sum_areas(&mut rows.areas);
+        rows.diagonal.copy_from_slice(&rows.areas);
         for (halves, triangle) in self.halves.chunks_exact_mut(3).zip(mesh.triangles()) {
             halves.copy_from_slice(&triangle.weights);
         }
         let edges = &mesh.delaunay.edges;
-        self.start.fill(0);
+        rows.start.fill(0);
         for &origin in &edges.origin {
-            self.start[origin as usize] += 1;
+            rows.start[origin as usize] += 1;
         }
         let mut before = 0;
-        for start in &mut self.start {
+        for start in &mut rows.start {
             before += *start;
             *start = before;
         }
@@ -66,31 +55,21 @@ impl<T: Real> Helmholtz<T> {
             } else {
                 self.alpha_squared * (self.halves[e] + self.halves[twin])
             };
-            self.start[a] -= 1;
-            let place = self.start[a] as usize;
-            self.columns[place] = b as u32;
-            self.entries[place] = -flow;
-            self.diagonal[a] += flow;
+            rows.start[a] -= 1;
+            let place = rows.start[a] as usize;
+            rows.columns[place] = b as u32;
+            rows.entries[place] = -flow;
+            rows.diagonal[a] += flow;
         }
-        for (inverse, diagonal) in self.inverse.iter_mut().zip(&self.diagonal) {
-            *inverse = T::one() / *diagonal;
-        }
+        rows.invert_diagonal();
+        Ok(())
     }
 
-    /// A row applied to `x`.
-    #[inline(always)]
-    pub fn row(&self, a: usize, x: &[T]) -> T {
-        let range = self.start[a] as usize..self.start[a + 1] as usize;
-        let columns = &self.columns[range.clone()];
-        let mut sum = self.diagonal[a] * x[a];
-        for (&b, &entry) in columns.iter().zip(&self.entries[range]) {
-            sum += entry * x[b as usize];
-        }
-        sum
+    fn rows(&self) -> &Rows<T> {
+        &self.rows
     }
 
-    /// Adds to `out` how `-u.(A + alpha^2 K) v` changes with each place.
-    pub fn add_gradient(&self, mesh: &Voronoi<T>, u: &[T], v: &[T], out: &mut [SVector<T, 2>]) {
+    fn add_gradient(&mut self, mesh: &Voronoi<T>, u: &[T], v: &[T], out: &mut [SVector<T, 2>]) {
         mesh.add_area_gradient(|a| -(u[a] * v[a]), out);
         let half = T::from_f64(0.5) * self.alpha_squared;
         for triangle in mesh.triangles() {

@@ -3,7 +3,8 @@
 
 use super::delaunay::Delaunay;
 use super::half_edges::{HalfEdges, next};
-use super::{Voronoi, helmholtz_depth, pair_core, second_moment, voronoi_area};
+use super::smoothed::Smoothed;
+use super::{Voronoi, pair_core, second_moment, voronoi_area};
 use crate::saved::{Saved, Words};
 
 impl Saved for HalfEdges {
@@ -85,14 +86,16 @@ impl Saved for second_moment<f64> {
     }
 }
 
-impl Saved for helmholtz_depth<f64> {
+impl<O, const TIMES: usize> Saved for Smoothed<f64, O, TIMES> {
     fn words(&mut self, words: &mut Words) {
         self.mesh.words(words);
         self.at.iter_mut().for_each(|at| at.words(words));
-        for solution in &mut self.solutions {
-            solution.iter_mut().for_each(|depth| depth.words(words));
+        for depth in &mut self.depths {
+            for solution in &mut depth.solutions {
+                solution.iter_mut().for_each(|x| x.words(words));
+            }
+            depth.solved = words.count(depth.solved, depth.solutions.len());
         }
-        self.solved = words.count(self.solved, self.solutions.len());
         if words.are_given() {
             self.ready = false;
         }

@@ -57,7 +57,6 @@ pub(super) fn step(
         let none = reactions::no_multipliers(l);
         quote!(multipliers: #none,)
     });
-    let mutable = l.is_held().then(|| quote!(mut));
     let admitted = l.is_held().then(|| {
         let admitted = reactions::admitted(l);
         quote! {
@@ -139,7 +138,7 @@ pub(super) fn step(
                 quote!(initial.#own.iter().map(|x| line::Attitude::of_quaternion(*x)).collect())
             }
             true => quote!(initial.#own.iter().map(|x| line::Attitude::new(*x)).collect()),
-            false => quote!(initial.#own.clone()),
+            false => quote!(initial.#own),
         }
     });
     let momentum_values = moving.iter().map(|m| {
@@ -151,10 +150,32 @@ pub(super) fn step(
             }
             false => {
                 let momentum = format_ident!("momentum_{}", m.mover.name);
-                quote!(initial.#momentum.clone())
+                quote!(initial.#momentum)
             }
         }
     });
+    // Functionals hold most of the memory of a trajectory: the first step is tried in the state itself, with a workspace
+    // that is gone before the one that is kept is made.
+    let alone = of_meshes.is_some() && !l.is_held();
+    let first_alone = alone.then(|| {
+        quote! {
+            {
+                let mut scratch = self.workspace(&state, h)?;
+                self.step(&mut state, &mut scratch)?;
+                ::core::mem::swap(&mut state.places, &mut scratch.places);
+                ::core::mem::swap(&mut state.momenta, &mut scratch.momenta);
+                state.node = 0;
+                state.stamp = line::Stamp::fresh();
+            }
+        }
+    });
+    let first_beside = (!alone).then(|| {
+        quote! {
+            let (mut trial, mut scratch) = (state.clone(), work.clone());
+            self.step(&mut trial, &mut scratch)?;
+        }
+    });
+    let mutable = l.is_held().then(|| quote!(mut));
     let agreed = super::signs::agreed(l);
     let (domains, inside) = super::domain::domain(l);
     quote! {
@@ -181,10 +202,10 @@ pub(super) fn step(
                     state.places.#names.resize(#counts + #beyond, last);
                 )*
                 self.around(&mut state.places);
+                #first_alone
                 let #mutable work = self.workspace(&state, h)?;
                 #admitted
-                let (mut trial, mut scratch) = (state.clone(), work.clone());
-                self.step(&mut trial, &mut scratch)?;
+                #first_beside
                 Ok((state, work))
             }
 

@@ -1,0 +1,51 @@
+//! What an iteration starts from: the extrapolation of the last four solutions. Takes solutions one after another; keeps
+//! the latest first.
+
+use crate::Real;
+
+/// The last solutions of one equation.
+#[derive(Clone, Debug)]
+pub(super) struct Extrapolated<T> {
+    /// The latest first.
+    pub solutions: [Vec<T>; 4],
+    /// How many of them there are.
+    pub solved: usize,
+}
+
+impl<T: Real> Extrapolated<T> {
+    pub fn new(sites: usize) -> Self {
+        Self {
+            solutions: core::array::from_fn(|_| vec![T::zero(); sites]),
+            solved: 0,
+        }
+    }
+
+    /// The last one.
+    pub fn latest(&self) -> &[T] {
+        &self.solutions[0]
+    }
+
+    /// Puts in front what the last ones extrapolate to; `first` of every site where there is none.
+    pub fn next(&mut self, first: impl Fn(usize) -> T) -> &mut [T] {
+        let [latest, earlier, before, earliest] = &mut self.solutions;
+        let (three, six) = (T::from_f64(3.0), T::from_f64(6.0));
+        let four = T::from_f64(4.0);
+        for a in 0..latest.len() {
+            let (x, y, z, w) = (latest[a], earlier[a], before[a], earliest[a]);
+            earliest[a] = match self.solved {
+                0 => first(a),
+                1 => x,
+                2 => x + (x - y),
+                3 => three * (x - y) + z,
+                _ => four * (x + z) - six * y - w,
+            };
+        }
+        self.solutions.rotate_right(1);
+        &mut self.solutions[0]
+    }
+
+    /// The one in front has become a solution.
+    pub fn accept(&mut self) {
+        self.solved = (self.solved + 1).min(self.solutions.len());
+    }
+}

@@ -1,0 +1,250 @@
+//! Depths that are smoothed on a mesh, once or several times over: `phi_1 = H^-1 m`, `phi_2 = H^-1 A phi_1`, ..., with the
+//! areas `A` of the Voronoi cells and an operator `H = A + alpha^2 K` that leaves constants to `A`. Takes places on a
+//! torus, masses and the length; gives the last of these depths, and exact derivatives.
+
+use super::conjugate::Iteration;
+use super::extrapolated::Extrapolated;
+use super::masses::check_masses;
+use super::mesh::{Plane, Voronoi, cleared};
+use super::rows::Rows;
+use crate::line::Threads;
+use crate::mesh::length::check_length;
+use crate::mesh::{Functional, MeshError, Setting};
+use crate::{ParameterError, Real};
+use nalgebra::SVector;
+
+/// What a depth is smoothed by: `H = A + alpha^2 K`, with `K` symmetric, not negative, and zero of constants.
+pub trait Operator<T: Real>: Clone + Send + Sync {
+    /// Its room.
+    fn new(setting: &Setting<2>, alpha: T) -> Self;
+
+    /// Makes it that of a mesh.
+    ///
+    /// # Errors
+    /// What it cannot be made of.
+    fn update(&mut self, mesh: &Voronoi<T>) -> Result<(), MeshError>;
+
+    /// It, by rows.
+    fn rows(&self) -> &Rows<T>;
+
+    /// Adds to `out` how `-u.(H v)` changes with each place.
+    fn add_gradient(&mut self, mesh: &Voronoi<T>, u: &[T], v: &[T], out: &mut [SVector<T, 2>]);
+}
+
+/// Depths at the particles, smoothed `TIMES` times, each to a relative residual of 1e-12.
+///
+/// Every equation is solved from what its last four solutions extrapolate to, and not again at the same places. The
+/// derivative of `sum seed_a phi_a` takes as many further solutions, `H lambda = seed` and so on, but none where the seed
+/// is a multiple of the masses, as that of the potential energy is: these are the same multiple of the depths, in
+/// reverse order.
+#[derive(Clone, Debug)]
+pub struct Smoothed<T, O, const TIMES: usize> {
+    pub(super) mesh: Voronoi<T>,
+    operator: O,
+    iteration: Iteration<T>,
+    masses: Vec<T>,
+    /// Where the last value was taken.
+    pub(super) at: Vec<Plane<T>>,
+    /// The depths.
+    pub(super) depths: [Extrapolated<T>; TIMES],
+    /// Whether mesh and operator are those of the last value.
+    pub(super) ready: bool,
+    adjoints: [Vec<T>; TIMES],
+    right: Vec<T>,
+    products: usize,
+    adjoint_products: usize,
+}
+
+impl<T: Real, O: Operator<T>, const TIMES: usize> Smoothed<T, O, TIMES> {
+    /// The mesh at the places of the last value.
+    #[must_use]
+    pub fn mesh(&self) -> &Voronoi<T> {
+        &self.mesh
+    }
+
+    /// Applications of the operator by the last value, and by the last derivative: 0 of a multiple of the masses.
+    #[must_use]
+    pub fn products(&self) -> (usize, usize) {
+        (self.products, self.adjoint_products)
+    }
+
+    /// The masses with which the depth at the places `at` is `depth`.
+    ///
+    /// # Errors
+    /// Those of [`Voronoi::update`].
+    pub fn masses(
+        mesh: &mut Voronoi<T>,
+        at: &[SVector<T, 2>],
+        alpha: T,
+        depth: &[T],
+    ) -> Result<Vec<T>, MeshError> {
+        let particles = mesh.sites();
+        MeshError::unless_of_length(depth, particles)?;
+        mesh.update(at)?;
+        let setting = Setting {
+            domain: crate::mesh::Domain::torus(mesh.lengths()),
+            grid: None,
+            particles,
+        };
+        let mut operator = O::new(&setting, alpha);
+        operator.update(mesh)?;
+        let rows = operator.rows();
+        let mut depth = depth.to_vec();
+        for turn in 0..TIMES {
+            let above: Vec<T> = (0..particles).map(|a| rows.row(a, &depth)).collect();
+            depth = above;
+            if turn + 1 < TIMES {
+                depth
+                    .iter_mut()
+                    .zip(&rows.areas)
+                    .for_each(|(d, a)| *d /= *a);
+            }
+        }
+        Ok(depth)
+    }
+
+    /// The factor between a seed and the masses.
+    fn multiple(&self, seed: &[T]) -> Option<T> {
+        let factor = seed[0] / self.masses[0];
+        let rounding = 8.0 * T::EPSILON;
+        let same = seed.iter().zip(&self.masses).all(|(s, m)| {
+            let expected = factor * *m;
+            (*s - expected).magnitude() <= rounding * expected.magnitude()
+        });
+        same.then_some(factor)
+    }
+
+    /// Solves for the depths, one after another.
+    fn solve(&mut self) -> Result<(), MeshError> {
+        let rows = self.operator.rows();
+        self.products = 0;
+        for turn in 0..TIMES {
+            let (before, from) = self.depths.split_at_mut(turn);
+            let right = match before.last() {
+                None => &self.masses,
+                Some(before) => {
+                    weighted(&mut self.right, &rows.areas, before.latest());
+                    &self.right
+                }
+            };
+            let solution = from[0].next(|a| right[a] / rows.areas[a]);
+            self.products += self.iteration.solve(rows, right, solution)?;
+        }
+        self.depths.iter_mut().for_each(Extrapolated::accept);
+        Ok(())
+    }
+
+    /// What the seed is multiplied by in the derivative of each depth by its right side, the last one first.
+    fn solve_back(&mut self, seed: &[T]) -> Result<(), MeshError> {
+        let rows = self.operator.rows();
+        self.adjoint_products = 0;
+        for turn in 0..TIMES {
+            let (before, from) = self.adjoints.split_at_mut(turn);
+            let right = match before.last() {
+                None => seed,
+                Some(before) => {
+                    weighted(&mut self.right, &rows.areas, before);
+                    &self.right
+                }
+            };
+            from[0].fill(T::zero());
+            self.adjoint_products += self.iteration.solve(rows, right, &mut from[0])?;
+        }
+        Ok(())
+    }
+}
+
+/// Areas times values.
+fn weighted<T: Real>(out: &mut [T], areas: &[T], values: &[T]) {
+    let pairs = areas.iter().zip(values);
+    out.iter_mut()
+        .zip(pairs)
+        .for_each(|(out, (area, x))| *out = *area * *x);
+}
+
+impl<T: Real, O: Operator<T>, const TIMES: usize> Functional<T, 2> for Smoothed<T, O, TIMES> {
+    type Argument = SVector<T, 2>;
+    /// Masses, and the length.
+    type Data<'a> = (&'a [T], T);
+
+    fn new(setting: &Setting<2>, (masses, alpha): (&[T], T)) -> Result<Self, ParameterError> {
+        let mesh = Voronoi::new(&setting.domain, setting.particles)?;
+        check_masses(masses, setting.particles)?;
+        check_length(alpha, &setting.domain)?;
+        let zeros = vec![T::zero(); setting.particles];
+        Ok(Self {
+            mesh,
+            operator: O::new(setting, alpha),
+            iteration: Iteration::new(setting.particles),
+            masses: masses.to_vec(),
+            at: vec![Plane::zeros(); setting.particles],
+            depths: core::array::from_fn(|_| Extrapolated::new(setting.particles)),
+            ready: false,
+            adjoints: core::array::from_fn(|_| zeros.clone()),
+            right: if TIMES > 1 { zeros } else { Vec::new() },
+            products: 0,
+            adjoint_products: 0,
+        })
+    }
+
+    fn sites(&self) -> usize {
+        self.mesh.sites()
+    }
+
+    fn value(&mut self, at: &[Self::Argument], out: &mut [T]) -> Result<(), MeshError> {
+        MeshError::unless_of_length(out, self.sites())?;
+        let again = self.depths[TIMES - 1].solved > 0 && self.at == at;
+        if !(again && self.ready) {
+            self.ready = false;
+            self.mesh.update(at)?;
+            self.operator.update(&self.mesh)?;
+            self.ready = true;
+        }
+        if again {
+            self.products = 0;
+        } else {
+            if let Err(error) = self.solve() {
+                // Nothing is extrapolated from what has failed.
+                self.depths.iter_mut().for_each(|depth| depth.solved = 0);
+                return Err(error);
+            }
+            self.at.copy_from_slice(at);
+        }
+        out.copy_from_slice(self.depths[TIMES - 1].latest());
+        Ok(())
+    }
+
+    fn pull_back(
+        &mut self,
+        _: &[Self::Argument],
+        seed: &[T],
+        out: &mut [Self::Argument],
+    ) -> Result<(), MeshError> {
+        cleared(seed, out, self.sites())?;
+        match self.multiple(seed) {
+            Some(factor) => {
+                for (adjoint, depth) in self.adjoints.iter_mut().zip(&self.depths) {
+                    let each = adjoint.iter_mut().zip(depth.latest());
+                    each.for_each(|(adjoint, depth)| *adjoint = factor * *depth);
+                }
+                self.adjoint_products = 0;
+            }
+            None => self.solve_back(seed)?,
+        }
+        for (turn, depth) in self.depths.iter().enumerate() {
+            let (adjoint, depth) = (&self.adjoints[TIMES - 1 - turn], depth.latest());
+            self.operator.add_gradient(&self.mesh, adjoint, depth, out);
+            if turn + 1 < TIMES {
+                // The right side of the next equation.
+                let next = &self.adjoints[TIMES - 2 - turn];
+                self.mesh.add_area_gradient(|a| next[a] * depth[a], out);
+            }
+        }
+        Ok(())
+    }
+
+    fn share(&mut self, threads: Threads) {
+        self.mesh.share(threads);
+        self.iteration.share(threads);
+    }
+}
