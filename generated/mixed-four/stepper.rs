@@ -1664,33 +1664,37 @@ pub mod mixed_four {
                 let t11 = motion_rotation(&G);
                 let t12 = (t11.tr_mul(&t11)).trace().sqrt();
                 let t13 = motion_translation(&G);
-                let t14 = t13.dot(&t13).sqrt();
-                let t15 = t14 + t12 * t10 + t5;
+                let t14 = t13 + t11 * s - X;
+                let t15 = t14.dot(&t14).sqrt();
                 let t16 = T::from_f64(0.5) * t1 * t2 * t10 * t12 * t15;
-                let t17 = T::from_f64(0.5) * t1 * t2 * t12 * t15;
-                let t18 = T::from_f64(0.5) * t1 * t2 * t7 * t3 * t7 * t8;
-                let t19 = T::from_f64(0.5) * t1 * (m * m).sqrt() * g.dot(&g).sqrt();
-                let t20 = T::from_f64(0.5) * t1 * t2 * t4 * t3;
-                let t21 = t1 * t2 * t5;
-                let t22 = T::from_f64(0.5) * t1 * t2 * t12 * t10;
-                let t23 = T::from_f64(0.5) * t1 * t2 * t14;
+                let t17 = t13.dot(&t13).sqrt();
+                let t18 = t17 + t12 * t10 + t5;
+                let t19 = T::from_f64(0.5) * t1 * t2 * t10 * t12 * t18;
+                let t20 = T::from_f64(0.5) * t1 * t2 * t12 * t15;
+                let t21 = T::from_f64(0.5) * t1 * t2 * t12 * t18;
+                let t22 = T::from_f64(0.5) * t1 * t2 * t7 * t3 * t7 * t8;
+                let t23 = T::from_f64(0.5) * t1 * (m * m).sqrt() * g.dot(&g).sqrt();
+                let t24 = T::from_f64(0.5) * t1 * t2 * t4 * t3;
+                let t25 = t1 * t2 * t5;
+                let t26 = T::from_f64(0.5) * t1 * t2 * t12 * t10;
+                let t27 = T::from_f64(0.5) * t1 * t2 * t17;
                 enlarged.momentum_R = SpatialMomentum(
                     not_less(enlarged.momentum_R.0, (0, 3), t6 + t9 + t6 + t9),
                 );
                 enlarged.momentum_G = CarriedImpulse(
-                    not_less(enlarged.momentum_G.0, (0, 3), t16 + t16),
+                    not_less(enlarged.momentum_G.0, (0, 3), t16 + t19 + t16 + t19),
                 );
                 enlarged.momentum_G = CarriedImpulse(
-                    not_less(enlarged.momentum_G.0, (3, 3), t17 + t17),
+                    not_less(enlarged.momentum_G.0, (3, 3), t20 + t21 + t20 + t21),
                 );
                 enlarged.momentum_q = SpatialMomentum(
-                    not_less(enlarged.momentum_q.0, (0, 3), t18 + t18),
+                    not_less(enlarged.momentum_q.0, (0, 3), t22 + t22),
                 );
                 enlarged.momentum_X = FieldMomentum(
                     not_less(
                         enlarged.momentum_X.0,
                         (0, 3),
-                        t19 + t20 + t21 + t22 + t23 + t19 + t20 + t21 + t22 + t23,
+                        t23 + t24 + t25 + t26 + t27 + t23 + t24 + t25 + t26 + t27,
                     ),
                 );
             }
