@@ -193,6 +193,7 @@ fn equation(value: Expr) -> Balance {
 
 /// The refusal of a constraint that follows from those before it whatever the configuration is.
 pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> {
+    let solved = Solved::of(&d.spec, &d.letters, &Algebra::new(&d.letters.symbols));
     let number = |j: usize| {
         let shape = d.letters.symbols.get(d.spec.holds[j].multiplier).shape;
         let size = |n| d.letters.symbols.sizes(n).1;
@@ -202,7 +203,9 @@ pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> 
         let all: Vec<usize> = (0..count).collect();
         let whole = d.with_multipliers(&all);
         let paired: Vec<Expr> = all.iter().map(|i| rate_paired(d, *i)).collect();
+        // Where they hold: vectors of one length may be equal in fewer ways than they have components.
         let form = expr::sum(paired, Shape::SCALAR);
+        let form = expr::substitute(&d.letters.symbols, &form, solved.list());
         // The form on velocities and multipliers has twice the rank of the derivatives.
         let rank = super::kinetic::rank(&whole.spec, &whole.letters, &form, assumed);
         let wanted: usize = all.iter().map(|j| number(*j)).sum();
@@ -224,7 +227,12 @@ pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> 
             "the constraint of `{name}` follows from the others, or some of its components from one another: \
              {wanted} equations hold {rank} directions, and its multiplier is not determined"
         );
+        let is_turned = |e: &Expr| e.shape().is_vector() && rank + 1 == wanted;
         let help = match hold.left.shape() == hold.value.shape() {
+            true if is_turned(&hold.left) => {
+                "leave out what the other constraints state already; vectors of one length, as `R*a` and `S*b`, are made parallel by two \
+                 numbers: `dot(R*c, S*b) = 0` and `dot(R*d, S*b) = 0` with `c` and `d` across `a`"
+            }
             true => "leave out what the other constraints state already",
             false => {
                 "a matrix is held by all of its entries, a symmetric one by those on and above the diagonal, a skew one by its \

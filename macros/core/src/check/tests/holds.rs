@@ -72,6 +72,16 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
     let turning = "param J: Sym<3>; group R: SO<3> velocity W; constraint next(R) = R*W; lagrangian = -tr(J*W)/h;";
     let told = refused(&format!("{turning} hold λ: tr(W) = 3;"));
     assert!(told.contains("`W` is a velocity"), "{told}");
+    // Vectors of one length are equal in two ways, where they are.
+    let two = format!(
+        "param a, b: Vec<3>; group S: SO<3> velocity V; constraint next(S) = S*V; {turning}"
+    );
+    let two = two.replace("-tr(J*W)/h", "-tr(J*W)/h - tr(J*V)/h");
+    let told = refused(&format!("{two} hold l: R*a = S*b;"));
+    assert!(told.contains("3 equations hold 2 directions"), "{told}");
+    assert!(told.contains("`dot(R*c, S*b) = 0`"), "{told}");
+    let told = refused(&format!("{two} hold l: dot(R*a, S*b) = 0;"));
+    assert!(told.starts_with("derives"), "{told}");
 }
 
 const SHAPE: &str = "param I0: Sym<3>; field Q: Mat<3>;";

@@ -176,10 +176,10 @@ fn joints_leave_what_is_conserved_where_they_hold() {
     let about = ["total_momentum_x_y_across_g", "total_momentum_angular_g"];
     let weight = " + h*dot(g, m*x + n*y)";
     assert_eq!(momenta(weight, ball), about, "a ball joint under weight");
-    let hinge = format!("{ball} hold k: R*c = S*a;");
+    let hinge = format!("{ball} hold k: dot(R*c, S*a) = 0; hold j: dot(R*g, S*a) = 0;");
     assert_eq!(momenta("", &hinge), free, "a common axis");
     // Turned together from space, one side of this turns with the frames and the other does not.
-    let held = format!("{ball} hold k: R*c = S^T*a;");
+    let held = format!("{ball} hold k: dot(R*c, S^T*a) = 0;");
     assert_eq!(
         momenta("", &held),
         free[..1],
