@@ -3,7 +3,7 @@
 
 use crate::algebra::Algebra;
 use crate::check::spec::Spec;
-use crate::derive::action::summands;
+use crate::derive::action::{split, summands};
 use crate::derive::balance::shorter;
 use crate::derive::variation::at;
 use crate::expr::shape::Shape;
@@ -56,7 +56,9 @@ pub(super) fn gathered(spec: &Spec, algebra: &Algebra, ends: &[(Letter, Expr)]) 
     }
     let stated = expr::sum(apart, Shape::SCALAR);
     let together = algebra.shortest(&expr::substitute(s, &stated, ends));
-    match !algebra.exhausted() && values(&together) < values(&stated) {
+    // What is left at a node would be taken for a term that was stated there, and divided between its edges.
+    let stays = split(s, &together).1.is_zero();
+    match !algebra.exhausted() && stays && values(&together) < values(&stated) {
         true => expr::sum(others.into_iter().chain([together]), Shape::SCALAR),
         false => spec.lagrangian.clone(),
     }

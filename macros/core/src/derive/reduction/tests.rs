@@ -285,3 +285,26 @@ fn a_number_that_stands_linearly_is_divided_for() {
     let quartic = how("(m*v^2 + v^4/h^2)");
     assert!(!quartic.contains("division"), "{quartic}");
 }
+
+/// Terms over the step stay on the edge on which they were stated, whatever cancels between them when they are multiplied out.
+#[test]
+fn terms_of_an_edge_are_not_divided_between_nodes() {
+    let reduced = |kinetic: &str| {
+        let text = format!(
+            "model Body {{ group R: SO<3> velocity W; field e: Vec<3>; constraint next(R) = W*R;
+             let D = diag(exp(dot(e, E1))*E1 + exp(dot(e, E2))*E2 + exp(dot(e, E3))*E3); let V = diag(next(e) - e);
+             lagrangian = 2*tr((Id - W)*D^2)/h + {kinetic}; }}"
+        );
+        let d = crate::derive_source(&text).unwrap_or_else(|e| panic!("{text}: {e}"));
+        assert!(d.action.nodal.is_zero(), "{kinetic}: {:?}", d.action.nodal);
+        d.limit.err()
+    };
+    for kinetic in [
+        "tr(V*V)/h",
+        "tr(D^2*V^2)/(2*h)",
+        "tr((D^2 + next(D)^2)*V^2)/(4*h)",
+        "tr(D*V*V*next(D))/(2*h)",
+    ] {
+        assert_eq!(reduced(kinetic), None, "{kinetic}");
+    }
+}
