@@ -158,9 +158,24 @@ impl Outcome {
             self.bound
                 .map_or_else(|| "-".to_owned(), |bound| format!("{bound:e}")),
             self.verdict.word().to_owned(),
-            self.invariant.formula.to_owned(),
+            shortened(self.invariant.formula),
         ]
     }
+}
+
+/// Longest formula in a table: longer ones stand in the derivation.
+const LONGEST: usize = 240;
+
+/// A formula for a table, as far as it is read there.
+fn shortened(formula: &str) -> String {
+    if formula.chars().count() <= LONGEST {
+        return formula.to_owned();
+    }
+    let start: String = formula.chars().take(LONGEST).collect();
+    let whole_words = start
+        .rsplit_once(' ')
+        .map_or(start.as_str(), |(words, _)| words);
+    format!("{whole_words} ...: see `clebsch derive`")
 }
 
 /// The table of all outcomes, and a line on those that are measured absolutely; drifts are relative to

@@ -4,7 +4,7 @@
 use crate::common::{Folder, program as clebsch};
 
 /// The model files that the project ships, each with its case and steps that take little time.
-const SHIPPED: [(&str, &str); 8] = [
+const SHIPPED: [(&str, &str); 9] = [
     ("fluid-ellipsoid", "200"),
     ("kirchhoff-static", "2000"),
     ("mooney-rivlin", "200"),
@@ -12,6 +12,7 @@ const SHIPPED: [(&str, &str); 8] = [
     ("pseudo-rigid", "20"),
     ("pseudo-rigid-anisotropic", "10"),
     ("pseudo-rigid-bipolar", "6"),
+    ("pseudo-rigid-positive", "10"),
     ("spherical-pendulum", "200"),
 ];
 
