@@ -10,6 +10,8 @@ mod beam;
 mod crossing;
 #[path = "elastic/energy.rs"]
 mod energy;
+#[path = "elastic/fluid.rs"]
+mod fluid;
 #[path = "elastic/hyperelastic.rs"]
 mod hyperelastic;
 #[path = "elastic/poisson.rs"]
