@@ -69,6 +69,10 @@ compiled!(
         ("constraint_n", vec![m.constraint_n(s)]),
         ("constraint_rate_n", vec![m.constraint_rate_n(s)]),
         (
+            "total_momentum_angular_g",
+            vec![m.total_momentum_angular_g(s)]
+        ),
+        (
             "total_momentum_phi_across_g",
             m.total_momentum_phi_across_g(s).as_slice().to_vec()
         ),

@@ -41,6 +41,7 @@ compiled!(
     |m, s| vec![
         ("constraint_p", vec![m.constraint_p(s)]),
         ("constraint_rate_p", vec![m.constraint_rate_p(s)]),
+        ("total_momentum_X", vec![m.total_momentum_X(s)]),
     ]
 );
 compiled!(
