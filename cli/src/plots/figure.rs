@@ -22,7 +22,7 @@ const HEAD: u32 = 52;
 const FOOT: u32 = 50;
 const EDGE: u32 = 4;
 /// Tenths of a pixel a letter of a legend takes in the widest of the usual fonts.
-const LETTER: u32 = 78;
+const LETTER: u32 = 73;
 /// Where legends below a chart begin.
 const LEFT: u32 = 24;
 /// Width of a column of a paper.
@@ -265,7 +265,7 @@ impl Panel {
         Ok(())
     }
 
-    /// Room for the longest text of the legend, at 7.8 pixels a letter: names with many `m` in the widest of the usual fonts.
+    /// Room for the longest text of the legend, at 7.3 pixels a letter: as wide as the widest of the usual fonts.
     fn legend_width(&self) -> u32 {
         if self.map.is_some() {
             return 100;
