@@ -193,6 +193,10 @@ fn equation(value: Expr) -> Balance {
 
 /// The refusal of a constraint that follows from those before it whatever the configuration is.
 pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> {
+    let count = d.spec.holds.len();
+    if count == 0 {
+        return None;
+    }
     let solved = Solved::of(&d.spec, &d.letters, &Algebra::new(&d.letters.symbols));
     let number = |j: usize| {
         let shape = d.letters.symbols.get(d.spec.holds[j].multiplier).shape;
@@ -212,10 +216,6 @@ pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> 
         rank.map(|(rank, _)| (rank / 2, wanted))
             .filter(|(rank, wanted)| rank < wanted)
     };
-    let count = d.spec.holds.len();
-    if count == 0 {
-        return None;
-    }
     rank_of(count)?;
     for j in 0..count {
         let Some((rank, wanted)) = rank_of(j + 1) else {

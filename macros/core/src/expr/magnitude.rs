@@ -35,22 +35,24 @@ pub(crate) fn magnitude_between(s: &Symbols, e: &Expr, paths: &[(Letter, Expr)])
 /// How large the terms of an expression at a node are, differences of places by their own lengths, with what the rounding of
 /// the places themselves changes, to first order and in units of rounding.
 pub(crate) fn magnitude_by_differences(s: &Symbols, e: &Expr) -> Expr {
-    let Some(named) = places::named(s, e) else {
-        return magnitude(s, e);
-    };
-    let definitions = named.definitions.iter();
-    let paths: Vec<(Letter, Expr)> = definitions.map(|(l, d)| (*l, magnitude(s, d))).collect();
-    let size = magnitude_between(&named.symbols, &named.whole, &paths);
-    substitute(&named.symbols, &size, &named.definitions)
+    in_differences(s, e, |named| {
+        let definitions = named.definitions.iter();
+        let paths: Vec<(Letter, Expr)> = definitions.map(|(l, d)| (*l, magnitude(s, d))).collect();
+        magnitude_between(&named.symbols, &named.whole, &paths)
+    })
 }
 
 /// The same without the rounding of places.
 pub(crate) fn lengths_of_differences(s: &Symbols, e: &Expr) -> Expr {
-    let Some(named) = places::named(s, e) else {
-        return magnitude(s, e);
-    };
-    let size = magnitude(&named.symbols, &named.whole);
-    substitute(&named.symbols, &size, &named.definitions)
+    in_differences(s, e, |named| magnitude(&named.symbols, &named.whole))
+}
+
+/// A size that is taken with letters for differences of places; the plain one where there are none.
+fn in_differences(s: &Symbols, e: &Expr, size: impl Fn(&places::Named) -> Expr) -> Expr {
+    match places::named(s, e) {
+        Some(named) => substitute(&named.symbols, &size(&named), &named.definitions),
+        None => magnitude(s, e),
+    }
 }
 
 /// Whether the expression is a product of elements of SU(2).
