@@ -1,729 +1,470 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-/// The model [`BodyInQuadraticField`](struct@BodyInQuadraticField) and what belongs to it.
-#[allow(
+//! The model [`BodyInQuadraticField`](struct@BodyInQuadraticField) and what belongs to it.
+#![allow(
     non_snake_case,
     uncommon_codepoints,
     mixed_script_confusables,
     confusable_idents,
+    unused_variables,
     clippy::all
 )]
-pub mod body_in_quadratic_field {
-    use ::clebsch::emitted::*;
-    /// Parameters of [`BodyInQuadraticField`](struct@BodyInQuadraticField), as given.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct BodyInQuadraticFieldParameters<T = f64> {
-        /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
-        pub J: SMatrix<T, 3, 3>,
-        /// `K`: the field: energy ½ Γ·KΓ; a 3 x 3 matrix, symmetric.
-        pub K: SMatrix<T, 3, 3>,
-    }
-    /// Rigid body in a quadratic field.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct BodyInQuadraticField<T = f64> {
+use ::clebsch::emitted::*;
+/// Parameters of [`BodyInQuadraticField`](struct@BodyInQuadraticField), as given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyInQuadraticFieldParameters<T = f64> {
+    /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
+    pub J: SMatrix<T, 3, 3>,
+    /// `K`: the field: energy ½ Γ·KΓ; a 3 x 3 matrix, symmetric.
+    pub K: SMatrix<T, 3, 3>,
+}
+/// Rigid body in a quadratic field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyInQuadraticField<T = f64> {
+    parameters: BodyInQuadraticFieldParameters<T>,
+    factor: Poinsot<T>,
+    method: Method,
+}
+impl<T: Real> BodyInQuadraticField<T> {
+    /// The model as it was stated.
+    pub const SOURCE: &'static str = "/// Rigid body in a quadratic field.\npub model BodyInQuadraticField {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// the field: energy ½ Γ·KΓ\n    param K: Sym<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// axis of the field seen from the body\n    advected Γ: Vec<3>;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// the axis is fixed in space\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - (1/2)*h*dot(Γ, K*Γ);\n}";
+    /// A number that changes when the model or its derivation does.
+    pub const FINGERPRINT: u64 = 17218949872786232600u64;
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+    /// assumption, or is no admissible factor of the equation to solve.
+    pub fn new(
         parameters: BodyInQuadraticFieldParameters<T>,
-        factor: Poinsot<T>,
-        method: Method,
-    }
-    impl<T: Real> BodyInQuadraticField<T> {
-        /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Rigid body in a quadratic field.\npub model BodyInQuadraticField {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// the field: energy ½ Γ·KΓ\n    param K: Sym<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// axis of the field seen from the body\n    advected Γ: Vec<3>;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// the axis is fixed in space\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - (1/2)*h*dot(Γ, K*Γ);\n}";
-        /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 17218949872786232600u64;
-        /// Checks the parameters.
-        ///
-        /// # Errors
-        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-        /// assumption, or is no admissible factor of the equation to solve.
-        pub fn new(
-            parameters: BodyInQuadraticFieldParameters<T>,
-        ) -> Result<Self, ParameterError> {
-            validate::finite_entries("J", &parameters.J)?;
-            validate::symmetric("J", &parameters.J)?;
-            validate::finite_entries("K", &parameters.K)?;
-            validate::symmetric("K", &parameters.K)?;
-            let BodyInQuadraticFieldParameters { J, .. } = parameters;
-            let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
-            Ok(Self {
-                parameters,
-                factor,
-                method: Method::of_size(3),
-            })
-        }
-        /// The same model, its steps solved by the solver named.
-        #[must_use]
-        pub fn with_solver(self, method: Method) -> Self {
-            Self { method, ..self }
-        }
-        /// The parameters.
-        pub fn parameters(&self) -> &BodyInQuadraticFieldParameters<T> {
-            &self.parameters
-        }
-    }
-    /// Initial data.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct BodyInQuadraticFieldInitial<T = f64> {
-        /// `Λ` at node 0: body -> space.
-        pub Λ: Rotation<T>,
-        /// Momentum at node 0, in the body frame.
-        pub body_momentum: BodyMomentum<T>,
-        /// `Γ` at node 0.
-        pub Γ: SVector<T, 3>,
-    }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct BodyInQuadraticFieldState<T = f64> {
-        Λ: Rotation<T>,
-        momentum: SpatialMomentum<T>,
-        Γ: SVector<T, 3>,
-        node: u64,
-    }
-    impl<T: Real> BodyInQuadraticFieldState<T> {
-        /// `Λ` at this node: body -> space.
-        pub fn Λ(&self) -> Rotation<T> {
-            self.Λ
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
-            self.momentum
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum(&self) -> BodyMomentum<T> {
-            self.momentum.to_body(&self.Λ)
-        }
-        /// The number of the node.
-        pub fn node(&self) -> u64 {
-            self.node
-        }
-    }
-    /// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
-    #[derive(Clone, Copy, Debug)]
-    pub struct BodyInQuadraticFieldWorkspace<T = f64> {
-        h: T,
-        method: Method,
-        edge: Edge<T>,
-        here: BodyInQuadraticFieldState<T>,
-    }
-    ::clebsch::saved! {
-        [] BodyInQuadraticFieldWorkspace { h, method, edge, here }
-    }
-    impl<T: Real> BodyInQuadraticField<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not admissible, or says why the first step cannot be solved and
-        /// which could.
-        pub fn start(
-            &self,
-            initial: BodyInQuadraticFieldInitial<T>,
-            h: T,
-        ) -> Result<
-            (BodyInQuadraticFieldState<T>, BodyInQuadraticFieldWorkspace<T>),
-            StartError,
-        > {
-            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
-        }
-        /// As `start`, with the solver named.
-        ///
-        /// # Errors
-        /// As `start`; also for what this size or scalar does not have.
-        pub fn start_with(
-            &self,
-            initial: BodyInQuadraticFieldInitial<T>,
-            h: T,
-            choice: impl Into<Option<Method>>,
-        ) -> Result<
-            (BodyInQuadraticFieldState<T>, BodyInQuadraticFieldWorkspace<T>),
-            StartError,
-        > {
-            ::clebsch::integrate::Model::start_with(self, initial, h, choice.into())
-        }
-        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
-        pub fn workspace(
-            &self,
-            state: &BodyInQuadraticFieldState<T>,
-            h: T,
-        ) -> Result<BodyInQuadraticFieldWorkspace<T>, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        /// One step, in place. Solved thus: C is constant and symmetric: explicit up to the root of one quartic per step.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-        #[inline]
-        pub fn step(
-            &self,
-            state: &mut BodyInQuadraticFieldState<T>,
-            work: &mut BodyInQuadraticFieldWorkspace<T>,
-        ) -> Result<(), StepError> {
-            let h = work.h;
-            if work.here.Λ != state.Λ || work.here.momentum != state.momentum
-                || !(same(&work.here.Γ, &state.Γ))
-            {
-                work.edge = self.edge(state, h);
-                work.here = *state;
-            }
-            let edge = &work.edge;
-            let turned = match work.method {
-                Method::Kappa => edge.turn(&self.factor, h, &state.Λ),
-                method => edge.turn_by(method, &self.factor, h, &state.Λ),
-            };
-            let Λ_moved = match turned {
-                Ok(turned) => turned,
-                Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
-            };
-            let arrival = self.arrived(state, edge, h, Λ_moved);
-            if !(all_finite(&arrival.momentum.0)) {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
-            }
-            (state.Λ, work.here.Λ) = (arrival.attitude, arrival.attitude);
-            (state.momentum, work.here.momentum) = (arrival.momentum, arrival.momentum);
-            state.node += 1;
-            work.edge = arrival.edge;
-            Ok(())
-        }
-        /// The next node and the edge that begins there, given the attitude there.
-        #[inline(always)]
-        fn arrived(
-            &self,
-            state: &BodyInQuadraticFieldState<T>,
-            edge: &Edge<T>,
-            h: T,
-            Λ_moved: TurnedRotation<T>,
-        ) -> Moving<T> {
-            let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
-            let Λ_next = Λ_moved.matrix();
-            let Γ_reference = state.Γ;
-            let Γ_next = Λ_next.tr_mul(&Γ_reference);
-            let space = edge.space();
-            let torque = -((K * Γ_next).cross(&Γ_next) * h);
-            let kick = Λ_next * torque;
-            let momentum_next = space + kick * T::from_f64(0.5);
-            let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
-            Moving {
-                attitude: Λ_moved.rotation(),
-                momentum: SpatialMomentum(momentum_next),
-                edge: edge_next,
-            }
-        }
-        /// The edge that begins at this state, for a step `h`.
-        #[inline(never)]
-        fn edge(&self, state: &BodyInQuadraticFieldState<T>, h: T) -> Edge<T> {
-            let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let Γ_reference = state.Γ;
-            let Γ = Λ.tr_mul(&Γ_reference);
-            let kick = (K * Γ).cross(&Γ) * (T::from_f64(0.5) * h);
-            Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
-        }
-        /// Says how far the step is beyond the bound, and which step could be solved.
-        #[cold]
-        fn refused(
-            &self,
-            state: BodyInQuadraticFieldState<T>,
-            factor: &Poinsot<T>,
-            h: T,
-            e: MoserVeselovError,
-        ) -> StepError {
-            let e = e
-                .with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
-            StepCause::from(e).at_node(state.node)
-        }
-        /// `Γ` at the node of this state.
-        #[inline]
-        pub fn Γ(&self, state: &BodyInQuadraticFieldState<T>) -> SVector<T, 3> {
-            let Λ = state.Λ.matrix();
-            let Γ_reference = state.Γ;
-            let Γ = Λ.tr_mul(&Γ_reference);
-            Γ
-        }
-    }
-    impl<T: Real> Stepper for BodyInQuadraticField<T> {
-        type Scalar = T;
-        type State = BodyInQuadraticFieldState<T>;
-        type Workspace = BodyInQuadraticFieldWorkspace<T>;
-        fn workspace(
-            &self,
-            state: &Self::State,
-            h: T,
-        ) -> Result<Self::Workspace, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        #[inline(always)]
-        fn advance(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-        ) -> Result<(), StepError> {
-            self.step(state, work)
-        }
-        #[inline(always)]
-        fn advance_many(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-            count: u64,
-        ) -> Result<(), StepError> {
-            if T::LANES > 1 {
-                return advance_side_by_side(self, state, work, count);
-            }
-            for _ in 0..count {
-                self.step(state, work)?;
-            }
-            Ok(())
-        }
-        fn node(state: &Self::State) -> u64 {
-            state.node
-        }
-        fn at_node(state: Self::State, node: u64) -> Self::State {
-            BodyInQuadraticFieldState {
-                node: node,
-                ..state
-            }
-        }
-    }
-    impl<T: Real> SideBySide for BodyInQuadraticField<T> {
-        #[inline(always)]
-        fn moving(
-            &self,
-            state: &BodyInQuadraticFieldState<T>,
-            work: &BodyInQuadraticFieldWorkspace<T>,
-        ) -> Option<Moving<T>> {
-            let another = work.method != Method::Kappa || work.here.Λ != state.Λ
-                || work.here.momentum != state.momentum
-                || !(same(&work.here.Γ, &state.Γ));
-            (!another)
-                .then_some(Moving {
-                    attitude: state.Λ,
-                    momentum: state.momentum,
-                    edge: work.edge,
-                })
-        }
-        #[inline(always)]
-        fn arrive(
-            state: &mut BodyInQuadraticFieldState<T>,
-            work: &mut BodyInQuadraticFieldWorkspace<T>,
-            moving: &Moving<T>,
-            steps: u64,
-        ) {
-            (state.Λ, state.momentum) = (moving.attitude, moving.momentum);
-            state.node += steps;
-            (work.here, work.edge) = (*state, moving.edge);
-        }
-        #[inline(always)]
-        fn is_diagonal(&self, work: &BodyInQuadraticFieldWorkspace<T>) -> bool {
-            let _ = work;
-            self.factor.is_diagonal()
-        }
-        #[inline(always)]
-        fn step_lanes<const DIAGONAL: bool>(
-            &self,
-            state: &BodyInQuadraticFieldState<T>,
-            work: &BodyInQuadraticFieldWorkspace<T>,
-            from: &Moving<T>,
-            to: &mut Moving<T>,
-        ) -> bool {
-            let mut easy = true;
-            for lane in 0..T::LANES {
-                let (attitude, edge) = from.from(lane);
-                let (h, factor) = (work.h.one_of(lane), self.factor.in_lane(lane));
-                let (turned, found) = edge
-                    .turn_at_once::<DIAGONAL>(&factor, h, &attitude);
-                let model = BodyInQuadraticField::<<T as Real>::One> {
-                    parameters: BodyInQuadraticFieldParameters {
-                        J: self.parameters.J.in_lane(lane),
-                        K: self.parameters.K.in_lane(lane),
-                    },
-                    factor: self.factor.in_lane(lane),
-                    method: self.method,
-                };
-                let state = BodyInQuadraticFieldState::<<T as Real>::One> {
-                    Λ: attitude,
-                    momentum: from.momentum.in_lane(lane),
-                    Γ: state.Γ.in_lane(lane),
-                    node: state.node,
-                };
-                easy &= found & to.set(lane, model.arrived(&state, &edge, h, turned));
-            }
-            easy
-        }
-    }
-    impl<T: Real> Reversible for BodyInQuadraticField<T> {}
-    ::clebsch::of_scalars! {
-        [] BodyInQuadraticFieldParameters { J, K }
-    }
-    ::clebsch::of_scalars! {
-        [] BodyInQuadraticFieldInitial { Λ, body_momentum, Γ }
-    }
-    ::clebsch::of_scalars! {
-        [] BodyInQuadraticFieldState { Λ, momentum, Γ } at node
-    }
-    impl<T: Real> ::clebsch::integrate::Model for BodyInQuadraticField<T> {
-        type Parameters = BodyInQuadraticFieldParameters<T>;
-        type Initial = BodyInQuadraticFieldInitial<T>;
-        type Choice = Option<Method>;
-        type Over<U: Real> = BodyInQuadraticField<U>;
-        const SIDE_BY_SIDE: bool = true;
-        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
-            Self::new(parameters)
-        }
-        fn given(&self) -> &Self::Parameters {
-            &self.parameters
-        }
-        fn begin(
-            &self,
-            initial: Self::Initial,
-        ) -> Result<BodyInQuadraticFieldState<T>, StartError> {
-            validate::finite("Λ", &initial.Λ.quaternion())?;
-            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            validate::finite("Γ", initial.Γ.as_slice())?;
-            let Γ = {
-                let Λ = initial.Λ.matrix();
-                let Γ_start = initial.Γ;
-                Λ * Γ_start
-            };
-            Ok(BodyInQuadraticFieldState {
-                Λ: initial.Λ,
-                momentum: initial.body_momentum.to_space(&initial.Λ),
-                Γ,
-                node: 0,
-            })
-        }
-        fn prepared(
-            &self,
-            state: &BodyInQuadraticFieldState<T>,
-            h: T,
-            choice: Self::Choice,
-        ) -> Result<Self::Workspace, StartError> {
-            let method = choice.unwrap_or(self.method);
-            Ok(BodyInQuadraticFieldWorkspace {
-                h,
-                method,
-                edge: self.edge(state, h),
-                here: *state,
-            })
-        }
-    }
-    /// A configuration at one node, solution or not.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct BodyInQuadraticFieldConfiguration<T = f64> {
-        /// `Λ` at the node: body -> space.
-        pub Λ: Rotation<T>,
-        /// `Γ` at the node, as its constraint carries it.
-        pub Γ: SVector<T, 3>,
-    }
-    impl<T: Real> BodyInQuadraticField<T> {
-        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
-        /// consecutive configurations: component `i` is the derivative of the action of the
-        /// two edges when the middle element is rotated about its axis `i` (a body axis on
-        /// the body side, a space axis on the spatial side). Zero on solutions.
-        pub fn balance(
-            &self,
-            h: T,
-            before: &BodyInQuadraticFieldConfiguration<T>,
-            here: &BodyInQuadraticFieldConfiguration<T>,
-            after: &BodyInQuadraticFieldConfiguration<T>,
-        ) -> SVector<T, 3> {
-            let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
-            let Γ_before = before.Γ;
-            let Γ = here.Γ;
-            let Γ_next = after.Γ;
-            let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
-            let Ω = here.Λ.body_velocity(&after.Λ).matrix();
-            let t1 = h.powi(-1);
-            let t2 = -((K * Γ).cross(&Γ) * (T::from_f64(0.5) * h));
-            let parts: [SVector<T, 3>; 1] = [
-                axial_of_difference(&(J * Ω_before)) * t1 + t2
-                    + axial_of_difference(&(J * Ω.transpose())) * t1 + t2,
-            ];
-            parts[0]
-        }
-    }
-    impl<T: Real> BodyInQuadraticField<T> {
-        /// What the step of size `h` from one state to the next leaves of its equations: the
-        /// momentum that is carried to the second state, less the one that the motion between
-        /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a spatial
-        /// velocity are the two elements it is made from, as they are stored.
-        pub fn residual(
-            &self,
-            before: &BodyInQuadraticFieldState<T>,
-            after: &BodyInQuadraticFieldState<T>,
-            h: T,
-        ) -> [Residual; 1] {
-            let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
-            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-            let Λ_next = after.Λ.matrix();
-            let Γ_reference = before.Γ;
-            let Γ_next = Λ_next.tr_mul(&Γ_reference);
-            let t1 = h.powi(-1);
-            let t2 = Γ_next.dot(&Γ_next).sqrt();
-            let _ = h;
-            [
-                {
-                    let momentum = after.momentum.to_body(&after.Λ).0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (axial_of_difference(&(J * Ω_matrix)) * t1
-                                        - (K * Γ_next).cross(&Γ_next) * (T::from_f64(0.5) * h))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (T::from_f64(2.0) * (t1 * t1).sqrt()
-                                * (J * J).trace().sqrt()
-                                * (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt()
-                                + T::from_f64(0.5) * (h * h).sqrt() * (K * K).trace().sqrt()
-                                    * t2 * t2)
-                                .magnitude(),
-                    }
-                },
-            ]
-        }
-    }
-    impl<T: Real> BodyInQuadraticField<T> {
-        /// The kinetic and the potential energy at this node: those of the limit of small steps,
-        /// at the node's momentum.
-        pub fn energies(&self, state: &BodyInQuadraticFieldState<T>) -> (T, T) {
-            let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let Γ_reference = state.Γ;
-            let Γ = Λ.tr_mul(&Γ_reference);
-            let parts: [SVector<T, 3>; 1] = [state.body_momentum().0];
-            let momentum: SVector<T, 3> = parts[0];
-            let inertia = SMatrix::<
-                T,
-                3,
-                3,
-            >::from_fn(|i, j| {
-                let ξ = basis::<T>(i);
-                let η = basis::<T>(j);
-                T::from_f64(0.5) * J.trace()
-                    * (vee(&η).dot(&vee(&ξ)) + vee(&ξ).dot(&vee(&η)))
-                    - T::from_f64(0.5)
-                        * (vee(&η).dot(&(J * vee(&ξ))) + vee(&ξ).dot(&(J * vee(&η))))
-            });
-            let velocity = solve_or_nan(&inertia, &momentum);
-            (
-                momentum.dot(&velocity) * T::from_f64(0.5),
-                T::from_f64(0.5) * Γ.dot(&(K * Γ)),
-            )
-        }
-        /// The physical energy at this node.
-        pub fn energy(&self, state: &BodyInQuadraticFieldState<T>) -> T {
-            let (kinetic, potential) = self.energies(state);
-            kinetic + potential
-        }
-        /// `μ_k·Γ_k`: Casimir: the Kelvin-Noether quantity of the advected quantities.
-        pub fn momentum_Gamma(&self, state: &BodyInQuadraticFieldState<T>) -> T {
-            let Λ = state.Λ.matrix();
-            let Γ_reference = state.Γ;
-            let Γ = Λ.tr_mul(&Γ_reference);
-            let μ = state.body_momentum().0;
-            μ.dot(&Γ)
-        }
-        /// `Γ_k·Γ_k`: Casimir: invariant under the group action.
-        pub fn Gamma_squared(&self, state: &BodyInQuadraticFieldState<T>) -> T {
-            let Λ = state.Λ.matrix();
-            let Γ_reference = state.Γ;
-            let Γ = Λ.tr_mul(&Γ_reference);
-            Γ.dot(&Γ)
-        }
-    }
-    impl<T: Real> BodyInQuadraticField<T> {
-        /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h² + ¼ Γ_k·(K Γ_k) + ¼ Γ_{k+1}·(K Γ_{k+1})`: bounded, since the stepper is symplectic.
-        pub fn discrete_energy(
-            &self,
-            h: T,
-            before: &BodyInQuadraticFieldState<T>,
-            after: &BodyInQuadraticFieldState<T>,
-        ) -> T {
-            let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
-            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-            let Λ = before.Λ.matrix();
-            let Γ_reference = before.Γ;
-            let Γ = Λ.tr_mul(&Γ_reference);
-            let Λ_next = after.Λ.matrix();
-            let Γ_reference = before.Γ;
-            let Γ_next = Λ_next.tr_mul(&Γ_reference);
-            T::from_f64(0.25) * Γ.dot(&(K * Γ))
-                + T::from_f64(0.25) * Γ_next.dot(&(K * Γ_next))
-                - (J * less_identity(&Ω_matrix)).trace() / (h * h)
-        }
-    }
-    impl ::clebsch::integrate::Described for BodyInQuadraticField<f64> {
-        fn card() -> &'static Card {
-            &Self::CARD
-        }
-        fn read(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-        ) -> Result<(Self, Self::Initial), OpenError> {
-            let model = Self::new(BodyInQuadraticFieldParameters {
-                J: matrix_of("J", parameters.get(0usize))?,
-                K: matrix_of("K", parameters.get(1usize))?,
-            })?;
-            let initial = BodyInQuadraticFieldInitial {
-                Λ: rotation_of("Λ", initial.get(0usize))?,
-                body_momentum: BodyMomentum(
-                    matrix_of("body_momentum", initial.get(1usize))?,
-                ),
-                Γ: matrix_of("Γ", initial.get(2usize))?,
-            };
-            Ok((model, initial))
-        }
-        fn ways(
-            self,
-            state: &Self::State,
-            settings: Settings,
-        ) -> Result<(Self, Steps<Self>), OpenError> {
-            let model = match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => self.with_solver(method),
-                None => self,
-            };
-            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
-            Ok((model, steps))
-        }
-        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
-            self.kinetic_warning(state)
-        }
-        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-            Residual::largest(&self.residual(before, after, h))
-        }
-        fn observe(&self, state: &Self::State, out: &mut [f64]) {
-            let out = put(out, rows(state.Λ().matrix()));
-            let out = put(out, rows(state.body_momentum().0));
-            let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, rows(self.Γ(state)));
-            let _ = out;
-        }
-        fn invariants(
-            &self,
-            state: &Self::State,
-            _: Option<&Self::Workspace>,
-            out: &mut [f64],
-        ) {
-            let out = put(out, [self.energy(state)]);
-            let out = put(out, [self.momentum_Gamma(state)]);
-            let out = put(out, [self.Gamma_squared(state)]);
-            let _ = (state, out);
-        }
-        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
-            let mut enlarged = *state;
-            {
-                type T = f64;
-                let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
-                let Λ = state.Λ.matrix();
-                let Γ_reference = state.Γ;
-                let Γ = Λ.tr_mul(&Γ_reference);
-                let t1 = Γ.dot(&Γ).sqrt();
-                let t2 = T::from_f64(0.5) * (h * h).sqrt() * (K * K).trace().sqrt() * t1
-                    * t1;
-                enlarged.momentum = SpatialMomentum(
-                    not_less(enlarged.momentum.0, (0, 3), t2 + t2),
-                );
-            }
-            let state = &enlarged;
-            type T = f64;
-            let Λ = state.Λ.matrix();
-            let Γ_reference = state.Γ;
-            let Γ = Λ.tr_mul(&Γ_reference);
-            let μ = state.body_momentum().0;
-            let t1 = Γ.dot(&Γ).sqrt();
-            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-            let out = put(out, [μ.dot(&μ).sqrt() * t1; 1usize]);
-            let out = put(out, [t1 * t1; 1usize]);
-            let _ = (state, h, out);
-        }
-    }
-    impl BodyInQuadraticField<f64> {
-        /// The model as data.
-        pub const CARD: Card = Card {
-            name: "BodyInQuadraticField",
-            kebab: "body-in-quadratic-field",
-            doc: "Rigid body in a quadratic field.",
-            source: Self::SOURCE,
-            fingerprint: Self::FINGERPRINT,
-            summary: "discrete Lagrangian  -tr(J Ω_k)/h - ¼ h Γ_k·(K Γ_k) - ¼ h Γ_{k+1}·(K Γ_{k+1})\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-            solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
-            order: 2u32,
-            orders: &[2, 4, 6, 8],
-            preprocessed: false,
-            reversible: true,
-            parameters: &[
-                Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
-                Kind::Symmetric.field("K", [3, 3], "the field: energy ½ Γ·KΓ"),
-            ],
-            initial: &[
-                Kind::Rotation
-                    .field("Λ", [3, 3], "attitude, body to space")
-                    .spelt("Lambda"),
-                Kind::BodyMomentum
-                    .field("body_momentum", [3, 1], "momentum, body frame"),
-                Kind::Vector
-                    .field("Γ", [3, 1], "axis of the field seen from the body")
-                    .spelt("Gamma"),
-            ],
-            observables: &[
-                Kind::Rotation
-                    .field("Λ", [3, 3], "attitude, body to space")
-                    .spelt("Lambda"),
-                Kind::BodyMomentum
-                    .field("body_momentum", [3, 1], "momentum, body frame"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
-                Kind::Vector
-                    .field("Γ", [3, 1], "axis of the field seen from the body")
-                    .spelt("Gamma"),
-            ],
-            invariants: &[
-                Invariant::bounded(
-                    "energy",
-                    "½ μ_k·ζ + ½ Γ_k·(K Γ_k), where μ_k = -J ζ + tr(J) ζ",
-                    1usize,
-                ),
-                Invariant::exact("momentum_Gamma", "μ_k·Γ_k", 1usize),
-                Invariant::exact("Gamma_squared", "Γ_k·Γ_k", 1usize),
-            ],
-            discrete_energy: Invariant::bounded(
-                "discrete_energy",
-                "tr(J)/h² - tr(J Ω_k)/h² + ¼ Γ_k·(K Γ_k) + ¼ Γ_{k+1}·(K Γ_{k+1})",
-                1,
-            ),
-            open: open::<Self>,
-            solvers: &Method::NAMES,
-            dimensions: &[],
-            sized: only_size::<Self>,
-        };
-        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
-        /// velocities together, at the identity, should be positive definite.
-        #[cold]
-        #[allow(unused_variables)]
-        pub fn kinetic_warning(
-            &self,
-            state: &BodyInQuadraticFieldState<f64>,
-        ) -> Option<KineticWarning> {
-            type T = f64;
-            let BodyInQuadraticFieldParameters { J, .. } = self.parameters;
-            let mut inertia = SMatrix::<T, 3, 3>::zeros();
-            for axis in 0..3 {
-                let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
-                let t1 = vee(&ξ);
-                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-                let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let parts: [SVector<T, 3>; 1] = [
-                    axial_of_difference(&(t2 + t2 + t3 + t3)),
-                ];
-                inertia.set_column(axis, &parts[0]);
-            }
-            KineticWarning::of(&inertia, 3)
-        }
+    ) -> Result<Self, ParameterError> {
+        validate::finite_entries("J", &parameters.J)?;
+        validate::symmetric("J", &parameters.J)?;
+        validate::finite_entries("K", &parameters.K)?;
+        validate::symmetric("K", &parameters.K)?;
+        let BodyInQuadraticFieldParameters { J, .. } = parameters;
+        let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
+        Ok(Self {
+            parameters,
+            factor,
+            method: Method::of_size(3),
+        })
     }
 }
-#[allow(unused_imports)]
-pub use body_in_quadratic_field::*;
+/// Initial data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyInQuadraticFieldInitial<T = f64> {
+    /// `Λ` at node 0: body -> space.
+    pub Λ: Rotation<T>,
+    /// Momentum at node 0, in the body frame.
+    pub body_momentum: BodyMomentum<T>,
+    /// `Γ` at node 0.
+    pub Γ: SVector<T, 3>,
+}
+/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyInQuadraticFieldState<T = f64> {
+    Λ: Rotation<T>,
+    momentum: SpatialMomentum<T>,
+    Γ: SVector<T, 3>,
+    node: u64,
+}
+impl<T: Real> BodyInQuadraticFieldState<T> {
+    /// `Λ` at this node: body -> space.
+    pub fn Λ(&self) -> Rotation<T> {
+        self.Λ
+    }
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+        self.momentum
+    }
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum(&self) -> BodyMomentum<T> {
+        self.momentum.to_body(&self.Λ)
+    }
+}
+/// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyInQuadraticFieldWorkspace<T = f64> {
+    h: T,
+    method: Method,
+    edge: Edge<T>,
+    here: BodyInQuadraticFieldState<T>,
+}
+impl<T: Real> BodyInQuadraticField<T> {
+    /// The state at node 0.
+    fn begin(
+        &self,
+        initial: BodyInQuadraticFieldInitial<T>,
+    ) -> Result<BodyInQuadraticFieldState<T>, StartError> {
+        validate::finite("Λ", &initial.Λ.quaternion())?;
+        validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+        validate::finite("Γ", initial.Γ.as_slice())?;
+        let Γ = {
+            let Λ = initial.Λ.matrix();
+            let Γ_start = initial.Γ;
+            Λ * Γ_start
+        };
+        Ok(BodyInQuadraticFieldState {
+            Λ: initial.Λ,
+            momentum: initial.body_momentum.to_space(&initial.Λ),
+            Γ,
+            node: 0,
+        })
+    }
+    /// What steps of `h` from `state` begin with.
+    fn prepared(
+        &self,
+        state: &BodyInQuadraticFieldState<T>,
+        h: T,
+        choice: Option<Method>,
+    ) -> Result<BodyInQuadraticFieldWorkspace<T>, StartError> {
+        let method = choice.unwrap_or(self.method);
+        Ok(BodyInQuadraticFieldWorkspace {
+            h,
+            method,
+            edge: self.edge(state, h),
+            here: *state,
+        })
+    }
+    /// One step, in place. Solved thus: C is constant and symmetric: explicit up to the root of one quartic per step.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    #[inline]
+    pub fn step(
+        &self,
+        state: &mut BodyInQuadraticFieldState<T>,
+        work: &mut BodyInQuadraticFieldWorkspace<T>,
+    ) -> Result<(), StepError> {
+        let h = work.h;
+        if work.here.Λ != state.Λ || work.here.momentum != state.momentum
+            || !(same(&work.here.Γ, &state.Γ))
+        {
+            work.edge = self.edge(state, h);
+            work.here = *state;
+        }
+        let edge = &work.edge;
+        let turned = match work.method {
+            Method::Kappa => edge.turn(&self.factor, h, &state.Λ),
+            method => edge.turn_by(method, &self.factor, h, &state.Λ),
+        };
+        let Λ_moved = match turned {
+            Ok(turned) => turned,
+            Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
+        };
+        let arrival = self.arrived(state, edge, h, Λ_moved);
+        if !(all_finite(&arrival.momentum.0)) {
+            return Err(StepCause::not_finite("momentum").at_node(state.node));
+        }
+        (state.Λ, work.here.Λ) = (arrival.attitude, arrival.attitude);
+        (state.momentum, work.here.momentum) = (arrival.momentum, arrival.momentum);
+        state.node += 1;
+        work.edge = arrival.edge;
+        Ok(())
+    }
+    /// The next node and the edge that begins there, given the attitude there.
+    #[inline(always)]
+    fn arrived(
+        &self,
+        state: &BodyInQuadraticFieldState<T>,
+        edge: &Edge<T>,
+        h: T,
+        Λ_moved: TurnedRotation<T>,
+    ) -> Moving<T> {
+        let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
+        let Λ_next = Λ_moved.matrix();
+        let Γ_reference = state.Γ;
+        let Γ_next = Λ_next.tr_mul(&Γ_reference);
+        let space = edge.space();
+        let torque = -((K * Γ_next).cross(&Γ_next) * h);
+        let kick = Λ_next * torque;
+        let momentum_next = space + kick * T::from_f64(0.5);
+        let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
+        Moving {
+            attitude: Λ_moved.rotation(),
+            momentum: SpatialMomentum(momentum_next),
+            edge: edge_next,
+        }
+    }
+    /// The edge that begins at this state, for a step `h`.
+    #[inline(never)]
+    fn edge(&self, state: &BodyInQuadraticFieldState<T>, h: T) -> Edge<T> {
+        let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let Γ_reference = state.Γ;
+        let Γ = Λ.tr_mul(&Γ_reference);
+        let kick = (K * Γ).cross(&Γ) * (T::from_f64(0.5) * h);
+        Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
+    }
+    /// Says how far the step is beyond the bound, and which step could be solved.
+    #[cold]
+    fn refused(
+        &self,
+        state: BodyInQuadraticFieldState<T>,
+        factor: &Poinsot<T>,
+        h: T,
+        e: MoserVeselovError,
+    ) -> StepError {
+        let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
+        StepCause::from(e).at_node(state.node)
+    }
+    /// `Γ` at the node of this state.
+    #[inline]
+    pub fn Γ(&self, state: &BodyInQuadraticFieldState<T>) -> SVector<T, 3> {
+        let Λ = state.Λ.matrix();
+        let Γ_reference = state.Γ;
+        let Γ = Λ.tr_mul(&Γ_reference);
+        Γ
+    }
+}
+::clebsch::stepper! {
+    [] BodyInQuadraticField, BodyInQuadraticFieldParameters { J, K },
+    BodyInQuadraticFieldInitial { Λ, body_momentum, Γ }, BodyInQuadraticFieldState {
+    Λ, momentum, Γ } at node, BodyInQuadraticFieldWorkspace { h, method, edge, here },
+    forced { Λ, momentum, Γ } solver symmetric judged
+}
+/// A configuration at one node, solution or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyInQuadraticFieldConfiguration<T = f64> {
+    /// `Λ` at the node: body -> space.
+    pub Λ: Rotation<T>,
+    /// `Γ` at the node, as its constraint carries it.
+    pub Γ: SVector<T, 3>,
+}
+impl<T: Real> BodyInQuadraticField<T> {
+    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// consecutive configurations: component `i` is the derivative of the action of the
+    /// two edges when the middle element is rotated about its axis `i` (a body axis on
+    /// the body side, a space axis on the spatial side). Zero on solutions.
+    pub fn balance(
+        &self,
+        h: T,
+        before: &BodyInQuadraticFieldConfiguration<T>,
+        here: &BodyInQuadraticFieldConfiguration<T>,
+        after: &BodyInQuadraticFieldConfiguration<T>,
+    ) -> SVector<T, 3> {
+        let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
+        let Γ_before = before.Γ;
+        let Γ = here.Γ;
+        let Γ_next = after.Γ;
+        let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
+        let Ω = here.Λ.body_velocity(&after.Λ).matrix();
+        let t1 = h.powi(-1);
+        let t2 = -((K * Γ).cross(&Γ) * (T::from_f64(0.5) * h));
+        let parts: [SVector<T, 3>; 1] = [
+            axial_of_difference(&(J * Ω_before)) * t1 + t2
+                + axial_of_difference(&(J * Ω.transpose())) * t1 + t2,
+        ];
+        parts[0]
+    }
+    /// What the step of size `h` from one state to the next leaves of its equations: the
+    /// momentum that is carried to the second state, less the one that the motion between
+    /// them brings there. One part a configuration, angular and linear ones of a rigid
+    /// motion apart, each with the size of the terms it is made of: those of a spatial
+    /// velocity are the two elements it is made from, as they are stored.
+    pub fn residual(
+        &self,
+        before: &BodyInQuadraticFieldState<T>,
+        after: &BodyInQuadraticFieldState<T>,
+        h: T,
+    ) -> [Residual; 1] {
+        let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
+        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
+        let Λ_next = after.Λ.matrix();
+        let Γ_reference = before.Γ;
+        let Γ_next = Λ_next.tr_mul(&Γ_reference);
+        let t1 = h.powi(-1);
+        let t2 = Γ_next.dot(&Γ_next).sqrt();
+        [
+            Residual::between(
+                &(after.momentum.to_body(&after.Λ).0),
+                &(axial_of_difference(&(J * Ω_matrix)) * t1
+                    - (K * Γ_next).cross(&Γ_next) * (T::from_f64(0.5) * h)),
+                T::from_f64(2.0) * (t1 * t1).sqrt() * (J * J).trace().sqrt()
+                    * (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt()
+                    + T::from_f64(0.5) * (h * h).sqrt() * (K * K).trace().sqrt() * t2
+                        * t2,
+            ),
+        ]
+    }
+    /// The Hessian of the kinetic energy in all velocities together, at the identity.
+    fn inertia_at(&self, state: &BodyInQuadraticFieldState<T>) -> SMatrix<T, 3, 3> {
+        let BodyInQuadraticFieldParameters { J, .. } = self.parameters;
+        let mut inertia = SMatrix::<T, 3, 3>::zeros();
+        for axis in 0..3 {
+            let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
+            let t1 = vee(&ξ);
+            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
+            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
+            let parts: [SVector<T, 3>; 1] = [axial_of_difference(&(t2 + t2 + t3 + t3))];
+            inertia.set_column(axis, &parts[0]);
+        }
+        inertia
+    }
+    /// The kinetic and the potential energy at this node: those of the limit of small steps,
+    /// at the node's momentum.
+    pub fn energies(&self, state: &BodyInQuadraticFieldState<T>) -> (T, T) {
+        let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let Γ_reference = state.Γ;
+        let Γ = Λ.tr_mul(&Γ_reference);
+        let momentum = state.body_momentum().0;
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
+        (
+            momentum.dot(&velocity) * T::from_f64(0.5),
+            T::from_f64(0.5) * Γ.dot(&(K * Γ)),
+        )
+    }
+    /// The physical energy at this node.
+    pub fn energy(&self, state: &BodyInQuadraticFieldState<T>) -> T {
+        let (kinetic, potential) = self.energies(state);
+        kinetic + potential
+    }
+    /// `μ_k·Γ_k`: Casimir: the Kelvin-Noether quantity of the advected quantities.
+    pub fn momentum_Gamma(&self, state: &BodyInQuadraticFieldState<T>) -> T {
+        let Λ = state.Λ.matrix();
+        let Γ_reference = state.Γ;
+        let Γ = Λ.tr_mul(&Γ_reference);
+        let μ = state.body_momentum().0;
+        μ.dot(&Γ)
+    }
+    /// `Γ_k·Γ_k`: Casimir: invariant under the group action.
+    pub fn Gamma_squared(&self, state: &BodyInQuadraticFieldState<T>) -> T {
+        let Λ = state.Λ.matrix();
+        let Γ_reference = state.Γ;
+        let Γ = Λ.tr_mul(&Γ_reference);
+        Γ.dot(&Γ)
+    }
+    /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h² + ¼ Γ_k·(K Γ_k) + ¼ Γ_{k+1}·(K Γ_{k+1})`: bounded, since the stepper is symplectic.
+    pub fn discrete_energy(
+        &self,
+        h: T,
+        before: &BodyInQuadraticFieldState<T>,
+        after: &BodyInQuadraticFieldState<T>,
+    ) -> T {
+        let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
+        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
+        let Λ = before.Λ.matrix();
+        let Γ_reference = before.Γ;
+        let Γ = Λ.tr_mul(&Γ_reference);
+        let Λ_next = after.Λ.matrix();
+        let Γ_reference = before.Γ;
+        let Γ_next = Λ_next.tr_mul(&Γ_reference);
+        T::from_f64(0.25) * Γ.dot(&(K * Γ))
+            + T::from_f64(0.25) * Γ_next.dot(&(K * Γ_next))
+            - (J * less_identity(&Ω_matrix)).trace() / (h * h)
+    }
+}
+impl BodyInQuadraticField<f64> {
+    /// All observables, in the order of the card.
+    fn observe(&self, state: &BodyInQuadraticFieldState<f64>, out: &mut [f64]) {
+        let out = put(out, rows(state.Λ().matrix()));
+        let out = put(out, rows(state.body_momentum().0));
+        let out = put(out, rows(state.spatial_momentum().0));
+        let out = put(out, rows(self.Γ(state)));
+    }
+    /// All invariants, in the order of the card.
+    fn invariants(
+        &self,
+        state: &BodyInQuadraticFieldState<f64>,
+        _: Option<&BodyInQuadraticFieldWorkspace<f64>>,
+        out: &mut [f64],
+    ) {
+        let out = put(out, [self.energy(state)]);
+        let out = put(out, [self.momentum_Gamma(state)]);
+        let out = put(out, [self.Gamma_squared(state)]);
+    }
+    /// Their sizes at a state, in steps of `h`.
+    fn scales(&self, state: &BodyInQuadraticFieldState<f64>, h: f64, out: &mut [f64]) {
+        let mut enlarged = *state;
+        {
+            type T = f64;
+            let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ_reference = state.Γ;
+            let Γ = Λ.tr_mul(&Γ_reference);
+            let t1 = Γ.dot(&Γ).sqrt();
+            let t2 = T::from_f64(0.5) * (h * h).sqrt() * (K * K).trace().sqrt() * t1
+                * t1;
+            enlarged.momentum = SpatialMomentum(
+                not_less(enlarged.momentum.0, (0, 3), t2 + t2),
+            );
+        }
+        let state = &enlarged;
+        type T = f64;
+        let Λ = state.Λ.matrix();
+        let Γ_reference = state.Γ;
+        let Γ = Λ.tr_mul(&Γ_reference);
+        let μ = state.body_momentum().0;
+        let t1 = Γ.dot(&Γ).sqrt();
+        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+        let out = put(out, [μ.dot(&μ).sqrt() * t1; 1usize]);
+        let out = put(out, [t1 * t1; 1usize]);
+    }
+    /// The model as data.
+    pub const CARD: Card = Card {
+        name: "BodyInQuadraticField",
+        kebab: "body-in-quadratic-field",
+        doc: "Rigid body in a quadratic field.",
+        source: Self::SOURCE,
+        fingerprint: Self::FINGERPRINT,
+        summary: "discrete Lagrangian  -tr(J Ω_k)/h - ¼ h Γ_k·(K Γ_k) - ¼ h Γ_{k+1}·(K Γ_{k+1})\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
+        solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
+        order: 2u32,
+        orders: &[2, 4, 6, 8],
+        preprocessed: false,
+        reversible: true,
+        parameters: &[
+            Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
+            Kind::Symmetric.field("K", [3, 3], "the field: energy ½ Γ·KΓ"),
+        ],
+        initial: &[
+            Kind::Rotation
+                .field("Λ", [3, 3], "attitude, body to space")
+                .spelt("Lambda"),
+            Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
+            Kind::Vector
+                .field("Γ", [3, 1], "axis of the field seen from the body")
+                .spelt("Gamma"),
+        ],
+        observables: &[
+            Kind::Rotation
+                .field("Λ", [3, 3], "attitude, body to space")
+                .spelt("Lambda"),
+            Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum", [3, 1], "momentum, space frame"),
+            Kind::Vector
+                .field("Γ", [3, 1], "axis of the field seen from the body")
+                .spelt("Gamma"),
+        ],
+        invariants: &[
+            Invariant::bounded(
+                "energy",
+                "½ μ_k·ζ + ½ Γ_k·(K Γ_k), where μ_k = -J ζ + tr(J) ζ",
+                1usize,
+            ),
+            Invariant::exact("momentum_Gamma", "μ_k·Γ_k", 1usize),
+            Invariant::exact("Gamma_squared", "Γ_k·Γ_k", 1usize),
+        ],
+        discrete_energy: Invariant::bounded(
+            "discrete_energy",
+            "tr(J)/h² - tr(J Ω_k)/h² + ¼ Γ_k·(K Γ_k) + ¼ Γ_{k+1}·(K Γ_{k+1})",
+            1,
+        ),
+        open: open::<Self>,
+        solvers: &Method::NAMES,
+        dimensions: &[],
+        sized: only_size::<Self>,
+    };
+    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+    /// definite.
+    #[cold]
+    pub fn kinetic_warning(
+        &self,
+        state: &BodyInQuadraticFieldState<f64>,
+    ) -> Option<KineticWarning> {
+        KineticWarning::of(&self.inertia_at(state), 3)
+    }
+}

@@ -1,554 +1,393 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-/// The model [`BodyN`](struct@BodyN) and what belongs to it.
-#[allow(
+//! The model [`BodyN`](struct@BodyN) and what belongs to it.
+#![allow(
     non_snake_case,
     uncommon_codepoints,
     mixed_script_confusables,
     confusable_idents,
+    unused_variables,
     clippy::all
 )]
-pub mod body_n {
-    use ::clebsch::emitted::*;
-    /// Parameters of [`BodyN`](struct@BodyN), as given.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct BodyNParameters<const N: usize, T = f64> {
-        /// `C`: second moments; any matrix of positive determinant; a n x n matrix.
-        pub C: SMatrix<T, N, N>,
+use ::clebsch::emitted::*;
+/// Parameters of [`BodyN`](struct@BodyN), as given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyNParameters<const N: usize, T = f64> {
+    /// `C`: second moments; any matrix of positive determinant; a n x n matrix.
+    pub C: SMatrix<T, N, N>,
+}
+/// Free rigid body in n dimensions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyN<const N: usize, T = f64> {
+    parameters: BodyNParameters<N, T>,
+    factor: LeftFactor<N, T>,
+    method: Method,
+}
+impl<const N: usize, T: Real> BodyN<N, T> {
+    /// Sizes the model does not admit do not build.
+    const ADMITTED: () = {
+        ::core::assert!(3 <= N && N <= 8, "`n` is from 3 to 8 in this model");
+    };
+    /// The model as it was stated.
+    pub const SOURCE: &'static str = "/// Free rigid body in n dimensions.\npub model BodyN {\n    dim n in 3..=8;\n    /// second moments; any matrix of positive determinant\n    param C: Mat<n>;\n    /// attitude, body to space\n    group Λ: SO<n> velocity Ω;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(C^T*Ω)/h;\n}";
+    /// A number that changes when the model or its derivation does.
+    pub const FINGERPRINT: u64 = 2002699665632125461u64;
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+    /// assumption, or is no admissible factor of the equation to solve.
+    pub fn new(parameters: BodyNParameters<N, T>) -> Result<Self, ParameterError> {
+        let () = Self::ADMITTED;
+        validate::finite_entries("C", &parameters.C)?;
+        let BodyNParameters { C, .. } = parameters;
+        let factor = LeftFactor::new(C).map_err(|e| e.in_field("C"))?;
+        Ok(Self {
+            parameters,
+            factor,
+            method: Method::of_size(N),
+        })
     }
-    /// Free rigid body in n dimensions.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct BodyN<const N: usize, T = f64> {
-        parameters: BodyNParameters<N, T>,
-        factor: LeftFactor<N, T>,
-        method: Method,
+}
+/// Initial data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyNInitial<const N: usize, T = f64> {
+    /// `Λ` at node 0: body -> space.
+    pub Λ: Orthogonal<N, T>,
+    /// Momentum at node 0, in the body frame.
+    pub body_momentum: BodyMomentumMatrix<N, T>,
+}
+/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyNState<const N: usize, T = f64> {
+    Λ: Orthogonal<N, T>,
+    momentum: SpatialMomentumMatrix<N, T>,
+    node: u64,
+}
+impl<const N: usize, T: Real> BodyNState<N, T> {
+    /// `Λ` at this node: body -> space.
+    pub fn Λ(&self) -> Orthogonal<N, T> {
+        self.Λ
     }
-    impl<const N: usize, T: Real> BodyN<N, T> {
-        /// Sizes the model does not admit do not build.
-        const ADMITTED: () = {
-            ::core::assert!(3 <= N && N <= 8, "`n` is from 3 to 8 in this model");
-        };
-        /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Free rigid body in n dimensions.\npub model BodyN {\n    dim n in 3..=8;\n    /// second moments; any matrix of positive determinant\n    param C: Mat<n>;\n    /// attitude, body to space\n    group Λ: SO<n> velocity Ω;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    lagrangian = -tr(C^T*Ω)/h;\n}";
-        /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 2002699665632125461u64;
-        /// Checks the parameters.
-        ///
-        /// # Errors
-        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-        /// assumption, or is no admissible factor of the equation to solve.
-        pub fn new(parameters: BodyNParameters<N, T>) -> Result<Self, ParameterError> {
-            let () = Self::ADMITTED;
-            validate::finite_entries("C", &parameters.C)?;
-            let BodyNParameters { C, .. } = parameters;
-            let factor = LeftFactor::new(C).map_err(|e| e.in_field("C"))?;
-            Ok(Self {
-                parameters,
-                factor,
-                method: Method::of_size(N),
-            })
-        }
-        /// The same model, its steps solved by the solver named.
-        #[must_use]
-        pub fn with_solver(self, method: Method) -> Self {
-            Self { method, ..self }
-        }
-        /// The parameters.
-        pub fn parameters(&self) -> &BodyNParameters<N, T> {
-            &self.parameters
-        }
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum(&self) -> SpatialMomentumMatrix<N, T> {
+        self.momentum
     }
-    /// Initial data.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct BodyNInitial<const N: usize, T = f64> {
-        /// `Λ` at node 0: body -> space.
-        pub Λ: Orthogonal<N, T>,
-        /// Momentum at node 0, in the body frame.
-        pub body_momentum: BodyMomentumMatrix<N, T>,
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum(&self) -> BodyMomentumMatrix<N, T> {
+        self.momentum.to_body(&self.Λ)
     }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct BodyNState<const N: usize, T = f64> {
-        Λ: Orthogonal<N, T>,
-        momentum: SpatialMomentumMatrix<N, T>,
-        node: u64,
+}
+/// The step and the solver's name.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyNWorkspace<const N: usize, T = f64> {
+    h: T,
+    method: Method,
+}
+impl<const N: usize, T: Real> BodyN<N, T> {
+    /// The state at node 0.
+    fn begin(
+        &self,
+        initial: BodyNInitial<N, T>,
+    ) -> Result<BodyNState<N, T>, StartError> {
+        validate::finite("Λ", initial.Λ.matrix().as_slice())?;
+        validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+        validate::skew("body_momentum", &initial.body_momentum.0)?;
+        Ok(BodyNState {
+            Λ: initial.Λ,
+            momentum: initial.body_momentum.to_space(&initial.Λ),
+            node: 0,
+        })
     }
-    impl<const N: usize, T: Real> BodyNState<N, T> {
-        /// `Λ` at this node: body -> space.
-        pub fn Λ(&self) -> Orthogonal<N, T> {
-            self.Λ
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum(&self) -> SpatialMomentumMatrix<N, T> {
-            self.momentum
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum(&self) -> BodyMomentumMatrix<N, T> {
-            self.momentum.to_body(&self.Λ)
-        }
-        /// The number of the node.
-        pub fn node(&self) -> u64 {
-            self.node
-        }
-    }
-    /// The step and the solver's name.
-    #[derive(Clone, Copy, Debug)]
-    pub struct BodyNWorkspace<const N: usize, T = f64> {
+    /// What steps of `h` from `state` begin with.
+    fn prepared(
+        &self,
+        _: &BodyNState<N, T>,
         h: T,
-        method: Method,
+        choice: Option<Method>,
+    ) -> Result<BodyNWorkspace<N, T>, StartError> {
+        let method = choice.unwrap_or(self.method);
+        Ok(BodyNWorkspace { h, method })
     }
-    ::clebsch::saved! {
-        [N] BodyNWorkspace { h, method }
-    }
-    impl<const N: usize, T: Real> BodyN<N, T> {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not admissible, or says why the first step cannot be solved and
-        /// which could.
-        pub fn start(
-            &self,
-            initial: BodyNInitial<N, T>,
-            h: T,
-        ) -> Result<(BodyNState<N, T>, BodyNWorkspace<N, T>), StartError> {
-            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
-        }
-        /// As `start`, with the solver named.
-        ///
-        /// # Errors
-        /// As `start`; also for what this size or scalar does not have.
-        pub fn start_with(
-            &self,
-            initial: BodyNInitial<N, T>,
-            h: T,
-            choice: impl Into<Option<Method>>,
-        ) -> Result<(BodyNState<N, T>, BodyNWorkspace<N, T>), StartError> {
-            ::clebsch::integrate::Model::start_with(self, initial, h, choice.into())
-        }
-        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
-        pub fn workspace(
-            &self,
-            state: &BodyNState<N, T>,
-            h: T,
-        ) -> Result<BodyNWorkspace<N, T>, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        /// One step, in place. Solved thus: C is constant: Newton's method on the Lie algebra.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-        #[inline]
-        pub fn step(
-            &self,
-            state: &mut BodyNState<N, T>,
-            work: &mut BodyNWorkspace<N, T>,
-        ) -> Result<(), StepError> {
-            let h = work.h;
-            let edge = self.edge_momentum(state, h);
-            let Ω = match self.factor.solve(&skew_part(&(edge * h)), work.method) {
-                Ok(solved) => solved,
-                Err(e) => return Err(self.refused(state, work, e)),
-            };
-            let Λ_moved = state.Λ * Ω;
-            let momentum_next = state.momentum.0;
-            if !(all_finite(&momentum_next)) {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
-            }
-            state.Λ = Λ_moved;
-            state.momentum = SpatialMomentumMatrix(momentum_next);
-            state.node += 1;
-            Ok(())
-        }
-        /// The momentum of the edge that starts at this node, for a step `h`.
-        #[inline]
-        fn edge_momentum(&self, state: &BodyNState<N, T>, h: T) -> SMatrix<T, N, N> {
-            state.momentum.to_body(&state.Λ).0
-        }
-        /// Says how far the step is beyond the bound, and which step could be solved.
-        #[cold]
-        fn refused(
-            &self,
-            state: &BodyNState<N, T>,
-            work: &BodyNWorkspace<N, T>,
-            e: Unsolved,
-        ) -> StepError {
-            let ratio = |trial: f64| {
-                let trial = T::from_f64(trial);
-                let momentum = self.edge_momentum(state, trial) * trial;
-                Some(self.factor.reach(&momentum))
-            };
-            StepCause::from(e.with_searched_step(work.h.value(), ratio))
-                .at_node(state.node)
-        }
-    }
-    impl<const N: usize, T: Real> Stepper for BodyN<N, T> {
-        type Scalar = T;
-        type State = BodyNState<N, T>;
-        type Workspace = BodyNWorkspace<N, T>;
-        fn workspace(
-            &self,
-            state: &Self::State,
-            h: T,
-        ) -> Result<Self::Workspace, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        #[inline(always)]
-        fn advance(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-        ) -> Result<(), StepError> {
-            self.step(state, work)
-        }
-        fn node(state: &Self::State) -> u64 {
-            state.node
-        }
-        fn at_node(state: Self::State, node: u64) -> Self::State {
-            BodyNState { node: node, ..state }
-        }
-    }
-    ::clebsch::of_scalars! {
-        [N] BodyNParameters { C }
-    }
-    ::clebsch::of_scalars! {
-        [N] BodyNInitial { Λ, body_momentum }
-    }
-    ::clebsch::of_scalars! {
-        [N] BodyNState { Λ, momentum } at node
-    }
-    impl<const N: usize, T: Real> ::clebsch::integrate::Model for BodyN<N, T> {
-        type Parameters = BodyNParameters<N, T>;
-        type Initial = BodyNInitial<N, T>;
-        type Choice = Option<Method>;
-        type Over<U: Real> = BodyN<N, U>;
-        const SIDE_BY_SIDE: bool = false;
-        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
-            Self::new(parameters)
-        }
-        fn given(&self) -> &Self::Parameters {
-            &self.parameters
-        }
-        fn begin(&self, initial: Self::Initial) -> Result<BodyNState<N, T>, StartError> {
-            validate::finite("Λ", initial.Λ.matrix().as_slice())?;
-            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            validate::skew("body_momentum", &initial.body_momentum.0)?;
-            Ok(BodyNState {
-                Λ: initial.Λ,
-                momentum: initial.body_momentum.to_space(&initial.Λ),
-                node: 0,
-            })
-        }
-        fn prepared(
-            &self,
-            _: &BodyNState<N, T>,
-            h: T,
-            choice: Self::Choice,
-        ) -> Result<Self::Workspace, StartError> {
-            let method = choice.unwrap_or(self.method);
-            Ok(BodyNWorkspace { h, method })
-        }
-    }
-    /// A configuration at one node, solution or not.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct BodyNConfiguration<const N: usize, T = f64> {
-        /// `Λ` at the node: body -> space.
-        pub Λ: Orthogonal<N, T>,
-    }
-    impl<const N: usize, T: Real> BodyN<N, T> {
-        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
-        /// consecutive configurations: components are derivatives of the action of the two edges
-        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
-        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
-        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
-        pub fn balance(
-            &self,
-            h: T,
-            before: &BodyNConfiguration<N, T>,
-            here: &BodyNConfiguration<N, T>,
-            after: &BodyNConfiguration<N, T>,
-        ) -> SVector<T, 28> {
-            let BodyNParameters { C, .. } = self.parameters;
-            let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
-            let Ω = here.Λ.body_velocity(&after.Λ).matrix();
-            let t1 = h.powi(-1);
-            let t2 = C.tr_mul(&Ω_before) * t1;
-            let t3 = C * Ω.transpose() * t1;
-            let parts: [SMatrix<T, N, N>; 1] = [
-                t2 - t2.transpose() + t3 - t3.transpose(),
-            ];
-            {
-                let mut all = SVector::<T, 28>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_skew(rest, &parts[0]);
-                let _ = rest;
-                all
-            }
-        }
-    }
-    impl<const N: usize, T: Real> BodyN<N, T> {
-        /// What the step of size `h` from one state to the next leaves of its equations: the
-        /// momentum that is carried to the second state, less the one that the motion between
-        /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a spatial
-        /// velocity are the two elements it is made from, as they are stored.
-        pub fn residual(
-            &self,
-            before: &BodyNState<N, T>,
-            after: &BodyNState<N, T>,
-            h: T,
-        ) -> [Residual; 1] {
-            let BodyNParameters { C, .. } = self.parameters;
-            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-            let t1 = h.powi(-1);
-            let t2 = C.tr_mul(&Ω_matrix) * t1;
-            let t3 = (t1 * t1).sqrt();
-            let t4 = (C.tr_mul(&C)).trace().sqrt();
-            let t5 = (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt();
-            let _ = h;
-            [
-                {
-                    let momentum = after.momentum.to_body(&after.Λ).0;
-                    Residual {
-                        size: length(&(momentum - (t2 - t2.transpose()))).magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (t3 * t4 * t5 + t3 * t5 * t4).magnitude(),
-                    }
-                },
-            ]
-        }
-    }
-    impl<const N: usize, T: Real> BodyN<N, T> {
-        /// `-½ tr(μ_k²)`: Casimir: constant on coadjoint orbits.
-        pub fn momentum_squared(&self, state: &BodyNState<N, T>) -> T {
-            let μ = state.body_momentum().0;
-            -(T::from_f64(0.5) * (μ * μ).trace())
-        }
-        /// `tr(μ_k⁴)`: Casimir: constant on coadjoint orbits.
-        pub fn trace_momentum4(&self, state: &BodyNState<N, T>) -> T {
-            let μ = state.body_momentum().0;
-            (μ * (μ * (μ * μ))).trace()
-        }
-        /// `tr(μ_k⁶)`: Casimir: constant on coadjoint orbits.
-        pub fn trace_momentum6(&self, state: &BodyNState<N, T>) -> T {
-            let μ = state.body_momentum().0;
-            (μ * (μ * (μ * (μ * (μ * μ))))).trace()
-        }
-        /// `tr(μ_k⁸)`: Casimir: constant on coadjoint orbits.
-        pub fn trace_momentum8(&self, state: &BodyNState<N, T>) -> T {
-            let μ = state.body_momentum().0;
-            (μ * (μ * (μ * (μ * (μ * (μ * (μ * μ))))))).trace()
-        }
-    }
-    impl<const N: usize, T: Real> BodyN<N, T> {
-        /// The discrete energy of the edge between two consecutive states, `tr(C)/h² - tr(C Ω_kᵀ)/h²`: bounded, since the stepper is symplectic.
-        pub fn discrete_energy(
-            &self,
-            h: T,
-            before: &BodyNState<N, T>,
-            after: &BodyNState<N, T>,
-        ) -> T {
-            let BodyNParameters { C, .. } = self.parameters;
-            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-            -((C * less_identity(&Ω_matrix.transpose())).trace() / (h * h))
-        }
-    }
-    impl<const N: usize> ::clebsch::integrate::Described for BodyN<N, f64> {
-        fn card() -> &'static Card {
-            &Self::CARD
-        }
-        fn read(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-        ) -> Result<(Self, Self::Initial), OpenError> {
-            let model = Self::new(BodyNParameters {
-                C: matrix_of("C", parameters.get(0usize))?,
-            })?;
-            let initial = BodyNInitial {
-                Λ: orthogonal_of("Λ", initial.get(0usize))?,
-                body_momentum: BodyMomentumMatrix(
-                    matrix_of("body_momentum", initial.get(1usize))?,
-                ),
-            };
-            Ok((model, initial))
-        }
-        fn ways(
-            self,
-            state: &Self::State,
-            settings: Settings,
-        ) -> Result<(Self, Steps<Self>), OpenError> {
-            let model = match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => self.with_solver(method),
-                None => self,
-            };
-            let steps = Steps::plain(&model, state, settings, Self::CARD.orders)?;
-            Ok((model, steps))
-        }
-        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
-            self.kinetic_warning(state)
-        }
-        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-            Residual::largest(&self.residual(before, after, h))
-        }
-        fn observe(&self, state: &Self::State, out: &mut [f64]) {
-            let out = put(out, rows(state.Λ().matrix()));
-            let out = put(out, rows(state.body_momentum().0));
-            let out = put(out, rows(state.spatial_momentum().0));
-            let _ = out;
-        }
-        fn invariants(
-            &self,
-            state: &Self::State,
-            _: Option<&Self::Workspace>,
-            out: &mut [f64],
-        ) {
-            let out = put(out, skew_coordinates(&state.spatial_momentum().0));
-            let out = put(out, [self.momentum_squared(state)]);
-            let out = put(out, [self.trace_momentum4(state)]);
-            let out = put(out, [self.trace_momentum6(state)]);
-            let out = put(out, [self.trace_momentum8(state)]);
-            let _ = (state, out);
-        }
-        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
-            type T = f64;
-            let Λ = state.Λ.matrix();
-            let μ = state.body_momentum().0;
-            let t1 = (-(μ * μ).trace()).sqrt();
-            let out = put(
-                out,
-                ::core::iter::repeat_n(
-                    (-(Λ * (μ * Λ.tr_mul(&(Λ * (μ * Λ.transpose()))))).trace())
-                        .sqrt(),
-                    (N * (N - 1) / 2),
-                ),
-            );
-            let out = put(out, ::core::iter::repeat_n(t1 * t1, 1usize));
-            let out = put(out, ::core::iter::repeat_n(t1 * t1 * t1 * t1, 1usize));
-            let out = put(
-                out,
-                ::core::iter::repeat_n(t1 * t1 * t1 * t1 * t1 * t1, 1usize),
-            );
-            let out = put(
-                out,
-                ::core::iter::repeat_n(t1 * t1 * t1 * t1 * t1 * t1 * t1 * t1, 1usize),
-            );
-            let _ = (state, h, out);
-        }
-    }
-    impl<const N: usize> BodyN<N, f64> {
-        /// The model as data.
-        pub const CARD: Card = Card {
-            name: "BodyN",
-            kebab: "body-n",
-            doc: "Free rigid body in n dimensions.",
-            source: Self::SOURCE,
-            fingerprint: Self::FINGERPRINT,
-            summary: "discrete Lagrangian  -tr(Cᵀ Ω_k)/h\nmomentum of Λ        -C Ω_kᵀ/h + Ω_k Cᵀ/h\nRiccati form         exact, C = C\ninvariants           spatial_momentum, momentum_squared, trace_momentum4, trace_momentum6, trace_momentum8\ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form",
-            solver: "Moser-Veselov: C is constant: Newton's method on the Lie algebra",
-            order: 1u32,
-            orders: &[1],
-            preprocessed: false,
-            reversible: false,
-            parameters: &[
-                Kind::Matrix
-                    .field(
-                        "C",
-                        [N, N],
-                        "second moments; any matrix of positive determinant",
-                    ),
-            ],
-            initial: &[
-                Kind::Rotation
-                    .field("Λ", [N, N], "attitude, body to space")
-                    .spelt("Lambda"),
-                Kind::BodyMomentum.field("body_momentum", [N, N], "momentum, body frame"),
-            ],
-            observables: &[
-                Kind::Rotation
-                    .field("Λ", [N, N], "attitude, body to space")
-                    .spelt("Lambda"),
-                Kind::BodyMomentum
-                    .field("body_momentum", [N, N], "momentum, body frame"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum", [N, N], "momentum, space frame"),
-            ],
-            invariants: &[
-                Invariant::exact(
-                    "spatial_momentum",
-                    "Λ_k μ_k Λ_kᵀ",
-                    (N * (N - 1) / 2),
-                ),
-                Invariant::exact("momentum_squared", "-½ tr(μ_k²)", 1usize),
-                Invariant::exact("trace_momentum4", "tr(μ_k⁴)", 1usize),
-                Invariant::exact("trace_momentum6", "tr(μ_k⁶)", 1usize),
-                Invariant::exact("trace_momentum8", "tr(μ_k⁸)", 1usize),
-            ],
-            discrete_energy: Invariant::bounded(
-                "discrete_energy",
-                "tr(C)/h² - tr(C Ω_kᵀ)/h²",
-                1,
-            ),
-            open: open::<Self>,
-            solvers: if N == 3 { &Method::NAMES } else { &Method::ANY_SIZE },
-            dimensions: &[
-                Dimension {
-                    name: "n",
-                    from: 3,
-                    to: 8,
-                    value: N,
-                },
-            ],
-            sized: Self::sized,
+    /// One step, in place. Solved thus: C is constant: Newton's method on the Lie algebra.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    #[inline]
+    pub fn step(
+        &self,
+        state: &mut BodyNState<N, T>,
+        work: &mut BodyNWorkspace<N, T>,
+    ) -> Result<(), StepError> {
+        let h = work.h;
+        let edge = self.edge_momentum(state, h);
+        let Ω = match self.factor.solve(&skew_part(&(edge * h)), work.method) {
+            Ok(solved) => solved,
+            Err(e) => return Err(self.refused(state, work, e)),
         };
-        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
-        /// velocities together, at the identity, should be positive definite.
-        #[cold]
-        #[allow(unused_variables)]
-        pub fn kinetic_warning(
-            &self,
-            state: &BodyNState<N, f64>,
-        ) -> Option<KineticWarning> {
-            type T = f64;
-            let BodyNParameters { C, .. } = self.parameters;
-            let mut inertia = SMatrix::<T, 28, 28>::zeros();
-            for axis in 0..(N * (N - 1) / 2) {
-                let ξ: SMatrix<T, N, N> = skew_basis::<T, N>(axis);
-                let parts: [SMatrix<T, N, N>; 1] = [
-                    C.tr_mul(&ξ) * T::from_f64(0.5)
-                        + ξ * C.transpose() * T::from_f64(0.5)
-                        + ξ * C * T::from_f64(0.5) + C * ξ * T::from_f64(0.5),
-                ];
-                inertia
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 28>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_skew(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            KineticWarning::of(&inertia, 0 + (N * (N - 1) / 2))
+        let Λ_moved = state.Λ * Ω;
+        let momentum_next = state.momentum.0;
+        if !(all_finite(&momentum_next)) {
+            return Err(StepCause::not_finite("momentum").at_node(state.node));
         }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [3] => Some(BodyN::<3, f64>::CARD),
-                [4] => Some(BodyN::<4, f64>::CARD),
-                [5] => Some(BodyN::<5, f64>::CARD),
-                [6] => Some(BodyN::<6, f64>::CARD),
-                [7] => Some(BodyN::<7, f64>::CARD),
-                [8] => Some(BodyN::<8, f64>::CARD),
-                _ => None,
-            }
+        state.Λ = Λ_moved;
+        state.momentum = SpatialMomentumMatrix(momentum_next);
+        state.node += 1;
+        Ok(())
+    }
+    /// The momentum of the edge that starts at this node, for a step `h`.
+    #[inline]
+    fn edge_momentum(&self, state: &BodyNState<N, T>, h: T) -> SMatrix<T, N, N> {
+        state.momentum.to_body(&state.Λ).0
+    }
+    /// Says how far the step is beyond the bound, and which step could be solved.
+    #[cold]
+    fn refused(
+        &self,
+        state: &BodyNState<N, T>,
+        work: &BodyNWorkspace<N, T>,
+        e: Unsolved,
+    ) -> StepError {
+        let ratio = |trial: f64| {
+            let trial = T::from_f64(trial);
+            let momentum = self.edge_momentum(state, trial) * trial;
+            Some(self.factor.reach(&momentum))
+        };
+        StepCause::from(e.with_searched_step(work.h.value(), ratio)).at_node(state.node)
+    }
+}
+::clebsch::stepper! {
+    [N] BodyN, BodyNParameters { C }, BodyNInitial { Λ, body_momentum }, BodyNState {
+    Λ, momentum } at node, BodyNWorkspace { h, method }, explicit {} solver none judged
+}
+/// A configuration at one node, solution or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyNConfiguration<const N: usize, T = f64> {
+    /// `Λ` at the node: body -> space.
+    pub Λ: Orthogonal<N, T>,
+}
+impl<const N: usize, T: Real> BodyN<N, T> {
+    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// consecutive configurations: components are derivatives of the action of the two edges
+    /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+    /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+    /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+    pub fn balance(
+        &self,
+        h: T,
+        before: &BodyNConfiguration<N, T>,
+        here: &BodyNConfiguration<N, T>,
+        after: &BodyNConfiguration<N, T>,
+    ) -> SVector<T, 28> {
+        let BodyNParameters { C, .. } = self.parameters;
+        let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
+        let Ω = here.Λ.body_velocity(&after.Λ).matrix();
+        let t1 = h.powi(-1);
+        let t2 = C.tr_mul(&Ω_before) * t1;
+        let t3 = C * Ω.transpose() * t1;
+        let parts: [SMatrix<T, N, N>; 1] = [t2 - t2.transpose() + t3 - t3.transpose()];
+        {
+            let mut all = SVector::<T, 28>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_skew(rest, &parts[0]);
+            let _ = rest;
+            all
+        }
+    }
+    /// What the step of size `h` from one state to the next leaves of its equations: the
+    /// momentum that is carried to the second state, less the one that the motion between
+    /// them brings there. One part a configuration, angular and linear ones of a rigid
+    /// motion apart, each with the size of the terms it is made of: those of a spatial
+    /// velocity are the two elements it is made from, as they are stored.
+    pub fn residual(
+        &self,
+        before: &BodyNState<N, T>,
+        after: &BodyNState<N, T>,
+        h: T,
+    ) -> [Residual; 1] {
+        let BodyNParameters { C, .. } = self.parameters;
+        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
+        let t1 = h.powi(-1);
+        let t2 = C.tr_mul(&Ω_matrix) * t1;
+        let t3 = (t1 * t1).sqrt();
+        let t4 = (C.tr_mul(&C)).trace().sqrt();
+        let t5 = (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt();
+        [
+            Residual::between(
+                &(after.momentum.to_body(&after.Λ).0),
+                &(t2 - t2.transpose()),
+                t3 * t4 * t5 + t3 * t5 * t4,
+            ),
+        ]
+    }
+    /// The Hessian of the kinetic energy in all velocities together, at the identity.
+    fn inertia_at(&self, state: &BodyNState<N, T>) -> SMatrix<T, 28, 28> {
+        let BodyNParameters { C, .. } = self.parameters;
+        let mut inertia = SMatrix::<T, 28, 28>::zeros();
+        for axis in 0..(N * (N - 1) / 2) {
+            let ξ: SMatrix<T, N, N> = skew_basis::<T, N>(axis);
+            let parts: [SMatrix<T, N, N>; 1] = [
+                C.tr_mul(&ξ) * T::from_f64(0.5) + ξ * C.transpose() * T::from_f64(0.5)
+                    + ξ * C * T::from_f64(0.5) + C * ξ * T::from_f64(0.5),
+            ];
+            inertia
+                .set_column(
+                    axis,
+                    &{
+                        let mut all = SVector::<T, 28>::zeros();
+                        let rest = all.as_mut_slice();
+                        let rest = put_skew(rest, &parts[0]);
+                        let _ = rest;
+                        all
+                    },
+                );
+        }
+        inertia
+    }
+    /// `-½ tr(μ_k²)`: Casimir: constant on coadjoint orbits.
+    pub fn momentum_squared(&self, state: &BodyNState<N, T>) -> T {
+        let μ = state.body_momentum().0;
+        -(T::from_f64(0.5) * (μ * μ).trace())
+    }
+    /// `tr(μ_k⁴)`: Casimir: constant on coadjoint orbits.
+    pub fn trace_momentum4(&self, state: &BodyNState<N, T>) -> T {
+        let μ = state.body_momentum().0;
+        (μ * (μ * (μ * μ))).trace()
+    }
+    /// `tr(μ_k⁶)`: Casimir: constant on coadjoint orbits.
+    pub fn trace_momentum6(&self, state: &BodyNState<N, T>) -> T {
+        let μ = state.body_momentum().0;
+        (μ * (μ * (μ * (μ * (μ * μ))))).trace()
+    }
+    /// `tr(μ_k⁸)`: Casimir: constant on coadjoint orbits.
+    pub fn trace_momentum8(&self, state: &BodyNState<N, T>) -> T {
+        let μ = state.body_momentum().0;
+        (μ * (μ * (μ * (μ * (μ * (μ * (μ * μ))))))).trace()
+    }
+    /// The discrete energy of the edge between two consecutive states, `tr(C)/h² - tr(C Ω_kᵀ)/h²`: bounded, since the stepper is symplectic.
+    pub fn discrete_energy(
+        &self,
+        h: T,
+        before: &BodyNState<N, T>,
+        after: &BodyNState<N, T>,
+    ) -> T {
+        let BodyNParameters { C, .. } = self.parameters;
+        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
+        -((C * less_identity(&Ω_matrix.transpose())).trace() / (h * h))
+    }
+}
+impl<const N: usize> BodyN<N, f64> {
+    /// All observables, in the order of the card.
+    fn observe(&self, state: &BodyNState<N, f64>, out: &mut [f64]) {
+        let out = put(out, rows(state.Λ().matrix()));
+        let out = put(out, rows(state.body_momentum().0));
+        let out = put(out, rows(state.spatial_momentum().0));
+    }
+    /// All invariants, in the order of the card.
+    fn invariants(
+        &self,
+        state: &BodyNState<N, f64>,
+        _: Option<&BodyNWorkspace<N, f64>>,
+        out: &mut [f64],
+    ) {
+        let out = put(out, skew_coordinates(&state.spatial_momentum().0));
+        let out = put(out, [self.momentum_squared(state)]);
+        let out = put(out, [self.trace_momentum4(state)]);
+        let out = put(out, [self.trace_momentum6(state)]);
+        let out = put(out, [self.trace_momentum8(state)]);
+    }
+    /// Their sizes at a state, in steps of `h`.
+    fn scales(&self, state: &BodyNState<N, f64>, h: f64, out: &mut [f64]) {
+        type T = f64;
+        let Λ = state.Λ.matrix();
+        let μ = state.body_momentum().0;
+        let t1 = (-(μ * μ).trace()).sqrt();
+        let out = put(
+            out,
+            ::core::iter::repeat_n(
+                (-(Λ * (μ * Λ.tr_mul(&(Λ * (μ * Λ.transpose()))))).trace()).sqrt(),
+                (N * (N - 1) / 2),
+            ),
+        );
+        let out = put(out, ::core::iter::repeat_n(t1 * t1, 1usize));
+        let out = put(out, ::core::iter::repeat_n(t1 * t1 * t1 * t1, 1usize));
+        let out = put(out, ::core::iter::repeat_n(t1 * t1 * t1 * t1 * t1 * t1, 1usize));
+        let out = put(
+            out,
+            ::core::iter::repeat_n(t1 * t1 * t1 * t1 * t1 * t1 * t1 * t1, 1usize),
+        );
+    }
+    /// The model as data.
+    pub const CARD: Card = Card {
+        name: "BodyN",
+        kebab: "body-n",
+        doc: "Free rigid body in n dimensions.",
+        source: Self::SOURCE,
+        fingerprint: Self::FINGERPRINT,
+        summary: "discrete Lagrangian  -tr(Cᵀ Ω_k)/h\nmomentum of Λ        -C Ω_kᵀ/h + Ω_k Cᵀ/h\nRiccati form         exact, C = C\ninvariants           spatial_momentum, momentum_squared, trace_momentum4, trace_momentum6, trace_momentum8\ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form",
+        solver: "Moser-Veselov: C is constant: Newton's method on the Lie algebra",
+        order: 1u32,
+        orders: &[1],
+        preprocessed: false,
+        reversible: false,
+        parameters: &[
+            Kind::Matrix
+                .field("C", [N, N], "second moments; any matrix of positive determinant"),
+        ],
+        initial: &[
+            Kind::Rotation
+                .field("Λ", [N, N], "attitude, body to space")
+                .spelt("Lambda"),
+            Kind::BodyMomentum.field("body_momentum", [N, N], "momentum, body frame"),
+        ],
+        observables: &[
+            Kind::Rotation
+                .field("Λ", [N, N], "attitude, body to space")
+                .spelt("Lambda"),
+            Kind::BodyMomentum.field("body_momentum", [N, N], "momentum, body frame"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum", [N, N], "momentum, space frame"),
+        ],
+        invariants: &[
+            Invariant::exact("spatial_momentum", "Λ_k μ_k Λ_kᵀ", (N * (N - 1) / 2)),
+            Invariant::exact("momentum_squared", "-½ tr(μ_k²)", 1usize),
+            Invariant::exact("trace_momentum4", "tr(μ_k⁴)", 1usize),
+            Invariant::exact("trace_momentum6", "tr(μ_k⁶)", 1usize),
+            Invariant::exact("trace_momentum8", "tr(μ_k⁸)", 1usize),
+        ],
+        discrete_energy: Invariant::bounded(
+            "discrete_energy",
+            "tr(C)/h² - tr(C Ω_kᵀ)/h²",
+            1,
+        ),
+        open: open::<Self>,
+        solvers: if N == 3 { &Method::NAMES } else { &Method::ANY_SIZE },
+        dimensions: &[
+            Dimension {
+                name: "n",
+                from: 3,
+                to: 8,
+                value: N,
+            },
+        ],
+        sized: Self::sized,
+    };
+    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+    /// definite.
+    #[cold]
+    pub fn kinetic_warning(&self, state: &BodyNState<N, f64>) -> Option<KineticWarning> {
+        KineticWarning::of(&self.inertia_at(state), 0 + (N * (N - 1) / 2))
+    }
+    /// The card of the model at the given sizes, in the order of their declaration.
+    fn sized(sizes: &[usize]) -> Option<Card> {
+        match sizes {
+            [3] => Some(BodyN::<3, f64>::CARD),
+            [4] => Some(BodyN::<4, f64>::CARD),
+            [5] => Some(BodyN::<5, f64>::CARD),
+            [6] => Some(BodyN::<6, f64>::CARD),
+            [7] => Some(BodyN::<7, f64>::CARD),
+            [8] => Some(BodyN::<8, f64>::CARD),
+            _ => None,
         }
     }
 }
-#[allow(unused_imports)]
-pub use body_n::*;

@@ -1,620 +1,459 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-/// The model [`CayleyKleinSpatial`](struct@CayleyKleinSpatial) and what belongs to it.
-#[allow(
+//! The model [`CayleyKleinSpatial`](struct@CayleyKleinSpatial) and what belongs to it.
+#![allow(
     non_snake_case,
     uncommon_codepoints,
     mixed_script_confusables,
     confusable_idents,
+    unused_variables,
     clippy::all
 )]
-pub mod cayley_klein_spatial {
-    use ::clebsch::emitted::*;
-    /// Parameters of [`CayleyKleinSpatial`](struct@CayleyKleinSpatial), as given.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CayleyKleinSpatialParameters<T = f64> {
-        /// `c`: 0: Moser-Veselov; 1: as in the thesis; a number.
-        pub c: T,
-    }
-    /// Free rigid body in unit quaternions, spatial representation.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CayleyKleinSpatial<T = f64> {
+use ::clebsch::emitted::*;
+/// Parameters of [`CayleyKleinSpatial`](struct@CayleyKleinSpatial), as given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CayleyKleinSpatialParameters<T = f64> {
+    /// `c`: 0: Moser-Veselov; 1: as in the thesis; a number.
+    pub c: T,
+}
+/// Free rigid body in unit quaternions, spatial representation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CayleyKleinSpatial<T = f64> {
+    parameters: CayleyKleinSpatialParameters<T>,
+}
+impl<T: Real> CayleyKleinSpatial<T> {
+    /// The model as it was stated.
+    pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions, spatial representation.\npub model CayleyKleinSpatial {\n    /// 0: Moser-Veselov; 1: as in the thesis\n    param c: Real;\n    /// attitude, body to space\n    group q: SU<2> velocity w;\n    /// inertia, space frame\n    advected I: Sym<3>;\n    constraint next(q) = w*q;\n    constraint next(I) = rot(w)*I*rot(w)^T;\n    lagrangian = -4*c*re(w)/h + 2*dot(im(w), (I - c*Id)*im(w))/h;\n}";
+    /// A number that changes when the model or its derivation does.
+    pub const FINGERPRINT: u64 = 15826824904394337109u64;
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+    /// assumption, or is no admissible factor of the equation to solve.
+    pub fn new(
         parameters: CayleyKleinSpatialParameters<T>,
-    }
-    impl<T: Real> CayleyKleinSpatial<T> {
-        /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions, spatial representation.\npub model CayleyKleinSpatial {\n    /// 0: Moser-Veselov; 1: as in the thesis\n    param c: Real;\n    /// attitude, body to space\n    group q: SU<2> velocity w;\n    /// inertia, space frame\n    advected I: Sym<3>;\n    constraint next(q) = w*q;\n    constraint next(I) = rot(w)*I*rot(w)^T;\n    lagrangian = -4*c*re(w)/h + 2*dot(im(w), (I - c*Id)*im(w))/h;\n}";
-        /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 15826824904394337109u64;
-        /// Checks the parameters.
-        ///
-        /// # Errors
-        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-        /// assumption, or is no admissible factor of the equation to solve.
-        pub fn new(
-            parameters: CayleyKleinSpatialParameters<T>,
-        ) -> Result<Self, ParameterError> {
-            validate::finite("c", &[parameters.c])?;
-            Ok(Self { parameters })
-        }
-        /// The parameters.
-        pub fn parameters(&self) -> &CayleyKleinSpatialParameters<T> {
-            &self.parameters
-        }
-    }
-    /// Initial data.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CayleyKleinSpatialInitial<T = f64> {
-        /// `q` at node 0: body -> space.
-        pub q: UnitQuaternion<T>,
-        /// Momentum at node 0, in the space frame.
-        pub spatial_momentum: SpatialMomentum<T>,
-        /// `I` at node 0.
-        pub I: SMatrix<T, 3, 3>,
-    }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CayleyKleinSpatialState<T = f64> {
-        q: UnitQuaternion<T>,
-        momentum: SpatialMomentum<T>,
-        I: SMatrix<T, 3, 3>,
-        node: u64,
-    }
-    impl<T: Real> CayleyKleinSpatialState<T> {
-        /// `q` at this node: body -> space.
-        pub fn q(&self) -> UnitQuaternion<T> {
-            self.q
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
-            self.momentum
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum(&self) -> BodyMomentum<T> {
-            self.momentum.to_body(&self.q)
-        }
-        /// The number of the node.
-        pub fn node(&self) -> u64 {
-            self.node
-        }
-    }
-    /// The step and the momentum of the edge that begins at the state `here`. Made anew for any other state.
-    #[derive(Clone, Copy, Debug)]
-    pub struct CayleyKleinSpatialWorkspace<T = f64> {
-        h: T,
-        factor: QuaternionBody<T>,
-        edge: Edge<T>,
-        here: CayleyKleinSpatialState<T>,
-    }
-    ::clebsch::saved! {
-        [] CayleyKleinSpatialWorkspace { h, factor, edge, here }
-    }
-    impl<T: Real> CayleyKleinSpatial<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not admissible, or says why the first step cannot be solved and
-        /// which could.
-        pub fn start(
-            &self,
-            initial: CayleyKleinSpatialInitial<T>,
-            h: T,
-        ) -> Result<
-            (CayleyKleinSpatialState<T>, CayleyKleinSpatialWorkspace<T>),
-            StartError,
-        > {
-            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
-        }
-        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
-        pub fn workspace(
-            &self,
-            state: &CayleyKleinSpatialState<T>,
-            h: T,
-        ) -> Result<CayleyKleinSpatialWorkspace<T>, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        /// The body behind the quantities of a state.
-        #[inline(never)]
-        fn factor(
-            &self,
-            state: &CayleyKleinSpatialState<T>,
-        ) -> Result<QuaternionBody<T>, ParameterError> {
-            let CayleyKleinSpatialParameters { c, .. } = self.parameters;
-            let I = state.I;
-            QuaternionBody::new("I_k - c Id", I - SMatrix::<T, 3, 3>::identity() * c, c)
-        }
-        /// One step, in place. Solved thus: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-        #[inline]
-        pub fn step(
-            &self,
-            state: &mut CayleyKleinSpatialState<T>,
-            work: &mut CayleyKleinSpatialWorkspace<T>,
-        ) -> Result<(), StepError> {
-            let h = work.h;
-            if work.here.q != state.q || work.here.momentum != state.momentum
-                || !(same(&work.here.I, &state.I))
-            {
-                if !(same(&work.here.I, &state.I)) {
-                    work.factor = match self.factor(state) {
-                        Ok(factor) => factor,
-                        Err(_) => {
-                            return Err(
-                                StepCause::NotFinite {
-                                    what: "body",
-                                }
-                                    .at_node(state.node),
-                            );
-                        }
-                    };
-                }
-                work.edge = self.edge(state, h);
-                work.here = *state;
-            }
-            let solved = work.edge.free_in_quaternions(&work.factor, h, &state.q);
-            let (q_next, edge_next) = match solved {
-                Ok(next) => next,
-                Err(e) => return Err(self.refused(*state, &work.factor, h, e)),
-            };
-            (state.q, work.here.q) = (q_next, q_next);
-            state.node += 1;
-            work.edge = edge_next;
-            Ok(())
-        }
-        /// The edge that begins at this state, for a step `h`.
-        #[inline(never)]
-        fn edge(&self, state: &CayleyKleinSpatialState<T>, h: T) -> Edge<T> {
-            let space = state.momentum.0;
-            Edge::new(state.q.rotation().matrix().tr_mul(&space), space)
-        }
-        /// Says how far the step is beyond the bound, and which step could be solved.
-        #[cold]
-        fn refused(
-            &self,
-            state: CayleyKleinSpatialState<T>,
-            factor: &QuaternionBody<T>,
-            h: T,
-            e: QuaternionError,
-        ) -> StepError {
-            let e = e
-                .with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
-            StepCause::from(e).at_node(state.node)
-        }
-        /// `I` at the node of this state.
-        #[inline]
-        pub fn I(&self, state: &CayleyKleinSpatialState<T>) -> SMatrix<T, 3, 3> {
-            let q = state.q.matrix();
-            let I_reference = state.I;
-            let I = quaternion_rotation(&q)
-                * (I_reference * quaternion_rotation(&q).transpose());
-            I
-        }
-    }
-    impl<T: Real> Stepper for CayleyKleinSpatial<T> {
-        type Scalar = T;
-        type State = CayleyKleinSpatialState<T>;
-        type Workspace = CayleyKleinSpatialWorkspace<T>;
-        fn workspace(
-            &self,
-            state: &Self::State,
-            h: T,
-        ) -> Result<Self::Workspace, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        #[inline(always)]
-        fn advance(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-        ) -> Result<(), StepError> {
-            self.step(state, work)
-        }
-        fn node(state: &Self::State) -> u64 {
-            state.node
-        }
-        fn at_node(state: Self::State, node: u64) -> Self::State {
-            CayleyKleinSpatialState {
-                node: node,
-                ..state
-            }
-        }
-    }
-    impl<T: Real> Reversible for CayleyKleinSpatial<T> {}
-    ::clebsch::of_scalars! {
-        [] CayleyKleinSpatialParameters { c }
-    }
-    ::clebsch::of_scalars! {
-        [] CayleyKleinSpatialInitial { q, spatial_momentum, I }
-    }
-    ::clebsch::of_scalars! {
-        [] CayleyKleinSpatialState { q, momentum, I } at node
-    }
-    impl<T: Real> ::clebsch::integrate::Model for CayleyKleinSpatial<T> {
-        type Parameters = CayleyKleinSpatialParameters<T>;
-        type Initial = CayleyKleinSpatialInitial<T>;
-        type Choice = ();
-        type Over<U: Real> = CayleyKleinSpatial<U>;
-        const SIDE_BY_SIDE: bool = false;
-        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
-            Self::new(parameters)
-        }
-        fn given(&self) -> &Self::Parameters {
-            &self.parameters
-        }
-        fn begin(
-            &self,
-            initial: Self::Initial,
-        ) -> Result<CayleyKleinSpatialState<T>, StartError> {
-            validate::finite("q", &initial.q.components())?;
-            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
-            validate::finite_entries("I", &initial.I)?;
-            let I = {
-                let q = initial.q.matrix();
-                let I_start = initial.I;
-                quaternion_rotation(&q).tr_mul(&(I_start * quaternion_rotation(&q)))
-            };
-            Ok(CayleyKleinSpatialState {
-                q: initial.q,
-                momentum: initial.spatial_momentum,
-                I,
-                node: 0,
-            })
-        }
-        fn prepared(
-            &self,
-            state: &CayleyKleinSpatialState<T>,
-            h: T,
-            _: Self::Choice,
-        ) -> Result<Self::Workspace, StartError> {
-            Ok(CayleyKleinSpatialWorkspace {
-                h,
-                factor: self.factor(state)?,
-                edge: self.edge(state, h),
-                here: *state,
-            })
-        }
-    }
-    /// A configuration at one node, solution or not.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CayleyKleinSpatialConfiguration<T = f64> {
-        /// `q` at the node: body -> space.
-        pub q: UnitQuaternion<T>,
-        /// `I` at the node, as its constraint carries it.
-        pub I: SMatrix<T, 3, 3>,
-    }
-    impl<T: Real> CayleyKleinSpatial<T> {
-        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
-        /// consecutive configurations: components are derivatives of the action of the two edges
-        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
-        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
-        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
-        pub fn balance(
-            &self,
-            h: T,
-            before: &CayleyKleinSpatialConfiguration<T>,
-            here: &CayleyKleinSpatialConfiguration<T>,
-            after: &CayleyKleinSpatialConfiguration<T>,
-        ) -> SVector<T, 3> {
-            let CayleyKleinSpatialParameters { c, .. } = self.parameters;
-            let I_before = before.I;
-            let I = here.I;
-            let I_next = after.I;
-            let w_before = before.q.spatial_velocity(&here.q).matrix();
-            let w = here.q.spatial_velocity(&after.q).matrix();
-            let t1 = h.powi(-1);
-            let t2 = quaternion_imaginary(&w_before);
-            let t3 = quaternion_imaginary(&w);
-            let t4 = I * t3;
-            let parts: [SVector<T, 3>; 1] = [
-                quaternion_imaginary(&(w_before * pure_quaternion(&(I_before * t2))))
-                    * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
-                    - quaternion_imaginary(&(w_before * w_before)) * (t1 * c)
-                    + t4.cross(&t3) * (T::from_f64(4.0) * t1)
-                    - quaternion_imaginary(&(w.tr_mul(&pure_quaternion(&t4))))
-                        * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
-                    + quaternion_imaginary(&(w * w)) * (t1 * c),
-            ];
-            {
-                let mut all = SVector::<T, 3>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_vector(rest, &parts[0]);
-                let _ = rest;
-                all
-            }
-        }
-    }
-    impl<T: Real> CayleyKleinSpatial<T> {
-        /// What the step of size `h` from one state to the next leaves of its equations: the
-        /// momentum that is carried to the second state, less the one that the motion between
-        /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a spatial
-        /// velocity are the two elements it is made from, as they are stored.
-        pub fn residual(
-            &self,
-            before: &CayleyKleinSpatialState<T>,
-            after: &CayleyKleinSpatialState<T>,
-            h: T,
-        ) -> [Residual; 1] {
-            let CayleyKleinSpatialParameters { c, .. } = self.parameters;
-            let w_matrix = before.q.spatial_velocity(&after.q).matrix();
-            let q = before.q.matrix();
-            let I_reference = before.I;
-            let I = quaternion_rotation(&q)
-                * (I_reference * quaternion_rotation(&q).transpose());
-            let t1 = h.powi(-1);
-            let t2 = quaternion_imaginary(&w_matrix);
-            let t3 = quaternion_imaginary(&(w_matrix * w_matrix));
-            let t4 = (t1 * t1).sqrt();
-            let t5 = (w_matrix.tr_mul(&w_matrix)).trace().sqrt();
-            let t6 = (I * I).trace().sqrt();
-            let t7 = t2.dot(&t2).sqrt();
-            let t8 = (c * c).sqrt();
-            let _ = h;
-            [
-                {
-                    let momentum = after.momentum.0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (quaternion_imaginary(
-                                        &(w_matrix * pure_quaternion(&(I * t2))),
-                                    ) * (T::from_f64(2.0) * t1)
-                                        + t2 * (T::from_f64(2.0) * t1 * c) - t3 * (t1 * c))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (T::from_f64(4.0) * t4 * t5 * t6 * t7
-                                + T::from_f64(2.0) * t4 * t8 * t7
-                                + t4 * t8 * t3.dot(&t3).sqrt()
-                                + T::from_f64(4.0) * t4 * t5 * t6
-                                + T::from_f64(2.0) * t4 * t8 + t4 * t8)
-                                .magnitude(),
-                    }
-                },
-            ]
-        }
-    }
-    impl<T: Real> CayleyKleinSpatial<T> {
-        /// The kinetic and the potential energy at this node: those of the limit of small steps,
-        /// at the node's momentum.
-        pub fn energies(&self, state: &CayleyKleinSpatialState<T>) -> (T, T) {
-            let q = state.q.matrix();
-            let I_reference = state.I;
-            let I = quaternion_rotation(&q)
-                * (I_reference * quaternion_rotation(&q).transpose());
-            let parts: [SVector<T, 3>; 1] = [state.spatial_momentum().0];
-            let momentum = {
-                let mut all = SVector::<T, 3>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_vector(rest, &parts[0]);
-                let _ = rest;
-                all
-            };
-            let mut inertia = SMatrix::<T, 3, 3>::zeros();
-            for axis in 0..3 {
-                let ξ: SVector<T, 3> = unit::<T, 3>(axis);
-                let t1 = I * ξ * T::from_f64(0.5);
-                let parts: [SVector<T, 3>; 1] = [t1 + t1];
-                inertia
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 3>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_vector(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            let velocity = solve_leading_or_nan(&inertia, &momentum, 0 + 3);
-            (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
-        }
-        /// The physical energy at this node.
-        pub fn energy(&self, state: &CayleyKleinSpatialState<T>) -> T {
-            let (kinetic, potential) = self.energies(state);
-            kinetic + potential
-        }
-        /// `tr(I_k)`: Casimir: invariant under the group action.
-        pub fn trace_I1(&self, state: &CayleyKleinSpatialState<T>) -> T {
-            let q = state.q.matrix();
-            let I_reference = state.I;
-            let I = quaternion_rotation(&q)
-                * (I_reference * quaternion_rotation(&q).transpose());
-            I.trace()
-        }
-        /// `tr(I_k²)`: Casimir: invariant under the group action.
-        pub fn trace_I2(&self, state: &CayleyKleinSpatialState<T>) -> T {
-            let q = state.q.matrix();
-            let I_reference = state.I;
-            let I = quaternion_rotation(&q)
-                * (I_reference * quaternion_rotation(&q).transpose());
-            (I * I).trace()
-        }
-        /// `tr(I_k³)`: Casimir: invariant under the group action.
-        pub fn trace_I3(&self, state: &CayleyKleinSpatialState<T>) -> T {
-            let q = state.q.matrix();
-            let I_reference = state.I;
-            let I = quaternion_rotation(&q)
-                * (I_reference * quaternion_rotation(&q).transpose());
-            (I * (I * I)).trace()
-        }
-    }
-    impl<T: Real> CayleyKleinSpatial<T> {
-        /// The discrete energy of the edge between two consecutive states, `-4 c re(w_k)/h² + 2 im(w_k)·((I_k - c Id) im(w_k))/h² + 4 c/h²`: bounded, since the stepper is symplectic.
-        pub fn discrete_energy(
-            &self,
-            h: T,
-            before: &CayleyKleinSpatialState<T>,
-            after: &CayleyKleinSpatialState<T>,
-        ) -> T {
-            let CayleyKleinSpatialParameters { c, .. } = self.parameters;
-            let w_matrix = before.q.spatial_velocity(&after.q).matrix();
-            let q = before.q.matrix();
-            let I_reference = before.I;
-            let I = quaternion_rotation(&q)
-                * (I_reference * quaternion_rotation(&q).transpose());
-            let t1 = quaternion_imaginary(&w_matrix);
-            (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
-                / (h * h)
-                - (T::from_f64(4.0) * c * quaternion_real(&less_identity(&w_matrix)))
-                    / (h * h)
-        }
-    }
-    impl ::clebsch::integrate::Described for CayleyKleinSpatial<f64> {
-        fn card() -> &'static Card {
-            &Self::CARD
-        }
-        fn read(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-        ) -> Result<(Self, Self::Initial), OpenError> {
-            let model = Self::new(CayleyKleinSpatialParameters {
-                c: number_of("c", parameters.get(0usize))?,
-            })?;
-            let initial = CayleyKleinSpatialInitial {
-                q: quaternion_of("q", initial.get(0usize))?,
-                spatial_momentum: SpatialMomentum(
-                    matrix_of("spatial_momentum", initial.get(1usize))?,
-                ),
-                I: matrix_of("I", initial.get(2usize))?,
-            };
-            Ok((model, initial))
-        }
-        fn ways(
-            self,
-            state: &Self::State,
-            settings: Settings,
-        ) -> Result<(Self, Steps<Self>), OpenError> {
-            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
-            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
-            Ok((model, steps))
-        }
-        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
-            self.kinetic_warning(state)
-        }
-        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-            Residual::largest(&self.residual(before, after, h))
-        }
-        fn observe(&self, state: &Self::State, out: &mut [f64]) {
-            let out = put(out, state.q().components());
-            let out = put(out, rows(state.body_momentum().0));
-            let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, rows(self.I(state)));
-            let _ = out;
-        }
-        fn invariants(
-            &self,
-            state: &Self::State,
-            _: Option<&Self::Workspace>,
-            out: &mut [f64],
-        ) {
-            let out = put(out, [self.energy(state)]);
-            let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, [self.trace_I1(state)]);
-            let out = put(out, [self.trace_I2(state)]);
-            let out = put(out, [self.trace_I3(state)]);
-            let _ = (state, out);
-        }
-        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
-            type T = f64;
-            let q = state.q.matrix();
-            let I_reference = state.I;
-            let I = quaternion_rotation(&q)
-                * (I_reference * quaternion_rotation(&q).transpose());
-            let m = state.spatial_momentum().0;
-            let t1 = (I * I).trace().sqrt();
-            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-            let out = put(out, [m.dot(&m).sqrt(); 3usize]);
-            let out = put(out, [T::from_f64(3.0).sqrt() * t1; 1usize]);
-            let out = put(out, [t1 * t1; 1usize]);
-            let out = put(out, [t1 * t1 * t1; 1usize]);
-            let _ = (state, h, out);
-        }
-    }
-    impl CayleyKleinSpatial<f64> {
-        /// The model as data.
-        pub const CARD: Card = Card {
-            name: "CayleyKleinSpatial",
-            kebab: "cayley-klein-spatial",
-            doc: "Free rigid body in unit quaternions, spatial representation.",
-            source: Self::SOURCE,
-            fingerprint: Self::FINGERPRINT,
-            summary: "discrete Lagrangian  -4 c re(w_k)/h + 2 im(w_k)·((I_k - c Id) im(w_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I_k - c Id) im(w_k)/h)) w_kᵀ)\nRiccati form         none; in unit quaternions, A = I_k - c Id, β = c\ninvariants           energy, spatial_momentum, trace_I1, trace_I2, trace_I3\ntime reversal        symmetric: second order\ncertificate          10 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-            solver: "Unit quaternions: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step",
-            order: 2u32,
-            orders: &[2, 4, 6, 8],
-            preprocessed: false,
-            reversible: true,
-            parameters: &[
-                Kind::Scalar.field("c", [1, 1], "0: Moser-Veselov; 1: as in the thesis"),
-            ],
-            initial: &[
-                Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
-                Kind::Symmetric.field("I", [3, 3], "inertia, space frame"),
-            ],
-            observables: &[
-                Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),
-                Kind::BodyMomentum
-                    .field("body_momentum", [3, 1], "momentum, body frame"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
-                Kind::Symmetric.field("I", [3, 3], "inertia, space frame"),
-            ],
-            invariants: &[
-                Invariant::bounded("energy", "½ m_k·ζ, where m_k = I_k ζ", 1usize),
-                Invariant::exact("spatial_momentum", "m_k", 3usize),
-                Invariant::exact("trace_I1", "tr(I_k)", 1usize),
-                Invariant::exact("trace_I2", "tr(I_k²)", 1usize),
-                Invariant::exact("trace_I3", "tr(I_k³)", 1usize),
-            ],
-            discrete_energy: Invariant::bounded(
-                "discrete_energy",
-                "-4 c re(w_k)/h² + 2 im(w_k)·((I_k - c Id) im(w_k))/h² + 4 c/h²",
-                1,
-            ),
-            open: open::<Self>,
-            solvers: &[],
-            dimensions: &[],
-            sized: only_size::<Self>,
-        };
-        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
-        /// velocities together, at the identity, should be positive definite.
-        #[cold]
-        #[allow(unused_variables)]
-        pub fn kinetic_warning(
-            &self,
-            state: &CayleyKleinSpatialState<f64>,
-        ) -> Option<KineticWarning> {
-            type T = f64;
-            let q = state.q.matrix();
-            let I_reference = state.I;
-            let I = quaternion_rotation(&q)
-                * (I_reference * quaternion_rotation(&q).transpose());
-            let mut inertia = SMatrix::<T, 3, 3>::zeros();
-            for axis in 0..3 {
-                let ξ: SVector<T, 3> = unit::<T, 3>(axis);
-                let t1 = I * ξ * T::from_f64(0.5);
-                let parts: [SVector<T, 3>; 1] = [t1 + t1];
-                inertia
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 3>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_vector(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            KineticWarning::of(&inertia, 0 + 3)
-        }
+    ) -> Result<Self, ParameterError> {
+        validate::finite("c", &[parameters.c])?;
+        Ok(Self { parameters })
     }
 }
-#[allow(unused_imports)]
-pub use cayley_klein_spatial::*;
+/// Initial data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CayleyKleinSpatialInitial<T = f64> {
+    /// `q` at node 0: body -> space.
+    pub q: UnitQuaternion<T>,
+    /// Momentum at node 0, in the space frame.
+    pub spatial_momentum: SpatialMomentum<T>,
+    /// `I` at node 0.
+    pub I: SMatrix<T, 3, 3>,
+}
+/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CayleyKleinSpatialState<T = f64> {
+    q: UnitQuaternion<T>,
+    momentum: SpatialMomentum<T>,
+    I: SMatrix<T, 3, 3>,
+    node: u64,
+}
+impl<T: Real> CayleyKleinSpatialState<T> {
+    /// `q` at this node: body -> space.
+    pub fn q(&self) -> UnitQuaternion<T> {
+        self.q
+    }
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+        self.momentum
+    }
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum(&self) -> BodyMomentum<T> {
+        self.momentum.to_body(&self.q)
+    }
+}
+/// The step and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+#[derive(Clone, Copy, Debug)]
+pub struct CayleyKleinSpatialWorkspace<T = f64> {
+    h: T,
+    factor: QuaternionBody<T>,
+    edge: Edge<T>,
+    here: CayleyKleinSpatialState<T>,
+}
+impl<T: Real> CayleyKleinSpatial<T> {
+    /// The state at node 0.
+    fn begin(
+        &self,
+        initial: CayleyKleinSpatialInitial<T>,
+    ) -> Result<CayleyKleinSpatialState<T>, StartError> {
+        validate::finite("q", &initial.q.components())?;
+        validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
+        validate::finite_entries("I", &initial.I)?;
+        let I = {
+            let q = initial.q.matrix();
+            let I_start = initial.I;
+            quaternion_rotation(&q).tr_mul(&(I_start * quaternion_rotation(&q)))
+        };
+        Ok(CayleyKleinSpatialState {
+            q: initial.q,
+            momentum: initial.spatial_momentum,
+            I,
+            node: 0,
+        })
+    }
+    /// What steps of `h` from `state` begin with.
+    fn prepared(
+        &self,
+        state: &CayleyKleinSpatialState<T>,
+        h: T,
+        _: (),
+    ) -> Result<CayleyKleinSpatialWorkspace<T>, StartError> {
+        Ok(CayleyKleinSpatialWorkspace {
+            h,
+            factor: self.factor(state)?,
+            edge: self.edge(state, h),
+            here: *state,
+        })
+    }
+    /// The body behind the quantities of a state.
+    #[inline(never)]
+    fn factor(
+        &self,
+        state: &CayleyKleinSpatialState<T>,
+    ) -> Result<QuaternionBody<T>, ParameterError> {
+        let CayleyKleinSpatialParameters { c, .. } = self.parameters;
+        let I = state.I;
+        QuaternionBody::new("I_k - c Id", I - SMatrix::<T, 3, 3>::identity() * c, c)
+    }
+    /// One step, in place. Solved thus: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    #[inline]
+    pub fn step(
+        &self,
+        state: &mut CayleyKleinSpatialState<T>,
+        work: &mut CayleyKleinSpatialWorkspace<T>,
+    ) -> Result<(), StepError> {
+        let h = work.h;
+        if work.here.q != state.q || work.here.momentum != state.momentum
+            || !(same(&work.here.I, &state.I))
+        {
+            if !(same(&work.here.I, &state.I)) {
+                work.factor = match self.factor(state) {
+                    Ok(factor) => factor,
+                    Err(_) => {
+                        return Err(StepCause::not_finite("body").at_node(state.node));
+                    }
+                };
+            }
+            work.edge = self.edge(state, h);
+            work.here = *state;
+        }
+        let solved = work.edge.free_in_quaternions(&work.factor, h, &state.q);
+        let (q_next, edge_next) = match solved {
+            Ok(next) => next,
+            Err(e) => return Err(self.refused(*state, &work.factor, h, e)),
+        };
+        (state.q, work.here.q) = (q_next, q_next);
+        state.node += 1;
+        work.edge = edge_next;
+        Ok(())
+    }
+    /// The edge that begins at this state, for a step `h`.
+    #[inline(never)]
+    fn edge(&self, state: &CayleyKleinSpatialState<T>, h: T) -> Edge<T> {
+        let space = state.momentum.0;
+        Edge::new(state.q.rotation().matrix().tr_mul(&space), space)
+    }
+    /// Says how far the step is beyond the bound, and which step could be solved.
+    #[cold]
+    fn refused(
+        &self,
+        state: CayleyKleinSpatialState<T>,
+        factor: &QuaternionBody<T>,
+        h: T,
+        e: QuaternionError,
+    ) -> StepError {
+        let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
+        StepCause::from(e).at_node(state.node)
+    }
+    /// `I` at the node of this state.
+    #[inline]
+    pub fn I(&self, state: &CayleyKleinSpatialState<T>) -> SMatrix<T, 3, 3> {
+        let q = state.q.matrix();
+        let I_reference = state.I;
+        let I = quaternion_rotation(&q)
+            * (I_reference * quaternion_rotation(&q).transpose());
+        I
+    }
+}
+::clebsch::stepper! {
+    [] CayleyKleinSpatial, CayleyKleinSpatialParameters { c }, CayleyKleinSpatialInitial
+    { q, spatial_momentum, I }, CayleyKleinSpatialState { q, momentum, I } at node,
+    CayleyKleinSpatialWorkspace { h, factor, edge, here }, explicit {} nothing symmetric
+    judged
+}
+/// A configuration at one node, solution or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CayleyKleinSpatialConfiguration<T = f64> {
+    /// `q` at the node: body -> space.
+    pub q: UnitQuaternion<T>,
+    /// `I` at the node, as its constraint carries it.
+    pub I: SMatrix<T, 3, 3>,
+}
+impl<T: Real> CayleyKleinSpatial<T> {
+    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// consecutive configurations: components are derivatives of the action of the two edges
+    /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+    /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+    /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+    pub fn balance(
+        &self,
+        h: T,
+        before: &CayleyKleinSpatialConfiguration<T>,
+        here: &CayleyKleinSpatialConfiguration<T>,
+        after: &CayleyKleinSpatialConfiguration<T>,
+    ) -> SVector<T, 3> {
+        let CayleyKleinSpatialParameters { c, .. } = self.parameters;
+        let I_before = before.I;
+        let I = here.I;
+        let I_next = after.I;
+        let w_before = before.q.spatial_velocity(&here.q).matrix();
+        let w = here.q.spatial_velocity(&after.q).matrix();
+        let t1 = h.powi(-1);
+        let t2 = quaternion_imaginary(&w_before);
+        let t3 = quaternion_imaginary(&w);
+        let t4 = I * t3;
+        let parts: [SVector<T, 3>; 1] = [
+            quaternion_imaginary(&(w_before * pure_quaternion(&(I_before * t2))))
+                * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
+                - quaternion_imaginary(&(w_before * w_before)) * (t1 * c)
+                + t4.cross(&t3) * (T::from_f64(4.0) * t1)
+                - quaternion_imaginary(&(w.tr_mul(&pure_quaternion(&t4))))
+                    * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
+                + quaternion_imaginary(&(w * w)) * (t1 * c),
+        ];
+        {
+            let mut all = SVector::<T, 3>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_vector(rest, &parts[0]);
+            let _ = rest;
+            all
+        }
+    }
+    /// What the step of size `h` from one state to the next leaves of its equations: the
+    /// momentum that is carried to the second state, less the one that the motion between
+    /// them brings there. One part a configuration, angular and linear ones of a rigid
+    /// motion apart, each with the size of the terms it is made of: those of a spatial
+    /// velocity are the two elements it is made from, as they are stored.
+    pub fn residual(
+        &self,
+        before: &CayleyKleinSpatialState<T>,
+        after: &CayleyKleinSpatialState<T>,
+        h: T,
+    ) -> [Residual; 1] {
+        let CayleyKleinSpatialParameters { c, .. } = self.parameters;
+        let w_matrix = before.q.spatial_velocity(&after.q).matrix();
+        let q = before.q.matrix();
+        let I_reference = before.I;
+        let I = quaternion_rotation(&q)
+            * (I_reference * quaternion_rotation(&q).transpose());
+        let t1 = h.powi(-1);
+        let t2 = quaternion_imaginary(&w_matrix);
+        let t3 = quaternion_imaginary(&(w_matrix * w_matrix));
+        let t4 = (t1 * t1).sqrt();
+        let t5 = (w_matrix.tr_mul(&w_matrix)).trace().sqrt();
+        let t6 = (I * I).trace().sqrt();
+        let t7 = t2.dot(&t2).sqrt();
+        let t8 = (c * c).sqrt();
+        [
+            Residual::between(
+                &(after.momentum.0),
+                &(quaternion_imaginary(&(w_matrix * pure_quaternion(&(I * t2))))
+                    * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
+                    - t3 * (t1 * c)),
+                T::from_f64(4.0) * t4 * t5 * t6 * t7 + T::from_f64(2.0) * t4 * t8 * t7
+                    + t4 * t8 * t3.dot(&t3).sqrt() + T::from_f64(4.0) * t4 * t5 * t6
+                    + T::from_f64(2.0) * t4 * t8 + t4 * t8,
+            ),
+        ]
+    }
+    /// The Hessian of the kinetic energy in all velocities together, at the identity.
+    fn inertia_at(&self, state: &CayleyKleinSpatialState<T>) -> SMatrix<T, 3, 3> {
+        let q = state.q.matrix();
+        let I_reference = state.I;
+        let I = quaternion_rotation(&q)
+            * (I_reference * quaternion_rotation(&q).transpose());
+        let mut inertia = SMatrix::<T, 3, 3>::zeros();
+        for axis in 0..3 {
+            let ξ: SVector<T, 3> = unit::<T, 3>(axis);
+            let t1 = I * ξ * T::from_f64(0.5);
+            let parts: [SVector<T, 3>; 1] = [t1 + t1];
+            inertia
+                .set_column(
+                    axis,
+                    &{
+                        let mut all = SVector::<T, 3>::zeros();
+                        let rest = all.as_mut_slice();
+                        let rest = put_vector(rest, &parts[0]);
+                        let _ = rest;
+                        all
+                    },
+                );
+        }
+        inertia
+    }
+    /// The kinetic and the potential energy at this node: those of the limit of small steps,
+    /// at the node's momentum.
+    pub fn energies(&self, state: &CayleyKleinSpatialState<T>) -> (T, T) {
+        let parts: [SVector<T, 3>; 1] = [state.spatial_momentum().0];
+        let momentum = {
+            let mut all = SVector::<T, 3>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_vector(rest, &parts[0]);
+            let _ = rest;
+            all
+        };
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 0 + 3);
+        (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
+    }
+    /// The physical energy at this node.
+    pub fn energy(&self, state: &CayleyKleinSpatialState<T>) -> T {
+        let (kinetic, potential) = self.energies(state);
+        kinetic + potential
+    }
+    /// `tr(I_k)`: Casimir: invariant under the group action.
+    pub fn trace_I1(&self, state: &CayleyKleinSpatialState<T>) -> T {
+        let q = state.q.matrix();
+        let I_reference = state.I;
+        let I = quaternion_rotation(&q)
+            * (I_reference * quaternion_rotation(&q).transpose());
+        I.trace()
+    }
+    /// `tr(I_k²)`: Casimir: invariant under the group action.
+    pub fn trace_I2(&self, state: &CayleyKleinSpatialState<T>) -> T {
+        let q = state.q.matrix();
+        let I_reference = state.I;
+        let I = quaternion_rotation(&q)
+            * (I_reference * quaternion_rotation(&q).transpose());
+        (I * I).trace()
+    }
+    /// `tr(I_k³)`: Casimir: invariant under the group action.
+    pub fn trace_I3(&self, state: &CayleyKleinSpatialState<T>) -> T {
+        let q = state.q.matrix();
+        let I_reference = state.I;
+        let I = quaternion_rotation(&q)
+            * (I_reference * quaternion_rotation(&q).transpose());
+        (I * (I * I)).trace()
+    }
+    /// The discrete energy of the edge between two consecutive states, `-4 c re(w_k)/h² + 2 im(w_k)·((I_k - c Id) im(w_k))/h² + 4 c/h²`: bounded, since the stepper is symplectic.
+    pub fn discrete_energy(
+        &self,
+        h: T,
+        before: &CayleyKleinSpatialState<T>,
+        after: &CayleyKleinSpatialState<T>,
+    ) -> T {
+        let CayleyKleinSpatialParameters { c, .. } = self.parameters;
+        let w_matrix = before.q.spatial_velocity(&after.q).matrix();
+        let q = before.q.matrix();
+        let I_reference = before.I;
+        let I = quaternion_rotation(&q)
+            * (I_reference * quaternion_rotation(&q).transpose());
+        let t1 = quaternion_imaginary(&w_matrix);
+        (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
+            / (h * h)
+            - (T::from_f64(4.0) * c * quaternion_real(&less_identity(&w_matrix)))
+                / (h * h)
+    }
+}
+impl CayleyKleinSpatial<f64> {
+    /// All observables, in the order of the card.
+    fn observe(&self, state: &CayleyKleinSpatialState<f64>, out: &mut [f64]) {
+        let out = put(out, state.q().components());
+        let out = put(out, rows(state.body_momentum().0));
+        let out = put(out, rows(state.spatial_momentum().0));
+        let out = put(out, rows(self.I(state)));
+    }
+    /// All invariants, in the order of the card.
+    fn invariants(
+        &self,
+        state: &CayleyKleinSpatialState<f64>,
+        _: Option<&CayleyKleinSpatialWorkspace<f64>>,
+        out: &mut [f64],
+    ) {
+        let out = put(out, [self.energy(state)]);
+        let out = put(out, rows(state.spatial_momentum().0));
+        let out = put(out, [self.trace_I1(state)]);
+        let out = put(out, [self.trace_I2(state)]);
+        let out = put(out, [self.trace_I3(state)]);
+    }
+    /// Their sizes at a state, in steps of `h`.
+    fn scales(&self, state: &CayleyKleinSpatialState<f64>, h: f64, out: &mut [f64]) {
+        type T = f64;
+        let q = state.q.matrix();
+        let I_reference = state.I;
+        let I = quaternion_rotation(&q)
+            * (I_reference * quaternion_rotation(&q).transpose());
+        let m = state.spatial_momentum().0;
+        let t1 = (I * I).trace().sqrt();
+        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+        let out = put(out, [m.dot(&m).sqrt(); 3usize]);
+        let out = put(out, [T::from_f64(3.0).sqrt() * t1; 1usize]);
+        let out = put(out, [t1 * t1; 1usize]);
+        let out = put(out, [t1 * t1 * t1; 1usize]);
+    }
+    /// The model as data.
+    pub const CARD: Card = Card {
+        name: "CayleyKleinSpatial",
+        kebab: "cayley-klein-spatial",
+        doc: "Free rigid body in unit quaternions, spatial representation.",
+        source: Self::SOURCE,
+        fingerprint: Self::FINGERPRINT,
+        summary: "discrete Lagrangian  -4 c re(w_k)/h + 2 im(w_k)·((I_k - c Id) im(w_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I_k - c Id) im(w_k)/h)) w_kᵀ)\nRiccati form         none; in unit quaternions, A = I_k - c Id, β = c\ninvariants           energy, spatial_momentum, trace_I1, trace_I2, trace_I3\ntime reversal        symmetric: second order\ncertificate          10 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+        solver: "Unit quaternions: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step",
+        order: 2u32,
+        orders: &[2, 4, 6, 8],
+        preprocessed: false,
+        reversible: true,
+        parameters: &[
+            Kind::Scalar.field("c", [1, 1], "0: Moser-Veselov; 1: as in the thesis"),
+        ],
+        initial: &[
+            Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum", [3, 1], "momentum, space frame"),
+            Kind::Symmetric.field("I", [3, 3], "inertia, space frame"),
+        ],
+        observables: &[
+            Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),
+            Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum", [3, 1], "momentum, space frame"),
+            Kind::Symmetric.field("I", [3, 3], "inertia, space frame"),
+        ],
+        invariants: &[
+            Invariant::bounded("energy", "½ m_k·ζ, where m_k = I_k ζ", 1usize),
+            Invariant::exact("spatial_momentum", "m_k", 3usize),
+            Invariant::exact("trace_I1", "tr(I_k)", 1usize),
+            Invariant::exact("trace_I2", "tr(I_k²)", 1usize),
+            Invariant::exact("trace_I3", "tr(I_k³)", 1usize),
+        ],
+        discrete_energy: Invariant::bounded(
+            "discrete_energy",
+            "-4 c re(w_k)/h² + 2 im(w_k)·((I_k - c Id) im(w_k))/h² + 4 c/h²",
+            1,
+        ),
+        open: open::<Self>,
+        solvers: &[],
+        dimensions: &[],
+        sized: only_size::<Self>,
+    };
+    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+    /// definite.
+    #[cold]
+    pub fn kinetic_warning(
+        &self,
+        state: &CayleyKleinSpatialState<f64>,
+    ) -> Option<KineticWarning> {
+        KineticWarning::of(&self.inertia_at(state), 0 + 3)
+    }
+}

@@ -1,535 +1,382 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-/// The model [`CayleyKlein`](struct@CayleyKlein) and what belongs to it.
-#[allow(
+//! The model [`CayleyKlein`](struct@CayleyKlein) and what belongs to it.
+#![allow(
     non_snake_case,
     uncommon_codepoints,
     mixed_script_confusables,
     confusable_idents,
+    unused_variables,
     clippy::all
 )]
-pub mod cayley_klein {
-    use ::clebsch::emitted::*;
-    /// Parameters of [`CayleyKlein`](struct@CayleyKlein), as given.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CayleyKleinParameters<T = f64> {
-        /// `I`: principal moments of inertia; a 3 x 3 matrix, diagonal.
-        pub I: SMatrix<T, 3, 3>,
-        /// `c`: 0: Moser-Veselov; 1: as in the thesis; a number.
-        pub c: T,
-    }
-    /// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its
-    /// fibres over the sphere of body momenta are circles.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CayleyKlein<T = f64> {
-        parameters: CayleyKleinParameters<T>,
-        factor: QuaternionBody<T>,
-    }
-    impl<T: Real> CayleyKlein<T> {
-        /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its\n/// fibres over the sphere of body momenta are circles.\npub model CayleyKlein {\n    /// principal moments of inertia\n    param I: Diag<3>;\n    /// 0: Moser-Veselov; 1: as in the thesis\n    param c: Real;\n    /// attitude, body to space\n    group q: SU<2> velocity W;\n    constraint next(q) = q*W;\n    lagrangian = -4*c*re(W)/h + 2*dot(im(W), (I - c*Id)*im(W))/h;\n}";
-        /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 6338969864124962405u64;
-        /// Checks the parameters.
-        ///
-        /// # Errors
-        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-        /// assumption, or is no admissible factor of the equation to solve.
-        pub fn new(
-            parameters: CayleyKleinParameters<T>,
-        ) -> Result<Self, ParameterError> {
-            validate::finite_entries("I", &parameters.I)?;
-            validate::diagonal("I", &parameters.I)?;
-            validate::finite("c", &[parameters.c])?;
-            let CayleyKleinParameters { I, c, .. } = parameters;
-            let factor = QuaternionBody::new(
-                "I - c Id",
-                I - SMatrix::<T, 3, 3>::identity() * c,
-                c,
-            )?;
-            Ok(Self { parameters, factor })
-        }
-        /// The parameters.
-        pub fn parameters(&self) -> &CayleyKleinParameters<T> {
-            &self.parameters
-        }
-    }
-    /// Initial data.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CayleyKleinInitial<T = f64> {
-        /// `q` at node 0: body -> space.
-        pub q: UnitQuaternion<T>,
-        /// Momentum at node 0, in the body frame.
-        pub body_momentum: BodyMomentum<T>,
-    }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CayleyKleinState<T = f64> {
-        q: UnitQuaternion<T>,
-        momentum: SpatialMomentum<T>,
-        node: u64,
-    }
-    impl<T: Real> CayleyKleinState<T> {
-        /// `q` at this node: body -> space.
-        pub fn q(&self) -> UnitQuaternion<T> {
-            self.q
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
-            self.momentum
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum(&self) -> BodyMomentum<T> {
-            self.momentum.to_body(&self.q)
-        }
-        /// The number of the node.
-        pub fn node(&self) -> u64 {
-            self.node
-        }
-    }
-    /// The step and the momentum of the edge that begins at the state `here`. Made anew for any other state.
-    #[derive(Clone, Copy, Debug)]
-    pub struct CayleyKleinWorkspace<T = f64> {
-        h: T,
-        edge: Edge<T>,
-        here: CayleyKleinState<T>,
-    }
-    ::clebsch::saved! {
-        [] CayleyKleinWorkspace { h, edge, here }
-    }
-    impl<T: Real> CayleyKlein<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not admissible, or says why the first step cannot be solved and
-        /// which could.
-        pub fn start(
-            &self,
-            initial: CayleyKleinInitial<T>,
-            h: T,
-        ) -> Result<(CayleyKleinState<T>, CayleyKleinWorkspace<T>), StartError> {
-            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
-        }
-        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
-        pub fn workspace(
-            &self,
-            state: &CayleyKleinState<T>,
-            h: T,
-        ) -> Result<CayleyKleinWorkspace<T>, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        /// One step, in place. Solved thus: A is constant and symmetric, β constant: one equation for one number a step.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-        #[inline]
-        pub fn step(
-            &self,
-            state: &mut CayleyKleinState<T>,
-            work: &mut CayleyKleinWorkspace<T>,
-        ) -> Result<(), StepError> {
-            let h = work.h;
-            if work.here.q != state.q || work.here.momentum != state.momentum {
-                work.edge = self.edge(state, h);
-                work.here = *state;
-            }
-            let solved = work.edge.free_in_quaternions(&self.factor, h, &state.q);
-            let (q_next, edge_next) = match solved {
-                Ok(next) => next,
-                Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
-            };
-            (state.q, work.here.q) = (q_next, q_next);
-            state.node += 1;
-            work.edge = edge_next;
-            Ok(())
-        }
-        /// The edge that begins at this state, for a step `h`.
-        #[inline(never)]
-        fn edge(&self, state: &CayleyKleinState<T>, h: T) -> Edge<T> {
-            let turn = state.q.rotation().matrix();
-            Edge::new(turn.tr_mul(&state.momentum.0), state.momentum.0)
-        }
-        /// Says how far the step is beyond the bound, and which step could be solved.
-        #[cold]
-        fn refused(
-            &self,
-            state: CayleyKleinState<T>,
-            factor: &QuaternionBody<T>,
-            h: T,
-            e: QuaternionError,
-        ) -> StepError {
-            let e = e
-                .with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
-            StepCause::from(e).at_node(state.node)
-        }
-    }
-    impl<T: Real> Stepper for CayleyKlein<T> {
-        type Scalar = T;
-        type State = CayleyKleinState<T>;
-        type Workspace = CayleyKleinWorkspace<T>;
-        fn workspace(
-            &self,
-            state: &Self::State,
-            h: T,
-        ) -> Result<Self::Workspace, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        #[inline(always)]
-        fn advance(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-        ) -> Result<(), StepError> {
-            self.step(state, work)
-        }
-        fn node(state: &Self::State) -> u64 {
-            state.node
-        }
-        fn at_node(state: Self::State, node: u64) -> Self::State {
-            CayleyKleinState {
-                node: node,
-                ..state
-            }
-        }
-    }
-    impl<T: Real> Reversible for CayleyKlein<T> {}
-    ::clebsch::of_scalars! {
-        [] CayleyKleinParameters { I, c }
-    }
-    ::clebsch::of_scalars! {
-        [] CayleyKleinInitial { q, body_momentum }
-    }
-    ::clebsch::of_scalars! {
-        [] CayleyKleinState { q, momentum } at node
-    }
-    impl<T: Real> ::clebsch::integrate::Model for CayleyKlein<T> {
-        type Parameters = CayleyKleinParameters<T>;
-        type Initial = CayleyKleinInitial<T>;
-        type Choice = ();
-        type Over<U: Real> = CayleyKlein<U>;
-        const SIDE_BY_SIDE: bool = false;
-        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
-            Self::new(parameters)
-        }
-        fn given(&self) -> &Self::Parameters {
-            &self.parameters
-        }
-        fn begin(
-            &self,
-            initial: Self::Initial,
-        ) -> Result<CayleyKleinState<T>, StartError> {
-            validate::finite("q", &initial.q.components())?;
-            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            Ok(CayleyKleinState {
-                q: initial.q,
-                momentum: initial.body_momentum.to_space(&initial.q),
-                node: 0,
-            })
-        }
-        fn prepared(
-            &self,
-            state: &CayleyKleinState<T>,
-            h: T,
-            _: Self::Choice,
-        ) -> Result<Self::Workspace, StartError> {
-            Ok(CayleyKleinWorkspace {
-                h,
-                edge: self.edge(state, h),
-                here: *state,
-            })
-        }
-    }
-    /// A configuration at one node, solution or not.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CayleyKleinConfiguration<T = f64> {
-        /// `q` at the node: body -> space.
-        pub q: UnitQuaternion<T>,
-    }
-    impl<T: Real> CayleyKlein<T> {
-        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
-        /// consecutive configurations: components are derivatives of the action of the two edges
-        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
-        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
-        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
-        pub fn balance(
-            &self,
-            h: T,
-            before: &CayleyKleinConfiguration<T>,
-            here: &CayleyKleinConfiguration<T>,
-            after: &CayleyKleinConfiguration<T>,
-        ) -> SVector<T, 3> {
-            let CayleyKleinParameters { I, c, .. } = self.parameters;
-            let W_before = before.q.body_velocity(&here.q).matrix();
-            let W = here.q.body_velocity(&after.q).matrix();
-            let t1 = h.powi(-1);
-            let t2 = quaternion_imaginary(&W_before);
-            let t3 = quaternion_imaginary(&W);
-            let parts: [SVector<T, 3>; 1] = [
-                quaternion_imaginary(
-                    &(W_before.tr_mul(&pure_quaternion(&(diagonal_times(&I, &t2))))),
-                ) * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
-                    - quaternion_imaginary(&(W_before * W_before)) * (t1 * c)
-                    - quaternion_imaginary(
-                        &(W * pure_quaternion(&(diagonal_times(&I, &t3)))),
-                    ) * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
-                    + quaternion_imaginary(&(W * W)) * (t1 * c),
-            ];
-            {
-                let mut all = SVector::<T, 3>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_vector(rest, &parts[0]);
-                let _ = rest;
-                all
-            }
-        }
-    }
-    impl<T: Real> CayleyKlein<T> {
-        /// What the step of size `h` from one state to the next leaves of its equations: the
-        /// momentum that is carried to the second state, less the one that the motion between
-        /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a spatial
-        /// velocity are the two elements it is made from, as they are stored.
-        pub fn residual(
-            &self,
-            before: &CayleyKleinState<T>,
-            after: &CayleyKleinState<T>,
-            h: T,
-        ) -> [Residual; 1] {
-            let CayleyKleinParameters { I, c, .. } = self.parameters;
-            let W_matrix = before.q.body_velocity(&after.q).matrix();
-            let t1 = h.powi(-1);
-            let t2 = quaternion_imaginary(&W_matrix);
-            let t3 = quaternion_imaginary(&(W_matrix * W_matrix));
-            let t4 = (t1 * t1).sqrt();
-            let t5 = (W_matrix.tr_mul(&W_matrix)).trace().sqrt();
-            let t6 = (diagonal_times(&I, &I)).trace().sqrt();
-            let t7 = t2.dot(&t2).sqrt();
-            let t8 = (c * c).sqrt();
-            let _ = h;
-            [
-                {
-                    let momentum = after.momentum.to_body(&after.q).0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (quaternion_imaginary(
-                                        &(W_matrix
-                                            .tr_mul(&pure_quaternion(&(diagonal_times(&I, &t2))))),
-                                    ) * (T::from_f64(2.0) * t1)
-                                        + t2 * (T::from_f64(2.0) * t1 * c) - t3 * (t1 * c))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (T::from_f64(4.0) * t4 * t5 * t6 * t7
-                                + T::from_f64(2.0) * t4 * t8 * t7
-                                + t4 * t8 * t3.dot(&t3).sqrt()
-                                + T::from_f64(4.0) * t4 * t5 * t6
-                                + T::from_f64(2.0) * t4 * t8 + t4 * t8)
-                                .magnitude(),
-                    }
-                },
-            ]
-        }
-    }
-    impl<T: Real> CayleyKlein<T> {
-        /// The kinetic and the potential energy at this node: those of the limit of small steps,
-        /// at the node's momentum.
-        pub fn energies(&self, state: &CayleyKleinState<T>) -> (T, T) {
-            let CayleyKleinParameters { I, .. } = self.parameters;
-            let parts: [SVector<T, 3>; 1] = [state.body_momentum().0];
-            let momentum = {
-                let mut all = SVector::<T, 3>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_vector(rest, &parts[0]);
-                let _ = rest;
-                all
-            };
-            let mut inertia = SMatrix::<T, 3, 3>::zeros();
-            for axis in 0..3 {
-                let ξ: SVector<T, 3> = unit::<T, 3>(axis);
-                let t1 = diagonal_times(&I, &ξ) * T::from_f64(0.5);
-                let parts: [SVector<T, 3>; 1] = [t1 + t1];
-                inertia
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 3>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_vector(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            let velocity = solve_leading_or_nan(&inertia, &momentum, 0 + 3);
-            (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
-        }
-        /// The physical energy at this node.
-        pub fn energy(&self, state: &CayleyKleinState<T>) -> T {
-            let (kinetic, potential) = self.energies(state);
-            kinetic + potential
-        }
-        /// `μ_k·μ_k`: Casimir: constant on coadjoint orbits.
-        pub fn momentum_squared(&self, state: &CayleyKleinState<T>) -> T {
-            let μ = state.body_momentum().0;
-            μ.dot(&μ)
-        }
-    }
-    impl<T: Real> CayleyKlein<T> {
-        /// The discrete energy of the edge between two consecutive states, `-4 c re(W_k)/h² + 2 im(W_k)·((I - c Id) im(W_k))/h² + 4 c/h²`: bounded, since the stepper is symplectic.
-        pub fn discrete_energy(
-            &self,
-            h: T,
-            before: &CayleyKleinState<T>,
-            after: &CayleyKleinState<T>,
-        ) -> T {
-            let CayleyKleinParameters { I, c, .. } = self.parameters;
-            let W_matrix = before.q.body_velocity(&after.q).matrix();
-            let t1 = quaternion_imaginary(&W_matrix);
-            (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
-                / (h * h)
-                - (T::from_f64(4.0) * c * quaternion_real(&less_identity(&W_matrix)))
-                    / (h * h)
-        }
-    }
-    impl ::clebsch::integrate::Described for CayleyKlein<f64> {
-        fn card() -> &'static Card {
-            &Self::CARD
-        }
-        fn read(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-        ) -> Result<(Self, Self::Initial), OpenError> {
-            let model = Self::new(CayleyKleinParameters {
-                I: matrix_of("I", parameters.get(0usize))?,
-                c: number_of("c", parameters.get(1usize))?,
-            })?;
-            let initial = CayleyKleinInitial {
-                q: quaternion_of("q", initial.get(0usize))?,
-                body_momentum: BodyMomentum(
-                    matrix_of("body_momentum", initial.get(1usize))?,
-                ),
-            };
-            Ok((model, initial))
-        }
-        fn ways(
-            self,
-            state: &Self::State,
-            settings: Settings,
-        ) -> Result<(Self, Steps<Self>), OpenError> {
-            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
-            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
-            Ok((model, steps))
-        }
-        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
-            self.kinetic_warning(state)
-        }
-        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-            Residual::largest(&self.residual(before, after, h))
-        }
-        fn observe(&self, state: &Self::State, out: &mut [f64]) {
-            let out = put(out, state.q().components());
-            let out = put(out, rows(state.body_momentum().0));
-            let out = put(out, rows(state.spatial_momentum().0));
-            let _ = out;
-        }
-        fn invariants(
-            &self,
-            state: &Self::State,
-            _: Option<&Self::Workspace>,
-            out: &mut [f64],
-        ) {
-            let out = put(out, [self.energy(state)]);
-            let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, [self.momentum_squared(state)]);
-            let _ = (state, out);
-        }
-        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
-            type T = f64;
-            let q = state.q.matrix();
-            let μ = state.body_momentum().0;
-            let t1 = quaternion_rotation(&q) * μ;
-            let t2 = μ.dot(&μ).sqrt();
-            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-            let out = put(out, [t1.dot(&t1).sqrt(); 3usize]);
-            let out = put(out, [t2 * t2; 1usize]);
-            let _ = (state, h, out);
-        }
-    }
-    impl CayleyKlein<f64> {
-        /// The model as data.
-        pub const CARD: Card = Card {
-            name: "CayleyKlein",
-            kebab: "cayley-klein",
-            doc: "Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its fibres over the sphere of body momenta are circles.",
-            source: Self::SOURCE,
-            fingerprint: Self::FINGERPRINT,
-            summary: "discrete Lagrangian  -4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I - c Id) im(W_k)/h)) W_kᵀ)\nRiccati form         none; in unit quaternions, A = I - c Id, β = c\ninvariants           energy, spatial_momentum, momentum_squared\ntime reversal        symmetric: second order\ncertificate          4 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-            solver: "Unit quaternions: A is constant and symmetric, β constant: one equation for one number a step",
-            order: 2u32,
-            orders: &[2, 4, 6, 8],
-            preprocessed: false,
-            reversible: true,
-            parameters: &[
-                Kind::Diagonal.field("I", [3, 3], "principal moments of inertia"),
-                Kind::Scalar.field("c", [1, 1], "0: Moser-Veselov; 1: as in the thesis"),
-            ],
-            initial: &[
-                Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),
-                Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
-            ],
-            observables: &[
-                Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),
-                Kind::BodyMomentum
-                    .field("body_momentum", [3, 1], "momentum, body frame"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
-            ],
-            invariants: &[
-                Invariant::bounded("energy", "½ μ_k·ζ, where μ_k = I ζ", 1usize),
-                Invariant::exact("spatial_momentum", "rot(q_k) μ_k", 3usize),
-                Invariant::exact("momentum_squared", "μ_k·μ_k", 1usize),
-            ],
-            discrete_energy: Invariant::bounded(
-                "discrete_energy",
-                "-4 c re(W_k)/h² + 2 im(W_k)·((I - c Id) im(W_k))/h² + 4 c/h²",
-                1,
-            ),
-            open: open::<Self>,
-            solvers: &[],
-            dimensions: &[],
-            sized: only_size::<Self>,
-        };
-        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
-        /// velocities together, at the identity, should be positive definite.
-        #[cold]
-        #[allow(unused_variables)]
-        pub fn kinetic_warning(
-            &self,
-            state: &CayleyKleinState<f64>,
-        ) -> Option<KineticWarning> {
-            type T = f64;
-            let CayleyKleinParameters { I, .. } = self.parameters;
-            let mut inertia = SMatrix::<T, 3, 3>::zeros();
-            for axis in 0..3 {
-                let ξ: SVector<T, 3> = unit::<T, 3>(axis);
-                let t1 = diagonal_times(&I, &ξ) * T::from_f64(0.5);
-                let parts: [SVector<T, 3>; 1] = [t1 + t1];
-                inertia
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 3>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_vector(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            KineticWarning::of(&inertia, 0 + 3)
-        }
+use ::clebsch::emitted::*;
+/// Parameters of [`CayleyKlein`](struct@CayleyKlein), as given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CayleyKleinParameters<T = f64> {
+    /// `I`: principal moments of inertia; a 3 x 3 matrix, diagonal.
+    pub I: SMatrix<T, 3, 3>,
+    /// `c`: 0: Moser-Veselov; 1: as in the thesis; a number.
+    pub c: T,
+}
+/// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its
+/// fibres over the sphere of body momenta are circles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CayleyKlein<T = f64> {
+    parameters: CayleyKleinParameters<T>,
+    factor: QuaternionBody<T>,
+}
+impl<T: Real> CayleyKlein<T> {
+    /// The model as it was stated.
+    pub const SOURCE: &'static str = "/// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its\n/// fibres over the sphere of body momenta are circles.\npub model CayleyKlein {\n    /// principal moments of inertia\n    param I: Diag<3>;\n    /// 0: Moser-Veselov; 1: as in the thesis\n    param c: Real;\n    /// attitude, body to space\n    group q: SU<2> velocity W;\n    constraint next(q) = q*W;\n    lagrangian = -4*c*re(W)/h + 2*dot(im(W), (I - c*Id)*im(W))/h;\n}";
+    /// A number that changes when the model or its derivation does.
+    pub const FINGERPRINT: u64 = 6338969864124962405u64;
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+    /// assumption, or is no admissible factor of the equation to solve.
+    pub fn new(parameters: CayleyKleinParameters<T>) -> Result<Self, ParameterError> {
+        validate::finite_entries("I", &parameters.I)?;
+        validate::diagonal("I", &parameters.I)?;
+        validate::finite("c", &[parameters.c])?;
+        let CayleyKleinParameters { I, c, .. } = parameters;
+        let factor = QuaternionBody::new(
+            "I - c Id",
+            I - SMatrix::<T, 3, 3>::identity() * c,
+            c,
+        )?;
+        Ok(Self { parameters, factor })
     }
 }
-#[allow(unused_imports)]
-pub use cayley_klein::*;
+/// Initial data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CayleyKleinInitial<T = f64> {
+    /// `q` at node 0: body -> space.
+    pub q: UnitQuaternion<T>,
+    /// Momentum at node 0, in the body frame.
+    pub body_momentum: BodyMomentum<T>,
+}
+/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CayleyKleinState<T = f64> {
+    q: UnitQuaternion<T>,
+    momentum: SpatialMomentum<T>,
+    node: u64,
+}
+impl<T: Real> CayleyKleinState<T> {
+    /// `q` at this node: body -> space.
+    pub fn q(&self) -> UnitQuaternion<T> {
+        self.q
+    }
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+        self.momentum
+    }
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum(&self) -> BodyMomentum<T> {
+        self.momentum.to_body(&self.q)
+    }
+}
+/// The step and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+#[derive(Clone, Copy, Debug)]
+pub struct CayleyKleinWorkspace<T = f64> {
+    h: T,
+    edge: Edge<T>,
+    here: CayleyKleinState<T>,
+}
+impl<T: Real> CayleyKlein<T> {
+    /// The state at node 0.
+    fn begin(
+        &self,
+        initial: CayleyKleinInitial<T>,
+    ) -> Result<CayleyKleinState<T>, StartError> {
+        validate::finite("q", &initial.q.components())?;
+        validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+        Ok(CayleyKleinState {
+            q: initial.q,
+            momentum: initial.body_momentum.to_space(&initial.q),
+            node: 0,
+        })
+    }
+    /// What steps of `h` from `state` begin with.
+    fn prepared(
+        &self,
+        state: &CayleyKleinState<T>,
+        h: T,
+        _: (),
+    ) -> Result<CayleyKleinWorkspace<T>, StartError> {
+        Ok(CayleyKleinWorkspace {
+            h,
+            edge: self.edge(state, h),
+            here: *state,
+        })
+    }
+    /// One step, in place. Solved thus: A is constant and symmetric, β constant: one equation for one number a step.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    #[inline]
+    pub fn step(
+        &self,
+        state: &mut CayleyKleinState<T>,
+        work: &mut CayleyKleinWorkspace<T>,
+    ) -> Result<(), StepError> {
+        let h = work.h;
+        if work.here.q != state.q || work.here.momentum != state.momentum {
+            work.edge = self.edge(state, h);
+            work.here = *state;
+        }
+        let solved = work.edge.free_in_quaternions(&self.factor, h, &state.q);
+        let (q_next, edge_next) = match solved {
+            Ok(next) => next,
+            Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
+        };
+        (state.q, work.here.q) = (q_next, q_next);
+        state.node += 1;
+        work.edge = edge_next;
+        Ok(())
+    }
+    /// The edge that begins at this state, for a step `h`.
+    #[inline(never)]
+    fn edge(&self, state: &CayleyKleinState<T>, h: T) -> Edge<T> {
+        let turn = state.q.rotation().matrix();
+        Edge::new(turn.tr_mul(&state.momentum.0), state.momentum.0)
+    }
+    /// Says how far the step is beyond the bound, and which step could be solved.
+    #[cold]
+    fn refused(
+        &self,
+        state: CayleyKleinState<T>,
+        factor: &QuaternionBody<T>,
+        h: T,
+        e: QuaternionError,
+    ) -> StepError {
+        let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
+        StepCause::from(e).at_node(state.node)
+    }
+}
+::clebsch::stepper! {
+    [] CayleyKlein, CayleyKleinParameters { I, c }, CayleyKleinInitial { q, body_momentum
+    }, CayleyKleinState { q, momentum } at node, CayleyKleinWorkspace { h, edge, here },
+    explicit {} nothing symmetric judged
+}
+/// A configuration at one node, solution or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CayleyKleinConfiguration<T = f64> {
+    /// `q` at the node: body -> space.
+    pub q: UnitQuaternion<T>,
+}
+impl<T: Real> CayleyKlein<T> {
+    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// consecutive configurations: components are derivatives of the action of the two edges
+    /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+    /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+    /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+    pub fn balance(
+        &self,
+        h: T,
+        before: &CayleyKleinConfiguration<T>,
+        here: &CayleyKleinConfiguration<T>,
+        after: &CayleyKleinConfiguration<T>,
+    ) -> SVector<T, 3> {
+        let CayleyKleinParameters { I, c, .. } = self.parameters;
+        let W_before = before.q.body_velocity(&here.q).matrix();
+        let W = here.q.body_velocity(&after.q).matrix();
+        let t1 = h.powi(-1);
+        let t2 = quaternion_imaginary(&W_before);
+        let t3 = quaternion_imaginary(&W);
+        let parts: [SVector<T, 3>; 1] = [
+            quaternion_imaginary(
+                &(W_before.tr_mul(&pure_quaternion(&(diagonal_times(&I, &t2))))),
+            ) * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
+                - quaternion_imaginary(&(W_before * W_before)) * (t1 * c)
+                - quaternion_imaginary(
+                    &(W * pure_quaternion(&(diagonal_times(&I, &t3)))),
+                ) * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
+                + quaternion_imaginary(&(W * W)) * (t1 * c),
+        ];
+        {
+            let mut all = SVector::<T, 3>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_vector(rest, &parts[0]);
+            let _ = rest;
+            all
+        }
+    }
+    /// What the step of size `h` from one state to the next leaves of its equations: the
+    /// momentum that is carried to the second state, less the one that the motion between
+    /// them brings there. One part a configuration, angular and linear ones of a rigid
+    /// motion apart, each with the size of the terms it is made of: those of a spatial
+    /// velocity are the two elements it is made from, as they are stored.
+    pub fn residual(
+        &self,
+        before: &CayleyKleinState<T>,
+        after: &CayleyKleinState<T>,
+        h: T,
+    ) -> [Residual; 1] {
+        let CayleyKleinParameters { I, c, .. } = self.parameters;
+        let W_matrix = before.q.body_velocity(&after.q).matrix();
+        let t1 = h.powi(-1);
+        let t2 = quaternion_imaginary(&W_matrix);
+        let t3 = quaternion_imaginary(&(W_matrix * W_matrix));
+        let t4 = (t1 * t1).sqrt();
+        let t5 = (W_matrix.tr_mul(&W_matrix)).trace().sqrt();
+        let t6 = (diagonal_times(&I, &I)).trace().sqrt();
+        let t7 = t2.dot(&t2).sqrt();
+        let t8 = (c * c).sqrt();
+        [
+            Residual::between(
+                &(after.momentum.to_body(&after.q).0),
+                &(quaternion_imaginary(
+                    &(W_matrix.tr_mul(&pure_quaternion(&(diagonal_times(&I, &t2))))),
+                ) * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
+                    - t3 * (t1 * c)),
+                T::from_f64(4.0) * t4 * t5 * t6 * t7 + T::from_f64(2.0) * t4 * t8 * t7
+                    + t4 * t8 * t3.dot(&t3).sqrt() + T::from_f64(4.0) * t4 * t5 * t6
+                    + T::from_f64(2.0) * t4 * t8 + t4 * t8,
+            ),
+        ]
+    }
+    /// The Hessian of the kinetic energy in all velocities together, at the identity.
+    fn inertia_at(&self, state: &CayleyKleinState<T>) -> SMatrix<T, 3, 3> {
+        let CayleyKleinParameters { I, .. } = self.parameters;
+        let mut inertia = SMatrix::<T, 3, 3>::zeros();
+        for axis in 0..3 {
+            let ξ: SVector<T, 3> = unit::<T, 3>(axis);
+            let t1 = diagonal_times(&I, &ξ) * T::from_f64(0.5);
+            let parts: [SVector<T, 3>; 1] = [t1 + t1];
+            inertia
+                .set_column(
+                    axis,
+                    &{
+                        let mut all = SVector::<T, 3>::zeros();
+                        let rest = all.as_mut_slice();
+                        let rest = put_vector(rest, &parts[0]);
+                        let _ = rest;
+                        all
+                    },
+                );
+        }
+        inertia
+    }
+    /// The kinetic and the potential energy at this node: those of the limit of small steps,
+    /// at the node's momentum.
+    pub fn energies(&self, state: &CayleyKleinState<T>) -> (T, T) {
+        let parts: [SVector<T, 3>; 1] = [state.body_momentum().0];
+        let momentum = {
+            let mut all = SVector::<T, 3>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_vector(rest, &parts[0]);
+            let _ = rest;
+            all
+        };
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 0 + 3);
+        (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
+    }
+    /// The physical energy at this node.
+    pub fn energy(&self, state: &CayleyKleinState<T>) -> T {
+        let (kinetic, potential) = self.energies(state);
+        kinetic + potential
+    }
+    /// `μ_k·μ_k`: Casimir: constant on coadjoint orbits.
+    pub fn momentum_squared(&self, state: &CayleyKleinState<T>) -> T {
+        let μ = state.body_momentum().0;
+        μ.dot(&μ)
+    }
+    /// The discrete energy of the edge between two consecutive states, `-4 c re(W_k)/h² + 2 im(W_k)·((I - c Id) im(W_k))/h² + 4 c/h²`: bounded, since the stepper is symplectic.
+    pub fn discrete_energy(
+        &self,
+        h: T,
+        before: &CayleyKleinState<T>,
+        after: &CayleyKleinState<T>,
+    ) -> T {
+        let CayleyKleinParameters { I, c, .. } = self.parameters;
+        let W_matrix = before.q.body_velocity(&after.q).matrix();
+        let t1 = quaternion_imaginary(&W_matrix);
+        (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
+            / (h * h)
+            - (T::from_f64(4.0) * c * quaternion_real(&less_identity(&W_matrix)))
+                / (h * h)
+    }
+}
+impl CayleyKlein<f64> {
+    /// All observables, in the order of the card.
+    fn observe(&self, state: &CayleyKleinState<f64>, out: &mut [f64]) {
+        let out = put(out, state.q().components());
+        let out = put(out, rows(state.body_momentum().0));
+        let out = put(out, rows(state.spatial_momentum().0));
+    }
+    /// All invariants, in the order of the card.
+    fn invariants(
+        &self,
+        state: &CayleyKleinState<f64>,
+        _: Option<&CayleyKleinWorkspace<f64>>,
+        out: &mut [f64],
+    ) {
+        let out = put(out, [self.energy(state)]);
+        let out = put(out, rows(state.spatial_momentum().0));
+        let out = put(out, [self.momentum_squared(state)]);
+    }
+    /// Their sizes at a state, in steps of `h`.
+    fn scales(&self, state: &CayleyKleinState<f64>, h: f64, out: &mut [f64]) {
+        type T = f64;
+        let q = state.q.matrix();
+        let μ = state.body_momentum().0;
+        let t1 = quaternion_rotation(&q) * μ;
+        let t2 = μ.dot(&μ).sqrt();
+        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+        let out = put(out, [t1.dot(&t1).sqrt(); 3usize]);
+        let out = put(out, [t2 * t2; 1usize]);
+    }
+    /// The model as data.
+    pub const CARD: Card = Card {
+        name: "CayleyKlein",
+        kebab: "cayley-klein",
+        doc: "Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its fibres over the sphere of body momenta are circles.",
+        source: Self::SOURCE,
+        fingerprint: Self::FINGERPRINT,
+        summary: "discrete Lagrangian  -4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I - c Id) im(W_k)/h)) W_kᵀ)\nRiccati form         none; in unit quaternions, A = I - c Id, β = c\ninvariants           energy, spatial_momentum, momentum_squared\ntime reversal        symmetric: second order\ncertificate          4 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+        solver: "Unit quaternions: A is constant and symmetric, β constant: one equation for one number a step",
+        order: 2u32,
+        orders: &[2, 4, 6, 8],
+        preprocessed: false,
+        reversible: true,
+        parameters: &[
+            Kind::Diagonal.field("I", [3, 3], "principal moments of inertia"),
+            Kind::Scalar.field("c", [1, 1], "0: Moser-Veselov; 1: as in the thesis"),
+        ],
+        initial: &[
+            Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),
+            Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
+        ],
+        observables: &[
+            Kind::UnitQuaternion.field("q", [4, 1], "attitude, body to space"),
+            Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum", [3, 1], "momentum, space frame"),
+        ],
+        invariants: &[
+            Invariant::bounded("energy", "½ μ_k·ζ, where μ_k = I ζ", 1usize),
+            Invariant::exact("spatial_momentum", "rot(q_k) μ_k", 3usize),
+            Invariant::exact("momentum_squared", "μ_k·μ_k", 1usize),
+        ],
+        discrete_energy: Invariant::bounded(
+            "discrete_energy",
+            "-4 c re(W_k)/h² + 2 im(W_k)·((I - c Id) im(W_k))/h² + 4 c/h²",
+            1,
+        ),
+        open: open::<Self>,
+        solvers: &[],
+        dimensions: &[],
+        sized: only_size::<Self>,
+    };
+    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+    /// definite.
+    #[cold]
+    pub fn kinetic_warning(
+        &self,
+        state: &CayleyKleinState<f64>,
+    ) -> Option<KineticWarning> {
+        KineticWarning::of(&self.inertia_at(state), 0 + 3)
+    }
+}

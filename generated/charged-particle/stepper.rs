@@ -1,556 +1,408 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-/// The model [`ChargedParticle`](struct@ChargedParticle) and what belongs to it.
-#[allow(
+//! The model [`ChargedParticle`](struct@ChargedParticle) and what belongs to it.
+#![allow(
     non_snake_case,
     uncommon_codepoints,
     mixed_script_confusables,
     confusable_idents,
+    unused_variables,
     clippy::all
 )]
-pub mod charged_particle {
-    use ::clebsch::emitted::*;
-    /// Parameters of [`ChargedParticle`](struct@ChargedParticle), as given.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct ChargedParticleParameters<T = f64> {
-        /// `m`: mass; a number.
-        pub m: T,
-        /// `q`: charge; a number.
-        pub q: T,
-        /// `B`: magnetic field; a vector of 3 components.
-        pub B: SVector<T, 3>,
-        /// `E`: electric field; a vector of 3 components.
-        pub E: SVector<T, 3>,
-    }
-    /// Charged particle in uniform magnetic and electric fields.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct ChargedParticle<T = f64> {
+use ::clebsch::emitted::*;
+/// Parameters of [`ChargedParticle`](struct@ChargedParticle), as given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChargedParticleParameters<T = f64> {
+    /// `m`: mass; a number.
+    pub m: T,
+    /// `q`: charge; a number.
+    pub q: T,
+    /// `B`: magnetic field; a vector of 3 components.
+    pub B: SVector<T, 3>,
+    /// `E`: electric field; a vector of 3 components.
+    pub E: SVector<T, 3>,
+}
+/// Charged particle in uniform magnetic and electric fields.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChargedParticle<T = f64> {
+    parameters: ChargedParticleParameters<T>,
+}
+impl<T: Real> ChargedParticle<T> {
+    /// The model as it was stated.
+    pub const SOURCE: &'static str = "/// Charged particle in uniform magnetic and electric fields.\npub model ChargedParticle {\n    /// mass\n    param m: Real;\n    /// charge\n    param q: Real;\n    /// magnetic field\n    param B: Vec<3>;\n    /// electric field\n    param E: Vec<3>;\n    /// place of the particle\n    field X: Vec<3>;\n    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + (1/2)*q*dot(cross(B, X), next(X) - X) + h*q*dot(E, X);\n}";
+    /// A number that changes when the model or its derivation does.
+    pub const FINGERPRINT: u64 = 13602584445213405510u64;
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+    /// assumption, or is no admissible factor of the equation to solve.
+    pub fn new(
         parameters: ChargedParticleParameters<T>,
-    }
-    impl<T: Real> ChargedParticle<T> {
-        /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Charged particle in uniform magnetic and electric fields.\npub model ChargedParticle {\n    /// mass\n    param m: Real;\n    /// charge\n    param q: Real;\n    /// magnetic field\n    param B: Vec<3>;\n    /// electric field\n    param E: Vec<3>;\n    /// place of the particle\n    field X: Vec<3>;\n    lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + (1/2)*q*dot(cross(B, X), next(X) - X) + h*q*dot(E, X);\n}";
-        /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 13602584445213405510u64;
-        /// Checks the parameters.
-        ///
-        /// # Errors
-        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-        /// assumption, or is no admissible factor of the equation to solve.
-        pub fn new(
-            parameters: ChargedParticleParameters<T>,
-        ) -> Result<Self, ParameterError> {
-            validate::finite("m", &[parameters.m])?;
-            validate::finite("q", &[parameters.q])?;
-            validate::finite("B", parameters.B.as_slice())?;
-            validate::finite("E", parameters.E.as_slice())?;
-            Ok(Self { parameters })
-        }
-        /// The parameters.
-        pub fn parameters(&self) -> &ChargedParticleParameters<T> {
-            &self.parameters
-        }
-    }
-    /// Initial data.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct ChargedParticleInitial<T = f64> {
-        /// `X` at node 0.
-        pub X: Additive<3, 1, T>,
-        /// Its momentum at node 0.
-        pub momentum: FieldMomentum<3, 1, T>,
-    }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate. Places and their momenta are kept in two numbers, the rest below the rounding of the other.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct ChargedParticleState<T = f64> {
-        X: Additive<3, 1, T>,
-        momentum: FieldMomentum<3, 1, T>,
-        place_rest: SMatrix<T, 3, 1>,
-        momentum_rest: SMatrix<T, 3, 1>,
-        node: u64,
-    }
-    impl<T: Real> ChargedParticleState<T> {
-        /// `X` at this node.
-        pub fn X(&self) -> Additive<3, 1, T> {
-            self.X
-        }
-        /// Its momentum at this node.
-        pub fn momentum(&self) -> FieldMomentum<3, 1, T> {
-            self.momentum
-        }
-        /// The number of the node.
-        pub fn node(&self) -> u64 {
-            self.node
-        }
-    }
-    /// The step and the last velocities, from which the next solves start.
-    #[derive(Clone, Copy, Debug)]
-    pub struct ChargedParticleWorkspace<T = f64> {
-        h: T,
-    }
-    ::clebsch::saved! {
-        [] ChargedParticleWorkspace { h, }
-    }
-    impl<T: Real> ChargedParticle<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not admissible, or says why the first step cannot be solved and
-        /// which could.
-        pub fn start(
-            &self,
-            initial: ChargedParticleInitial<T>,
-            h: T,
-        ) -> Result<(ChargedParticleState<T>, ChargedParticleWorkspace<T>), StartError> {
-            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
-        }
-        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
-        pub fn workspace(
-            &self,
-            state: &ChargedParticleState<T>,
-            h: T,
-        ) -> Result<ChargedParticleWorkspace<T>, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        /// One step, in place. Solved thus: the balance is linear: one small linear system.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-        #[inline]
-        pub fn step(
-            &self,
-            state: &mut ChargedParticleState<T>,
-            work: &mut ChargedParticleWorkspace<T>,
-        ) -> Result<(), StepError> {
-            let h = work.h;
-            let ChargedParticleParameters { m, q, B, E, .. } = self.parameters;
-            let X = state.X.matrix();
-            let ΔX = match left_sided(
-                &(SMatrix::<T, 3, 3>::identity() * (m / h)
-                    + hat(&B) * (T::from_f64(0.5) * q)),
-                &(state.momentum.0
-                    - (B.cross(&X) * (T::from_f64(0.5) * q)
-                        - E * (T::from_f64(0.5) * h * q))),
-                "m Id/h + ½ q hat(B)",
-            ) {
-                Ok(solved) => solved,
-                Err(e) => return Err(StepCause::Singular(e).at_node(state.node)),
-            };
-            let ΔX_matrix = ΔX.matrix();
-            let (X_moved, X_rest) = state.X.moved(&(ΔX), &state.place_rest);
-            let (momentum_next, momentum_rest) = added(
-                &state.momentum.0,
-                &state.momentum_rest,
-                &(E * (h * q) - B.cross(&ΔX_matrix) * (T::from_f64(0.5) * q)),
-            );
-            if !(all_finite(&momentum_next)) {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
-            }
-            state.X = X_moved;
-            state.place_rest = X_rest;
-            state.momentum = FieldMomentum(momentum_next);
-            state.momentum_rest = momentum_rest;
-            state.node += 1;
-            Ok(())
-        }
-    }
-    impl<T: Real> Stepper for ChargedParticle<T> {
-        type Scalar = T;
-        type State = ChargedParticleState<T>;
-        type Workspace = ChargedParticleWorkspace<T>;
-        fn workspace(
-            &self,
-            state: &Self::State,
-            h: T,
-        ) -> Result<Self::Workspace, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        #[inline(always)]
-        fn advance(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-        ) -> Result<(), StepError> {
-            self.step(state, work)
-        }
-        #[cold]
-        fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
-            let mut moving = *state;
-            self.step(&mut moving, &mut ChargedParticleWorkspace { h }).ok()?;
-            Some(moving)
-        }
-        fn node(state: &Self::State) -> u64 {
-            state.node
-        }
-        fn at_node(state: Self::State, node: u64) -> Self::State {
-            ChargedParticleState {
-                node: node,
-                ..state
-            }
-        }
-    }
-    impl<T: Real> Reversible for ChargedParticle<T> {}
-    ::clebsch::of_scalars! {
-        [] ChargedParticleParameters { m, q, B, E }
-    }
-    ::clebsch::of_scalars! {
-        [] ChargedParticleInitial { X, momentum }
-    }
-    ::clebsch::of_scalars! {
-        [] ChargedParticleState { X, momentum, place_rest, momentum_rest } at node
-    }
-    impl<T: Real> ::clebsch::integrate::Model for ChargedParticle<T> {
-        type Parameters = ChargedParticleParameters<T>;
-        type Initial = ChargedParticleInitial<T>;
-        type Choice = ();
-        type Over<U: Real> = ChargedParticle<U>;
-        const SIDE_BY_SIDE: bool = false;
-        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
-            Self::new(parameters)
-        }
-        fn given(&self) -> &Self::Parameters {
-            &self.parameters
-        }
-        fn begin(
-            &self,
-            initial: Self::Initial,
-        ) -> Result<ChargedParticleState<T>, StartError> {
-            validate::finite("X", initial.X.matrix().as_slice())?;
-            validate::finite("momentum", initial.momentum.0.as_slice())?;
-            Ok(ChargedParticleState {
-                X: initial.X,
-                momentum: initial.momentum,
-                place_rest: SMatrix::zeros(),
-                momentum_rest: SMatrix::zeros(),
-                node: 0,
-            })
-        }
-        fn prepared(
-            &self,
-            _: &ChargedParticleState<T>,
-            h: T,
-            _: Self::Choice,
-        ) -> Result<Self::Workspace, StartError> {
-            Ok(ChargedParticleWorkspace { h })
-        }
-    }
-    /// A configuration at one node, solution or not.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct ChargedParticleConfiguration<T = f64> {
-        /// `X` at the node.
-        pub X: Additive<3, 1, T>,
-    }
-    impl<T: Real> ChargedParticle<T> {
-        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
-        /// consecutive configurations: components are derivatives of the action of the two edges
-        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
-        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
-        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
-        pub fn balance(
-            &self,
-            h: T,
-            before: &ChargedParticleConfiguration<T>,
-            here: &ChargedParticleConfiguration<T>,
-            after: &ChargedParticleConfiguration<T>,
-        ) -> SVector<T, 3> {
-            let ChargedParticleParameters { m, q, B, E, .. } = self.parameters;
-            let X_before = before.X.matrix();
-            let X = here.X.matrix();
-            let ΔX_before = before.X.spatial_velocity(&here.X).matrix();
-            let ΔX = here.X.spatial_velocity(&after.X).matrix();
-            let t1 = h.powi(-1);
-            let t2 = E * (T::from_f64(0.5) * h * q);
-            let parts: [SVector<T, 3>; 1] = [
-                ΔX_before * (t1 * m) + t2 + B.cross(&X_before) * (T::from_f64(0.5) * q)
-                    - ΔX * (t1 * m) + t2 - B.cross(&X) * (T::from_f64(0.5) * q)
-                    - B.cross(&ΔX) * (T::from_f64(0.5) * q),
-            ];
-            {
-                let mut all = SVector::<T, 3>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_matrix(rest, &parts[0]);
-                let _ = rest;
-                all
-            }
-        }
-    }
-    impl<T: Real> ChargedParticle<T> {
-        /// What the step of size `h` from one state to the next leaves of its equations: the
-        /// momentum that is carried to the second state, less the one that the motion between
-        /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a spatial
-        /// velocity are the two elements it is made from, as they are stored.
-        pub fn residual(
-            &self,
-            before: &ChargedParticleState<T>,
-            after: &ChargedParticleState<T>,
-            h: T,
-        ) -> [Residual; 1] {
-            let ChargedParticleParameters { m, q, B, E, .. } = self.parameters;
-            let ΔX_matrix = before
-                .X
-                .velocity_between(&before.place_rest, &after.X, &after.place_rest)
-                .matrix();
-            let X = before.X.matrix();
-            let t1 = h.powi(-1);
-            let t2 = (q * q).sqrt();
-            let _ = h;
-            [
-                {
-                    let momentum = after.momentum.0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (ΔX_matrix * (t1 * m) + E * (T::from_f64(0.5) * h * q)
-                                        + B.cross(&X) * (T::from_f64(0.5) * q))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + ((t1 * t1).sqrt() * (m * m).sqrt()
-                                * ΔX_matrix.dot(&ΔX_matrix).sqrt()
-                                + T::from_f64(0.5) * (h * h).sqrt() * t2 * E.dot(&E).sqrt()
-                                + T::from_f64(0.5) * t2 * B.dot(&B).sqrt()
-                                    * X.dot(&X).sqrt())
-                                .magnitude(),
-                    }
-                },
-            ]
-        }
-    }
-    impl<T: Real> ChargedParticle<T> {
-        /// The kinetic and the potential energy at this node: those of the limit of small steps,
-        /// at the node's momentum.
-        pub fn energies(&self, state: &ChargedParticleState<T>) -> (T, T) {
-            let ChargedParticleParameters { m, q, B, E, .. } = self.parameters;
-            let X = state.X.matrix();
-            let parts: [SVector<T, 3>; 1] = [
-                state.momentum().0 - (B * (T::from_f64(0.5) * q)).cross(&X),
-            ];
-            let momentum = {
-                let mut all = SVector::<T, 3>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_matrix(rest, &parts[0]);
-                let _ = rest;
-                all
-            };
-            let mut inertia = SMatrix::<T, 3, 3>::zeros();
-            for axis in 0..(3 * 1) {
-                let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-                let t1 = ξ * (T::from_f64(0.5) * m);
-                let parts: [SVector<T, 3>; 1] = [t1 + t1];
-                inertia
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 3>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_matrix(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            let velocity = solve_leading_or_nan(&inertia, &momentum, 0 + (3 * 1));
-            (momentum.dot(&velocity) * T::from_f64(0.5), -(q * E.dot(&X)))
-        }
-        /// The physical energy at this node.
-        pub fn energy(&self, state: &ChargedParticleState<T>) -> T {
-            let (kinetic, potential) = self.energies(state);
-            kinetic + potential
-        }
-        /// `E × p_k - E × (X_k × (½ q B))`: Noether: the action changes by a total difference under translations.
-        pub fn momentum_across_E(
-            &self,
-            state: &ChargedParticleState<T>,
-        ) -> SVector<T, 3> {
-            let ChargedParticleParameters { q, B, E, .. } = self.parameters;
-            let X = state.X.matrix();
-            let p = state.momentum().0;
-            E.cross(&p) - E.cross(&X.cross(&(B * (T::from_f64(0.5) * q))))
-        }
-    }
-    impl<T: Real> ChargedParticle<T> {
-        /// The discrete energy of the edge between two consecutive states, `m ΔX_k·ΔX_k/(2 h²) - ½ q E·X_k - ½ q E·X_{k+1}`: bounded, since the stepper is symplectic.
-        pub fn discrete_energy(
-            &self,
-            h: T,
-            before: &ChargedParticleState<T>,
-            after: &ChargedParticleState<T>,
-        ) -> T {
-            let ChargedParticleParameters { m, q, E, .. } = self.parameters;
-            let ΔX_matrix = before
-                .X
-                .velocity_between(&before.place_rest, &after.X, &after.place_rest)
-                .matrix();
-            let X = before.X.matrix();
-            let X_next = after.X.matrix();
-            T::from_f64(0.5) * m * ΔX_matrix.dot(&ΔX_matrix) / (h * h)
-                - T::from_f64(0.5) * q * E.dot(&X)
-                - T::from_f64(0.5) * q * E.dot(&X_next)
-        }
-    }
-    impl ::clebsch::integrate::Described for ChargedParticle<f64> {
-        fn card() -> &'static Card {
-            &Self::CARD
-        }
-        fn read(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-        ) -> Result<(Self, Self::Initial), OpenError> {
-            let model = Self::new(ChargedParticleParameters {
-                m: number_of("m", parameters.get(0usize))?,
-                q: number_of("q", parameters.get(1usize))?,
-                B: matrix_of("B", parameters.get(2usize))?,
-                E: matrix_of("E", parameters.get(3usize))?,
-            })?;
-            let initial = ChargedParticleInitial {
-                X: additive_of("X", initial.get(0usize))?,
-                momentum: FieldMomentum(matrix_of("momentum", initial.get(1usize))?),
-            };
-            Ok((model, initial))
-        }
-        fn ways(
-            self,
-            state: &Self::State,
-            settings: Settings,
-        ) -> Result<(Self, Steps<Self>), OpenError> {
-            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
-            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
-            Ok((model, steps))
-        }
-        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
-            self.kinetic_warning(state)
-        }
-        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-            Residual::largest(&self.residual(before, after, h))
-        }
-        fn observe(&self, state: &Self::State, out: &mut [f64]) {
-            let out = put(out, rows(state.X().matrix()));
-            let out = put(out, rows(state.momentum().0));
-            let _ = out;
-        }
-        fn invariants(
-            &self,
-            state: &Self::State,
-            _: Option<&Self::Workspace>,
-            out: &mut [f64],
-        ) {
-            let out = put(out, [self.energy(state)]);
-            let out = put(out, rows(self.momentum_across_E(state)));
-            let _ = (state, out);
-        }
-        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
-            let mut enlarged = *state;
-            {
-                type T = f64;
-                let ChargedParticleParameters { q, E, .. } = self.parameters;
-                enlarged.momentum = FieldMomentum(
-                    not_less(
-                        enlarged.momentum.0,
-                        (0, 3),
-                        T::from_f64(0.5) * (h * h).sqrt() * (q * q).sqrt()
-                            * E.dot(&E).sqrt(),
-                    ),
-                );
-            }
-            let state = &enlarged;
-            type T = f64;
-            let ChargedParticleParameters { q, B, E, .. } = self.parameters;
-            let X = state.X.matrix();
-            let p = state.momentum().0;
-            let t1 = E.cross(&X.cross(&(B * (T::from_f64(0.5) * q))));
-            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-            let out = put(
-                out,
-                [t1.dot(&t1).sqrt() + p.dot(&p).sqrt() * E.dot(&E).sqrt(); 3 * 1],
-            );
-            let _ = (state, h, out);
-        }
-    }
-    impl ChargedParticle<f64> {
-        /// The model as data.
-        pub const CARD: Card = Card {
-            name: "ChargedParticle",
-            kebab: "charged-particle",
-            doc: "Charged particle in uniform magnetic and electric fields.",
-            source: Self::SOURCE,
-            fingerprint: Self::FINGERPRINT,
-            summary: "discrete Lagrangian  m ΔX_k·ΔX_k/(2 h) + ½ q B·(X_k × ΔX_k) + ½ h q E·X_k + ½ h q E·X_{k+1}\nmomentum of X        m ΔX_k/h + ½ q (B × X_k)\nRiccati form         none; linear, L = m Id/h + ½ q hat(B), R = 1\ninvariants           energy, momentum_across_E\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
-            solver: "Explicit: the balance is linear: one small linear system",
-            order: 2u32,
-            orders: &[2, 4, 6, 8],
-            preprocessed: false,
-            reversible: true,
-            parameters: &[
-                Kind::Scalar.field("m", [1, 1], "mass"),
-                Kind::Scalar.field("q", [1, 1], "charge"),
-                Kind::Vector.field("B", [3, 1], "magnetic field"),
-                Kind::Vector.field("E", [3, 1], "electric field"),
-            ],
-            initial: &[
-                Kind::Vector.field("X", [3, 1], "place of the particle"),
-                Kind::FieldMomentum.field("momentum", [3, 1], "momentum of X"),
-            ],
-            observables: &[
-                Kind::Vector.field("X", [3, 1], "place of the particle"),
-                Kind::FieldMomentum.field("momentum", [3, 1], "momentum of X"),
-            ],
-            invariants: &[
-                Invariant::exact(
-                    "energy",
-                    "½ (p_k + X_k × (½ q B))·ζ - q E·X_k, where p_k = m ζ + ½ q (B × X_k)",
-                    1usize,
-                ),
-                Invariant::exact(
-                    "momentum_across_E",
-                    "E × p_k - E × (X_k × (½ q B))",
-                    3 * 1,
-                ),
-            ],
-            discrete_energy: Invariant::bounded(
-                "discrete_energy",
-                "m ΔX_k·ΔX_k/(2 h²) - ½ q E·X_k - ½ q E·X_{k+1}",
-                1,
-            ),
-            open: open::<Self>,
-            solvers: &[],
-            dimensions: &[],
-            sized: only_size::<Self>,
-        };
-        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
-        /// velocities together, at the identity, should be positive definite.
-        #[cold]
-        #[allow(unused_variables)]
-        pub fn kinetic_warning(
-            &self,
-            state: &ChargedParticleState<f64>,
-        ) -> Option<KineticWarning> {
-            type T = f64;
-            let ChargedParticleParameters { m, .. } = self.parameters;
-            let mut inertia = SMatrix::<T, 3, 3>::zeros();
-            for axis in 0..(3 * 1) {
-                let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-                let t1 = ξ * (T::from_f64(0.5) * m);
-                let parts: [SVector<T, 3>; 1] = [t1 + t1];
-                inertia
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 3>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_matrix(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            KineticWarning::of(&inertia, 0 + (3 * 1))
-        }
+    ) -> Result<Self, ParameterError> {
+        validate::finite("m", &[parameters.m])?;
+        validate::finite("q", &[parameters.q])?;
+        validate::finite("B", parameters.B.as_slice())?;
+        validate::finite("E", parameters.E.as_slice())?;
+        Ok(Self { parameters })
     }
 }
-#[allow(unused_imports)]
-pub use charged_particle::*;
+/// Initial data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChargedParticleInitial<T = f64> {
+    /// `X` at node 0.
+    pub X: Additive<3, 1, T>,
+    /// Its momentum at node 0.
+    pub momentum: FieldMomentum<3, 1, T>,
+}
+/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate. Places and their momenta are kept in two numbers, the rest below the rounding of the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChargedParticleState<T = f64> {
+    X: Additive<3, 1, T>,
+    momentum: FieldMomentum<3, 1, T>,
+    place_rest: SMatrix<T, 3, 1>,
+    momentum_rest: SMatrix<T, 3, 1>,
+    node: u64,
+}
+impl<T: Real> ChargedParticleState<T> {
+    /// `X` at this node.
+    pub fn X(&self) -> Additive<3, 1, T> {
+        self.X
+    }
+    /// Its momentum at this node.
+    pub fn momentum(&self) -> FieldMomentum<3, 1, T> {
+        self.momentum
+    }
+}
+/// The step and the last velocities, from which the next solves start.
+#[derive(Clone, Copy, Debug)]
+pub struct ChargedParticleWorkspace<T = f64> {
+    h: T,
+}
+impl<T: Real> ChargedParticle<T> {
+    /// The state at node 0.
+    fn begin(
+        &self,
+        initial: ChargedParticleInitial<T>,
+    ) -> Result<ChargedParticleState<T>, StartError> {
+        validate::finite("X", initial.X.matrix().as_slice())?;
+        validate::finite("momentum", initial.momentum.0.as_slice())?;
+        Ok(ChargedParticleState {
+            X: initial.X,
+            momentum: initial.momentum,
+            place_rest: SMatrix::zeros(),
+            momentum_rest: SMatrix::zeros(),
+            node: 0,
+        })
+    }
+    /// What steps of `h` from `state` begin with.
+    fn prepared(
+        &self,
+        _: &ChargedParticleState<T>,
+        h: T,
+        _: (),
+    ) -> Result<ChargedParticleWorkspace<T>, StartError> {
+        Ok(ChargedParticleWorkspace { h })
+    }
+    /// One step, in place. Solved thus: the balance is linear: one small linear system.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    #[inline]
+    pub fn step(
+        &self,
+        state: &mut ChargedParticleState<T>,
+        work: &mut ChargedParticleWorkspace<T>,
+    ) -> Result<(), StepError> {
+        let h = work.h;
+        let ChargedParticleParameters { m, q, B, E, .. } = self.parameters;
+        let X = state.X.matrix();
+        let ΔX = match left_sided(
+            &(SMatrix::<T, 3, 3>::identity() * (m / h)
+                + hat(&B) * (T::from_f64(0.5) * q)),
+            &(state.momentum.0
+                - (B.cross(&X) * (T::from_f64(0.5) * q)
+                    - E * (T::from_f64(0.5) * h * q))),
+            "m Id/h + ½ q hat(B)",
+        ) {
+            Ok(solved) => solved,
+            Err(e) => return Err(StepCause::Singular(e).at_node(state.node)),
+        };
+        let ΔX_matrix = ΔX.matrix();
+        let (X_moved, X_rest) = state.X.moved(&(ΔX), &state.place_rest);
+        let (momentum_next, momentum_rest) = added(
+            &state.momentum.0,
+            &state.momentum_rest,
+            &(E * (h * q) - B.cross(&ΔX_matrix) * (T::from_f64(0.5) * q)),
+        );
+        if !(all_finite(&momentum_next)) {
+            return Err(StepCause::not_finite("momentum").at_node(state.node));
+        }
+        state.X = X_moved;
+        state.place_rest = X_rest;
+        state.momentum = FieldMomentum(momentum_next);
+        state.momentum_rest = momentum_rest;
+        state.node += 1;
+        Ok(())
+    }
+}
+::clebsch::stepper! {
+    [] ChargedParticle, ChargedParticleParameters { m, q, B, E }, ChargedParticleInitial
+    { X, momentum }, ChargedParticleState { X, momentum, place_rest, momentum_rest } at
+    node, ChargedParticleWorkspace { h }, tried {} nothing symmetric judged
+}
+/// A configuration at one node, solution or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChargedParticleConfiguration<T = f64> {
+    /// `X` at the node.
+    pub X: Additive<3, 1, T>,
+}
+impl<T: Real> ChargedParticle<T> {
+    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// consecutive configurations: components are derivatives of the action of the two edges
+    /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+    /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+    /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+    pub fn balance(
+        &self,
+        h: T,
+        before: &ChargedParticleConfiguration<T>,
+        here: &ChargedParticleConfiguration<T>,
+        after: &ChargedParticleConfiguration<T>,
+    ) -> SVector<T, 3> {
+        let ChargedParticleParameters { m, q, B, E, .. } = self.parameters;
+        let X_before = before.X.matrix();
+        let X = here.X.matrix();
+        let ΔX_before = before.X.spatial_velocity(&here.X).matrix();
+        let ΔX = here.X.spatial_velocity(&after.X).matrix();
+        let t1 = h.powi(-1);
+        let t2 = E * (T::from_f64(0.5) * h * q);
+        let parts: [SVector<T, 3>; 1] = [
+            ΔX_before * (t1 * m) + t2 + B.cross(&X_before) * (T::from_f64(0.5) * q)
+                - ΔX * (t1 * m) + t2 - B.cross(&X) * (T::from_f64(0.5) * q)
+                - B.cross(&ΔX) * (T::from_f64(0.5) * q),
+        ];
+        {
+            let mut all = SVector::<T, 3>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_matrix(rest, &parts[0]);
+            let _ = rest;
+            all
+        }
+    }
+    /// What the step of size `h` from one state to the next leaves of its equations: the
+    /// momentum that is carried to the second state, less the one that the motion between
+    /// them brings there. One part a configuration, angular and linear ones of a rigid
+    /// motion apart, each with the size of the terms it is made of: those of a spatial
+    /// velocity are the two elements it is made from, as they are stored.
+    pub fn residual(
+        &self,
+        before: &ChargedParticleState<T>,
+        after: &ChargedParticleState<T>,
+        h: T,
+    ) -> [Residual; 1] {
+        let ChargedParticleParameters { m, q, B, E, .. } = self.parameters;
+        let ΔX_matrix = before
+            .X
+            .velocity_between(&before.place_rest, &after.X, &after.place_rest)
+            .matrix();
+        let X = before.X.matrix();
+        let t1 = h.powi(-1);
+        let t2 = (q * q).sqrt();
+        [
+            Residual::between(
+                &(after.momentum.0),
+                &(ΔX_matrix * (t1 * m) + E * (T::from_f64(0.5) * h * q)
+                    + B.cross(&X) * (T::from_f64(0.5) * q)),
+                (t1 * t1).sqrt() * (m * m).sqrt() * ΔX_matrix.dot(&ΔX_matrix).sqrt()
+                    + T::from_f64(0.5) * (h * h).sqrt() * t2 * E.dot(&E).sqrt()
+                    + T::from_f64(0.5) * t2 * B.dot(&B).sqrt() * X.dot(&X).sqrt(),
+            ),
+        ]
+    }
+    /// The Hessian of the kinetic energy in all velocities together, at the identity.
+    fn inertia_at(&self, state: &ChargedParticleState<T>) -> SMatrix<T, 3, 3> {
+        let ChargedParticleParameters { m, .. } = self.parameters;
+        let mut inertia = SMatrix::<T, 3, 3>::zeros();
+        for axis in 0..(3 * 1) {
+            let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
+            let t1 = ξ * (T::from_f64(0.5) * m);
+            let parts: [SVector<T, 3>; 1] = [t1 + t1];
+            inertia
+                .set_column(
+                    axis,
+                    &{
+                        let mut all = SVector::<T, 3>::zeros();
+                        let rest = all.as_mut_slice();
+                        let rest = put_matrix(rest, &parts[0]);
+                        let _ = rest;
+                        all
+                    },
+                );
+        }
+        inertia
+    }
+    /// The kinetic and the potential energy at this node: those of the limit of small steps,
+    /// at the node's momentum.
+    pub fn energies(&self, state: &ChargedParticleState<T>) -> (T, T) {
+        let ChargedParticleParameters { q, B, E, .. } = self.parameters;
+        let X = state.X.matrix();
+        let parts: [SVector<T, 3>; 1] = [
+            state.momentum().0 - (B * (T::from_f64(0.5) * q)).cross(&X),
+        ];
+        let momentum = {
+            let mut all = SVector::<T, 3>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_matrix(rest, &parts[0]);
+            let _ = rest;
+            all
+        };
+        let velocity = solve_leading_or_nan(
+            &self.inertia_at(state),
+            &momentum,
+            0 + (3 * 1),
+        );
+        (momentum.dot(&velocity) * T::from_f64(0.5), -(q * E.dot(&X)))
+    }
+    /// The physical energy at this node.
+    pub fn energy(&self, state: &ChargedParticleState<T>) -> T {
+        let (kinetic, potential) = self.energies(state);
+        kinetic + potential
+    }
+    /// `E × p_k - E × (X_k × (½ q B))`: Noether: the action changes by a total difference under translations.
+    pub fn momentum_across_E(&self, state: &ChargedParticleState<T>) -> SVector<T, 3> {
+        let ChargedParticleParameters { q, B, E, .. } = self.parameters;
+        let X = state.X.matrix();
+        let p = state.momentum().0;
+        E.cross(&p) - E.cross(&X.cross(&(B * (T::from_f64(0.5) * q))))
+    }
+    /// The discrete energy of the edge between two consecutive states, `m ΔX_k·ΔX_k/(2 h²) - ½ q E·X_k - ½ q E·X_{k+1}`: bounded, since the stepper is symplectic.
+    pub fn discrete_energy(
+        &self,
+        h: T,
+        before: &ChargedParticleState<T>,
+        after: &ChargedParticleState<T>,
+    ) -> T {
+        let ChargedParticleParameters { m, q, E, .. } = self.parameters;
+        let ΔX_matrix = before
+            .X
+            .velocity_between(&before.place_rest, &after.X, &after.place_rest)
+            .matrix();
+        let X = before.X.matrix();
+        let X_next = after.X.matrix();
+        T::from_f64(0.5) * m * ΔX_matrix.dot(&ΔX_matrix) / (h * h)
+            - T::from_f64(0.5) * q * E.dot(&X) - T::from_f64(0.5) * q * E.dot(&X_next)
+    }
+    /// The state after a step of `h` that is tried, or none.
+    #[cold]
+    fn attempt(
+        &self,
+        state: &ChargedParticleState<T>,
+        h: T,
+    ) -> Option<ChargedParticleState<T>> {
+        let mut moving = *state;
+        self.step(&mut moving, &mut ChargedParticleWorkspace { h }).ok()?;
+        Some(moving)
+    }
+}
+impl ChargedParticle<f64> {
+    /// All observables, in the order of the card.
+    fn observe(&self, state: &ChargedParticleState<f64>, out: &mut [f64]) {
+        let out = put(out, rows(state.X().matrix()));
+        let out = put(out, rows(state.momentum().0));
+    }
+    /// All invariants, in the order of the card.
+    fn invariants(
+        &self,
+        state: &ChargedParticleState<f64>,
+        _: Option<&ChargedParticleWorkspace<f64>>,
+        out: &mut [f64],
+    ) {
+        let out = put(out, [self.energy(state)]);
+        let out = put(out, rows(self.momentum_across_E(state)));
+    }
+    /// Their sizes at a state, in steps of `h`.
+    fn scales(&self, state: &ChargedParticleState<f64>, h: f64, out: &mut [f64]) {
+        let mut enlarged = *state;
+        {
+            type T = f64;
+            let ChargedParticleParameters { q, E, .. } = self.parameters;
+            enlarged.momentum = FieldMomentum(
+                not_less(
+                    enlarged.momentum.0,
+                    (0, 3),
+                    T::from_f64(0.5) * (h * h).sqrt() * (q * q).sqrt() * E.dot(&E).sqrt(),
+                ),
+            );
+        }
+        let state = &enlarged;
+        type T = f64;
+        let ChargedParticleParameters { q, B, E, .. } = self.parameters;
+        let X = state.X.matrix();
+        let p = state.momentum().0;
+        let t1 = E.cross(&X.cross(&(B * (T::from_f64(0.5) * q))));
+        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+        let out = put(
+            out,
+            [t1.dot(&t1).sqrt() + p.dot(&p).sqrt() * E.dot(&E).sqrt(); 3 * 1],
+        );
+    }
+    /// The model as data.
+    pub const CARD: Card = Card {
+        name: "ChargedParticle",
+        kebab: "charged-particle",
+        doc: "Charged particle in uniform magnetic and electric fields.",
+        source: Self::SOURCE,
+        fingerprint: Self::FINGERPRINT,
+        summary: "discrete Lagrangian  m ΔX_k·ΔX_k/(2 h) + ½ q B·(X_k × ΔX_k) + ½ h q E·X_k + ½ h q E·X_{k+1}\nmomentum of X        m ΔX_k/h + ½ q (B × X_k)\nRiccati form         none; linear, L = m Id/h + ½ q hat(B), R = 1\ninvariants           energy, momentum_across_E\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
+        solver: "Explicit: the balance is linear: one small linear system",
+        order: 2u32,
+        orders: &[2, 4, 6, 8],
+        preprocessed: false,
+        reversible: true,
+        parameters: &[
+            Kind::Scalar.field("m", [1, 1], "mass"),
+            Kind::Scalar.field("q", [1, 1], "charge"),
+            Kind::Vector.field("B", [3, 1], "magnetic field"),
+            Kind::Vector.field("E", [3, 1], "electric field"),
+        ],
+        initial: &[
+            Kind::Vector.field("X", [3, 1], "place of the particle"),
+            Kind::FieldMomentum.field("momentum", [3, 1], "momentum of X"),
+        ],
+        observables: &[
+            Kind::Vector.field("X", [3, 1], "place of the particle"),
+            Kind::FieldMomentum.field("momentum", [3, 1], "momentum of X"),
+        ],
+        invariants: &[
+            Invariant::exact(
+                "energy",
+                "½ (p_k + X_k × (½ q B))·ζ - q E·X_k, where p_k = m ζ + ½ q (B × X_k)",
+                1usize,
+            ),
+            Invariant::exact(
+                "momentum_across_E",
+                "E × p_k - E × (X_k × (½ q B))",
+                3 * 1,
+            ),
+        ],
+        discrete_energy: Invariant::bounded(
+            "discrete_energy",
+            "m ΔX_k·ΔX_k/(2 h²) - ½ q E·X_k - ½ q E·X_{k+1}",
+            1,
+        ),
+        open: open::<Self>,
+        solvers: &[],
+        dimensions: &[],
+        sized: only_size::<Self>,
+    };
+    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+    /// definite.
+    #[cold]
+    pub fn kinetic_warning(
+        &self,
+        state: &ChargedParticleState<f64>,
+    ) -> Option<KineticWarning> {
+        KineticWarning::of(&self.inertia_at(state), 0 + (3 * 1))
+    }
+}

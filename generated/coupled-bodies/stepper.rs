@@ -1,1088 +1,868 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-/// The model [`CoupledBodies`](struct@CoupledBodies) and what belongs to it.
-#[allow(
+//! The model [`CoupledBodies`](struct@CoupledBodies) and what belongs to it.
+#![allow(
     non_snake_case,
     uncommon_codepoints,
     mixed_script_confusables,
     confusable_idents,
+    unused_variables,
     clippy::all
 )]
-pub mod coupled_bodies {
-    use ::clebsch::emitted::*;
-    /// Parameters of [`CoupledBodies`](struct@CoupledBodies), as given.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CoupledBodiesParameters<T = f64> {
-        /// `J1`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ; a 3 x 3 matrix, symmetric.
-        pub J1: SMatrix<T, 3, 3>,
-        /// `J2`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ; a 3 x 3 matrix, symmetric.
-        pub J2: SMatrix<T, 3, 3>,
-        /// `d1`: joint -> centre of mass, each in its body's axes; a vector of 3 components.
-        pub d1: SVector<T, 3>,
-        /// `d2`: joint -> centre of mass, each in its body's axes; a vector of 3 components.
-        pub d2: SVector<T, 3>,
-        /// `eps`: reduced mass m₁ m₂/(m₁ + m₂); a number.
-        pub eps: T,
+use ::clebsch::emitted::*;
+/// Parameters of [`CoupledBodies`](struct@CoupledBodies), as given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoupledBodiesParameters<T = f64> {
+    /// `J1`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ; a 3 x 3 matrix, symmetric.
+    pub J1: SMatrix<T, 3, 3>,
+    /// `J2`: Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ; a 3 x 3 matrix, symmetric.
+    pub J2: SMatrix<T, 3, 3>,
+    /// `d1`: joint -> centre of mass, each in its body's axes; a vector of 3 components.
+    pub d1: SVector<T, 3>,
+    /// `d2`: joint -> centre of mass, each in its body's axes; a vector of 3 components.
+    pub d2: SVector<T, 3>,
+    /// `eps`: reduced mass m₁ m₂/(m₁ + m₂); a number.
+    pub eps: T,
+}
+/// Two rigid bodies with a spherical joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoupledBodies<T = f64> {
+    parameters: CoupledBodiesParameters<T>,
+}
+impl<T: Real> CoupledBodies<T> {
+    /// The model as it was stated.
+    pub const SOURCE: &'static str = "/// Two rigid bodies with a spherical joint.\npub model CoupledBodies {\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ\n    param J1: Sym<3>;\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ\n    param J2: Sym<3>;\n    /// joint -> centre of mass, each in its body's axes\n    param d1: Vec<3>;\n    /// joint -> centre of mass, each in its body's axes\n    param d2: Vec<3>;\n    /// reduced mass m₁ m₂/(m₁ + m₂)\n    param eps: Real as \"\\varepsilon\";\n    /// attitude of body 1, body to space\n    group Λ1: SO<3> velocity Ω1;\n    /// attitude of body 2, body to space\n    group Λ2: SO<3> velocity Ω2;\n    /// body 2 seen from body 1\n    advected R: SO<3> = Λ1^T*Λ2;\n    constraint next(Λ1) = Λ1*Ω1;\n    constraint next(Λ2) = Λ2*Ω2;\n    constraint next(R) = Ω1^T*R*Ω2;\n    lagrangian = (-tr(J1*Ω1) - tr(J2*Ω2) - eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;\n}";
+    /// A number that changes when the model or its derivation does.
+    pub const FINGERPRINT: u64 = 5825775932552019303u64;
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+    /// assumption, or is no admissible factor of the equation to solve.
+    pub fn new(parameters: CoupledBodiesParameters<T>) -> Result<Self, ParameterError> {
+        validate::finite_entries("J1", &parameters.J1)?;
+        validate::symmetric("J1", &parameters.J1)?;
+        validate::finite_entries("J2", &parameters.J2)?;
+        validate::symmetric("J2", &parameters.J2)?;
+        validate::finite("d1", parameters.d1.as_slice())?;
+        validate::finite("d2", parameters.d2.as_slice())?;
+        validate::finite("eps", &[parameters.eps])?;
+        Ok(Self { parameters })
     }
-    /// Two rigid bodies with a spherical joint.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CoupledBodies<T = f64> {
-        parameters: CoupledBodiesParameters<T>,
+}
+/// Initial data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoupledBodiesInitial<T = f64> {
+    /// `Λ1` at node 0: body -> space.
+    pub Λ1: Rotation<T>,
+    /// Momentum at node 0, in the body frame.
+    pub body_momentum_Λ1: BodyMomentum<T>,
+    /// `Λ2` at node 0: body -> space.
+    pub Λ2: Rotation<T>,
+    /// Momentum at node 0, in the body frame.
+    pub body_momentum_Λ2: BodyMomentum<T>,
+}
+/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoupledBodiesState<T = f64> {
+    Λ1: Rotation<T>,
+    momentum_Λ1: SpatialMomentum<T>,
+    Λ2: Rotation<T>,
+    momentum_Λ2: SpatialMomentum<T>,
+    node: u64,
+}
+impl<T: Real> CoupledBodiesState<T> {
+    /// `Λ1` at this node: body -> space.
+    pub fn Λ1(&self) -> Rotation<T> {
+        self.Λ1
     }
-    impl<T: Real> CoupledBodies<T> {
-        /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Two rigid bodies with a spherical joint.\npub model CoupledBodies {\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ\n    param J1: Sym<3>;\n    /// Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ\n    param J2: Sym<3>;\n    /// joint -> centre of mass, each in its body's axes\n    param d1: Vec<3>;\n    /// joint -> centre of mass, each in its body's axes\n    param d2: Vec<3>;\n    /// reduced mass m₁ m₂/(m₁ + m₂)\n    param eps: Real as \"\\varepsilon\";\n    /// attitude of body 1, body to space\n    group Λ1: SO<3> velocity Ω1;\n    /// attitude of body 2, body to space\n    group Λ2: SO<3> velocity Ω2;\n    /// body 2 seen from body 1\n    advected R: SO<3> = Λ1^T*Λ2;\n    constraint next(Λ1) = Λ1*Ω1;\n    constraint next(Λ2) = Λ2*Ω2;\n    constraint next(R) = Ω1^T*R*Ω2;\n    lagrangian = (-tr(J1*Ω1) - tr(J2*Ω2) - eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;\n}";
-        /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 5825775932552019303u64;
-        /// Checks the parameters.
-        ///
-        /// # Errors
-        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-        /// assumption, or is no admissible factor of the equation to solve.
-        pub fn new(
-            parameters: CoupledBodiesParameters<T>,
-        ) -> Result<Self, ParameterError> {
-            validate::finite_entries("J1", &parameters.J1)?;
-            validate::symmetric("J1", &parameters.J1)?;
-            validate::finite_entries("J2", &parameters.J2)?;
-            validate::symmetric("J2", &parameters.J2)?;
-            validate::finite("d1", parameters.d1.as_slice())?;
-            validate::finite("d2", parameters.d2.as_slice())?;
-            validate::finite("eps", &[parameters.eps])?;
-            Ok(Self { parameters })
-        }
-        /// The parameters.
-        pub fn parameters(&self) -> &CoupledBodiesParameters<T> {
-            &self.parameters
-        }
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum_Λ1(&self) -> SpatialMomentum<T> {
+        self.momentum_Λ1
     }
-    /// Initial data.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CoupledBodiesInitial<T = f64> {
-        /// `Λ1` at node 0: body -> space.
-        pub Λ1: Rotation<T>,
-        /// Momentum at node 0, in the body frame.
-        pub body_momentum_Λ1: BodyMomentum<T>,
-        /// `Λ2` at node 0: body -> space.
-        pub Λ2: Rotation<T>,
-        /// Momentum at node 0, in the body frame.
-        pub body_momentum_Λ2: BodyMomentum<T>,
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum_Λ1(&self) -> BodyMomentum<T> {
+        self.momentum_Λ1.to_body(&self.Λ1)
     }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CoupledBodiesState<T = f64> {
-        Λ1: Rotation<T>,
-        momentum_Λ1: SpatialMomentum<T>,
-        Λ2: Rotation<T>,
-        momentum_Λ2: SpatialMomentum<T>,
-        node: u64,
+    /// `Λ2` at this node: body -> space.
+    pub fn Λ2(&self) -> Rotation<T> {
+        self.Λ2
     }
-    impl<T: Real> CoupledBodiesState<T> {
-        /// `Λ1` at this node: body -> space.
-        pub fn Λ1(&self) -> Rotation<T> {
-            self.Λ1
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum_Λ1(&self) -> SpatialMomentum<T> {
-            self.momentum_Λ1
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum_Λ1(&self) -> BodyMomentum<T> {
-            self.momentum_Λ1.to_body(&self.Λ1)
-        }
-        /// `Λ2` at this node: body -> space.
-        pub fn Λ2(&self) -> Rotation<T> {
-            self.Λ2
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum_Λ2(&self) -> SpatialMomentum<T> {
-            self.momentum_Λ2
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum_Λ2(&self) -> BodyMomentum<T> {
-            self.momentum_Λ2.to_body(&self.Λ2)
-        }
-        /// The number of the node.
-        pub fn node(&self) -> u64 {
-            self.node
-        }
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum_Λ2(&self) -> SpatialMomentum<T> {
+        self.momentum_Λ2
     }
-    /// The step and the last velocities, from which the next solve starts.
-    #[derive(Clone, Copy, Debug)]
-    pub struct CoupledBodiesWorkspace<T = f64> {
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum_Λ2(&self) -> BodyMomentum<T> {
+        self.momentum_Λ2.to_body(&self.Λ2)
+    }
+}
+/// The step and the last velocities, from which the next solve starts.
+#[derive(Clone, Copy, Debug)]
+pub struct CoupledBodiesWorkspace<T = f64> {
+    h: T,
+    search: newton::Search<T, [Rotation<T>; 2], CoupledBodiesNode<T>, 6>,
+}
+impl<T: Real> CoupledBodiesWorkspace<T> {
+    /// How the last step was solved: tangents, corrections, and the residual before the last.
+    pub fn solved(&self) -> newton::Summary {
+        self.search.last()
+    }
+}
+type CoupledBodiesNode<T> = (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]);
+impl<T: Real> CoupledBodies<T> {
+    /// The state at node 0.
+    fn begin(
+        &self,
+        initial: CoupledBodiesInitial<T>,
+    ) -> Result<CoupledBodiesState<T>, StartError> {
+        validate::finite("Λ1", &initial.Λ1.quaternion())?;
+        validate::finite("body_momentum_Λ1", initial.body_momentum_Λ1.0.as_slice())?;
+        validate::finite("Λ2", &initial.Λ2.quaternion())?;
+        validate::finite("body_momentum_Λ2", initial.body_momentum_Λ2.0.as_slice())?;
+        Ok(CoupledBodiesState {
+            Λ1: initial.Λ1,
+            momentum_Λ1: initial.body_momentum_Λ1.to_space(&initial.Λ1),
+            Λ2: initial.Λ2,
+            momentum_Λ2: initial.body_momentum_Λ2.to_space(&initial.Λ2),
+            node: 0,
+        })
+    }
+    /// What steps of `h` from `state` begin with.
+    fn prepared(
+        &self,
+        _: &CoupledBodiesState<T>,
         h: T,
-        search: newton::Search<T, [Rotation<T>; 2], CoupledBodiesNode<T>, 6>,
+        _: (),
+    ) -> Result<CoupledBodiesWorkspace<T>, StartError> {
+        Ok(CoupledBodiesWorkspace {
+            h,
+            search: newton::Search::from_rest(),
+        })
     }
-    ::clebsch::saved! {
-        [] CoupledBodiesWorkspace { h, search }
-    }
-    impl<T: Real> CoupledBodiesWorkspace<T> {
-        /// How the last step was solved: tangents, corrections, and the residual before the last.
-        pub fn solved(&self) -> newton::Summary {
-            self.search.last()
-        }
-    }
-    type CoupledBodiesNode<T> = (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]);
-    impl<T: Real> CoupledBodies<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not admissible, or says why the first step cannot be solved and
-        /// which could.
-        pub fn start(
-            &self,
-            initial: CoupledBodiesInitial<T>,
-            h: T,
-        ) -> Result<(CoupledBodiesState<T>, CoupledBodiesWorkspace<T>), StartError> {
-            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
-        }
-        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
-        pub fn workspace(
-            &self,
-            state: &CoupledBodiesState<T>,
-            h: T,
-        ) -> Result<CoupledBodiesWorkspace<T>, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        /// One step, in place. Solved thus: several velocities are solved together: Newton on the derived residuals.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-        #[inline]
-        pub fn step(
-            &self,
-            state: &mut CoupledBodiesState<T>,
-            work: &mut CoupledBodiesWorkspace<T>,
-        ) -> Result<(), StepError> {
-            let h = work.h;
-            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
-            let Λ1 = state.Λ1.matrix();
-            let Λ2 = state.Λ2.matrix();
-            let R = Λ1.tr_mul(&Λ2);
-            let found: newton::Solved<[Rotation<T>; 2]> = {
-                let momenta: [SVector<T, 3>; 2] = [
-                    Λ1.tr_mul(&state.momentum_Λ1.0),
-                    Λ2.tr_mul(&state.momentum_Λ2.0),
-                ];
-                let s1 = h.powi(-1);
-                let s2 = R * d2;
-                let k2 = d1.cross(&s2);
-                let k3 = eps * s1;
-                let k5 = crossed(&d1, &R);
-                let k6 = crossing(&R.transpose(), &s2);
-                let mut iteration = work.search.begin(state.node, (newton::Turn(R), []));
-                loop {
-                    let trial = iteration.trial();
-                    if iteration.wants_scale() {
-                        iteration
-                            .set_scale(move |lane| {
-                                self
-                                    .rounding(h, &(newton::Turn(R), []), &momenta, &trial, lane)
-                            });
-                    }
-                    let Ω1 = trial[0].matrix();
-                    let Ω2 = trial[1].matrix();
-                    if iteration
-                        .assess({
-                            joined::<
-                                T,
-                                2,
-                                6,
-                            >(
-                                &[
-                                    (axial_of_difference(&(Ω1 * J1)) * s1
-                                        + ((R * (Ω2 * d2)).cross(&d1) + k2) * k3) - momenta[0],
-                                    (axial_of_difference(&(Ω2 * J2)) * s1
-                                        + R.tr_mul(&(Ω1 * d1 - d1).cross(&s2)) * k3) - momenta[1],
-                                ],
-                            )
-                        })
-                    {
-                        iteration
-                            .set_tangent_times(
-                                &{
-                                    let t1 = Ω1 * J1;
-                                    let t2 = Ω2 * J2;
-                                    assembled::<
-                                        T,
-                                        2,
-                                        6,
-                                    >(
-                                        &[
-                                            [trace_complement(&t1), crossing(&k5, &(Ω2 * d2)) * eps],
-                                            [crossing(&k6, &(Ω1 * d1)) * eps, trace_complement(&t2)],
-                                        ],
-                                    )
-                                },
+    /// One step, in place. Solved thus: several velocities are solved together: Newton on the derived residuals.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    #[inline]
+    pub fn step(
+        &self,
+        state: &mut CoupledBodiesState<T>,
+        work: &mut CoupledBodiesWorkspace<T>,
+    ) -> Result<(), StepError> {
+        let h = work.h;
+        let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+        let Λ1 = state.Λ1.matrix();
+        let Λ2 = state.Λ2.matrix();
+        let R = Λ1.tr_mul(&Λ2);
+        let found: newton::Solved<[Rotation<T>; 2]> = {
+            let momenta: [SVector<T, 3>; 2] = [
+                Λ1.tr_mul(&state.momentum_Λ1.0),
+                Λ2.tr_mul(&state.momentum_Λ2.0),
+            ];
+            let s1 = h.powi(-1);
+            let s2 = R * d2;
+            let k2 = d1.cross(&s2);
+            let k3 = eps * s1;
+            let k5 = crossed(&d1, &R);
+            let k6 = crossing(&R.transpose(), &s2);
+            let mut iteration = work.search.begin(state.node, (newton::Turn(R), []));
+            loop {
+                let trial = iteration.trial();
+                if iteration.wants_scale() {
+                    iteration
+                        .set_scale(move |lane| {
+                            self
+                                .rounding(h, &(newton::Turn(R), []), &momenta, &trial, lane)
+                        });
+                }
+                let Ω1 = trial[0].matrix();
+                let Ω2 = trial[1].matrix();
+                if iteration
+                    .assess({
+                        joined::<
+                            T,
+                            2,
+                            6,
+                        >(
+                            &[
+                                (axial_of_difference(&(Ω1 * J1)) * s1
+                                    + ((R * (Ω2 * d2)).cross(&d1) + k2) * k3) - momenta[0],
+                                (axial_of_difference(&(Ω2 * J2)) * s1
+                                    + R.tr_mul(&(Ω1 * d1 - d1).cross(&s2)) * k3) - momenta[1],
+                            ],
+                        )
+                    })
+                {
+                    iteration
+                        .set_tangent_times(
+                            &{
+                                let t1 = Ω1 * J1;
+                                let t2 = Ω2 * J2;
+                                assembled::<
+                                    T,
+                                    2,
+                                    6,
+                                >(
+                                    &[
+                                        [trace_complement(&t1), crossing(&k5, &(Ω2 * d2)) * eps],
+                                        [crossing(&k6, &(Ω1 * d1)) * eps, trace_complement(&t2)],
+                                    ],
+                                )
+                            },
+                            h,
+                        );
+                }
+                match iteration.correct_from_left() {
+                    newton::Progress::Continue => {}
+                    newton::Progress::Solved(
+                        solved,
+                    ) if iteration.is_principal(&solved.element) => break solved,
+                    ended => {
+                        if let Some(solved) = self
+                            .settled(
                                 h,
-                            );
-                    }
-                    match iteration.correct_from_left() {
-                        newton::Progress::Continue => {}
-                        newton::Progress::Solved(
-                            solved,
-                        ) if iteration.is_principal(&solved.element) => break solved,
-                        ended => {
-                            if let Some(solved) = self
-                                .settled(
-                                    h,
-                                    *state,
-                                    (newton::Turn(R), []),
-                                    momenta,
-                                    &mut iteration,
-                                    ended,
-                                )?
-                            {
-                                break solved;
-                            }
+                                *state,
+                                (newton::Turn(R), []),
+                                momenta,
+                                &mut iteration,
+                                ended,
+                            )?
+                        {
+                            break solved;
                         }
                     }
                 }
-            };
-            let solved = found.element;
-            let Ω1_matrix = solved[0].matrix();
-            let Ω2_matrix = solved[1].matrix();
-            let Λ1_moved = state.Λ1 * solved[0];
-            let Λ2_moved = state.Λ2 * solved[1];
-            let t1 = h.powi(-1);
-            let t2 = Ω2_matrix - SMatrix::<T, 3, 3>::identity();
-            let t3 = Ω1_matrix - SMatrix::<T, 3, 3>::identity();
-            let momentum_Λ1_next = state.momentum_Λ1.0
-                + Λ1 * ((R * (t2 * d2)).cross(&(t3 * d1)) * (eps * t1));
-            let momentum_Λ2_next = state.momentum_Λ2.0
-                + Λ2 * (-((t2 * d2).cross(&(R.tr_mul(&(t3 * d1)))) * (eps * t1)));
-            if !(all_finite(&momentum_Λ1_next) && all_finite(&momentum_Λ2_next)) {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
             }
-            state.Λ1 = Λ1_moved;
-            state.Λ2 = Λ2_moved;
-            state.momentum_Λ1 = SpatialMomentum(momentum_Λ1_next);
-            state.momentum_Λ2 = SpatialMomentum(momentum_Λ2_next);
-            state.node += 1;
-            work.search.remember(state.node - 1, &found);
-            Ok(())
+        };
+        let solved = found.element;
+        let Ω1_matrix = solved[0].matrix();
+        let Ω2_matrix = solved[1].matrix();
+        let Λ1_moved = state.Λ1 * solved[0];
+        let Λ2_moved = state.Λ2 * solved[1];
+        let t1 = h.powi(-1);
+        let t2 = Ω2_matrix - SMatrix::<T, 3, 3>::identity();
+        let t3 = Ω1_matrix - SMatrix::<T, 3, 3>::identity();
+        let momentum_Λ1_next = state.momentum_Λ1.0
+            + Λ1 * ((R * (t2 * d2)).cross(&(t3 * d1)) * (eps * t1));
+        let momentum_Λ2_next = state.momentum_Λ2.0
+            + Λ2 * (-((t2 * d2).cross(&(R.tr_mul(&(t3 * d1)))) * (eps * t1)));
+        if !(all_finite(&momentum_Λ1_next) && all_finite(&momentum_Λ2_next)) {
+            return Err(StepCause::not_finite("momentum").at_node(state.node));
         }
-        /// The solution to be taken where the one found is not known to be principal, or none was
-        /// found. None where the iteration begins again, at the principal root.
-        #[cold]
-        #[inline(never)]
-        fn settled(
-            &self,
-            h: T,
-            state: CoupledBodiesState<T>,
-            given: (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-            momenta: [SVector<T, 3>; 2],
-            iteration: &mut newton::Newton<
-                '_,
-                T,
-                [Rotation<T>; 2],
-                CoupledBodiesNode<T>,
-                6,
-            >,
-            ended: newton::Progress<[Rotation<T>; 2]>,
-        ) -> Result<Option<newton::Solved<[Rotation<T>; 2]>>, StepError> {
-            let failed = match ended {
-                newton::Progress::Continue => return Ok(None),
-                newton::Progress::Solved(solved) => Ok(solved),
-                newton::Progress::Failed(e) => Err(e),
-            };
-            let asked = failed.as_ref().ok().map(|solved| &solved.element);
-            let values = iteration.values();
-            let traced = self
-                .principal(h, &given, &values, &momenta, iteration.certificate(), asked);
-            let e = match (traced, failed) {
-                (Ok(None), Ok(solved)) => return Ok(Some(solved)),
-                (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
-                (Ok(_), Err(e)) => e,
-                (Ok(_), Ok(_)) => iteration.unpolished(),
-                (Err(fold), failed) => iteration.folded(fold, failed.err()),
-            };
-            Err(self.refused(state, h, e))
-        }
-        /// Says which equation is worst, and which step could be solved.
-        #[cold]
-        #[inline(never)]
-        fn refused(
-            &self,
-            state: CoupledBodiesState<T>,
-            h: T,
-            e: newton::NewtonError,
-        ) -> StepError {
-            const CONFIGURATIONS: &[&str] = &["Λ1", "Λ2"];
-            let e = e
-                .explained(
-                    h,
-                    &CONFIGURATIONS,
-                    |h, search| {
-                        self.step(
-                            &mut { state },
-                            &mut CoupledBodiesWorkspace {
-                                h,
-                                search,
-                            },
-                        )
-                    },
-                );
-            StepCause::from(e).at_node(state.node)
-        }
-        /// The residual of the equations of a step.
-        #[cold]
-        #[inline(never)]
-        #[allow(unused_variables)]
-        fn residual_at(
-            parameters: &CoupledBodiesParameters<T>,
-            h: T,
-            given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-            momenta: &[SVector<T, 3>; 2],
-            trial: &[Rotation<T>; 2],
-        ) -> SVector<T, 6> {
-            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = *parameters;
-            let R = given.0.0;
-            let Ω1 = trial[0].matrix();
-            let Ω2 = trial[1].matrix();
-            let t1 = h.powi(-1);
-            let t2 = R * d2;
-            joined::<
-                T,
-                2,
-                6,
-            >(
-                &[
-                    (axial_of_difference(&(Ω1 * J1)) * t1
-                        + (d1.cross(&t2) + (R * (Ω2 * d2)).cross(&d1)) * (eps * t1))
-                        - momenta[0],
-                    (axial_of_difference(&(Ω2 * J2)) * t1
-                        + R.tr_mul(&(Ω1 * d1 - d1).cross(&t2)) * (eps * t1))
-                        - momenta[1],
+        state.Λ1 = Λ1_moved;
+        state.Λ2 = Λ2_moved;
+        state.momentum_Λ1 = SpatialMomentum(momentum_Λ1_next);
+        state.momentum_Λ2 = SpatialMomentum(momentum_Λ2_next);
+        state.node += 1;
+        work.search.remember(state.node - 1, &found);
+        Ok(())
+    }
+    /// The solution to be taken where the one found is not known to be principal, or none was
+    /// found. None where the iteration begins again, at the principal root.
+    #[cold]
+    #[inline(never)]
+    fn settled(
+        &self,
+        h: T,
+        state: CoupledBodiesState<T>,
+        given: (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+        momenta: [SVector<T, 3>; 2],
+        iteration: &mut newton::Newton<'_, T, [Rotation<T>; 2], CoupledBodiesNode<T>, 6>,
+        ended: newton::Progress<[Rotation<T>; 2]>,
+    ) -> Result<Option<newton::Solved<[Rotation<T>; 2]>>, StepError> {
+        let failed = match ended {
+            newton::Progress::Continue => return Ok(None),
+            newton::Progress::Solved(solved) => Ok(solved),
+            newton::Progress::Failed(e) => Err(e),
+        };
+        let asked = failed.as_ref().ok().map(|solved| &solved.element);
+        let values = iteration.values();
+        let traced = self
+            .principal(h, &given, &values, &momenta, iteration.certificate(), asked);
+        let e = match (traced, failed) {
+            (Ok(None), Ok(solved)) => return Ok(Some(solved)),
+            (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
+            (Ok(_), Err(e)) => e,
+            (Ok(_), Ok(_)) => iteration.unpolished(),
+            (Err(fold), failed) => iteration.folded(fold, failed.err()),
+        };
+        Err(self.refused(state, h, e))
+    }
+    /// Says which equation is worst, and which step could be solved.
+    #[cold]
+    #[inline(never)]
+    fn refused(
+        &self,
+        state: CoupledBodiesState<T>,
+        h: T,
+        e: newton::NewtonError,
+    ) -> StepError {
+        const CONFIGURATIONS: &[&str] = &["Λ1", "Λ2"];
+        let e = e
+            .explained(
+                h,
+                &CONFIGURATIONS,
+                |h, search| {
+                    self.step(
+                        &mut { state },
+                        &mut CoupledBodiesWorkspace {
+                            h,
+                            search,
+                        },
+                    )
+                },
+            );
+        StepCause::from(e).at_node(state.node)
+    }
+    /// The residual of the equations of a step.
+    #[cold]
+    #[inline(never)]
+    #[allow(unused_variables)]
+    fn residual_at(
+        parameters: &CoupledBodiesParameters<T>,
+        h: T,
+        given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+        momenta: &[SVector<T, 3>; 2],
+        trial: &[Rotation<T>; 2],
+    ) -> SVector<T, 6> {
+        let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = *parameters;
+        let R = given.0.0;
+        let Ω1 = trial[0].matrix();
+        let Ω2 = trial[1].matrix();
+        let t1 = h.powi(-1);
+        let t2 = R * d2;
+        joined::<
+            T,
+            2,
+            6,
+        >(
+            &[
+                (axial_of_difference(&(Ω1 * J1)) * t1
+                    + (d1.cross(&t2) + (R * (Ω2 * d2)).cross(&d1)) * (eps * t1))
+                    - momenta[0],
+                (axial_of_difference(&(Ω2 * J2)) * t1
+                    + R.tr_mul(&(Ω1 * d1 - d1).cross(&t2)) * (eps * t1)) - momenta[1],
+            ],
+        )
+    }
+    /// Their tangent.
+    #[cold]
+    #[inline(never)]
+    #[allow(unused_variables)]
+    fn tangent_at(
+        parameters: &CoupledBodiesParameters<T>,
+        h: T,
+        values: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+        Ω1: SMatrix<T, 3, 3>,
+        Ω2: SMatrix<T, 3, 3>,
+    ) -> SMatrix<T, 6, 6> {
+        let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = *parameters;
+        let R = values.0.0;
+        let t1 = h.powi(-1);
+        let t2 = Ω1 * J1;
+        let t3 = Ω2 * J2;
+        assembled::<
+            T,
+            2,
+            6,
+        >(
+            &[
+                [
+                    (trace_complement(&t2)) * Ω1 * t1,
+                    crossed(&d1, &(R * crossing(&Ω2, &d2))) * (eps * t1),
                 ],
-            )
-        }
-        /// Their tangent.
-        #[cold]
-        #[inline(never)]
-        #[allow(unused_variables)]
-        fn tangent_at(
-            parameters: &CoupledBodiesParameters<T>,
-            h: T,
-            values: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-            Ω1: SMatrix<T, 3, 3>,
-            Ω2: SMatrix<T, 3, 3>,
-        ) -> SMatrix<T, 6, 6> {
-            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = *parameters;
-            let R = values.0.0;
-            let t1 = h.powi(-1);
-            let t2 = Ω1 * J1;
-            let t3 = Ω2 * J2;
-            assembled::<
-                T,
-                2,
-                6,
-            >(
-                &[
-                    [
-                        (trace_complement(&t2)) * Ω1 * t1,
-                        crossed(&d1, &(R * crossing(&Ω2, &d2))) * (eps * t1),
-                    ],
-                    [
-                        R.tr_mul(&crossed(&(R * d2), &crossing(&Ω1, &d1))) * (eps * t1),
-                        (trace_complement(&t3)) * Ω2 * t1,
-                    ],
+                [
+                    R.tr_mul(&crossed(&(R * d2), &crossing(&Ω1, &d1))) * (eps * t1),
+                    (trace_complement(&t3)) * Ω2 * t1,
                 ],
-            )
-        }
-        /// Bounds of the rounding of the residual, in one lane.
-        #[cold]
-        #[inline(never)]
-        fn rounding(
-            &self,
-            h: T,
-            given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-            momenta: &[SVector<T, 3>; 2],
-            trial: &[Rotation<T>; 2],
-            lane: usize,
-        ) -> SVector<f64, 6> {
-            let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
-            let parameters = self.parameters.over(change);
-            let (step, given, momenta) = (
-                h.over(change),
+            ],
+        )
+    }
+    /// Bounds of the rounding of the residual, in one lane.
+    #[cold]
+    #[inline(never)]
+    fn rounding(
+        &self,
+        h: T,
+        given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+        momenta: &[SVector<T, 3>; 2],
+        trial: &[Rotation<T>; 2],
+        lane: usize,
+    ) -> SVector<f64, 6> {
+        let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
+        let parameters = self.parameters.over(change);
+        let (step, given, momenta) = (
+            h.over(change),
+            given.over(change),
+            momenta.map(|part| part.over(change)),
+        );
+        let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
+        let trial = [trial[0].over(change), trial[1].over(change)];
+        CoupledBodies::<
+            newton::Enclosure<0>,
+        >::residual_at(&parameters, step, &given, &momenta, &trial)
+            .map(|x| x.rest())
+    }
+    /// Finds the principal root, or shows that the solution is.
+    #[cold]
+    #[inline(never)]
+    fn principal(
+        &self,
+        h: T,
+        given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+        values: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+        momenta: &[SVector<T, 3>; 2],
+        certificate: &mut newton::Certificate<
+            (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+            6,
+        >,
+        solution: Option<&[Rotation<T>; 2]>,
+    ) -> Result<Option<newton::Anchor<[Rotation<T>; 2], 6>>, newton::Fold> {
+        let first = solution.copied().unwrap_or_else(Group::<T>::identity);
+        let mut verdict = newton::Verdict::<[Rotation<T>; 2], 6>::about(first);
+        for lane in 0..T::LANES {
+            let change = &mut |x: T| newton::Enclosure::<18>::exactly(x.lane(lane));
+            let (bound, bound_step) = (self.parameters.over(change), h.over(change));
+            let change = &mut |x: T| x.lane(lane);
+            let (parameters, step) = (self.parameters.over(change), h.over(change));
+            let (given, near, momenta) = (
                 given.over(change),
+                values.over(change),
                 momenta.map(|part| part.over(change)),
             );
-            let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
-            let trial = [trial[0].over(change), trial[1].over(change)];
-            CoupledBodies::<
-                newton::Enclosure<0>,
-            >::residual_at(&parameters, step, &given, &momenta, &trial)
-                .map(|x| x.rest())
-        }
-        /// Finds the principal root, or shows that the solution is.
-        #[cold]
-        #[inline(never)]
-        fn principal(
-            &self,
-            h: T,
-            given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-            values: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-            momenta: &[SVector<T, 3>; 2],
-            certificate: &mut newton::Certificate<
-                (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-                6,
-            >,
-            solution: Option<&[Rotation<T>; 2]>,
-        ) -> Result<Option<newton::Anchor<[Rotation<T>; 2], 6>>, newton::Fold> {
-            let first = solution.copied().unwrap_or_else(Group::<T>::identity);
-            let mut verdict = newton::Verdict::<[Rotation<T>; 2], 6>::about(first);
-            for lane in 0..T::LANES {
-                let change = &mut |x: T| newton::Enclosure::<18>::exactly(x.lane(lane));
-                let (bound, bound_step) = (self.parameters.over(change), h.over(change));
-                let change = &mut |x: T| x.lane(lane);
-                let (parameters, step) = (self.parameters.over(change), h.over(change));
-                let (given, near, momenta) = (
-                    given.over(change),
-                    values.over(change),
-                    momenta.map(|part| part.over(change)),
-                );
-                let found = match solution {
-                    Some(found) => Some([found[0].over(change), found[1].over(change)]),
-                    None => None,
-                };
-                let equations = newton::Equations {
-                    residual: &|trial: &[Rotation<f64>; 2]| CoupledBodies::<
-                        f64,
-                    >::residual_at(&parameters, step, &given, &momenta, trial),
-                    tangent: &|trial: &[Rotation<f64>; 2]| {
-                        let Ω1 = trial[0].matrix();
-                        let Ω2 = trial[1].matrix();
-                        CoupledBodies::<
-                            f64,
-                        >::tangent_at(&parameters, step, &near, Ω1, Ω2)
-                    },
-                    enclosed: &|spread, trial: &[newton::RotationRegion<18>; 2]| {
-                        let Ω1 = trial[0].matrix();
-                        let Ω2 = trial[1].matrix();
-                        let values = newton::NodeValues::enclosed(values, lane, spread);
-                        CoupledBodies::<
-                            newton::Enclosure<18>,
-                        >::tangent_at(&bound, bound_step, &values, Ω1, Ω2)
-                    },
-                };
-                let care = certificate.care();
-                let traced = newton::trace(&equations, found.as_ref(), care);
-                if let Some(root) = verdict
-                    .add(traced.map_err(|fold| fold.in_lane(lane))?)
-                {
-                    let all = verdict.root_mut();
-                    all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
-                    all[1] = all[1].over(&mut newton::Numbers::of(&root[1]).put(lane));
-                }
-            }
-            Ok(verdict.close(certificate, values))
-        }
-        /// `R` at the node of this state.
-        #[inline]
-        pub fn R(&self, state: &CoupledBodiesState<T>) -> SMatrix<T, 3, 3> {
-            let Λ1 = state.Λ1.matrix();
-            let Λ2 = state.Λ2.matrix();
-            let R = Λ1.tr_mul(&Λ2);
-            R
-        }
-    }
-    impl<T: Real> Stepper for CoupledBodies<T> {
-        type Scalar = T;
-        type State = CoupledBodiesState<T>;
-        type Workspace = CoupledBodiesWorkspace<T>;
-        fn workspace(
-            &self,
-            state: &Self::State,
-            h: T,
-        ) -> Result<Self::Workspace, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        #[inline(always)]
-        fn advance(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-        ) -> Result<(), StepError> {
-            self.step(state, work)
-        }
-        #[cold]
-        fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
-            let mut moving = *state;
-            self.step(
-                    &mut moving,
-                    &mut CoupledBodiesWorkspace {
-                        h,
-                        search: newton::Search::to_try(),
-                    },
-                )
-                .ok()?;
-            Some(moving)
-        }
-        fn node(state: &Self::State) -> u64 {
-            state.node
-        }
-        fn at_node(state: Self::State, node: u64) -> Self::State {
-            CoupledBodiesState {
-                node: node,
-                ..state
-            }
-        }
-    }
-    impl<T: Real> Reversible for CoupledBodies<T> {}
-    ::clebsch::of_scalars! {
-        [] CoupledBodiesParameters { J1, J2, d1, d2, eps }
-    }
-    ::clebsch::of_scalars! {
-        [] CoupledBodiesInitial { Λ1, body_momentum_Λ1, Λ2, body_momentum_Λ2 }
-    }
-    ::clebsch::of_scalars! {
-        [] CoupledBodiesState { Λ1, momentum_Λ1, Λ2, momentum_Λ2 } at node
-    }
-    impl<T: Real> ::clebsch::integrate::Model for CoupledBodies<T> {
-        type Parameters = CoupledBodiesParameters<T>;
-        type Initial = CoupledBodiesInitial<T>;
-        type Choice = ();
-        type Over<U: Real> = CoupledBodies<U>;
-        const SIDE_BY_SIDE: bool = false;
-        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
-            Self::new(parameters)
-        }
-        fn given(&self) -> &Self::Parameters {
-            &self.parameters
-        }
-        fn begin(
-            &self,
-            initial: Self::Initial,
-        ) -> Result<CoupledBodiesState<T>, StartError> {
-            validate::finite("Λ1", &initial.Λ1.quaternion())?;
-            validate::finite(
-                "body_momentum_Λ1",
-                initial.body_momentum_Λ1.0.as_slice(),
-            )?;
-            validate::finite("Λ2", &initial.Λ2.quaternion())?;
-            validate::finite(
-                "body_momentum_Λ2",
-                initial.body_momentum_Λ2.0.as_slice(),
-            )?;
-            Ok(CoupledBodiesState {
-                Λ1: initial.Λ1,
-                momentum_Λ1: initial.body_momentum_Λ1.to_space(&initial.Λ1),
-                Λ2: initial.Λ2,
-                momentum_Λ2: initial.body_momentum_Λ2.to_space(&initial.Λ2),
-                node: 0,
-            })
-        }
-        fn prepared(
-            &self,
-            _: &CoupledBodiesState<T>,
-            h: T,
-            _: Self::Choice,
-        ) -> Result<Self::Workspace, StartError> {
-            Ok(CoupledBodiesWorkspace {
-                h,
-                search: newton::Search::from_rest(),
-            })
-        }
-    }
-    /// A configuration at one node, solution or not.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct CoupledBodiesConfiguration<T = f64> {
-        /// `Λ1` at the node: body -> space.
-        pub Λ1: Rotation<T>,
-        /// `Λ2` at the node: body -> space.
-        pub Λ2: Rotation<T>,
-    }
-    impl<T: Real> CoupledBodies<T> {
-        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
-        /// consecutive configurations: component `i` is the derivative of the action of the
-        /// two edges when the middle element is rotated about its axis `i` (a body axis on
-        /// the body side, a space axis on the spatial side). Zero on solutions.
-        pub fn balance(
-            &self,
-            h: T,
-            before: &CoupledBodiesConfiguration<T>,
-            here: &CoupledBodiesConfiguration<T>,
-            after: &CoupledBodiesConfiguration<T>,
-        ) -> SVector<T, 6> {
-            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
-            let Λ1_before = before.Λ1.matrix();
-            let Λ2_before = before.Λ2.matrix();
-            let R_before = Λ1_before.tr_mul(&Λ2_before);
-            let Λ1 = here.Λ1.matrix();
-            let Λ2 = here.Λ2.matrix();
-            let R = Λ1.tr_mul(&Λ2);
-            let Ω1_before = before.Λ1.body_velocity(&here.Λ1).matrix();
-            let Ω1 = here.Λ1.body_velocity(&after.Λ1).matrix();
-            let Ω2_before = before.Λ2.body_velocity(&here.Λ2).matrix();
-            let Ω2 = here.Λ2.body_velocity(&after.Λ2).matrix();
-            let t1 = h.powi(-1);
-            let t2 = d1.cross(&(R * d2));
-            let parts: [SVector<T, 3>; 2] = [
-                axial_of_difference(
-                    &(Ω1_before
-                        .tr_mul(
-                            &((-(J1 / h))
-                                - ((R_before
-                                    * ((Ω2_before - SMatrix::<T, 3, 3>::identity()) * d2))
-                                    * d1.transpose() * eps) / h),
-                        )),
-                ) + axial_of_difference(&(J1 * Ω1.transpose())) * t1 - t2 * (t1 * eps)
-                    + d1.cross(&(R * (Ω2 * d2))) * (t1 * eps),
-                axial_of_difference(
-                    &(Ω2_before
-                        .tr_mul(
-                            &((-(J2 / h))
-                                - (R_before
-                                    .tr_mul(
-                                        &((Ω1_before - SMatrix::<T, 3, 3>::identity()) * d1),
-                                    ) * d2.transpose() * eps) / h),
-                        )),
-                ) + axial_of_difference(&(J2 * Ω2.transpose())) * t1
-                    - R.tr_mul(&(Ω1 * d1.cross(&(Ω1.tr_mul(&(R * d2)))))) * (t1 * eps)
-                    + R.tr_mul(&t2) * (t1 * eps),
-            ];
-            SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
-        }
-    }
-    impl<T: Real> CoupledBodies<T> {
-        /// What the step of size `h` from one state to the next leaves of its equations: the
-        /// momentum that is carried to the second state, less the one that the motion between
-        /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a spatial
-        /// velocity are the two elements it is made from, as they are stored.
-        pub fn residual(
-            &self,
-            before: &CoupledBodiesState<T>,
-            after: &CoupledBodiesState<T>,
-            h: T,
-        ) -> [Residual; 2] {
-            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
-            let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
-            let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
-            let Λ1 = before.Λ1.matrix();
-            let Λ2 = before.Λ2.matrix();
-            let R = Λ1.tr_mul(&Λ2);
-            let t1 = (Ω1_matrix.tr_mul(&Ω1_matrix)).trace().sqrt();
-            let t2 = (h * h).sqrt();
-            let t3 = (eps * eps).sqrt();
-            let t4 = (R.tr_mul(&R)).trace().sqrt();
-            let t5 = (Ω2_matrix.tr_mul(&Ω2_matrix)).trace().sqrt();
-            let t6 = d2.dot(&d2).sqrt();
-            let t7 = d1.dot(&d1).sqrt();
-            let _ = h;
-            [
-                {
-                    let momentum = after.momentum_Λ1.to_body(&after.Λ1).0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (axial_of_difference(
-                                        &(Ω1_matrix
-                                            .tr_mul(
-                                                &((-(J1 / h))
-                                                    - ((R
-                                                        * ((Ω2_matrix - SMatrix::<T, 3, 3>::identity()) * d2))
-                                                        * d1.transpose() * eps) / h),
-                                            )),
-                                    ))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (T::from_f64(2.0) * t1
-                                * ((J1 * J1).trace().sqrt() / t2
-                                    + (t3 * t4 * (t5 + T::from_f64(1.0)) * t6 * t7) / t2))
-                                .magnitude(),
-                    }
-                },
-                {
-                    let momentum = after.momentum_Λ2.to_body(&after.Λ2).0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (axial_of_difference(
-                                        &(Ω2_matrix
-                                            .tr_mul(
-                                                &((-(J2 / h))
-                                                    - (R
-                                                        .tr_mul(
-                                                            &((Ω1_matrix - SMatrix::<T, 3, 3>::identity()) * d1),
-                                                        ) * d2.transpose() * eps) / h),
-                                            )),
-                                    ))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (T::from_f64(2.0) * t5
-                                * ((J2 * J2).trace().sqrt() / t2
-                                    + (t3 * t4 * (t1 + T::from_f64(1.0)) * t7 * t6) / t2))
-                                .magnitude(),
-                    }
-                },
-            ]
-        }
-    }
-    impl<T: Real> CoupledBodies<T> {
-        /// The kinetic and the potential energy at this node: those of the limit of small steps,
-        /// at the node's momentum.
-        pub fn energies(&self, state: &CoupledBodiesState<T>) -> (T, T) {
-            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
-            let Λ1 = state.Λ1.matrix();
-            let Λ2 = state.Λ2.matrix();
-            let R = Λ1.tr_mul(&Λ2);
-            let parts: [SVector<T, 3>; 2] = [
-                state.body_momentum_Λ1().0,
-                state.body_momentum_Λ2().0,
-            ];
-            let momentum: SVector<T, 6> = SVector::<
-                T,
-                6,
-            >::from_fn(|i, _| parts[i / 3][i % 3]);
-            let inertia = SMatrix::<
-                T,
-                6,
-                6,
-            >::from_fn(|i, j| {
-                let ξ1 = if i / 3 == 0 {
-                    basis::<T>(i % 3)
-                } else {
-                    SMatrix::<T, 3, 3>::zeros()
-                };
-                let ξ2 = if i / 3 == 1 {
-                    basis::<T>(i % 3)
-                } else {
-                    SMatrix::<T, 3, 3>::zeros()
-                };
-                let η1 = if j / 3 == 0 {
-                    basis::<T>(j % 3)
-                } else {
-                    SMatrix::<T, 3, 3>::zeros()
-                };
-                let η2 = if j / 3 == 1 {
-                    basis::<T>(j % 3)
-                } else {
-                    SMatrix::<T, 3, 3>::zeros()
-                };
-                eps * d1.dot(&(R * vee(&η2))) * d2.dot(&(R.tr_mul(&vee(&ξ1))))
-                    - eps * d1.dot(&(R * d2))
-                        * (vee(&η1).dot(&(R * vee(&ξ2)))
-                            + vee(&ξ1).dot(&(R * vee(&η2))))
-                    + eps * d1.dot(&(R * vee(&ξ2))) * d2.dot(&(R.tr_mul(&vee(&η1))))
-                    + T::from_f64(0.5) * J1.trace()
-                        * (vee(&η1).dot(&vee(&ξ1)) + vee(&ξ1).dot(&vee(&η1)))
-                    + T::from_f64(0.5) * J2.trace()
-                        * (vee(&η2).dot(&vee(&ξ2)) + vee(&ξ2).dot(&vee(&η2)))
-                    - T::from_f64(0.5)
-                        * (vee(&η1).dot(&(J1 * vee(&ξ1)))
-                            + vee(&ξ1).dot(&(J1 * vee(&η1))))
-                    - T::from_f64(0.5)
-                        * (vee(&η2).dot(&(J2 * vee(&ξ2)))
-                            + vee(&ξ2).dot(&(J2 * vee(&η2))))
-            });
-            let velocity = solve_or_nan(&inertia, &momentum);
-            (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
-        }
-        /// The physical energy at this node.
-        pub fn energy(&self, state: &CoupledBodiesState<T>) -> T {
-            let (kinetic, potential) = self.energies(state);
-            kinetic + potential
-        }
-        /// `Λ_{1,k} μ_{1,k} + Λ_{2,k} μ_{2,k}`: Noether: the action is invariant under rotations of space.
-        pub fn total_momentum(&self, state: &CoupledBodiesState<T>) -> SVector<T, 3> {
-            state.spatial_momentum_Λ1().0 + state.spatial_momentum_Λ2().0
-        }
-        /// `(μ_{1,k} + R_k μ_{2,k})·(μ_{1,k} + R_k μ_{2,k})`: Casimir: the Kelvin-Noether quantity of the advected quantities.
-        pub fn total_momentum_squared(&self, state: &CoupledBodiesState<T>) -> T {
-            let Λ1 = state.Λ1.matrix();
-            let Λ2 = state.Λ2.matrix();
-            let R = Λ1.tr_mul(&Λ2);
-            let μ1 = state.body_momentum_Λ1().0;
-            let μ2 = state.body_momentum_Λ2().0;
-            let t1 = μ1 + R * μ2;
-            t1.dot(&t1)
-        }
-    }
-    impl<T: Real> CoupledBodies<T> {
-        /// The discrete energy of the edge between two consecutive states, `-tr(J₁ Ω_{1,k})/h² - tr(J₂ Ω_{2,k})/h² - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h² + tr(J₁)/h² + tr(J₂)/h²`: bounded, since the stepper is symplectic.
-        pub fn discrete_energy(
-            &self,
-            h: T,
-            before: &CoupledBodiesState<T>,
-            after: &CoupledBodiesState<T>,
-        ) -> T {
-            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
-            let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
-            let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
-            let Λ1 = before.Λ1.matrix();
-            let Λ2 = before.Λ2.matrix();
-            let R = Λ1.tr_mul(&Λ2);
-            let t1 = less_identity(&Ω1_matrix);
-            let t2 = less_identity(&Ω2_matrix);
-            (-((eps * (t1 * d1).dot(&(R * (t2 * d2)))) / (h * h)))
-                - (J1 * t1).trace() / (h * h) - (J2 * t2).trace() / (h * h)
-        }
-    }
-    impl ::clebsch::integrate::Described for CoupledBodies<f64> {
-        fn card() -> &'static Card {
-            &Self::CARD
-        }
-        fn read(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-        ) -> Result<(Self, Self::Initial), OpenError> {
-            let model = Self::new(CoupledBodiesParameters {
-                J1: matrix_of("J1", parameters.get(0usize))?,
-                J2: matrix_of("J2", parameters.get(1usize))?,
-                d1: matrix_of("d1", parameters.get(2usize))?,
-                d2: matrix_of("d2", parameters.get(3usize))?,
-                eps: number_of("eps", parameters.get(4usize))?,
-            })?;
-            let initial = CoupledBodiesInitial {
-                Λ1: rotation_of("Λ1", initial.get(0usize))?,
-                body_momentum_Λ1: BodyMomentum(
-                    matrix_of("body_momentum_Λ1", initial.get(1usize))?,
-                ),
-                Λ2: rotation_of("Λ2", initial.get(2usize))?,
-                body_momentum_Λ2: BodyMomentum(
-                    matrix_of("body_momentum_Λ2", initial.get(3usize))?,
-                ),
+            let found = match solution {
+                Some(found) => Some([found[0].over(change), found[1].over(change)]),
+                None => None,
             };
-            Ok((model, initial))
+            let equations = newton::Equations {
+                residual: &|trial: &[Rotation<f64>; 2]| CoupledBodies::<
+                    f64,
+                >::residual_at(&parameters, step, &given, &momenta, trial),
+                tangent: &|trial: &[Rotation<f64>; 2]| {
+                    let Ω1 = trial[0].matrix();
+                    let Ω2 = trial[1].matrix();
+                    CoupledBodies::<f64>::tangent_at(&parameters, step, &near, Ω1, Ω2)
+                },
+                enclosed: &|spread, trial: &[newton::RotationRegion<18>; 2]| {
+                    let Ω1 = trial[0].matrix();
+                    let Ω2 = trial[1].matrix();
+                    let values = newton::NodeValues::enclosed(values, lane, spread);
+                    CoupledBodies::<
+                        newton::Enclosure<18>,
+                    >::tangent_at(&bound, bound_step, &values, Ω1, Ω2)
+                },
+            };
+            let care = certificate.care();
+            let traced = newton::trace(&equations, found.as_ref(), care);
+            if let Some(root) = verdict.add(traced.map_err(|fold| fold.in_lane(lane))?) {
+                let all = verdict.root_mut();
+                all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
+                all[1] = all[1].over(&mut newton::Numbers::of(&root[1]).put(lane));
+            }
         }
-        fn ways(
-            self,
-            state: &Self::State,
-            settings: Settings,
-        ) -> Result<(Self, Steps<Self>), OpenError> {
-            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
-            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
-            Ok((model, steps))
-        }
-        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
-            self.kinetic_warning(state)
-        }
-        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-            Residual::largest(&self.residual(before, after, h))
-        }
-        fn observe(&self, state: &Self::State, out: &mut [f64]) {
-            let out = put(out, rows(state.Λ1().matrix()));
-            let out = put(out, rows(state.body_momentum_Λ1().0));
-            let out = put(out, rows(state.spatial_momentum_Λ1().0));
-            let out = put(out, rows(state.Λ2().matrix()));
-            let out = put(out, rows(state.body_momentum_Λ2().0));
-            let out = put(out, rows(state.spatial_momentum_Λ2().0));
-            let out = put(out, rows(self.R(state)));
-            let _ = out;
-        }
-        fn invariants(
-            &self,
-            state: &Self::State,
-            _: Option<&Self::Workspace>,
-            out: &mut [f64],
-        ) {
-            let out = put(out, [self.energy(state)]);
-            let out = put(out, rows(self.total_momentum(state)));
-            let out = put(out, [self.total_momentum_squared(state)]);
-            let _ = (state, out);
-        }
-        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
-            type T = f64;
-            let Λ1 = state.Λ1.matrix();
-            let Λ2 = state.Λ2.matrix();
-            let μ1 = state.body_momentum_Λ1().0;
-            let μ2 = state.body_momentum_Λ2().0;
-            let t1 = Λ1 * μ1;
-            let t2 = Λ2 * μ2;
-            let t3 = μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt();
-            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-            let out = put(out, [t1.dot(&t1).sqrt() + t2.dot(&t2).sqrt(); 3usize]);
-            let out = put(out, [t3 * t3; 1usize]);
-            let _ = (state, h, out);
-        }
+        Ok(verdict.close(certificate, values))
     }
-    impl CoupledBodies<f64> {
-        /// The model as data.
-        pub const CARD: Card = Card {
-            name: "CoupledBodies",
-            kebab: "coupled-bodies",
-            doc: "Two rigid bodies with a spherical joint.",
-            source: Self::SOURCE,
-            fingerprint: Self::FINGERPRINT,
-            summary: "discrete Lagrangian  -tr(J₁ Ω_{1,k})/h - tr(J₂ Ω_{2,k})/h - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h\nmomentum of Λ1       -(J₁/h + eps R_k (Ω_{2,k} - Id) d₂ d₁ᵀ/h) Ω_{1,k}ᵀ + Ω_{1,k} (J₁/h + eps d₁ d₂ᵀ (Ω_{2,k}ᵀ - Id) R_kᵀ/h)\nmomentum of Λ2       -(J₂/h + eps R_kᵀ (Ω_{1,k} - Id) d₁ d₂ᵀ/h) Ω_{2,k}ᵀ + Ω_{2,k} (J₂/h + eps d₂ d₁ᵀ (Ω_{1,k}ᵀ - Id) R_k/h)\nRiccati form         coupled, C = J₁; coupled, C = J₂\ninvariants           energy, total_momentum, total_momentum_squared\ntime reversal        symmetric: second order\ncertificate          32 identities proved by normal form",
-            solver: "Newton: several velocities are solved together: Newton on the derived residuals",
-            order: 2u32,
-            orders: &[2, 4, 6, 8],
-            preprocessed: false,
-            reversible: true,
-            parameters: &[
-                Kind::SecondMoments
-                    .field(
-                        "J1",
-                        [3, 3],
-                        "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
-                    ),
-                Kind::SecondMoments
-                    .field(
-                        "J2",
-                        [3, 3],
-                        "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
-                    ),
-                Kind::Vector
-                    .field(
-                        "d1",
-                        [3, 1],
-                        "joint -> centre of mass, each in its body's axes",
-                    ),
-                Kind::Vector
-                    .field(
-                        "d2",
-                        [3, 1],
-                        "joint -> centre of mass, each in its body's axes",
-                    ),
-                Kind::Scalar.field("eps", [1, 1], "reduced mass m₁ m₂/(m₁ + m₂)"),
-            ],
-            initial: &[
-                Kind::Rotation
-                    .field("Λ1", [3, 3], "attitude of body 1, body to space")
-                    .spelt("Lambda1"),
-                Kind::BodyMomentum
-                    .field("body_momentum_Λ1", [3, 1], "momentum, body frame")
-                    .spelt("body_momentum_Lambda1"),
-                Kind::Rotation
-                    .field("Λ2", [3, 3], "attitude of body 2, body to space")
-                    .spelt("Lambda2"),
-                Kind::BodyMomentum
-                    .field("body_momentum_Λ2", [3, 1], "momentum, body frame")
-                    .spelt("body_momentum_Lambda2"),
-            ],
-            observables: &[
-                Kind::Rotation
-                    .field("Λ1", [3, 3], "attitude of body 1, body to space")
-                    .spelt("Lambda1"),
-                Kind::BodyMomentum
-                    .field("body_momentum_Λ1", [3, 1], "momentum, body frame")
-                    .spelt("body_momentum_Lambda1"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum_Λ1", [3, 1], "momentum, space frame")
-                    .spelt("spatial_momentum_Lambda1"),
-                Kind::Rotation
-                    .field("Λ2", [3, 3], "attitude of body 2, body to space")
-                    .spelt("Lambda2"),
-                Kind::BodyMomentum
-                    .field("body_momentum_Λ2", [3, 1], "momentum, body frame")
-                    .spelt("body_momentum_Lambda2"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum_Λ2", [3, 1], "momentum, space frame")
-                    .spelt("spatial_momentum_Lambda2"),
-                Kind::Matrix.field("R", [3, 3], "body 2 seen from body 1"),
-            ],
-            invariants: &[
-                Invariant::bounded(
-                    "energy",
-                    "½ μ_{1,k}·ζ₁ + ½ μ_{2,k}·ζ₂, where μ_{1,k} = -J₁ ζ₁ - eps (d₁·(R_k d₂)) R_k ζ₂ + eps (d₁·(R_k ζ₂)) R_k d₂ + tr(J₁) ζ₁, μ_{2,k} = -J₂ ζ₂ - eps (d₁·(R_k d₂)) R_kᵀ ζ₁ + eps (d₂·(R_kᵀ ζ₁)) R_kᵀ d₁ + tr(J₂) ζ₂",
-                    1usize,
-                ),
-                Invariant::exact(
-                    "total_momentum",
-                    "Λ_{1,k} μ_{1,k} + Λ_{2,k} μ_{2,k}",
-                    3usize,
-                ),
-                Invariant::exact(
-                    "total_momentum_squared",
-                    "(μ_{1,k} + R_k μ_{2,k})·(μ_{1,k} + R_k μ_{2,k})",
-                    1usize,
-                ),
-            ],
-            discrete_energy: Invariant::bounded(
-                "discrete_energy",
-                "-tr(J₁ Ω_{1,k})/h² - tr(J₂ Ω_{2,k})/h² - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h² + tr(J₁)/h² + tr(J₂)/h²",
-                1,
-            ),
-            open: open::<Self>,
-            solvers: &[],
-            dimensions: &[],
-            sized: only_size::<Self>,
-        };
-        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
-        /// velocities together, at the identity, should be positive definite.
-        #[cold]
-        #[allow(unused_variables)]
-        pub fn kinetic_warning(
-            &self,
-            state: &CoupledBodiesState<f64>,
-        ) -> Option<KineticWarning> {
-            type T = f64;
-            let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
-            let Λ1 = state.Λ1.matrix();
-            let Λ2 = state.Λ2.matrix();
-            let R = Λ1.tr_mul(&Λ2);
-            let mut inertia = SMatrix::<T, 6, 6>::zeros();
-            for axis in 0..3 {
-                let ξ1: SMatrix<T, 3, 3> = basis::<T>(axis);
-                let ξ2: SMatrix<T, 3, 3> = SMatrix::zeros();
-                let t1 = d1.dot(&(R * d2));
-                let t2 = vee(&ξ2);
-                let t3 = vee(&ξ1);
-                let t4 = hat(&(t3 * (T::from_f64(0.5) * J1.trace()))) * T::from_f64(0.5);
-                let t5 = -(hat(&(J1 * t3 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let t6 = hat(&(t2 * (T::from_f64(0.5) * J2.trace()))) * T::from_f64(0.5);
-                let t7 = -(hat(&(J2 * t2 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let parts: [SVector<T, 3>; 2] = [
-                    axial_of_difference(
-                        &(hat(&(R * d2 * (eps * d1.dot(&(R * t2))))) * T::from_f64(0.5)
-                            - hat(&(R * t2 * (eps * t1))) * T::from_f64(0.5) + t4 + t4
-                            + t5 + t5),
-                    ),
-                    axial_of_difference(
-                        &(hat(&(R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))))
-                            * T::from_f64(0.5)
-                            - hat(&(R.tr_mul(&t3) * (eps * t1))) * T::from_f64(0.5) + t6
-                            + t6 + t7 + t7),
-                    ),
-                ];
-                inertia
-                    .set_column(
-                        axis,
-                        &SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]),
-                    );
-            }
-            for axis in 0..3 {
-                let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
-                let ξ2: SMatrix<T, 3, 3> = basis::<T>(axis);
-                let t1 = d1.dot(&(R * d2));
-                let t2 = vee(&ξ2);
-                let t3 = vee(&ξ1);
-                let t4 = hat(&(t3 * (T::from_f64(0.5) * J1.trace()))) * T::from_f64(0.5);
-                let t5 = -(hat(&(J1 * t3 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let t6 = hat(&(t2 * (T::from_f64(0.5) * J2.trace()))) * T::from_f64(0.5);
-                let t7 = -(hat(&(J2 * t2 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let parts: [SVector<T, 3>; 2] = [
-                    axial_of_difference(
-                        &(hat(&(R * d2 * (eps * d1.dot(&(R * t2))))) * T::from_f64(0.5)
-                            - hat(&(R * t2 * (eps * t1))) * T::from_f64(0.5) + t4 + t4
-                            + t5 + t5),
-                    ),
-                    axial_of_difference(
-                        &(hat(&(R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))))
-                            * T::from_f64(0.5)
-                            - hat(&(R.tr_mul(&t3) * (eps * t1))) * T::from_f64(0.5) + t6
-                            + t6 + t7 + t7),
-                    ),
-                ];
-                inertia
-                    .set_column(
-                        3 + axis,
-                        &SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]),
-                    );
-            }
-            KineticWarning::of(&inertia, 6)
-        }
+    /// `R` at the node of this state.
+    #[inline]
+    pub fn R(&self, state: &CoupledBodiesState<T>) -> SMatrix<T, 3, 3> {
+        let Λ1 = state.Λ1.matrix();
+        let Λ2 = state.Λ2.matrix();
+        let R = Λ1.tr_mul(&Λ2);
+        R
     }
 }
-#[allow(unused_imports)]
-pub use coupled_bodies::*;
+::clebsch::stepper! {
+    [] CoupledBodies, CoupledBodiesParameters { J1, J2, d1, d2, eps },
+    CoupledBodiesInitial { Λ1, body_momentum_Λ1, Λ2, body_momentum_Λ2 },
+    CoupledBodiesState { Λ1, momentum_Λ1, Λ2, momentum_Λ2 } at node,
+    CoupledBodiesWorkspace { h, search }, tried {} nothing symmetric judged
+}
+/// A configuration at one node, solution or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoupledBodiesConfiguration<T = f64> {
+    /// `Λ1` at the node: body -> space.
+    pub Λ1: Rotation<T>,
+    /// `Λ2` at the node: body -> space.
+    pub Λ2: Rotation<T>,
+}
+impl<T: Real> CoupledBodies<T> {
+    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// consecutive configurations: component `i` is the derivative of the action of the
+    /// two edges when the middle element is rotated about its axis `i` (a body axis on
+    /// the body side, a space axis on the spatial side). Zero on solutions.
+    pub fn balance(
+        &self,
+        h: T,
+        before: &CoupledBodiesConfiguration<T>,
+        here: &CoupledBodiesConfiguration<T>,
+        after: &CoupledBodiesConfiguration<T>,
+    ) -> SVector<T, 6> {
+        let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+        let Λ1_before = before.Λ1.matrix();
+        let Λ2_before = before.Λ2.matrix();
+        let R_before = Λ1_before.tr_mul(&Λ2_before);
+        let Λ1 = here.Λ1.matrix();
+        let Λ2 = here.Λ2.matrix();
+        let R = Λ1.tr_mul(&Λ2);
+        let Ω1_before = before.Λ1.body_velocity(&here.Λ1).matrix();
+        let Ω1 = here.Λ1.body_velocity(&after.Λ1).matrix();
+        let Ω2_before = before.Λ2.body_velocity(&here.Λ2).matrix();
+        let Ω2 = here.Λ2.body_velocity(&after.Λ2).matrix();
+        let t1 = h.powi(-1);
+        let t2 = d1.cross(&(R * d2));
+        let parts: [SVector<T, 3>; 2] = [
+            axial_of_difference(
+                &(Ω1_before
+                    .tr_mul(
+                        &((-(J1 / h))
+                            - ((R_before
+                                * ((Ω2_before - SMatrix::<T, 3, 3>::identity()) * d2))
+                                * d1.transpose() * eps) / h),
+                    )),
+            ) + axial_of_difference(&(J1 * Ω1.transpose())) * t1 - t2 * (t1 * eps)
+                + d1.cross(&(R * (Ω2 * d2))) * (t1 * eps),
+            axial_of_difference(
+                &(Ω2_before
+                    .tr_mul(
+                        &((-(J2 / h))
+                            - (R_before
+                                .tr_mul(
+                                    &((Ω1_before - SMatrix::<T, 3, 3>::identity()) * d1),
+                                ) * d2.transpose() * eps) / h),
+                    )),
+            ) + axial_of_difference(&(J2 * Ω2.transpose())) * t1
+                - R.tr_mul(&(Ω1 * d1.cross(&(Ω1.tr_mul(&(R * d2)))))) * (t1 * eps)
+                + R.tr_mul(&t2) * (t1 * eps),
+        ];
+        SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
+    }
+    /// What the step of size `h` from one state to the next leaves of its equations: the
+    /// momentum that is carried to the second state, less the one that the motion between
+    /// them brings there. One part a configuration, angular and linear ones of a rigid
+    /// motion apart, each with the size of the terms it is made of: those of a spatial
+    /// velocity are the two elements it is made from, as they are stored.
+    pub fn residual(
+        &self,
+        before: &CoupledBodiesState<T>,
+        after: &CoupledBodiesState<T>,
+        h: T,
+    ) -> [Residual; 2] {
+        let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+        let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
+        let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
+        let Λ1 = before.Λ1.matrix();
+        let Λ2 = before.Λ2.matrix();
+        let R = Λ1.tr_mul(&Λ2);
+        let t1 = (Ω1_matrix.tr_mul(&Ω1_matrix)).trace().sqrt();
+        let t2 = (h * h).sqrt();
+        let t3 = (eps * eps).sqrt();
+        let t4 = (R.tr_mul(&R)).trace().sqrt();
+        let t5 = (Ω2_matrix.tr_mul(&Ω2_matrix)).trace().sqrt();
+        let t6 = d2.dot(&d2).sqrt();
+        let t7 = d1.dot(&d1).sqrt();
+        [
+            Residual::between(
+                &(after.momentum_Λ1.to_body(&after.Λ1).0),
+                &(axial_of_difference(
+                    &(Ω1_matrix
+                        .tr_mul(
+                            &((-(J1 / h))
+                                - ((R
+                                    * ((Ω2_matrix - SMatrix::<T, 3, 3>::identity()) * d2))
+                                    * d1.transpose() * eps) / h),
+                        )),
+                )),
+                T::from_f64(2.0) * t1
+                    * ((J1 * J1).trace().sqrt() / t2
+                        + (t3 * t4 * (t5 + T::from_f64(1.0)) * t6 * t7) / t2),
+            ),
+            Residual::between(
+                &(after.momentum_Λ2.to_body(&after.Λ2).0),
+                &(axial_of_difference(
+                    &(Ω2_matrix
+                        .tr_mul(
+                            &((-(J2 / h))
+                                - (R
+                                    .tr_mul(
+                                        &((Ω1_matrix - SMatrix::<T, 3, 3>::identity()) * d1),
+                                    ) * d2.transpose() * eps) / h),
+                        )),
+                )),
+                T::from_f64(2.0) * t5
+                    * ((J2 * J2).trace().sqrt() / t2
+                        + (t3 * t4 * (t1 + T::from_f64(1.0)) * t7 * t6) / t2),
+            ),
+        ]
+    }
+    /// The Hessian of the kinetic energy in all velocities together, at the identity.
+    fn inertia_at(&self, state: &CoupledBodiesState<T>) -> SMatrix<T, 6, 6> {
+        let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+        let Λ1 = state.Λ1.matrix();
+        let Λ2 = state.Λ2.matrix();
+        let R = Λ1.tr_mul(&Λ2);
+        let mut inertia = SMatrix::<T, 6, 6>::zeros();
+        for axis in 0..3 {
+            let ξ1: SMatrix<T, 3, 3> = basis::<T>(axis);
+            let ξ2: SMatrix<T, 3, 3> = SMatrix::zeros();
+            let t1 = d1.dot(&(R * d2));
+            let t2 = vee(&ξ2);
+            let t3 = vee(&ξ1);
+            let t4 = hat(&(t3 * (T::from_f64(0.5) * J1.trace()))) * T::from_f64(0.5);
+            let t5 = -(hat(&(J1 * t3 * T::from_f64(0.5))) * T::from_f64(0.5));
+            let t6 = hat(&(t2 * (T::from_f64(0.5) * J2.trace()))) * T::from_f64(0.5);
+            let t7 = -(hat(&(J2 * t2 * T::from_f64(0.5))) * T::from_f64(0.5));
+            let parts: [SVector<T, 3>; 2] = [
+                axial_of_difference(
+                    &(hat(&(R * d2 * (eps * d1.dot(&(R * t2))))) * T::from_f64(0.5)
+                        - hat(&(R * t2 * (eps * t1))) * T::from_f64(0.5) + t4 + t4 + t5
+                        + t5),
+                ),
+                axial_of_difference(
+                    &(hat(&(R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))))
+                        * T::from_f64(0.5)
+                        - hat(&(R.tr_mul(&t3) * (eps * t1))) * T::from_f64(0.5) + t6 + t6
+                        + t7 + t7),
+                ),
+            ];
+            inertia
+                .set_column(axis, &SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]));
+        }
+        for axis in 0..3 {
+            let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
+            let ξ2: SMatrix<T, 3, 3> = basis::<T>(axis);
+            let t1 = d1.dot(&(R * d2));
+            let t2 = vee(&ξ2);
+            let t3 = vee(&ξ1);
+            let t4 = hat(&(t3 * (T::from_f64(0.5) * J1.trace()))) * T::from_f64(0.5);
+            let t5 = -(hat(&(J1 * t3 * T::from_f64(0.5))) * T::from_f64(0.5));
+            let t6 = hat(&(t2 * (T::from_f64(0.5) * J2.trace()))) * T::from_f64(0.5);
+            let t7 = -(hat(&(J2 * t2 * T::from_f64(0.5))) * T::from_f64(0.5));
+            let parts: [SVector<T, 3>; 2] = [
+                axial_of_difference(
+                    &(hat(&(R * d2 * (eps * d1.dot(&(R * t2))))) * T::from_f64(0.5)
+                        - hat(&(R * t2 * (eps * t1))) * T::from_f64(0.5) + t4 + t4 + t5
+                        + t5),
+                ),
+                axial_of_difference(
+                    &(hat(&(R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))))
+                        * T::from_f64(0.5)
+                        - hat(&(R.tr_mul(&t3) * (eps * t1))) * T::from_f64(0.5) + t6 + t6
+                        + t7 + t7),
+                ),
+            ];
+            inertia
+                .set_column(
+                    3 + axis,
+                    &SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]),
+                );
+        }
+        inertia
+    }
+    /// The kinetic and the potential energy at this node: those of the limit of small steps,
+    /// at the node's momentum.
+    pub fn energies(&self, state: &CoupledBodiesState<T>) -> (T, T) {
+        let parts: [SVector<T, 3>; 2] = [
+            state.body_momentum_Λ1().0,
+            state.body_momentum_Λ2().0,
+        ];
+        let momentum = SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]);
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 6);
+        (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
+    }
+    /// The physical energy at this node.
+    pub fn energy(&self, state: &CoupledBodiesState<T>) -> T {
+        let (kinetic, potential) = self.energies(state);
+        kinetic + potential
+    }
+    /// `Λ_{1,k} μ_{1,k} + Λ_{2,k} μ_{2,k}`: Noether: the action is invariant under rotations of space.
+    pub fn total_momentum(&self, state: &CoupledBodiesState<T>) -> SVector<T, 3> {
+        state.spatial_momentum_Λ1().0 + state.spatial_momentum_Λ2().0
+    }
+    /// `(μ_{1,k} + R_k μ_{2,k})·(μ_{1,k} + R_k μ_{2,k})`: Casimir: the Kelvin-Noether quantity of the advected quantities.
+    pub fn total_momentum_squared(&self, state: &CoupledBodiesState<T>) -> T {
+        let Λ1 = state.Λ1.matrix();
+        let Λ2 = state.Λ2.matrix();
+        let R = Λ1.tr_mul(&Λ2);
+        let μ1 = state.body_momentum_Λ1().0;
+        let μ2 = state.body_momentum_Λ2().0;
+        let t1 = μ1 + R * μ2;
+        t1.dot(&t1)
+    }
+    /// The discrete energy of the edge between two consecutive states, `-tr(J₁ Ω_{1,k})/h² - tr(J₂ Ω_{2,k})/h² - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h² + tr(J₁)/h² + tr(J₂)/h²`: bounded, since the stepper is symplectic.
+    pub fn discrete_energy(
+        &self,
+        h: T,
+        before: &CoupledBodiesState<T>,
+        after: &CoupledBodiesState<T>,
+    ) -> T {
+        let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+        let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
+        let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
+        let Λ1 = before.Λ1.matrix();
+        let Λ2 = before.Λ2.matrix();
+        let R = Λ1.tr_mul(&Λ2);
+        let t1 = less_identity(&Ω1_matrix);
+        let t2 = less_identity(&Ω2_matrix);
+        (-((eps * (t1 * d1).dot(&(R * (t2 * d2)))) / (h * h)))
+            - (J1 * t1).trace() / (h * h) - (J2 * t2).trace() / (h * h)
+    }
+    /// The state after a step of `h` that is tried, or none.
+    #[cold]
+    fn attempt(
+        &self,
+        state: &CoupledBodiesState<T>,
+        h: T,
+    ) -> Option<CoupledBodiesState<T>> {
+        let mut moving = *state;
+        self.step(
+                &mut moving,
+                &mut CoupledBodiesWorkspace {
+                    h,
+                    search: newton::Search::to_try(),
+                },
+            )
+            .ok()?;
+        Some(moving)
+    }
+}
+impl CoupledBodies<f64> {
+    /// All observables, in the order of the card.
+    fn observe(&self, state: &CoupledBodiesState<f64>, out: &mut [f64]) {
+        let out = put(out, rows(state.Λ1().matrix()));
+        let out = put(out, rows(state.body_momentum_Λ1().0));
+        let out = put(out, rows(state.spatial_momentum_Λ1().0));
+        let out = put(out, rows(state.Λ2().matrix()));
+        let out = put(out, rows(state.body_momentum_Λ2().0));
+        let out = put(out, rows(state.spatial_momentum_Λ2().0));
+        let out = put(out, rows(self.R(state)));
+    }
+    /// All invariants, in the order of the card.
+    fn invariants(
+        &self,
+        state: &CoupledBodiesState<f64>,
+        _: Option<&CoupledBodiesWorkspace<f64>>,
+        out: &mut [f64],
+    ) {
+        let out = put(out, [self.energy(state)]);
+        let out = put(out, rows(self.total_momentum(state)));
+        let out = put(out, [self.total_momentum_squared(state)]);
+    }
+    /// Their sizes at a state, in steps of `h`.
+    fn scales(&self, state: &CoupledBodiesState<f64>, h: f64, out: &mut [f64]) {
+        type T = f64;
+        let Λ1 = state.Λ1.matrix();
+        let Λ2 = state.Λ2.matrix();
+        let μ1 = state.body_momentum_Λ1().0;
+        let μ2 = state.body_momentum_Λ2().0;
+        let t1 = Λ1 * μ1;
+        let t2 = Λ2 * μ2;
+        let t3 = μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt();
+        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+        let out = put(out, [t1.dot(&t1).sqrt() + t2.dot(&t2).sqrt(); 3usize]);
+        let out = put(out, [t3 * t3; 1usize]);
+    }
+    /// The model as data.
+    pub const CARD: Card = Card {
+        name: "CoupledBodies",
+        kebab: "coupled-bodies",
+        doc: "Two rigid bodies with a spherical joint.",
+        source: Self::SOURCE,
+        fingerprint: Self::FINGERPRINT,
+        summary: "discrete Lagrangian  -tr(J₁ Ω_{1,k})/h - tr(J₂ Ω_{2,k})/h - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h\nmomentum of Λ1       -(J₁/h + eps R_k (Ω_{2,k} - Id) d₂ d₁ᵀ/h) Ω_{1,k}ᵀ + Ω_{1,k} (J₁/h + eps d₁ d₂ᵀ (Ω_{2,k}ᵀ - Id) R_kᵀ/h)\nmomentum of Λ2       -(J₂/h + eps R_kᵀ (Ω_{1,k} - Id) d₁ d₂ᵀ/h) Ω_{2,k}ᵀ + Ω_{2,k} (J₂/h + eps d₂ d₁ᵀ (Ω_{1,k}ᵀ - Id) R_k/h)\nRiccati form         coupled, C = J₁; coupled, C = J₂\ninvariants           energy, total_momentum, total_momentum_squared\ntime reversal        symmetric: second order\ncertificate          32 identities proved by normal form",
+        solver: "Newton: several velocities are solved together: Newton on the derived residuals",
+        order: 2u32,
+        orders: &[2, 4, 6, 8],
+        preprocessed: false,
+        reversible: true,
+        parameters: &[
+            Kind::SecondMoments
+                .field(
+                    "J1",
+                    [3, 3],
+                    "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
+                ),
+            Kind::SecondMoments
+                .field(
+                    "J2",
+                    [3, 3],
+                    "Poinsot matrices about the centres of mass, plus eps dᵢ dᵢᵀ",
+                ),
+            Kind::Vector
+                .field("d1", [3, 1], "joint -> centre of mass, each in its body's axes"),
+            Kind::Vector
+                .field("d2", [3, 1], "joint -> centre of mass, each in its body's axes"),
+            Kind::Scalar.field("eps", [1, 1], "reduced mass m₁ m₂/(m₁ + m₂)"),
+        ],
+        initial: &[
+            Kind::Rotation
+                .field("Λ1", [3, 3], "attitude of body 1, body to space")
+                .spelt("Lambda1"),
+            Kind::BodyMomentum
+                .field("body_momentum_Λ1", [3, 1], "momentum, body frame")
+                .spelt("body_momentum_Lambda1"),
+            Kind::Rotation
+                .field("Λ2", [3, 3], "attitude of body 2, body to space")
+                .spelt("Lambda2"),
+            Kind::BodyMomentum
+                .field("body_momentum_Λ2", [3, 1], "momentum, body frame")
+                .spelt("body_momentum_Lambda2"),
+        ],
+        observables: &[
+            Kind::Rotation
+                .field("Λ1", [3, 3], "attitude of body 1, body to space")
+                .spelt("Lambda1"),
+            Kind::BodyMomentum
+                .field("body_momentum_Λ1", [3, 1], "momentum, body frame")
+                .spelt("body_momentum_Lambda1"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum_Λ1", [3, 1], "momentum, space frame")
+                .spelt("spatial_momentum_Lambda1"),
+            Kind::Rotation
+                .field("Λ2", [3, 3], "attitude of body 2, body to space")
+                .spelt("Lambda2"),
+            Kind::BodyMomentum
+                .field("body_momentum_Λ2", [3, 1], "momentum, body frame")
+                .spelt("body_momentum_Lambda2"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum_Λ2", [3, 1], "momentum, space frame")
+                .spelt("spatial_momentum_Lambda2"),
+            Kind::Matrix.field("R", [3, 3], "body 2 seen from body 1"),
+        ],
+        invariants: &[
+            Invariant::bounded(
+                "energy",
+                "½ μ_{1,k}·ζ₁ + ½ μ_{2,k}·ζ₂, where μ_{1,k} = -J₁ ζ₁ - eps (d₁·(R_k d₂)) R_k ζ₂ + eps (d₁·(R_k ζ₂)) R_k d₂ + tr(J₁) ζ₁, μ_{2,k} = -J₂ ζ₂ - eps (d₁·(R_k d₂)) R_kᵀ ζ₁ + eps (d₂·(R_kᵀ ζ₁)) R_kᵀ d₁ + tr(J₂) ζ₂",
+                1usize,
+            ),
+            Invariant::exact(
+                "total_momentum",
+                "Λ_{1,k} μ_{1,k} + Λ_{2,k} μ_{2,k}",
+                3usize,
+            ),
+            Invariant::exact(
+                "total_momentum_squared",
+                "(μ_{1,k} + R_k μ_{2,k})·(μ_{1,k} + R_k μ_{2,k})",
+                1usize,
+            ),
+        ],
+        discrete_energy: Invariant::bounded(
+            "discrete_energy",
+            "-tr(J₁ Ω_{1,k})/h² - tr(J₂ Ω_{2,k})/h² - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h² + tr(J₁)/h² + tr(J₂)/h²",
+            1,
+        ),
+        open: open::<Self>,
+        solvers: &[],
+        dimensions: &[],
+        sized: only_size::<Self>,
+    };
+    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+    /// definite.
+    #[cold]
+    pub fn kinetic_warning(
+        &self,
+        state: &CoupledBodiesState<f64>,
+    ) -> Option<KineticWarning> {
+        KineticWarning::of(&self.inertia_at(state), 6)
+    }
+}

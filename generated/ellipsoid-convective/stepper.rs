@@ -1,825 +1,660 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-/// The model [`EllipsoidConvective`](struct@EllipsoidConvective) and what belongs to it.
-#[allow(
+//! The model [`EllipsoidConvective`](struct@EllipsoidConvective) and what belongs to it.
+#![allow(
     non_snake_case,
     uncommon_codepoints,
     mixed_script_confusables,
     confusable_idents,
+    unused_variables,
     clippy::all
 )]
-pub mod ellipsoid_convective {
-    use ::clebsch::emitted::*;
-    /// Parameters of [`EllipsoidConvective`](struct@EllipsoidConvective), as given.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct EllipsoidConvectiveParameters<const N: usize, T = f64> {
-        /// `C0`: metric of space; a n x n matrix, symmetric.
-        pub C0: SMatrix<T, N, N>,
-        /// `I0`: second moments of mass in the reference; a n x n matrix, symmetric.
-        pub I0: SMatrix<T, N, N>,
-        /// `a`: stiffness of lengths, of areas and of volumes; a number.
-        pub a: T,
-        /// `b`: stiffness of lengths, of areas and of volumes; a number.
-        pub b: T,
-        /// `c`: stiffness of lengths, of areas and of volumes; a number.
-        pub c: T,
-        /// `d`: resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c; a number.
-        pub d: T,
-    }
-    /// Elastic ellipsoid, convective representation.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct EllipsoidConvective<const N: usize, T = f64> {
+use ::clebsch::emitted::*;
+/// Parameters of [`EllipsoidConvective`](struct@EllipsoidConvective), as given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EllipsoidConvectiveParameters<const N: usize, T = f64> {
+    /// `C0`: metric of space; a n x n matrix, symmetric.
+    pub C0: SMatrix<T, N, N>,
+    /// `I0`: second moments of mass in the reference; a n x n matrix, symmetric.
+    pub I0: SMatrix<T, N, N>,
+    /// `a`: stiffness of lengths, of areas and of volumes; a number.
+    pub a: T,
+    /// `b`: stiffness of lengths, of areas and of volumes; a number.
+    pub b: T,
+    /// `c`: stiffness of lengths, of areas and of volumes; a number.
+    pub c: T,
+    /// `d`: resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c; a number.
+    pub d: T,
+}
+/// Elastic ellipsoid, convective representation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EllipsoidConvective<const N: usize, T = f64> {
+    parameters: EllipsoidConvectiveParameters<N, T>,
+    inverse_1_left: SMatrix<T, N, N>,
+    inverse_1_right: SMatrix<T, N, N>,
+}
+impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
+    /// Sizes the model does not admit do not build.
+    const ADMITTED: () = {
+        ::core::assert!(2 <= N && N <= 4, "`n` is from 2 to 4 in this model");
+    };
+    /// The model as it was stated.
+    pub const SOURCE: &'static str = "/// Elastic ellipsoid, convective representation.\npub model EllipsoidConvective {\n    dim n in 2..=4;\n    /// metric of space\n    param C0: Sym<n> as \"C_0\";\n    /// second moments of mass in the reference\n    param I0: Sym<n> as \"I_0\";\n    /// stiffness of lengths, of areas and of volumes\n    param a: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param b: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param c: Real;\n    /// resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c\n    param d: Real;\n    /// placement, reference to space\n    group Q: GL<n> velocity G;\n    /// metric of space seen from the body\n    advected C: Sym<n> = Q^T*C0*Q;\n    constraint next(Q) = Q*G;\n    constraint next(C) = G^T*C*G;\n    lagrangian = tr(C*(G - Id)*I0*(G^T - Id))/(2*h) - h*(a*tr(C) + (1/2)*b*(tr(C)^2 - tr(C*C)) + c*det(C) - (1/2)*d*log(det(C)));\n}";
+    /// A number that changes when the model or its derivation does.
+    pub const FINGERPRINT: u64 = 4377754966811443636u64;
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+    /// assumption, or is no admissible factor of the equation to solve.
+    pub fn new(
         parameters: EllipsoidConvectiveParameters<N, T>,
-        inverse_1_left: SMatrix<T, N, N>,
-        inverse_1_right: SMatrix<T, N, N>,
+    ) -> Result<Self, ParameterError> {
+        let () = Self::ADMITTED;
+        validate::finite_entries("C0", &parameters.C0)?;
+        validate::symmetric("C0", &parameters.C0)?;
+        validate::finite_entries("I0", &parameters.I0)?;
+        validate::symmetric("I0", &parameters.I0)?;
+        validate::finite("a", &[parameters.a])?;
+        validate::finite("b", &[parameters.b])?;
+        validate::finite("c", &[parameters.c])?;
+        validate::finite("d", &[parameters.d])?;
+        let EllipsoidConvectiveParameters { C0, I0, .. } = parameters;
+        let inverse_1_left = inverse_or_nan(&(C0));
+        let inverse_1_right = inverse_or_nan(&(I0));
+        Ok(Self {
+            parameters,
+            inverse_1_left,
+            inverse_1_right,
+        })
     }
-    impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
-        /// Sizes the model does not admit do not build.
-        const ADMITTED: () = {
-            ::core::assert!(2 <= N && N <= 4, "`n` is from 2 to 4 in this model");
-        };
-        /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Elastic ellipsoid, convective representation.\npub model EllipsoidConvective {\n    dim n in 2..=4;\n    /// metric of space\n    param C0: Sym<n> as \"C_0\";\n    /// second moments of mass in the reference\n    param I0: Sym<n> as \"I_0\";\n    /// stiffness of lengths, of areas and of volumes\n    param a: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param b: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param c: Real;\n    /// resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c\n    param d: Real;\n    /// placement, reference to space\n    group Q: GL<n> velocity G;\n    /// metric of space seen from the body\n    advected C: Sym<n> = Q^T*C0*Q;\n    constraint next(Q) = Q*G;\n    constraint next(C) = G^T*C*G;\n    lagrangian = tr(C*(G - Id)*I0*(G^T - Id))/(2*h) - h*(a*tr(C) + (1/2)*b*(tr(C)^2 - tr(C*C)) + c*det(C) - (1/2)*d*log(det(C)));\n}";
-        /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 4377754966811443636u64;
-        /// Checks the parameters.
-        ///
-        /// # Errors
-        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-        /// assumption, or is no admissible factor of the equation to solve.
-        pub fn new(
-            parameters: EllipsoidConvectiveParameters<N, T>,
-        ) -> Result<Self, ParameterError> {
-            let () = Self::ADMITTED;
-            validate::finite_entries("C0", &parameters.C0)?;
-            validate::symmetric("C0", &parameters.C0)?;
-            validate::finite_entries("I0", &parameters.I0)?;
-            validate::symmetric("I0", &parameters.I0)?;
-            validate::finite("a", &[parameters.a])?;
-            validate::finite("b", &[parameters.b])?;
-            validate::finite("c", &[parameters.c])?;
-            validate::finite("d", &[parameters.d])?;
-            let EllipsoidConvectiveParameters { C0, I0, .. } = parameters;
-            let inverse_1_left = inverse_or_nan(&(C0));
-            let inverse_1_right = inverse_or_nan(&(I0));
-            Ok(Self {
-                parameters,
-                inverse_1_left,
-                inverse_1_right,
-            })
-        }
-        /// The parameters.
-        pub fn parameters(&self) -> &EllipsoidConvectiveParameters<N, T> {
-            &self.parameters
-        }
+}
+/// Initial data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EllipsoidConvectiveInitial<const N: usize, T = f64> {
+    /// `Q` at node 0: body -> space.
+    pub Q: Linear<N, T>,
+    /// Momentum at node 0, in the body frame.
+    pub body_momentum: BodyMomentumMatrix<N, T>,
+}
+/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EllipsoidConvectiveState<const N: usize, T = f64> {
+    Q: Linear<N, T>,
+    momentum: SpatialMomentumMatrix<N, T>,
+    node: u64,
+}
+impl<const N: usize, T: Real> EllipsoidConvectiveState<N, T> {
+    /// `Q` at this node: body -> space.
+    pub fn Q(&self) -> Linear<N, T> {
+        self.Q
     }
-    /// Initial data.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct EllipsoidConvectiveInitial<const N: usize, T = f64> {
-        /// `Q` at node 0: body -> space.
-        pub Q: Linear<N, T>,
-        /// Momentum at node 0, in the body frame.
-        pub body_momentum: BodyMomentumMatrix<N, T>,
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum(&self) -> SpatialMomentumMatrix<N, T> {
+        self.momentum
     }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct EllipsoidConvectiveState<const N: usize, T = f64> {
-        Q: Linear<N, T>,
-        momentum: SpatialMomentumMatrix<N, T>,
-        node: u64,
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum(&self) -> BodyMomentumMatrix<N, T> {
+        self.momentum.to_body(&self.Q)
     }
-    impl<const N: usize, T: Real> EllipsoidConvectiveState<N, T> {
-        /// `Q` at this node: body -> space.
-        pub fn Q(&self) -> Linear<N, T> {
-            self.Q
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum(&self) -> SpatialMomentumMatrix<N, T> {
-            self.momentum
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum(&self) -> BodyMomentumMatrix<N, T> {
-            self.momentum.to_body(&self.Q)
-        }
-        /// The number of the node.
-        pub fn node(&self) -> u64 {
-            self.node
-        }
+}
+/// The step and the last velocities, from which the next solves start.
+#[derive(Clone, Copy, Debug)]
+pub struct EllipsoidConvectiveWorkspace<const N: usize, T = f64> {
+    h: T,
+}
+impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
+    /// The state at node 0.
+    fn begin(
+        &self,
+        initial: EllipsoidConvectiveInitial<N, T>,
+    ) -> Result<EllipsoidConvectiveState<N, T>, StartError> {
+        validate::finite("Q", initial.Q.matrix().as_slice())?;
+        validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+        Ok(EllipsoidConvectiveState {
+            Q: initial.Q,
+            momentum: initial.body_momentum.to_space(&initial.Q),
+            node: 0,
+        })
     }
-    /// The step and the last velocities, from which the next solves start.
-    #[derive(Clone, Copy, Debug)]
-    pub struct EllipsoidConvectiveWorkspace<const N: usize, T = f64> {
+    /// What steps of `h` from `state` begin with.
+    fn prepared(
+        &self,
+        state: &EllipsoidConvectiveState<N, T>,
         h: T,
-    }
-    ::clebsch::saved! {
-        [N] EllipsoidConvectiveWorkspace { h, }
-    }
-    impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not admissible, or says why the first step cannot be solved and
-        /// which could.
-        pub fn start(
-            &self,
-            initial: EllipsoidConvectiveInitial<N, T>,
-            h: T,
-        ) -> Result<
-            (EllipsoidConvectiveState<N, T>, EllipsoidConvectiveWorkspace<N, T>),
-            StartError,
-        > {
-            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
+        _: (),
+    ) -> Result<EllipsoidConvectiveWorkspace<N, T>, StartError> {
+        {
+            let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let C = Q.tr_mul(&(C0 * Q));
+            validate::defined(
+                domain::Domain::Positive,
+                domain::Function::Log,
+                "det(C_k)",
+                determinant(&(C)),
+            )?;
         }
-        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
-        pub fn workspace(
-            &self,
-            state: &EllipsoidConvectiveState<N, T>,
-            h: T,
-        ) -> Result<EllipsoidConvectiveWorkspace<N, T>, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        /// One step, in place. Solved thus: the balance is linear: two small linear systems.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, or leaves what the model is defined on, with numbers and
-        /// a remedy; the state is then unchanged.
-        #[inline]
-        pub fn step(
-            &self,
-            state: &mut EllipsoidConvectiveState<N, T>,
-            work: &mut EllipsoidConvectiveWorkspace<N, T>,
-        ) -> Result<(), StepError> {
-            let before = *state;
-            self.step_untested(state, work)?;
-            let finite = all_finite(&state.momentum.0);
-            match self.stays_inside(&before, state, work.h) {
-                Ok(()) if finite => Ok(()),
-                Err(contact) if finite || contact.is_finite() => {
-                    *state = before;
-                    Err(self.left_domain(state, work.h, contact))
-                }
-                _ => {
-                    *state = before;
-                    Err(
-                        StepCause::NotFinite {
-                            what: "momentum",
-                        }
-                            .at_node(state.node),
-                    )
-                }
+        Ok(EllipsoidConvectiveWorkspace { h })
+    }
+    /// One step, in place. Solved thus: the balance is linear: two small linear systems.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, or leaves what the model is defined on, with numbers and
+    /// a remedy; the state is then unchanged.
+    #[inline]
+    pub fn step(
+        &self,
+        state: &mut EllipsoidConvectiveState<N, T>,
+        work: &mut EllipsoidConvectiveWorkspace<N, T>,
+    ) -> Result<(), StepError> {
+        let before = *state;
+        self.step_untested(state, work)?;
+        let finite = all_finite(&state.momentum.0);
+        match self.stays_inside(&before, state, work.h) {
+            Ok(()) if finite => Ok(()),
+            Err(contact) if finite || contact.is_finite() => {
+                *state = before;
+                Err(self.left_domain(state, work.h, contact))
+            }
+            _ => {
+                *state = before;
+                Err(StepCause::not_finite("momentum").at_node(state.node))
             }
         }
-        /// Says what the step met, and which step could be made.
-        #[cold]
-        #[inline(never)]
-        fn left_domain(
-            &self,
-            state: &EllipsoidConvectiveState<N, T>,
-            h: T,
-            contact: domain::Contact,
-        ) -> StepError {
-            let contact = contact
-                .with_trials(
-                    h,
-                    |h| {
-                        let mut moving = *state;
-                        self.step(&mut moving, &mut EllipsoidConvectiveWorkspace { h })
-                            .is_ok()
+    }
+    /// Says what the step met, and which step could be made.
+    #[cold]
+    #[inline(never)]
+    fn left_domain(
+        &self,
+        state: &EllipsoidConvectiveState<N, T>,
+        h: T,
+        contact: domain::Contact,
+    ) -> StepError {
+        let contact = contact
+            .with_trials(
+                h,
+                |h| {
+                    let mut moving = *state;
+                    self.step(&mut moving, &mut EllipsoidConvectiveWorkspace { h })
+                        .is_ok()
+                },
+            );
+        StepCause::from(contact).at_node(state.node)
+    }
+    /// Whether the step from one state to the next stays where the model is defined.
+    #[inline]
+    fn stays_inside(
+        &self,
+        before: &EllipsoidConvectiveState<N, T>,
+        after: &EllipsoidConvectiveState<N, T>,
+        h: T,
+    ) -> Result<(), domain::Contact> {
+        domain::invertible("Q", &before.Q, &after.Q, h)?;
+        {
+            let after = self.domain_arguments(after, h);
+            if !(domain::Domain::Positive.admits(after[0])) {
+                let before = self.domain_arguments(before, h);
+                domain::Domain::Positive
+                    .at_nodes(
+                        &domain::Call {
+                            function: domain::Function::Log,
+                            argument: "det(C_k)",
+                        },
+                        before[0],
+                        after[0],
+                        h,
+                    )?;
+            }
+        }
+        let _ = (before, after, h);
+        Ok(())
+    }
+    /// The arguments of the functions that the model uses, at the node of this state.
+    #[inline]
+    fn domain_arguments(&self, state: &EllipsoidConvectiveState<N, T>, h: T) -> [T; 1] {
+        let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let C = Q.tr_mul(&(C0 * Q));
+        let _ = (state, h);
+        [determinant(&(C))]
+    }
+    /// One step, in place. Solved thus: the balance is linear: two small linear systems.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    #[inline]
+    fn step_untested(
+        &self,
+        state: &mut EllipsoidConvectiveState<N, T>,
+        work: &mut EllipsoidConvectiveWorkspace<N, T>,
+    ) -> Result<(), StepError> {
+        let h = work.h;
+        let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let Q_seen = C0 * (Q * Q.transpose());
+        let momentum_leaving = state.momentum.0
+            - (Q_seen * (h * a + h * b * Q_seen.trace()) - Q_seen * Q_seen * (h * b)
+                + SMatrix::<T, N, N>::identity()
+                    * (h * c * determinant(&(Q_seen)) - T::from_f64(0.5) * h * d));
+        let Q_change = match displaced(
+            &state.Q,
+            &(self.inverse_1_left * h),
+            &momentum_leaving,
+            &self.inverse_1_right,
+            &["C_k/h", "I₀"],
+        ) {
+            Ok(solved) => solved,
+            Err(e) => return Err(StepCause::Singular(e).at_node(state.node)),
+        };
+        let Q_moved = state.Q.changed(&Q_change);
+        let Q_next = Q_moved.matrix();
+        let Q_seen_next = C0 * (Q_next * Q_next.transpose());
+        let momentum_next = momentum_leaving
+            + C0 * (Q_change * (I0 * Q_change.transpose())) * (T::from_f64(1.0) / h)
+            + Q_seen_next * ((-(h * a)) - h * b * Q_seen_next.trace())
+            + Q_seen_next * Q_seen_next * (h * b)
+            + SMatrix::<T, N, N>::identity()
+                * (T::from_f64(0.5) * h * d - h * c * determinant(&(Q_seen_next)));
+        state.Q = Q_moved;
+        state.momentum = SpatialMomentumMatrix(momentum_next);
+        state.node += 1;
+        Ok(())
+    }
+    /// `C` at the node of this state.
+    #[inline]
+    pub fn C(&self, state: &EllipsoidConvectiveState<N, T>) -> SMatrix<T, N, N> {
+        let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let C = Q.tr_mul(&(C0 * Q));
+        C
+    }
+}
+::clebsch::stepper! {
+    [N] EllipsoidConvective, EllipsoidConvectiveParameters { C0, I0, a, b, c, d },
+    EllipsoidConvectiveInitial { Q, body_momentum }, EllipsoidConvectiveState { Q,
+    momentum } at node, EllipsoidConvectiveWorkspace { h }, tried {} nothing symmetric
+    judged
+}
+/// A configuration at one node, solution or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EllipsoidConvectiveConfiguration<const N: usize, T = f64> {
+    /// `Q` at the node: body -> space.
+    pub Q: Linear<N, T>,
+}
+impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
+    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// consecutive configurations: components are derivatives of the action of the two edges
+    /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+    /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+    /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+    pub fn balance(
+        &self,
+        h: T,
+        before: &EllipsoidConvectiveConfiguration<N, T>,
+        here: &EllipsoidConvectiveConfiguration<N, T>,
+        after: &EllipsoidConvectiveConfiguration<N, T>,
+    ) -> SVector<T, 16> {
+        let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let Q_before = before.Q.matrix();
+        let C_before = Q_before.tr_mul(&(C0 * Q_before));
+        let Q = here.Q.matrix();
+        let C = Q.tr_mul(&(C0 * Q));
+        let G_before = before.Q.body_velocity(&here.Q).matrix();
+        let G = here.Q.body_velocity(&after.Q).matrix();
+        let t1 = h.powi(-1);
+        let t2 = -(C * (h * a));
+        let t3 = C * C * (h * b);
+        let t4 = -(C * (h * b * C.trace()));
+        let t5 = -(SMatrix::<T, N, N>::identity() * (h * c * determinant(&(C))));
+        let t6 = SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d);
+        let parts: [SMatrix<T, N, N>; 1] = [
+            G_before.tr_mul(&(C_before * (G_before * I0))) * t1
+                - G_before.tr_mul(&(C_before * I0)) * t1 + t2 + t3 + t4 + t5 + t6
+                + C * I0 * t1 - C * (G * I0) * t1 + t2 + t3 + t4 + t5 + t6,
+        ];
+        {
+            let mut all = SVector::<T, 16>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_matrix(rest, &parts[0]);
+            let _ = rest;
+            all
+        }
+    }
+    /// What the step of size `h` from one state to the next leaves of its equations: the
+    /// momentum that is carried to the second state, less the one that the motion between
+    /// them brings there. One part a configuration, angular and linear ones of a rigid
+    /// motion apart, each with the size of the terms it is made of: those of a spatial
+    /// velocity are the two elements it is made from, as they are stored.
+    pub fn residual(
+        &self,
+        before: &EllipsoidConvectiveState<N, T>,
+        after: &EllipsoidConvectiveState<N, T>,
+        h: T,
+    ) -> [Residual; 1] {
+        let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let G_matrix = before.Q.body_velocity(&after.Q).matrix();
+        let Q = before.Q.matrix();
+        let C = Q.tr_mul(&(C0 * Q));
+        let Q_next = after.Q.matrix();
+        let C_next = Q_next.tr_mul(&(C0 * Q_next));
+        let t1 = h.powi(-1);
+        let t2 = determinant(&(C_next));
+        let t3 = (t1 * t1).sqrt();
+        let t4 = (G_matrix.tr_mul(&G_matrix)).trace().sqrt();
+        let t5 = (C * C).trace().sqrt();
+        let t6 = (I0 * I0).trace().sqrt();
+        let t7 = (h * h).sqrt();
+        let t8 = (C_next * C_next).trace().sqrt();
+        let t9 = (b * b).sqrt();
+        [
+            Residual::between(
+                &(after.momentum.to_body(&after.Q).0),
+                &(G_matrix.tr_mul(&(C * (G_matrix * I0))) * t1
+                    - G_matrix.tr_mul(&(C * I0)) * t1 - C_next * (h * a)
+                    + C_next * C_next * (h * b) - C_next * (h * b * C_next.trace())
+                    - SMatrix::<T, N, N>::identity() * (h * c * t2)
+                    + SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d)),
+                t3 * t4 * t5 * t6 + t3 * t4 * t5 * t4 * t6 + t7 * (a * a).sqrt() * t8
+                    + t7 * t9 * t8 * t8 + T::from_f64(2.0) * t7 * t9 * t8 * t8
+                    + t7 * (c * c).sqrt() * (t2 * t2).sqrt()
+                    + T::from_f64(0.5) * t7 * (d * d).sqrt(),
+            ),
+        ]
+    }
+    /// The Hessian of the kinetic energy in all velocities together, at the identity.
+    fn inertia_at(&self, state: &EllipsoidConvectiveState<N, T>) -> SMatrix<T, 16, 16> {
+        let EllipsoidConvectiveParameters { C0, I0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let C = Q.tr_mul(&(C0 * Q));
+        let mut inertia = SMatrix::<T, 16, 16>::zeros();
+        for axis in 0..(N * N) {
+            let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
+            let t1 = C * (ξ * I0) * T::from_f64(0.5);
+            let parts: [SMatrix<T, N, N>; 1] = [t1 + t1];
+            inertia
+                .set_column(
+                    axis,
+                    &{
+                        let mut all = SVector::<T, 16>::zeros();
+                        let rest = all.as_mut_slice();
+                        let rest = put_matrix(rest, &parts[0]);
+                        let _ = rest;
+                        all
                     },
                 );
-            StepCause::from(contact).at_node(state.node)
         }
-        /// Whether the step from one state to the next stays where the model is defined.
-        #[inline]
-        fn stays_inside(
-            &self,
-            before: &EllipsoidConvectiveState<N, T>,
-            after: &EllipsoidConvectiveState<N, T>,
-            h: T,
-        ) -> Result<(), domain::Contact> {
-            domain::invertible("Q", &before.Q, &after.Q, h)?;
-            {
-                let after = self.domain_arguments(after, h);
-                if !(domain::Domain::Positive.admits(after[0])) {
-                    let before = self.domain_arguments(before, h);
-                    domain::Domain::Positive
-                        .at_nodes(
-                            &domain::Call {
-                                function: domain::Function::Log,
-                                argument: "det(C_k)",
-                            },
-                            before[0],
-                            after[0],
-                            h,
-                        )?;
-                }
-            }
-            let _ = (before, after, h);
-            Ok(())
-        }
-        /// The arguments of the functions that the model uses, at the node of this state.
-        #[inline]
-        fn domain_arguments(
-            &self,
-            state: &EllipsoidConvectiveState<N, T>,
-            h: T,
-        ) -> [T; 1] {
-            let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let C = Q.tr_mul(&(C0 * Q));
-            let _ = (state, h);
-            [determinant(&(C))]
-        }
-        /// One step, in place. Solved thus: the balance is linear: two small linear systems.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-        #[inline]
-        fn step_untested(
-            &self,
-            state: &mut EllipsoidConvectiveState<N, T>,
-            work: &mut EllipsoidConvectiveWorkspace<N, T>,
-        ) -> Result<(), StepError> {
-            let h = work.h;
-            let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self
-                .parameters;
-            let Q = state.Q.matrix();
-            let Q_seen = C0 * (Q * Q.transpose());
-            let momentum_leaving = state.momentum.0
-                - (Q_seen * (h * a + h * b * Q_seen.trace()) - Q_seen * Q_seen * (h * b)
-                    + SMatrix::<T, N, N>::identity()
-                        * (h * c * determinant(&(Q_seen)) - T::from_f64(0.5) * h * d));
-            let Q_change = match displaced(
-                &state.Q,
-                &(self.inverse_1_left * h),
-                &momentum_leaving,
-                &self.inverse_1_right,
-                &["C_k/h", "I₀"],
-            ) {
-                Ok(solved) => solved,
-                Err(e) => return Err(StepCause::Singular(e).at_node(state.node)),
-            };
-            let Q_moved = state.Q.changed(&Q_change);
-            let Q_next = Q_moved.matrix();
-            let Q_seen_next = C0 * (Q_next * Q_next.transpose());
-            let momentum_next = momentum_leaving
-                + C0 * (Q_change * (I0 * Q_change.transpose())) * (T::from_f64(1.0) / h)
-                + Q_seen_next * ((-(h * a)) - h * b * Q_seen_next.trace())
-                + Q_seen_next * Q_seen_next * (h * b)
-                + SMatrix::<T, N, N>::identity()
-                    * (T::from_f64(0.5) * h * d - h * c * determinant(&(Q_seen_next)));
-            state.Q = Q_moved;
-            state.momentum = SpatialMomentumMatrix(momentum_next);
-            state.node += 1;
-            Ok(())
-        }
-        /// `C` at the node of this state.
-        #[inline]
-        pub fn C(&self, state: &EllipsoidConvectiveState<N, T>) -> SMatrix<T, N, N> {
-            let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let C = Q.tr_mul(&(C0 * Q));
-            C
-        }
+        inertia
     }
-    impl<const N: usize, T: Real> Stepper for EllipsoidConvective<N, T> {
-        type Scalar = T;
-        type State = EllipsoidConvectiveState<N, T>;
-        type Workspace = EllipsoidConvectiveWorkspace<N, T>;
-        fn workspace(
-            &self,
-            state: &Self::State,
-            h: T,
-        ) -> Result<Self::Workspace, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        #[inline(always)]
-        fn advance(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-        ) -> Result<(), StepError> {
-            self.step(state, work)
-        }
-        #[cold]
-        fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
-            let mut moving = *state;
-            self.step(&mut moving, &mut EllipsoidConvectiveWorkspace { h }).ok()?;
-            Some(moving)
-        }
-        fn node(state: &Self::State) -> u64 {
-            state.node
-        }
-        fn at_node(state: Self::State, node: u64) -> Self::State {
-            EllipsoidConvectiveState {
-                node: node,
-                ..state
-            }
-        }
-    }
-    impl<const N: usize, T: Real> Reversible for EllipsoidConvective<N, T> {}
-    ::clebsch::of_scalars! {
-        [N] EllipsoidConvectiveParameters { C0, I0, a, b, c, d }
-    }
-    ::clebsch::of_scalars! {
-        [N] EllipsoidConvectiveInitial { Q, body_momentum }
-    }
-    ::clebsch::of_scalars! {
-        [N] EllipsoidConvectiveState { Q, momentum } at node
-    }
-    impl<const N: usize, T: Real> ::clebsch::integrate::Model
-    for EllipsoidConvective<N, T> {
-        type Parameters = EllipsoidConvectiveParameters<N, T>;
-        type Initial = EllipsoidConvectiveInitial<N, T>;
-        type Choice = ();
-        type Over<U: Real> = EllipsoidConvective<N, U>;
-        const SIDE_BY_SIDE: bool = false;
-        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
-            Self::new(parameters)
-        }
-        fn given(&self) -> &Self::Parameters {
-            &self.parameters
-        }
-        fn begin(
-            &self,
-            initial: Self::Initial,
-        ) -> Result<EllipsoidConvectiveState<N, T>, StartError> {
-            validate::finite("Q", initial.Q.matrix().as_slice())?;
-            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            Ok(EllipsoidConvectiveState {
-                Q: initial.Q,
-                momentum: initial.body_momentum.to_space(&initial.Q),
-                node: 0,
-            })
-        }
-        fn prepared(
-            &self,
-            state: &EllipsoidConvectiveState<N, T>,
-            h: T,
-            _: Self::Choice,
-        ) -> Result<Self::Workspace, StartError> {
-            {
-                let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
-                let Q = state.Q.matrix();
-                let C = Q.tr_mul(&(C0 * Q));
-                validate::defined(
-                    domain::Domain::Positive,
-                    domain::Function::Log,
-                    "det(C_k)",
-                    determinant(&(C)),
-                )?;
-            }
-            Ok(EllipsoidConvectiveWorkspace { h })
-        }
-    }
-    /// A configuration at one node, solution or not.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct EllipsoidConvectiveConfiguration<const N: usize, T = f64> {
-        /// `Q` at the node: body -> space.
-        pub Q: Linear<N, T>,
-    }
-    impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
-        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
-        /// consecutive configurations: components are derivatives of the action of the two edges
-        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
-        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
-        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
-        pub fn balance(
-            &self,
-            h: T,
-            before: &EllipsoidConvectiveConfiguration<N, T>,
-            here: &EllipsoidConvectiveConfiguration<N, T>,
-            after: &EllipsoidConvectiveConfiguration<N, T>,
-        ) -> SVector<T, 16> {
-            let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self
-                .parameters;
-            let Q_before = before.Q.matrix();
-            let C_before = Q_before.tr_mul(&(C0 * Q_before));
-            let Q = here.Q.matrix();
-            let C = Q.tr_mul(&(C0 * Q));
-            let G_before = before.Q.body_velocity(&here.Q).matrix();
-            let G = here.Q.body_velocity(&after.Q).matrix();
-            let t1 = h.powi(-1);
-            let t2 = -(C * (h * a));
-            let t3 = C * C * (h * b);
-            let t4 = -(C * (h * b * C.trace()));
-            let t5 = -(SMatrix::<T, N, N>::identity() * (h * c * determinant(&(C))));
-            let t6 = SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d);
-            let parts: [SMatrix<T, N, N>; 1] = [
-                G_before.tr_mul(&(C_before * (G_before * I0))) * t1
-                    - G_before.tr_mul(&(C_before * I0)) * t1 + t2 + t3 + t4 + t5 + t6
-                    + C * I0 * t1 - C * (G * I0) * t1 + t2 + t3 + t4 + t5 + t6,
-            ];
-            {
-                let mut all = SVector::<T, 16>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_matrix(rest, &parts[0]);
-                let _ = rest;
-                all
-            }
-        }
-    }
-    impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
-        /// What the step of size `h` from one state to the next leaves of its equations: the
-        /// momentum that is carried to the second state, less the one that the motion between
-        /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a spatial
-        /// velocity are the two elements it is made from, as they are stored.
-        pub fn residual(
-            &self,
-            before: &EllipsoidConvectiveState<N, T>,
-            after: &EllipsoidConvectiveState<N, T>,
-            h: T,
-        ) -> [Residual; 1] {
-            let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self
-                .parameters;
-            let G_matrix = before.Q.body_velocity(&after.Q).matrix();
-            let Q = before.Q.matrix();
-            let C = Q.tr_mul(&(C0 * Q));
-            let Q_next = after.Q.matrix();
-            let C_next = Q_next.tr_mul(&(C0 * Q_next));
-            let t1 = h.powi(-1);
-            let t2 = determinant(&(C_next));
-            let t3 = (t1 * t1).sqrt();
-            let t4 = (G_matrix.tr_mul(&G_matrix)).trace().sqrt();
-            let t5 = (C * C).trace().sqrt();
-            let t6 = (I0 * I0).trace().sqrt();
-            let t7 = (h * h).sqrt();
-            let t8 = (C_next * C_next).trace().sqrt();
-            let t9 = (b * b).sqrt();
-            let _ = h;
-            [
-                {
-                    let momentum = after.momentum.to_body(&after.Q).0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (G_matrix.tr_mul(&(C * (G_matrix * I0))) * t1
-                                        - G_matrix.tr_mul(&(C * I0)) * t1 - C_next * (h * a)
-                                        + C_next * C_next * (h * b)
-                                        - C_next * (h * b * C_next.trace())
-                                        - SMatrix::<T, N, N>::identity() * (h * c * t2)
-                                        + SMatrix::<T, N, N>::identity()
-                                            * (T::from_f64(0.5) * h * d))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (t3 * t4 * t5 * t6 + t3 * t4 * t5 * t4 * t6
-                                + t7 * (a * a).sqrt() * t8 + t7 * t9 * t8 * t8
-                                + T::from_f64(2.0) * t7 * t9 * t8 * t8
-                                + t7 * (c * c).sqrt() * (t2 * t2).sqrt()
-                                + T::from_f64(0.5) * t7 * (d * d).sqrt())
-                                .magnitude(),
-                    }
-                },
-            ]
-        }
-    }
-    impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
-        /// The kinetic and the potential energy at this node: those of the limit of small steps,
-        /// at the node's momentum.
-        pub fn energies(&self, state: &EllipsoidConvectiveState<N, T>) -> (T, T) {
-            let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self
-                .parameters;
-            let Q = state.Q.matrix();
-            let C = Q.tr_mul(&(C0 * Q));
-            let parts: [SMatrix<T, N, N>; 1] = [state.body_momentum().0];
-            let momentum = {
-                let mut all = SVector::<T, 16>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_matrix(rest, &parts[0]);
-                let _ = rest;
-                all
-            };
-            let mut inertia = SMatrix::<T, 16, 16>::zeros();
-            for axis in 0..(N * N) {
-                let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
-                let t1 = C * (ξ * I0) * T::from_f64(0.5);
-                let parts: [SMatrix<T, N, N>; 1] = [t1 + t1];
-                inertia
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 16>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_matrix(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            let velocity = solve_leading_or_nan(&inertia, &momentum, 0 + (N * N));
-            (
-                momentum.dot(&velocity) * T::from_f64(0.5),
-                a * C.trace() + T::from_f64(0.5) * b * (C.trace() * C.trace())
-                    - T::from_f64(0.5) * b * (C * C).trace() + c * determinant(&(C))
-                    - T::from_f64(0.5) * d * determinant(&(C)).ln(),
-            )
-        }
-        /// The physical energy at this node.
-        pub fn energy(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
-            let (kinetic, potential) = self.energies(state);
-            kinetic + potential
-        }
-        /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of the advected quantities.
-        pub fn circulation_C_2(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
-            let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let C = Q.tr_mul(&(C0 * Q));
-            let μ = state.body_momentum().0;
-            let t1 = skew_part(&(inverse_or_nan(&(C)) * μ));
-            (C * (t1 * (C * t1))).trace()
-        }
-        /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of the advected quantities.
-        pub fn circulation_C_4(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
-            let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let C = Q.tr_mul(&(C0 * Q));
-            let μ = state.body_momentum().0;
-            let t1 = skew_part(&(inverse_or_nan(&(C)) * μ));
-            (C * (t1 * (C * (t1 * (C * (t1 * (C * t1))))))).trace()
-        }
-        /// `skew(C₀⁻¹ Q_k⁻ᵀ μ_k Q_kᵀ)`: Noether: the action is invariant under motions of space that fix the axis.
-        pub fn spatial_momentum_skew_C0_inverse(
-            &self,
-            state: &EllipsoidConvectiveState<N, T>,
-        ) -> SMatrix<T, N, N> {
-            let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let μ = state.body_momentum().0;
-            skew_part(
-                &(inverse_or_nan(&(C0))
-                    * (inverse_or_nan(&(Q.transpose())) * (μ * Q.transpose()))),
-            )
-        }
-    }
-    impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
-        /// The discrete energy of the edge between two consecutive states, `2 tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h)² + ½ a tr(C_k) + ¼ b tr(C_k)² - ¼ b tr(C_k²) + ½ c det(C_k) - ¼ d log(det(C_k)) + ½ a tr(C_{k+1}) + ¼ b tr(C_{k+1})² - ¼ b tr(C_{k+1}²) + ½ c det(C_{k+1}) - ¼ d log(det(C_{k+1}))`: bounded, since the stepper is symplectic.
-        pub fn discrete_energy(
-            &self,
-            h: T,
-            before: &EllipsoidConvectiveState<N, T>,
-            after: &EllipsoidConvectiveState<N, T>,
-        ) -> T {
-            let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self
-                .parameters;
-            let G_matrix = before.Q.body_velocity(&after.Q).matrix();
-            let Q = before.Q.matrix();
-            let C = Q.tr_mul(&(C0 * Q));
-            let Q_next = after.Q.matrix();
-            let C_next = Q_next.tr_mul(&(C0 * Q_next));
-            let t1 = C.trace();
-            let t2 = determinant(&(C));
-            let t3 = C_next.trace();
-            let t4 = determinant(&(C_next));
-            (T::from_f64(2.0)
-                * (C
-                    * ((G_matrix - SMatrix::<T, N, N>::identity())
-                        * (I0
-                            * (G_matrix.transpose() - SMatrix::<T, N, N>::identity()))))
-                    .trace()) / ((T::from_f64(2.0) * h) * (T::from_f64(2.0) * h))
-                + T::from_f64(0.5) * a * t1 + T::from_f64(0.25) * b * (t1 * t1)
-                - T::from_f64(0.25) * b * (C * C).trace() + T::from_f64(0.5) * c * t2
-                - T::from_f64(0.25) * d * t2.ln() + T::from_f64(0.5) * a * t3
-                + T::from_f64(0.25) * b * (t3 * t3)
-                - T::from_f64(0.25) * b * (C_next * C_next).trace()
-                + T::from_f64(0.5) * c * t4 - T::from_f64(0.25) * d * t4.ln()
-        }
-    }
-    impl<const N: usize> ::clebsch::integrate::Described
-    for EllipsoidConvective<N, f64> {
-        fn card() -> &'static Card {
-            &Self::CARD
-        }
-        fn read(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-        ) -> Result<(Self, Self::Initial), OpenError> {
-            let model = Self::new(EllipsoidConvectiveParameters {
-                C0: matrix_of("C0", parameters.get(0usize))?,
-                I0: matrix_of("I0", parameters.get(1usize))?,
-                a: number_of("a", parameters.get(2usize))?,
-                b: number_of("b", parameters.get(3usize))?,
-                c: number_of("c", parameters.get(4usize))?,
-                d: number_of("d", parameters.get(5usize))?,
-            })?;
-            let initial = EllipsoidConvectiveInitial {
-                Q: linear_of("Q", initial.get(0usize))?,
-                body_momentum: BodyMomentumMatrix(
-                    matrix_of("body_momentum", initial.get(1usize))?,
-                ),
-            };
-            Ok((model, initial))
-        }
-        fn ways(
-            self,
-            state: &Self::State,
-            settings: Settings,
-        ) -> Result<(Self, Steps<Self>), OpenError> {
-            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
-            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
-            Ok((model, steps))
-        }
-        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
-            self.kinetic_warning(state)
-        }
-        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-            Residual::largest(&self.residual(before, after, h))
-        }
-        fn observe(&self, state: &Self::State, out: &mut [f64]) {
-            let out = put(out, rows(state.Q().matrix()));
-            let out = put(out, rows(state.body_momentum().0));
-            let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, rows(self.C(state)));
-            let _ = out;
-        }
-        fn invariants(
-            &self,
-            state: &Self::State,
-            _: Option<&Self::Workspace>,
-            out: &mut [f64],
-        ) {
-            let out = put(out, [self.energy(state)]);
-            let out = put(out, [self.circulation_C_2(state)]);
-            let out = put(out, [self.circulation_C_4(state)]);
-            let out = put(out, rows(self.spatial_momentum_skew_C0_inverse(state)));
-            let _ = (state, out);
-        }
-        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
-            let mut enlarged = *state;
-            {
-                type T = f64;
-                let EllipsoidConvectiveParameters { C0, a, b, c, d, .. } = self
-                    .parameters;
-                let Q = state.Q.matrix();
-                let C = Q.tr_mul(&(C0 * Q));
-                let t1 = (h * h).sqrt();
-                let t2 = (C * C).trace().sqrt();
-                let t3 = (b * b).sqrt();
-                let t4 = determinant(&(C));
-                enlarged.momentum = SpatialMomentumMatrix(
-                    not_less(
-                        enlarged.momentum.0,
-                        (0, N),
-                        t1 * (a * a).sqrt() * t2 + t1 * t3 * t2 * t2
-                            + T::from_f64(2.0) * t1 * t3 * t2 * t2
-                            + t1 * (c * c).sqrt() * (t4 * t4).sqrt()
-                            + T::from_f64(0.5) * t1 * (d * d).sqrt(),
-                    ),
-                );
-            }
-            let state = &enlarged;
-            type T = f64;
-            let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let C = Q.tr_mul(&(C0 * Q));
-            let μ = state.body_momentum().0;
-            let t1 = inverse_or_nan(&(C));
-            let t2 = (μ.tr_mul(&μ)).trace().sqrt() * (C * C).trace().sqrt()
-                * (t1 * t1).trace().sqrt();
-            let t3 = inverse_or_nan(&(Q.transpose()));
-            let t4 = inverse_or_nan(&(C0));
-            let out = put(
-                out,
-                ::core::iter::repeat_n(sum_of_sizes(self.energies(state)), 1usize),
-            );
-            let out = put(out, ::core::iter::repeat_n(t2 * t2, 1usize));
-            let out = put(out, ::core::iter::repeat_n(t2.powi(4), 1usize));
-            let out = put(
-                out,
-                ::core::iter::repeat_n(
-                    (Q * μ.tr_mul(&t3.tr_mul(&(t3 * (μ * Q.transpose())))))
-                        .trace()
-                        .sqrt() * (t4 * t4).trace().sqrt(),
-                    N * N,
-                ),
-            );
-            let _ = (state, h, out);
-        }
-    }
-    impl<const N: usize> EllipsoidConvective<N, f64> {
-        /// The model as data.
-        pub const CARD: Card = Card {
-            name: "EllipsoidConvective",
-            kebab: "ellipsoid-convective",
-            doc: "Elastic ellipsoid, convective representation.",
-            source: Self::SOURCE,
-            fingerprint: Self::FINGERPRINT,
-            summary: "discrete Lagrangian  tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h) - ½ h a tr(C_k) - ¼ h b tr(C_k)² + ¼ h b tr(C_k²) - ½ h c det(C_k) + ¼ h d log(det(C_k)) - ½ h a tr(C_{k+1}) - ¼ h b tr(C_{k+1})² + ¼ h b tr(C_{k+1}²) - ½ h c det(C_{k+1}) + ¼ h d log(det(C_{k+1}))\nmomentum of Q        C_k (G_k - Id) I₀ G_kᵀ/h\nRiccati form         none; linear, L = C_k/h, R = I₀\ninvariants           energy, circulation_C_2, circulation_C_4, spatial_momentum_skew_C0_inverse\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-            solver: "Explicit: the balance is linear: two small linear systems",
-            order: 2u32,
-            orders: &[2, 4, 6, 8],
-            preprocessed: false,
-            reversible: true,
-            parameters: &[
-                Kind::Symmetric.field("C0", [N, N], "metric of space"),
-                Kind::Symmetric
-                    .field("I0", [N, N], "second moments of mass in the reference"),
-                Kind::Scalar
-                    .field("a", [1, 1], "stiffness of lengths, of areas and of volumes"),
-                Kind::Scalar
-                    .field("b", [1, 1], "stiffness of lengths, of areas and of volumes"),
-                Kind::Scalar
-                    .field("c", [1, 1], "stiffness of lengths, of areas and of volumes"),
-                Kind::Scalar
-                    .field(
-                        "d",
-                        [1, 1],
-                        "resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c",
-                    ),
-            ],
-            initial: &[
-                Kind::Matrix.field("Q", [N, N], "placement, reference to space"),
-                Kind::BodyMomentum.field("body_momentum", [N, N], "momentum, body frame"),
-            ],
-            observables: &[
-                Kind::Matrix.field("Q", [N, N], "placement, reference to space"),
-                Kind::BodyMomentum
-                    .field("body_momentum", [N, N], "momentum, body frame"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum", [N, N], "momentum, space frame"),
-                Kind::Symmetric.field("C", [N, N], "metric of space seen from the body"),
-            ],
-            invariants: &[
-                Invariant::bounded(
-                    "energy",
-                    "½ tr(μ_kᵀ ζ) + a tr(C_k) + ½ b tr(C_k)² - ½ b tr(C_k²) + c det(C_k) - ½ d log(det(C_k)), where μ_k = C_k ζ I₀",
-                    1usize,
-                ),
-                Invariant::exact(
-                    "circulation_C_2",
-                    "tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))",
-                    1usize,
-                ),
-                Invariant::exact(
-                    "circulation_C_4",
-                    "tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))",
-                    1usize,
-                ),
-                Invariant::exact(
-                    "spatial_momentum_skew_C0_inverse",
-                    "skew(C₀⁻¹ Q_k⁻ᵀ μ_k Q_kᵀ)",
-                    N * N,
-                ),
-            ],
-            discrete_energy: Invariant::bounded(
-                "discrete_energy",
-                "2 tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h)² + ½ a tr(C_k) + ¼ b tr(C_k)² - ¼ b tr(C_k²) + ½ c det(C_k) - ¼ d log(det(C_k)) + ½ a tr(C_{k+1}) + ¼ b tr(C_{k+1})² - ¼ b tr(C_{k+1}²) + ½ c det(C_{k+1}) - ¼ d log(det(C_{k+1}))",
-                1,
-            ),
-            open: open::<Self>,
-            solvers: &[],
-            dimensions: &[
-                Dimension {
-                    name: "n",
-                    from: 2,
-                    to: 4,
-                    value: N,
-                },
-            ],
-            sized: Self::sized,
+    /// The kinetic and the potential energy at this node: those of the limit of small steps,
+    /// at the node's momentum.
+    pub fn energies(&self, state: &EllipsoidConvectiveState<N, T>) -> (T, T) {
+        let EllipsoidConvectiveParameters { C0, a, b, c, d, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let C = Q.tr_mul(&(C0 * Q));
+        let parts: [SMatrix<T, N, N>; 1] = [state.body_momentum().0];
+        let momentum = {
+            let mut all = SVector::<T, 16>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_matrix(rest, &parts[0]);
+            let _ = rest;
+            all
         };
-        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
-        /// velocities together, at the identity, should be positive definite.
-        #[cold]
-        #[allow(unused_variables)]
-        pub fn kinetic_warning(
-            &self,
-            state: &EllipsoidConvectiveState<N, f64>,
-        ) -> Option<KineticWarning> {
+        let velocity = solve_leading_or_nan(
+            &self.inertia_at(state),
+            &momentum,
+            0 + (N * N),
+        );
+        (
+            momentum.dot(&velocity) * T::from_f64(0.5),
+            a * C.trace() + T::from_f64(0.5) * b * (C.trace() * C.trace())
+                - T::from_f64(0.5) * b * (C * C).trace() + c * determinant(&(C))
+                - T::from_f64(0.5) * d * determinant(&(C)).ln(),
+        )
+    }
+    /// The physical energy at this node.
+    pub fn energy(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
+        let (kinetic, potential) = self.energies(state);
+        kinetic + potential
+    }
+    /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of the advected quantities.
+    pub fn circulation_C_2(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
+        let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let C = Q.tr_mul(&(C0 * Q));
+        let μ = state.body_momentum().0;
+        let t1 = skew_part(&(inverse_or_nan(&(C)) * μ));
+        (C * (t1 * (C * t1))).trace()
+    }
+    /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of the advected quantities.
+    pub fn circulation_C_4(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
+        let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let C = Q.tr_mul(&(C0 * Q));
+        let μ = state.body_momentum().0;
+        let t1 = skew_part(&(inverse_or_nan(&(C)) * μ));
+        (C * (t1 * (C * (t1 * (C * (t1 * (C * t1))))))).trace()
+    }
+    /// `skew(C₀⁻¹ Q_k⁻ᵀ μ_k Q_kᵀ)`: Noether: the action is invariant under motions of space that fix the axis.
+    pub fn spatial_momentum_skew_C0_inverse(
+        &self,
+        state: &EllipsoidConvectiveState<N, T>,
+    ) -> SMatrix<T, N, N> {
+        let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let μ = state.body_momentum().0;
+        skew_part(
+            &(inverse_or_nan(&(C0))
+                * (inverse_or_nan(&(Q.transpose())) * (μ * Q.transpose()))),
+        )
+    }
+    /// The discrete energy of the edge between two consecutive states, `2 tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h)² + ½ a tr(C_k) + ¼ b tr(C_k)² - ¼ b tr(C_k²) + ½ c det(C_k) - ¼ d log(det(C_k)) + ½ a tr(C_{k+1}) + ¼ b tr(C_{k+1})² - ¼ b tr(C_{k+1}²) + ½ c det(C_{k+1}) - ¼ d log(det(C_{k+1}))`: bounded, since the stepper is symplectic.
+    pub fn discrete_energy(
+        &self,
+        h: T,
+        before: &EllipsoidConvectiveState<N, T>,
+        after: &EllipsoidConvectiveState<N, T>,
+    ) -> T {
+        let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let G_matrix = before.Q.body_velocity(&after.Q).matrix();
+        let Q = before.Q.matrix();
+        let C = Q.tr_mul(&(C0 * Q));
+        let Q_next = after.Q.matrix();
+        let C_next = Q_next.tr_mul(&(C0 * Q_next));
+        let t1 = C.trace();
+        let t2 = determinant(&(C));
+        let t3 = C_next.trace();
+        let t4 = determinant(&(C_next));
+        (T::from_f64(2.0)
+            * (C
+                * ((G_matrix - SMatrix::<T, N, N>::identity())
+                    * (I0 * (G_matrix.transpose() - SMatrix::<T, N, N>::identity()))))
+                .trace()) / ((T::from_f64(2.0) * h) * (T::from_f64(2.0) * h))
+            + T::from_f64(0.5) * a * t1 + T::from_f64(0.25) * b * (t1 * t1)
+            - T::from_f64(0.25) * b * (C * C).trace() + T::from_f64(0.5) * c * t2
+            - T::from_f64(0.25) * d * t2.ln() + T::from_f64(0.5) * a * t3
+            + T::from_f64(0.25) * b * (t3 * t3)
+            - T::from_f64(0.25) * b * (C_next * C_next).trace()
+            + T::from_f64(0.5) * c * t4 - T::from_f64(0.25) * d * t4.ln()
+    }
+    /// The state after a step of `h` that is tried, or none.
+    #[cold]
+    fn attempt(
+        &self,
+        state: &EllipsoidConvectiveState<N, T>,
+        h: T,
+    ) -> Option<EllipsoidConvectiveState<N, T>> {
+        let mut moving = *state;
+        self.step(&mut moving, &mut EllipsoidConvectiveWorkspace { h }).ok()?;
+        Some(moving)
+    }
+}
+impl<const N: usize> EllipsoidConvective<N, f64> {
+    /// All observables, in the order of the card.
+    fn observe(&self, state: &EllipsoidConvectiveState<N, f64>, out: &mut [f64]) {
+        let out = put(out, rows(state.Q().matrix()));
+        let out = put(out, rows(state.body_momentum().0));
+        let out = put(out, rows(state.spatial_momentum().0));
+        let out = put(out, rows(self.C(state)));
+    }
+    /// All invariants, in the order of the card.
+    fn invariants(
+        &self,
+        state: &EllipsoidConvectiveState<N, f64>,
+        _: Option<&EllipsoidConvectiveWorkspace<N, f64>>,
+        out: &mut [f64],
+    ) {
+        let out = put(out, [self.energy(state)]);
+        let out = put(out, [self.circulation_C_2(state)]);
+        let out = put(out, [self.circulation_C_4(state)]);
+        let out = put(out, rows(self.spatial_momentum_skew_C0_inverse(state)));
+    }
+    /// Their sizes at a state, in steps of `h`.
+    fn scales(&self, state: &EllipsoidConvectiveState<N, f64>, h: f64, out: &mut [f64]) {
+        let mut enlarged = *state;
+        {
             type T = f64;
-            let EllipsoidConvectiveParameters { C0, I0, .. } = self.parameters;
+            let EllipsoidConvectiveParameters { C0, a, b, c, d, .. } = self.parameters;
             let Q = state.Q.matrix();
             let C = Q.tr_mul(&(C0 * Q));
-            let mut inertia = SMatrix::<T, 16, 16>::zeros();
-            for axis in 0..(N * N) {
-                let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
-                let t1 = C * (ξ * I0) * T::from_f64(0.5);
-                let parts: [SMatrix<T, N, N>; 1] = [t1 + t1];
-                inertia
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 16>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_matrix(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            KineticWarning::of(&inertia, 0 + (N * N))
+            let t1 = (h * h).sqrt();
+            let t2 = (C * C).trace().sqrt();
+            let t3 = (b * b).sqrt();
+            let t4 = determinant(&(C));
+            enlarged.momentum = SpatialMomentumMatrix(
+                not_less(
+                    enlarged.momentum.0,
+                    (0, N),
+                    t1 * (a * a).sqrt() * t2 + t1 * t3 * t2 * t2
+                        + T::from_f64(2.0) * t1 * t3 * t2 * t2
+                        + t1 * (c * c).sqrt() * (t4 * t4).sqrt()
+                        + T::from_f64(0.5) * t1 * (d * d).sqrt(),
+                ),
+            );
         }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [2] => Some(EllipsoidConvective::<2, f64>::CARD),
-                [3] => Some(EllipsoidConvective::<3, f64>::CARD),
-                [4] => Some(EllipsoidConvective::<4, f64>::CARD),
-                _ => None,
-            }
+        let state = &enlarged;
+        type T = f64;
+        let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let C = Q.tr_mul(&(C0 * Q));
+        let μ = state.body_momentum().0;
+        let t1 = inverse_or_nan(&(C));
+        let t2 = (μ.tr_mul(&μ)).trace().sqrt() * (C * C).trace().sqrt()
+            * (t1 * t1).trace().sqrt();
+        let t3 = inverse_or_nan(&(Q.transpose()));
+        let t4 = inverse_or_nan(&(C0));
+        let out = put(
+            out,
+            ::core::iter::repeat_n(sum_of_sizes(self.energies(state)), 1usize),
+        );
+        let out = put(out, ::core::iter::repeat_n(t2 * t2, 1usize));
+        let out = put(out, ::core::iter::repeat_n(t2.powi(4), 1usize));
+        let out = put(
+            out,
+            ::core::iter::repeat_n(
+                (Q * μ.tr_mul(&t3.tr_mul(&(t3 * (μ * Q.transpose()))))).trace().sqrt()
+                    * (t4 * t4).trace().sqrt(),
+                N * N,
+            ),
+        );
+    }
+    /// The model as data.
+    pub const CARD: Card = Card {
+        name: "EllipsoidConvective",
+        kebab: "ellipsoid-convective",
+        doc: "Elastic ellipsoid, convective representation.",
+        source: Self::SOURCE,
+        fingerprint: Self::FINGERPRINT,
+        summary: "discrete Lagrangian  tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h) - ½ h a tr(C_k) - ¼ h b tr(C_k)² + ¼ h b tr(C_k²) - ½ h c det(C_k) + ¼ h d log(det(C_k)) - ½ h a tr(C_{k+1}) - ¼ h b tr(C_{k+1})² + ¼ h b tr(C_{k+1}²) - ½ h c det(C_{k+1}) + ¼ h d log(det(C_{k+1}))\nmomentum of Q        C_k (G_k - Id) I₀ G_kᵀ/h\nRiccati form         none; linear, L = C_k/h, R = I₀\ninvariants           energy, circulation_C_2, circulation_C_4, spatial_momentum_skew_C0_inverse\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
+        solver: "Explicit: the balance is linear: two small linear systems",
+        order: 2u32,
+        orders: &[2, 4, 6, 8],
+        preprocessed: false,
+        reversible: true,
+        parameters: &[
+            Kind::Symmetric.field("C0", [N, N], "metric of space"),
+            Kind::Symmetric
+                .field("I0", [N, N], "second moments of mass in the reference"),
+            Kind::Scalar
+                .field("a", [1, 1], "stiffness of lengths, of areas and of volumes"),
+            Kind::Scalar
+                .field("b", [1, 1], "stiffness of lengths, of areas and of volumes"),
+            Kind::Scalar
+                .field("c", [1, 1], "stiffness of lengths, of areas and of volumes"),
+            Kind::Scalar
+                .field(
+                    "d",
+                    [1, 1],
+                    "resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c",
+                ),
+        ],
+        initial: &[
+            Kind::Matrix.field("Q", [N, N], "placement, reference to space"),
+            Kind::BodyMomentum.field("body_momentum", [N, N], "momentum, body frame"),
+        ],
+        observables: &[
+            Kind::Matrix.field("Q", [N, N], "placement, reference to space"),
+            Kind::BodyMomentum.field("body_momentum", [N, N], "momentum, body frame"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum", [N, N], "momentum, space frame"),
+            Kind::Symmetric.field("C", [N, N], "metric of space seen from the body"),
+        ],
+        invariants: &[
+            Invariant::bounded(
+                "energy",
+                "½ tr(μ_kᵀ ζ) + a tr(C_k) + ½ b tr(C_k)² - ½ b tr(C_k²) + c det(C_k) - ½ d log(det(C_k)), where μ_k = C_k ζ I₀",
+                1usize,
+            ),
+            Invariant::exact(
+                "circulation_C_2",
+                "tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))",
+                1usize,
+            ),
+            Invariant::exact(
+                "circulation_C_4",
+                "tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))",
+                1usize,
+            ),
+            Invariant::exact(
+                "spatial_momentum_skew_C0_inverse",
+                "skew(C₀⁻¹ Q_k⁻ᵀ μ_k Q_kᵀ)",
+                N * N,
+            ),
+        ],
+        discrete_energy: Invariant::bounded(
+            "discrete_energy",
+            "2 tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h)² + ½ a tr(C_k) + ¼ b tr(C_k)² - ¼ b tr(C_k²) + ½ c det(C_k) - ¼ d log(det(C_k)) + ½ a tr(C_{k+1}) + ¼ b tr(C_{k+1})² - ¼ b tr(C_{k+1}²) + ½ c det(C_{k+1}) - ¼ d log(det(C_{k+1}))",
+            1,
+        ),
+        open: open::<Self>,
+        solvers: &[],
+        dimensions: &[
+            Dimension {
+                name: "n",
+                from: 2,
+                to: 4,
+                value: N,
+            },
+        ],
+        sized: Self::sized,
+    };
+    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+    /// definite.
+    #[cold]
+    pub fn kinetic_warning(
+        &self,
+        state: &EllipsoidConvectiveState<N, f64>,
+    ) -> Option<KineticWarning> {
+        KineticWarning::of(&self.inertia_at(state), 0 + (N * N))
+    }
+    /// The card of the model at the given sizes, in the order of their declaration.
+    fn sized(sizes: &[usize]) -> Option<Card> {
+        match sizes {
+            [2] => Some(EllipsoidConvective::<2, f64>::CARD),
+            [3] => Some(EllipsoidConvective::<3, f64>::CARD),
+            [4] => Some(EllipsoidConvective::<4, f64>::CARD),
+            _ => None,
         }
     }
 }
-#[allow(unused_imports)]
-pub use ellipsoid_convective::*;

@@ -1,813 +1,657 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-/// The model [`EllipsoidSpatial`](struct@EllipsoidSpatial) and what belongs to it.
-#[allow(
+//! The model [`EllipsoidSpatial`](struct@EllipsoidSpatial) and what belongs to it.
+#![allow(
     non_snake_case,
     uncommon_codepoints,
     mixed_script_confusables,
     confusable_idents,
+    unused_variables,
     clippy::all
 )]
-pub mod ellipsoid_spatial {
-    use ::clebsch::emitted::*;
-    /// Parameters of [`EllipsoidSpatial`](struct@EllipsoidSpatial), as given.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct EllipsoidSpatialParameters<const N: usize, T = f64> {
-        /// `C0`: metric of space; a n x n matrix, symmetric.
-        pub C0: SMatrix<T, N, N>,
-        /// `I0`: second moments of mass in the reference; a n x n matrix, symmetric.
-        pub I0: SMatrix<T, N, N>,
-        /// `a`: stiffness of lengths, of areas and of volumes; a number.
-        pub a: T,
-        /// `b`: stiffness of lengths, of areas and of volumes; a number.
-        pub b: T,
-        /// `c`: stiffness of lengths, of areas and of volumes; a number.
-        pub c: T,
-        /// `d`: resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c; a number.
-        pub d: T,
-    }
-    /// Elastic ellipsoid, spatial representation.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct EllipsoidSpatial<const N: usize, T = f64> {
+use ::clebsch::emitted::*;
+/// Parameters of [`EllipsoidSpatial`](struct@EllipsoidSpatial), as given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EllipsoidSpatialParameters<const N: usize, T = f64> {
+    /// `C0`: metric of space; a n x n matrix, symmetric.
+    pub C0: SMatrix<T, N, N>,
+    /// `I0`: second moments of mass in the reference; a n x n matrix, symmetric.
+    pub I0: SMatrix<T, N, N>,
+    /// `a`: stiffness of lengths, of areas and of volumes; a number.
+    pub a: T,
+    /// `b`: stiffness of lengths, of areas and of volumes; a number.
+    pub b: T,
+    /// `c`: stiffness of lengths, of areas and of volumes; a number.
+    pub c: T,
+    /// `d`: resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c; a number.
+    pub d: T,
+}
+/// Elastic ellipsoid, spatial representation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EllipsoidSpatial<const N: usize, T = f64> {
+    parameters: EllipsoidSpatialParameters<N, T>,
+    inverse_1_left: SMatrix<T, N, N>,
+    inverse_1_right: SMatrix<T, N, N>,
+}
+impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
+    /// Sizes the model does not admit do not build.
+    const ADMITTED: () = {
+        ::core::assert!(2 <= N && N <= 4, "`n` is from 2 to 4 in this model");
+    };
+    /// The model as it was stated.
+    pub const SOURCE: &'static str = "/// Elastic ellipsoid, spatial representation.\npub model EllipsoidSpatial {\n    dim n in 2..=4;\n    /// metric of space\n    param C0: Sym<n> as \"C_0\";\n    /// second moments of mass in the reference\n    param I0: Sym<n> as \"I_0\";\n    /// stiffness of lengths, of areas and of volumes\n    param a: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param b: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param c: Real;\n    /// resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c\n    param d: Real;\n    /// placement, reference to space\n    group Q: GL<n> velocity g;\n    /// second moments in space\n    advected S: Sym<n> = Q*I0*Q^T;\n    constraint next(Q) = g*Q;\n    constraint next(S) = g*S*g^T;\n    lagrangian = tr(C0*(g - Id)*S*(g^T - Id))/(2*h) - h*(a*tr(S) + (1/2)*b*(tr(S)^2 - tr(S*S)) + c*det(S) - (1/2)*d*log(det(S)));\n}";
+    /// A number that changes when the model or its derivation does.
+    pub const FINGERPRINT: u64 = 5872755012565563645u64;
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+    /// assumption, or is no admissible factor of the equation to solve.
+    pub fn new(
         parameters: EllipsoidSpatialParameters<N, T>,
-        inverse_1_left: SMatrix<T, N, N>,
-        inverse_1_right: SMatrix<T, N, N>,
+    ) -> Result<Self, ParameterError> {
+        let () = Self::ADMITTED;
+        validate::finite_entries("C0", &parameters.C0)?;
+        validate::symmetric("C0", &parameters.C0)?;
+        validate::finite_entries("I0", &parameters.I0)?;
+        validate::symmetric("I0", &parameters.I0)?;
+        validate::finite("a", &[parameters.a])?;
+        validate::finite("b", &[parameters.b])?;
+        validate::finite("c", &[parameters.c])?;
+        validate::finite("d", &[parameters.d])?;
+        let EllipsoidSpatialParameters { C0, I0, .. } = parameters;
+        let inverse_1_left = inverse_or_nan(&(C0));
+        let inverse_1_right = inverse_or_nan(&(I0));
+        Ok(Self {
+            parameters,
+            inverse_1_left,
+            inverse_1_right,
+        })
     }
-    impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
-        /// Sizes the model does not admit do not build.
-        const ADMITTED: () = {
-            ::core::assert!(2 <= N && N <= 4, "`n` is from 2 to 4 in this model");
-        };
-        /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Elastic ellipsoid, spatial representation.\npub model EllipsoidSpatial {\n    dim n in 2..=4;\n    /// metric of space\n    param C0: Sym<n> as \"C_0\";\n    /// second moments of mass in the reference\n    param I0: Sym<n> as \"I_0\";\n    /// stiffness of lengths, of areas and of volumes\n    param a: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param b: Real;\n    /// stiffness of lengths, of areas and of volumes\n    param c: Real;\n    /// resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c\n    param d: Real;\n    /// placement, reference to space\n    group Q: GL<n> velocity g;\n    /// second moments in space\n    advected S: Sym<n> = Q*I0*Q^T;\n    constraint next(Q) = g*Q;\n    constraint next(S) = g*S*g^T;\n    lagrangian = tr(C0*(g - Id)*S*(g^T - Id))/(2*h) - h*(a*tr(S) + (1/2)*b*(tr(S)^2 - tr(S*S)) + c*det(S) - (1/2)*d*log(det(S)));\n}";
-        /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 5872755012565563645u64;
-        /// Checks the parameters.
-        ///
-        /// # Errors
-        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-        /// assumption, or is no admissible factor of the equation to solve.
-        pub fn new(
-            parameters: EllipsoidSpatialParameters<N, T>,
-        ) -> Result<Self, ParameterError> {
-            let () = Self::ADMITTED;
-            validate::finite_entries("C0", &parameters.C0)?;
-            validate::symmetric("C0", &parameters.C0)?;
-            validate::finite_entries("I0", &parameters.I0)?;
-            validate::symmetric("I0", &parameters.I0)?;
-            validate::finite("a", &[parameters.a])?;
-            validate::finite("b", &[parameters.b])?;
-            validate::finite("c", &[parameters.c])?;
-            validate::finite("d", &[parameters.d])?;
-            let EllipsoidSpatialParameters { C0, I0, .. } = parameters;
-            let inverse_1_left = inverse_or_nan(&(C0));
-            let inverse_1_right = inverse_or_nan(&(I0));
-            Ok(Self {
-                parameters,
-                inverse_1_left,
-                inverse_1_right,
-            })
-        }
-        /// The parameters.
-        pub fn parameters(&self) -> &EllipsoidSpatialParameters<N, T> {
-            &self.parameters
-        }
+}
+/// Initial data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EllipsoidSpatialInitial<const N: usize, T = f64> {
+    /// `Q` at node 0: body -> space.
+    pub Q: Linear<N, T>,
+    /// Momentum at node 0, in the space frame.
+    pub spatial_momentum: SpatialMomentumMatrix<N, T>,
+}
+/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EllipsoidSpatialState<const N: usize, T = f64> {
+    Q: Linear<N, T>,
+    momentum: SpatialMomentumMatrix<N, T>,
+    node: u64,
+}
+impl<const N: usize, T: Real> EllipsoidSpatialState<N, T> {
+    /// `Q` at this node: body -> space.
+    pub fn Q(&self) -> Linear<N, T> {
+        self.Q
     }
-    /// Initial data.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct EllipsoidSpatialInitial<const N: usize, T = f64> {
-        /// `Q` at node 0: body -> space.
-        pub Q: Linear<N, T>,
-        /// Momentum at node 0, in the space frame.
-        pub spatial_momentum: SpatialMomentumMatrix<N, T>,
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum(&self) -> SpatialMomentumMatrix<N, T> {
+        self.momentum
     }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct EllipsoidSpatialState<const N: usize, T = f64> {
-        Q: Linear<N, T>,
-        momentum: SpatialMomentumMatrix<N, T>,
-        node: u64,
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum(&self) -> BodyMomentumMatrix<N, T> {
+        self.momentum.to_body(&self.Q)
     }
-    impl<const N: usize, T: Real> EllipsoidSpatialState<N, T> {
-        /// `Q` at this node: body -> space.
-        pub fn Q(&self) -> Linear<N, T> {
-            self.Q
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum(&self) -> SpatialMomentumMatrix<N, T> {
-            self.momentum
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum(&self) -> BodyMomentumMatrix<N, T> {
-            self.momentum.to_body(&self.Q)
-        }
-        /// The number of the node.
-        pub fn node(&self) -> u64 {
-            self.node
-        }
+}
+/// The step and the last velocities, from which the next solves start.
+#[derive(Clone, Copy, Debug)]
+pub struct EllipsoidSpatialWorkspace<const N: usize, T = f64> {
+    h: T,
+}
+impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
+    /// The state at node 0.
+    fn begin(
+        &self,
+        initial: EllipsoidSpatialInitial<N, T>,
+    ) -> Result<EllipsoidSpatialState<N, T>, StartError> {
+        validate::finite("Q", initial.Q.matrix().as_slice())?;
+        validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
+        Ok(EllipsoidSpatialState {
+            Q: initial.Q,
+            momentum: initial.spatial_momentum,
+            node: 0,
+        })
     }
-    /// The step and the last velocities, from which the next solves start.
-    #[derive(Clone, Copy, Debug)]
-    pub struct EllipsoidSpatialWorkspace<const N: usize, T = f64> {
+    /// What steps of `h` from `state` begin with.
+    fn prepared(
+        &self,
+        state: &EllipsoidSpatialState<N, T>,
         h: T,
-    }
-    ::clebsch::saved! {
-        [N] EllipsoidSpatialWorkspace { h, }
-    }
-    impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not admissible, or says why the first step cannot be solved and
-        /// which could.
-        pub fn start(
-            &self,
-            initial: EllipsoidSpatialInitial<N, T>,
-            h: T,
-        ) -> Result<
-            (EllipsoidSpatialState<N, T>, EllipsoidSpatialWorkspace<N, T>),
-            StartError,
-        > {
-            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
+        _: (),
+    ) -> Result<EllipsoidSpatialWorkspace<N, T>, StartError> {
+        {
+            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+            let Q = state.Q.matrix();
+            let S = Q * (I0 * Q.transpose());
+            validate::defined(
+                domain::Domain::Positive,
+                domain::Function::Log,
+                "det(S_k)",
+                determinant(&(S)),
+            )?;
         }
-        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
-        pub fn workspace(
-            &self,
-            state: &EllipsoidSpatialState<N, T>,
-            h: T,
-        ) -> Result<EllipsoidSpatialWorkspace<N, T>, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        /// One step, in place. Solved thus: the balance is linear: two small linear systems.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, or leaves what the model is defined on, with numbers and
-        /// a remedy; the state is then unchanged.
-        #[inline]
-        pub fn step(
-            &self,
-            state: &mut EllipsoidSpatialState<N, T>,
-            work: &mut EllipsoidSpatialWorkspace<N, T>,
-        ) -> Result<(), StepError> {
-            let before = *state;
-            self.step_untested(state, work)?;
-            let finite = all_finite(&state.momentum.0);
-            match self.stays_inside(&before, state, work.h) {
-                Ok(()) if finite => Ok(()),
-                Err(contact) if finite || contact.is_finite() => {
-                    *state = before;
-                    Err(self.left_domain(state, work.h, contact))
-                }
-                _ => {
-                    *state = before;
-                    Err(
-                        StepCause::NotFinite {
-                            what: "momentum",
-                        }
-                            .at_node(state.node),
-                    )
-                }
+        Ok(EllipsoidSpatialWorkspace { h })
+    }
+    /// One step, in place. Solved thus: the balance is linear: two small linear systems.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, or leaves what the model is defined on, with numbers and
+    /// a remedy; the state is then unchanged.
+    #[inline]
+    pub fn step(
+        &self,
+        state: &mut EllipsoidSpatialState<N, T>,
+        work: &mut EllipsoidSpatialWorkspace<N, T>,
+    ) -> Result<(), StepError> {
+        let before = *state;
+        self.step_untested(state, work)?;
+        let finite = all_finite(&state.momentum.0);
+        match self.stays_inside(&before, state, work.h) {
+            Ok(()) if finite => Ok(()),
+            Err(contact) if finite || contact.is_finite() => {
+                *state = before;
+                Err(self.left_domain(state, work.h, contact))
+            }
+            _ => {
+                *state = before;
+                Err(StepCause::not_finite("momentum").at_node(state.node))
             }
         }
-        /// Says what the step met, and which step could be made.
-        #[cold]
-        #[inline(never)]
-        fn left_domain(
-            &self,
-            state: &EllipsoidSpatialState<N, T>,
-            h: T,
-            contact: domain::Contact,
-        ) -> StepError {
-            let contact = contact
-                .with_trials(
-                    h,
-                    |h| {
-                        let mut moving = *state;
-                        self.step(&mut moving, &mut EllipsoidSpatialWorkspace { h })
-                            .is_ok()
+    }
+    /// Says what the step met, and which step could be made.
+    #[cold]
+    #[inline(never)]
+    fn left_domain(
+        &self,
+        state: &EllipsoidSpatialState<N, T>,
+        h: T,
+        contact: domain::Contact,
+    ) -> StepError {
+        let contact = contact
+            .with_trials(
+                h,
+                |h| {
+                    let mut moving = *state;
+                    self.step(&mut moving, &mut EllipsoidSpatialWorkspace { h }).is_ok()
+                },
+            );
+        StepCause::from(contact).at_node(state.node)
+    }
+    /// Whether the step from one state to the next stays where the model is defined.
+    #[inline]
+    fn stays_inside(
+        &self,
+        before: &EllipsoidSpatialState<N, T>,
+        after: &EllipsoidSpatialState<N, T>,
+        h: T,
+    ) -> Result<(), domain::Contact> {
+        domain::invertible("Q", &before.Q, &after.Q, h)?;
+        {
+            let after = self.domain_arguments(after, h);
+            if !(domain::Domain::Positive.admits(after[0])) {
+                let before = self.domain_arguments(before, h);
+                domain::Domain::Positive
+                    .at_nodes(
+                        &domain::Call {
+                            function: domain::Function::Log,
+                            argument: "det(S_k)",
+                        },
+                        before[0],
+                        after[0],
+                        h,
+                    )?;
+            }
+        }
+        let _ = (before, after, h);
+        Ok(())
+    }
+    /// The arguments of the functions that the model uses, at the node of this state.
+    #[inline]
+    fn domain_arguments(&self, state: &EllipsoidSpatialState<N, T>, h: T) -> [T; 1] {
+        let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let S = Q * (I0 * Q.transpose());
+        let _ = (state, h);
+        [determinant(&(S))]
+    }
+    /// One step, in place. Solved thus: the balance is linear: two small linear systems.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    #[inline]
+    fn step_untested(
+        &self,
+        state: &mut EllipsoidSpatialState<N, T>,
+        work: &mut EllipsoidSpatialWorkspace<N, T>,
+    ) -> Result<(), StepError> {
+        let h = work.h;
+        let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let S = Q * (I0 * Q.transpose());
+        let momentum_leaving = state.momentum.0
+            - (S * (h * a + h * b * S.trace()) - S * S * (h * b)
+                + SMatrix::<T, N, N>::identity()
+                    * (h * c * determinant(&(S)) - T::from_f64(0.5) * h * d));
+        let Q_change = match displaced(
+            &state.Q,
+            &(self.inverse_1_left * h),
+            &momentum_leaving,
+            &self.inverse_1_right,
+            &["C₀/h", "S_k"],
+        ) {
+            Ok(solved) => solved,
+            Err(e) => return Err(StepCause::Singular(e).at_node(state.node)),
+        };
+        let Q_moved = state.Q.changed(&Q_change);
+        let Q_next = Q_moved.matrix();
+        let S_next = Q_next * (I0 * Q_next.transpose());
+        let momentum_next = momentum_leaving
+            + C0 * (Q_change * (I0 * Q_change.transpose())) * (T::from_f64(1.0) / h)
+            + S_next * ((-(h * a)) - h * b * S_next.trace()) + S_next * S_next * (h * b)
+            + SMatrix::<T, N, N>::identity()
+                * (T::from_f64(0.5) * h * d - h * c * determinant(&(S_next)));
+        state.Q = Q_moved;
+        state.momentum = SpatialMomentumMatrix(momentum_next);
+        state.node += 1;
+        Ok(())
+    }
+    /// `S` at the node of this state.
+    #[inline]
+    pub fn S(&self, state: &EllipsoidSpatialState<N, T>) -> SMatrix<T, N, N> {
+        let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let S = Q * (I0 * Q.transpose());
+        S
+    }
+}
+::clebsch::stepper! {
+    [N] EllipsoidSpatial, EllipsoidSpatialParameters { C0, I0, a, b, c, d },
+    EllipsoidSpatialInitial { Q, spatial_momentum }, EllipsoidSpatialState { Q, momentum
+    } at node, EllipsoidSpatialWorkspace { h }, tried {} nothing symmetric judged
+}
+/// A configuration at one node, solution or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EllipsoidSpatialConfiguration<const N: usize, T = f64> {
+    /// `Q` at the node: body -> space.
+    pub Q: Linear<N, T>,
+}
+impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
+    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// consecutive configurations: components are derivatives of the action of the two edges
+    /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+    /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+    /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+    pub fn balance(
+        &self,
+        h: T,
+        before: &EllipsoidSpatialConfiguration<N, T>,
+        here: &EllipsoidSpatialConfiguration<N, T>,
+        after: &EllipsoidSpatialConfiguration<N, T>,
+    ) -> SVector<T, 16> {
+        let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let Q_before = before.Q.matrix();
+        let S_before = Q_before * (I0 * Q_before.transpose());
+        let Q = here.Q.matrix();
+        let S = Q * (I0 * Q.transpose());
+        let g_before = before.Q.spatial_velocity(&here.Q).matrix();
+        let g = here.Q.spatial_velocity(&after.Q).matrix();
+        let t1 = h.powi(-1);
+        let t2 = -(S * (h * a));
+        let t3 = S * S * (h * b);
+        let t4 = -(S * (h * b * S.trace()));
+        let t5 = -(SMatrix::<T, N, N>::identity() * (h * c * determinant(&(S))));
+        let t6 = SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d);
+        let parts: [SMatrix<T, N, N>; 1] = [
+            C0 * (g_before * (S_before * g_before.transpose())) * t1
+                - C0 * (S_before * g_before.transpose()) * t1 + t2 + t3 + t4 + t5 + t6
+                - C0 * (g * S) * t1 + C0 * S * t1 + t2 + t3 + t4 + t5 + t6,
+        ];
+        {
+            let mut all = SVector::<T, 16>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_matrix(rest, &parts[0]);
+            let _ = rest;
+            all
+        }
+    }
+    /// What the step of size `h` from one state to the next leaves of its equations: the
+    /// momentum that is carried to the second state, less the one that the motion between
+    /// them brings there. One part a configuration, angular and linear ones of a rigid
+    /// motion apart, each with the size of the terms it is made of: those of a spatial
+    /// velocity are the two elements it is made from, as they are stored.
+    pub fn residual(
+        &self,
+        before: &EllipsoidSpatialState<N, T>,
+        after: &EllipsoidSpatialState<N, T>,
+        h: T,
+    ) -> [Residual; 1] {
+        let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
+        let Q = before.Q.matrix();
+        let S = Q * (I0 * Q.transpose());
+        let Q_next = after.Q.matrix();
+        let S_next = Q_next * (I0 * Q_next.transpose());
+        let t1 = h.powi(-1);
+        let t2 = determinant(&(S_next));
+        let t3 = (t1 * t1).sqrt();
+        let t4 = (C0 * C0).trace().sqrt();
+        let t5 = (g_matrix.tr_mul(&g_matrix)).trace().sqrt();
+        let t6 = (S * S).trace().sqrt();
+        let t7 = (h * h).sqrt();
+        let t8 = (S_next * S_next).trace().sqrt();
+        let t9 = (b * b).sqrt();
+        [
+            Residual::between(
+                &(after.momentum.0),
+                &(C0 * (g_matrix * (S * g_matrix.transpose())) * t1
+                    - C0 * (S * g_matrix.transpose()) * t1 - S_next * (h * a)
+                    + S_next * S_next * (h * b) - S_next * (h * b * S_next.trace())
+                    - SMatrix::<T, N, N>::identity() * (h * c * t2)
+                    + SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d)),
+                t3 * t4 * t5 * t6 * t5 + t3 * t4 * t6 * t5 + t7 * (a * a).sqrt() * t8
+                    + t7 * t9 * t8 * t8 + T::from_f64(2.0) * t7 * t9 * t8 * t8
+                    + t7 * (c * c).sqrt() * (t2 * t2).sqrt()
+                    + T::from_f64(0.5) * t7 * (d * d).sqrt(),
+            ),
+        ]
+    }
+    /// The Hessian of the kinetic energy in all velocities together, at the identity.
+    fn inertia_at(&self, state: &EllipsoidSpatialState<N, T>) -> SMatrix<T, 16, 16> {
+        let EllipsoidSpatialParameters { C0, I0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let S = Q * (I0 * Q.transpose());
+        let mut inertia = SMatrix::<T, 16, 16>::zeros();
+        for axis in 0..(N * N) {
+            let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
+            let t1 = C0 * (ξ * S) * T::from_f64(0.5);
+            let parts: [SMatrix<T, N, N>; 1] = [t1 + t1];
+            inertia
+                .set_column(
+                    axis,
+                    &{
+                        let mut all = SVector::<T, 16>::zeros();
+                        let rest = all.as_mut_slice();
+                        let rest = put_matrix(rest, &parts[0]);
+                        let _ = rest;
+                        all
                     },
                 );
-            StepCause::from(contact).at_node(state.node)
         }
-        /// Whether the step from one state to the next stays where the model is defined.
-        #[inline]
-        fn stays_inside(
-            &self,
-            before: &EllipsoidSpatialState<N, T>,
-            after: &EllipsoidSpatialState<N, T>,
-            h: T,
-        ) -> Result<(), domain::Contact> {
-            domain::invertible("Q", &before.Q, &after.Q, h)?;
-            {
-                let after = self.domain_arguments(after, h);
-                if !(domain::Domain::Positive.admits(after[0])) {
-                    let before = self.domain_arguments(before, h);
-                    domain::Domain::Positive
-                        .at_nodes(
-                            &domain::Call {
-                                function: domain::Function::Log,
-                                argument: "det(S_k)",
-                            },
-                            before[0],
-                            after[0],
-                            h,
-                        )?;
-                }
-            }
-            let _ = (before, after, h);
-            Ok(())
-        }
-        /// The arguments of the functions that the model uses, at the node of this state.
-        #[inline]
-        fn domain_arguments(&self, state: &EllipsoidSpatialState<N, T>, h: T) -> [T; 1] {
-            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let S = Q * (I0 * Q.transpose());
-            let _ = (state, h);
-            [determinant(&(S))]
-        }
-        /// One step, in place. Solved thus: the balance is linear: two small linear systems.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-        #[inline]
-        fn step_untested(
-            &self,
-            state: &mut EllipsoidSpatialState<N, T>,
-            work: &mut EllipsoidSpatialWorkspace<N, T>,
-        ) -> Result<(), StepError> {
-            let h = work.h;
-            let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let S = Q * (I0 * Q.transpose());
-            let momentum_leaving = state.momentum.0
-                - (S * (h * a + h * b * S.trace()) - S * S * (h * b)
-                    + SMatrix::<T, N, N>::identity()
-                        * (h * c * determinant(&(S)) - T::from_f64(0.5) * h * d));
-            let Q_change = match displaced(
-                &state.Q,
-                &(self.inverse_1_left * h),
-                &momentum_leaving,
-                &self.inverse_1_right,
-                &["C₀/h", "S_k"],
-            ) {
-                Ok(solved) => solved,
-                Err(e) => return Err(StepCause::Singular(e).at_node(state.node)),
-            };
-            let Q_moved = state.Q.changed(&Q_change);
-            let Q_next = Q_moved.matrix();
-            let S_next = Q_next * (I0 * Q_next.transpose());
-            let momentum_next = momentum_leaving
-                + C0 * (Q_change * (I0 * Q_change.transpose())) * (T::from_f64(1.0) / h)
-                + S_next * ((-(h * a)) - h * b * S_next.trace())
-                + S_next * S_next * (h * b)
-                + SMatrix::<T, N, N>::identity()
-                    * (T::from_f64(0.5) * h * d - h * c * determinant(&(S_next)));
-            state.Q = Q_moved;
-            state.momentum = SpatialMomentumMatrix(momentum_next);
-            state.node += 1;
-            Ok(())
-        }
-        /// `S` at the node of this state.
-        #[inline]
-        pub fn S(&self, state: &EllipsoidSpatialState<N, T>) -> SMatrix<T, N, N> {
-            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let S = Q * (I0 * Q.transpose());
-            S
-        }
+        inertia
     }
-    impl<const N: usize, T: Real> Stepper for EllipsoidSpatial<N, T> {
-        type Scalar = T;
-        type State = EllipsoidSpatialState<N, T>;
-        type Workspace = EllipsoidSpatialWorkspace<N, T>;
-        fn workspace(
-            &self,
-            state: &Self::State,
-            h: T,
-        ) -> Result<Self::Workspace, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        #[inline(always)]
-        fn advance(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-        ) -> Result<(), StepError> {
-            self.step(state, work)
-        }
-        #[cold]
-        fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
-            let mut moving = *state;
-            self.step(&mut moving, &mut EllipsoidSpatialWorkspace { h }).ok()?;
-            Some(moving)
-        }
-        fn node(state: &Self::State) -> u64 {
-            state.node
-        }
-        fn at_node(state: Self::State, node: u64) -> Self::State {
-            EllipsoidSpatialState {
-                node: node,
-                ..state
-            }
-        }
-    }
-    impl<const N: usize, T: Real> Reversible for EllipsoidSpatial<N, T> {}
-    ::clebsch::of_scalars! {
-        [N] EllipsoidSpatialParameters { C0, I0, a, b, c, d }
-    }
-    ::clebsch::of_scalars! {
-        [N] EllipsoidSpatialInitial { Q, spatial_momentum }
-    }
-    ::clebsch::of_scalars! {
-        [N] EllipsoidSpatialState { Q, momentum } at node
-    }
-    impl<const N: usize, T: Real> ::clebsch::integrate::Model
-    for EllipsoidSpatial<N, T> {
-        type Parameters = EllipsoidSpatialParameters<N, T>;
-        type Initial = EllipsoidSpatialInitial<N, T>;
-        type Choice = ();
-        type Over<U: Real> = EllipsoidSpatial<N, U>;
-        const SIDE_BY_SIDE: bool = false;
-        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
-            Self::new(parameters)
-        }
-        fn given(&self) -> &Self::Parameters {
-            &self.parameters
-        }
-        fn begin(
-            &self,
-            initial: Self::Initial,
-        ) -> Result<EllipsoidSpatialState<N, T>, StartError> {
-            validate::finite("Q", initial.Q.matrix().as_slice())?;
-            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
-            Ok(EllipsoidSpatialState {
-                Q: initial.Q,
-                momentum: initial.spatial_momentum,
-                node: 0,
-            })
-        }
-        fn prepared(
-            &self,
-            state: &EllipsoidSpatialState<N, T>,
-            h: T,
-            _: Self::Choice,
-        ) -> Result<Self::Workspace, StartError> {
-            {
-                let EllipsoidSpatialParameters { I0, .. } = self.parameters;
-                let Q = state.Q.matrix();
-                let S = Q * (I0 * Q.transpose());
-                validate::defined(
-                    domain::Domain::Positive,
-                    domain::Function::Log,
-                    "det(S_k)",
-                    determinant(&(S)),
-                )?;
-            }
-            Ok(EllipsoidSpatialWorkspace { h })
-        }
-    }
-    /// A configuration at one node, solution or not.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct EllipsoidSpatialConfiguration<const N: usize, T = f64> {
-        /// `Q` at the node: body -> space.
-        pub Q: Linear<N, T>,
-    }
-    impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
-        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
-        /// consecutive configurations: components are derivatives of the action of the two edges
-        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
-        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
-        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
-        pub fn balance(
-            &self,
-            h: T,
-            before: &EllipsoidSpatialConfiguration<N, T>,
-            here: &EllipsoidSpatialConfiguration<N, T>,
-            after: &EllipsoidSpatialConfiguration<N, T>,
-        ) -> SVector<T, 16> {
-            let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
-            let Q_before = before.Q.matrix();
-            let S_before = Q_before * (I0 * Q_before.transpose());
-            let Q = here.Q.matrix();
-            let S = Q * (I0 * Q.transpose());
-            let g_before = before.Q.spatial_velocity(&here.Q).matrix();
-            let g = here.Q.spatial_velocity(&after.Q).matrix();
-            let t1 = h.powi(-1);
-            let t2 = -(S * (h * a));
-            let t3 = S * S * (h * b);
-            let t4 = -(S * (h * b * S.trace()));
-            let t5 = -(SMatrix::<T, N, N>::identity() * (h * c * determinant(&(S))));
-            let t6 = SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d);
-            let parts: [SMatrix<T, N, N>; 1] = [
-                C0 * (g_before * (S_before * g_before.transpose())) * t1
-                    - C0 * (S_before * g_before.transpose()) * t1 + t2 + t3 + t4 + t5
-                    + t6 - C0 * (g * S) * t1 + C0 * S * t1 + t2 + t3 + t4 + t5 + t6,
-            ];
-            {
-                let mut all = SVector::<T, 16>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_matrix(rest, &parts[0]);
-                let _ = rest;
-                all
-            }
-        }
-    }
-    impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
-        /// What the step of size `h` from one state to the next leaves of its equations: the
-        /// momentum that is carried to the second state, less the one that the motion between
-        /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a spatial
-        /// velocity are the two elements it is made from, as they are stored.
-        pub fn residual(
-            &self,
-            before: &EllipsoidSpatialState<N, T>,
-            after: &EllipsoidSpatialState<N, T>,
-            h: T,
-        ) -> [Residual; 1] {
-            let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
-            let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
-            let Q = before.Q.matrix();
-            let S = Q * (I0 * Q.transpose());
-            let Q_next = after.Q.matrix();
-            let S_next = Q_next * (I0 * Q_next.transpose());
-            let t1 = h.powi(-1);
-            let t2 = determinant(&(S_next));
-            let t3 = (t1 * t1).sqrt();
-            let t4 = (C0 * C0).trace().sqrt();
-            let t5 = (g_matrix.tr_mul(&g_matrix)).trace().sqrt();
-            let t6 = (S * S).trace().sqrt();
-            let t7 = (h * h).sqrt();
-            let t8 = (S_next * S_next).trace().sqrt();
-            let t9 = (b * b).sqrt();
-            let _ = h;
-            [
-                {
-                    let momentum = after.momentum.0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (C0 * (g_matrix * (S * g_matrix.transpose())) * t1
-                                        - C0 * (S * g_matrix.transpose()) * t1 - S_next * (h * a)
-                                        + S_next * S_next * (h * b)
-                                        - S_next * (h * b * S_next.trace())
-                                        - SMatrix::<T, N, N>::identity() * (h * c * t2)
-                                        + SMatrix::<T, N, N>::identity()
-                                            * (T::from_f64(0.5) * h * d))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (t3 * t4 * t5 * t6 * t5 + t3 * t4 * t6 * t5
-                                + t7 * (a * a).sqrt() * t8 + t7 * t9 * t8 * t8
-                                + T::from_f64(2.0) * t7 * t9 * t8 * t8
-                                + t7 * (c * c).sqrt() * (t2 * t2).sqrt()
-                                + T::from_f64(0.5) * t7 * (d * d).sqrt())
-                                .magnitude(),
-                    }
-                },
-            ]
-        }
-    }
-    impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
-        /// The kinetic and the potential energy at this node: those of the limit of small steps,
-        /// at the node's momentum.
-        pub fn energies(&self, state: &EllipsoidSpatialState<N, T>) -> (T, T) {
-            let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let S = Q * (I0 * Q.transpose());
-            let parts: [SMatrix<T, N, N>; 1] = [state.spatial_momentum().0];
-            let momentum = {
-                let mut all = SVector::<T, 16>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_matrix(rest, &parts[0]);
-                let _ = rest;
-                all
-            };
-            let mut inertia = SMatrix::<T, 16, 16>::zeros();
-            for axis in 0..(N * N) {
-                let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
-                let t1 = C0 * (ξ * S) * T::from_f64(0.5);
-                let parts: [SMatrix<T, N, N>; 1] = [t1 + t1];
-                inertia
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 16>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_matrix(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            let velocity = solve_leading_or_nan(&inertia, &momentum, 0 + (N * N));
-            (
-                momentum.dot(&velocity) * T::from_f64(0.5),
-                a * S.trace() + T::from_f64(0.5) * b * (S.trace() * S.trace())
-                    - T::from_f64(0.5) * b * (S * S).trace() + c * determinant(&(S))
-                    - T::from_f64(0.5) * d * determinant(&(S)).ln(),
-            )
-        }
-        /// The physical energy at this node.
-        pub fn energy(&self, state: &EllipsoidSpatialState<N, T>) -> T {
-            let (kinetic, potential) = self.energies(state);
-            kinetic + potential
-        }
-        /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of the advected quantities.
-        pub fn circulation_S_2(&self, state: &EllipsoidSpatialState<N, T>) -> T {
-            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let S = Q * (I0 * Q.transpose());
-            let m = state.spatial_momentum().0;
-            let t1 = skew_part(&(m * inverse_or_nan(&(S))));
-            (t1 * (S * (t1 * S))).trace()
-        }
-        /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of the advected quantities.
-        pub fn circulation_S_4(&self, state: &EllipsoidSpatialState<N, T>) -> T {
-            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let S = Q * (I0 * Q.transpose());
-            let m = state.spatial_momentum().0;
-            let t1 = skew_part(&(m * inverse_or_nan(&(S))));
-            (t1 * (S * (t1 * (S * (t1 * (S * (t1 * S))))))).trace()
-        }
-        /// `skew(Q_kᵀ m_k Q_k⁻ᵀ I₀⁻¹)`: Noether: the action is invariant under motions of the body's frame that fix the axis.
-        pub fn body_momentum_skew_I0_inverse_right(
-            &self,
-            state: &EllipsoidSpatialState<N, T>,
-        ) -> SMatrix<T, N, N> {
-            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let m = state.spatial_momentum().0;
-            skew_part(
-                &(Q.tr_mul(&(m * inverse_or_nan(&(Q)).tr_mul(&inverse_or_nan(&(I0)))))),
-            )
-        }
-    }
-    impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
-        /// The discrete energy of the edge between two consecutive states, `2 tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h)² + ½ a tr(S_k) + ¼ b tr(S_k)² - ¼ b tr(S_k²) + ½ c det(S_k) - ¼ d log(det(S_k)) + ½ a tr(S_{k+1}) + ¼ b tr(S_{k+1})² - ¼ b tr(S_{k+1}²) + ½ c det(S_{k+1}) - ¼ d log(det(S_{k+1}))`: bounded, since the stepper is symplectic.
-        pub fn discrete_energy(
-            &self,
-            h: T,
-            before: &EllipsoidSpatialState<N, T>,
-            after: &EllipsoidSpatialState<N, T>,
-        ) -> T {
-            let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
-            let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
-            let Q = before.Q.matrix();
-            let S = Q * (I0 * Q.transpose());
-            let Q_next = after.Q.matrix();
-            let S_next = Q_next * (I0 * Q_next.transpose());
-            let t1 = S.trace();
-            let t2 = determinant(&(S));
-            let t3 = S_next.trace();
-            let t4 = determinant(&(S_next));
-            (T::from_f64(2.0)
-                * (C0
-                    * ((g_matrix - SMatrix::<T, N, N>::identity())
-                        * (S * (g_matrix.transpose() - SMatrix::<T, N, N>::identity()))))
-                    .trace()) / ((T::from_f64(2.0) * h) * (T::from_f64(2.0) * h))
-                + T::from_f64(0.5) * a * t1 + T::from_f64(0.25) * b * (t1 * t1)
-                - T::from_f64(0.25) * b * (S * S).trace() + T::from_f64(0.5) * c * t2
-                - T::from_f64(0.25) * d * t2.ln() + T::from_f64(0.5) * a * t3
-                + T::from_f64(0.25) * b * (t3 * t3)
-                - T::from_f64(0.25) * b * (S_next * S_next).trace()
-                + T::from_f64(0.5) * c * t4 - T::from_f64(0.25) * d * t4.ln()
-        }
-    }
-    impl<const N: usize> ::clebsch::integrate::Described for EllipsoidSpatial<N, f64> {
-        fn card() -> &'static Card {
-            &Self::CARD
-        }
-        fn read(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-        ) -> Result<(Self, Self::Initial), OpenError> {
-            let model = Self::new(EllipsoidSpatialParameters {
-                C0: matrix_of("C0", parameters.get(0usize))?,
-                I0: matrix_of("I0", parameters.get(1usize))?,
-                a: number_of("a", parameters.get(2usize))?,
-                b: number_of("b", parameters.get(3usize))?,
-                c: number_of("c", parameters.get(4usize))?,
-                d: number_of("d", parameters.get(5usize))?,
-            })?;
-            let initial = EllipsoidSpatialInitial {
-                Q: linear_of("Q", initial.get(0usize))?,
-                spatial_momentum: SpatialMomentumMatrix(
-                    matrix_of("spatial_momentum", initial.get(1usize))?,
-                ),
-            };
-            Ok((model, initial))
-        }
-        fn ways(
-            self,
-            state: &Self::State,
-            settings: Settings,
-        ) -> Result<(Self, Steps<Self>), OpenError> {
-            let model = chosen_solver(settings, Self::CARD.solvers).map(|_| self)?;
-            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
-            Ok((model, steps))
-        }
-        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
-            self.kinetic_warning(state)
-        }
-        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-            Residual::largest(&self.residual(before, after, h))
-        }
-        fn observe(&self, state: &Self::State, out: &mut [f64]) {
-            let out = put(out, rows(state.Q().matrix()));
-            let out = put(out, rows(state.body_momentum().0));
-            let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, rows(self.S(state)));
-            let _ = out;
-        }
-        fn invariants(
-            &self,
-            state: &Self::State,
-            _: Option<&Self::Workspace>,
-            out: &mut [f64],
-        ) {
-            let out = put(out, [self.energy(state)]);
-            let out = put(out, [self.circulation_S_2(state)]);
-            let out = put(out, [self.circulation_S_4(state)]);
-            let out = put(out, rows(self.body_momentum_skew_I0_inverse_right(state)));
-            let _ = (state, out);
-        }
-        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
-            let mut enlarged = *state;
-            {
-                type T = f64;
-                let EllipsoidSpatialParameters { I0, a, b, c, d, .. } = self.parameters;
-                let Q = state.Q.matrix();
-                let S = Q * (I0 * Q.transpose());
-                let t1 = (h * h).sqrt();
-                let t2 = (S * S).trace().sqrt();
-                let t3 = (b * b).sqrt();
-                let t4 = determinant(&(S));
-                enlarged.momentum = SpatialMomentumMatrix(
-                    not_less(
-                        enlarged.momentum.0,
-                        (0, N),
-                        t1 * (a * a).sqrt() * t2 + t1 * t3 * t2 * t2
-                            + T::from_f64(2.0) * t1 * t3 * t2 * t2
-                            + t1 * (c * c).sqrt() * (t4 * t4).sqrt()
-                            + T::from_f64(0.5) * t1 * (d * d).sqrt(),
-                    ),
-                );
-            }
-            let state = &enlarged;
-            type T = f64;
-            let EllipsoidSpatialParameters { I0, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let S = Q * (I0 * Q.transpose());
-            let m = state.spatial_momentum().0;
-            let t1 = inverse_or_nan(&(S));
-            let t2 = (m.tr_mul(&m)).trace().sqrt() * (S * S).trace().sqrt()
-                * (t1 * t1).trace().sqrt();
-            let t3 = inverse_or_nan(&(Q));
-            let t4 = inverse_or_nan(&(I0));
-            let out = put(
-                out,
-                ::core::iter::repeat_n(sum_of_sizes(self.energies(state)), 1usize),
-            );
-            let out = put(out, ::core::iter::repeat_n(t2 * t2, 1usize));
-            let out = put(out, ::core::iter::repeat_n(t2.powi(4), 1usize));
-            let out = put(
-                out,
-                ::core::iter::repeat_n(
-                    (t3 * m.tr_mul(&(Q * Q.tr_mul(&(m * t3.transpose())))))
-                        .trace()
-                        .sqrt() * (t4 * t4).trace().sqrt(),
-                    N * N,
-                ),
-            );
-            let _ = (state, h, out);
-        }
-    }
-    impl<const N: usize> EllipsoidSpatial<N, f64> {
-        /// The model as data.
-        pub const CARD: Card = Card {
-            name: "EllipsoidSpatial",
-            kebab: "ellipsoid-spatial",
-            doc: "Elastic ellipsoid, spatial representation.",
-            source: Self::SOURCE,
-            fingerprint: Self::FINGERPRINT,
-            summary: "discrete Lagrangian  tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h) - ½ h a tr(S_k) - ¼ h b tr(S_k)² + ¼ h b tr(S_k²) - ½ h c det(S_k) + ¼ h d log(det(S_k)) - ½ h a tr(S_{k+1}) - ¼ h b tr(S_{k+1})² + ¼ h b tr(S_{k+1}²) - ½ h c det(S_{k+1}) + ¼ h d log(det(S_{k+1}))\nmomentum of Q        C₀ (g_k - Id) S_k g_kᵀ/h\nRiccati form         none; linear, L = C₀/h, R = S_k\ninvariants           energy, circulation_S_2, circulation_S_4, body_momentum_skew_I0_inverse_right\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-            solver: "Explicit: the balance is linear: two small linear systems",
-            order: 2u32,
-            orders: &[2, 4, 6, 8],
-            preprocessed: false,
-            reversible: true,
-            parameters: &[
-                Kind::Symmetric.field("C0", [N, N], "metric of space"),
-                Kind::Symmetric
-                    .field("I0", [N, N], "second moments of mass in the reference"),
-                Kind::Scalar
-                    .field("a", [1, 1], "stiffness of lengths, of areas and of volumes"),
-                Kind::Scalar
-                    .field("b", [1, 1], "stiffness of lengths, of areas and of volumes"),
-                Kind::Scalar
-                    .field("c", [1, 1], "stiffness of lengths, of areas and of volumes"),
-                Kind::Scalar
-                    .field(
-                        "d",
-                        [1, 1],
-                        "resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c",
-                    ),
-            ],
-            initial: &[
-                Kind::Matrix.field("Q", [N, N], "placement, reference to space"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum", [N, N], "momentum, space frame"),
-            ],
-            observables: &[
-                Kind::Matrix.field("Q", [N, N], "placement, reference to space"),
-                Kind::BodyMomentum
-                    .field("body_momentum", [N, N], "momentum, body frame"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum", [N, N], "momentum, space frame"),
-                Kind::Symmetric.field("S", [N, N], "second moments in space"),
-            ],
-            invariants: &[
-                Invariant::bounded(
-                    "energy",
-                    "½ tr(m_kᵀ ζ) + a tr(S_k) + ½ b tr(S_k)² - ½ b tr(S_k²) + c det(S_k) - ½ d log(det(S_k)), where m_k = C₀ ζ S_k",
-                    1usize,
-                ),
-                Invariant::exact(
-                    "circulation_S_2",
-                    "tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)",
-                    1usize,
-                ),
-                Invariant::exact(
-                    "circulation_S_4",
-                    "tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)",
-                    1usize,
-                ),
-                Invariant::exact(
-                    "body_momentum_skew_I0_inverse_right",
-                    "skew(Q_kᵀ m_k Q_k⁻ᵀ I₀⁻¹)",
-                    N * N,
-                ),
-            ],
-            discrete_energy: Invariant::bounded(
-                "discrete_energy",
-                "2 tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h)² + ½ a tr(S_k) + ¼ b tr(S_k)² - ¼ b tr(S_k²) + ½ c det(S_k) - ¼ d log(det(S_k)) + ½ a tr(S_{k+1}) + ¼ b tr(S_{k+1})² - ¼ b tr(S_{k+1}²) + ½ c det(S_{k+1}) - ¼ d log(det(S_{k+1}))",
-                1,
-            ),
-            open: open::<Self>,
-            solvers: &[],
-            dimensions: &[
-                Dimension {
-                    name: "n",
-                    from: 2,
-                    to: 4,
-                    value: N,
-                },
-            ],
-            sized: Self::sized,
+    /// The kinetic and the potential energy at this node: those of the limit of small steps,
+    /// at the node's momentum.
+    pub fn energies(&self, state: &EllipsoidSpatialState<N, T>) -> (T, T) {
+        let EllipsoidSpatialParameters { I0, a, b, c, d, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let S = Q * (I0 * Q.transpose());
+        let parts: [SMatrix<T, N, N>; 1] = [state.spatial_momentum().0];
+        let momentum = {
+            let mut all = SVector::<T, 16>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_matrix(rest, &parts[0]);
+            let _ = rest;
+            all
         };
-        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
-        /// velocities together, at the identity, should be positive definite.
-        #[cold]
-        #[allow(unused_variables)]
-        pub fn kinetic_warning(
-            &self,
-            state: &EllipsoidSpatialState<N, f64>,
-        ) -> Option<KineticWarning> {
+        let velocity = solve_leading_or_nan(
+            &self.inertia_at(state),
+            &momentum,
+            0 + (N * N),
+        );
+        (
+            momentum.dot(&velocity) * T::from_f64(0.5),
+            a * S.trace() + T::from_f64(0.5) * b * (S.trace() * S.trace())
+                - T::from_f64(0.5) * b * (S * S).trace() + c * determinant(&(S))
+                - T::from_f64(0.5) * d * determinant(&(S)).ln(),
+        )
+    }
+    /// The physical energy at this node.
+    pub fn energy(&self, state: &EllipsoidSpatialState<N, T>) -> T {
+        let (kinetic, potential) = self.energies(state);
+        kinetic + potential
+    }
+    /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of the advected quantities.
+    pub fn circulation_S_2(&self, state: &EllipsoidSpatialState<N, T>) -> T {
+        let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let S = Q * (I0 * Q.transpose());
+        let m = state.spatial_momentum().0;
+        let t1 = skew_part(&(m * inverse_or_nan(&(S))));
+        (t1 * (S * (t1 * S))).trace()
+    }
+    /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of the advected quantities.
+    pub fn circulation_S_4(&self, state: &EllipsoidSpatialState<N, T>) -> T {
+        let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let S = Q * (I0 * Q.transpose());
+        let m = state.spatial_momentum().0;
+        let t1 = skew_part(&(m * inverse_or_nan(&(S))));
+        (t1 * (S * (t1 * (S * (t1 * (S * (t1 * S))))))).trace()
+    }
+    /// `skew(Q_kᵀ m_k Q_k⁻ᵀ I₀⁻¹)`: Noether: the action is invariant under motions of the body's frame that fix the axis.
+    pub fn body_momentum_skew_I0_inverse_right(
+        &self,
+        state: &EllipsoidSpatialState<N, T>,
+    ) -> SMatrix<T, N, N> {
+        let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let m = state.spatial_momentum().0;
+        skew_part(
+            &(Q.tr_mul(&(m * inverse_or_nan(&(Q)).tr_mul(&inverse_or_nan(&(I0)))))),
+        )
+    }
+    /// The discrete energy of the edge between two consecutive states, `2 tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h)² + ½ a tr(S_k) + ¼ b tr(S_k)² - ¼ b tr(S_k²) + ½ c det(S_k) - ¼ d log(det(S_k)) + ½ a tr(S_{k+1}) + ¼ b tr(S_{k+1})² - ¼ b tr(S_{k+1}²) + ½ c det(S_{k+1}) - ¼ d log(det(S_{k+1}))`: bounded, since the stepper is symplectic.
+    pub fn discrete_energy(
+        &self,
+        h: T,
+        before: &EllipsoidSpatialState<N, T>,
+        after: &EllipsoidSpatialState<N, T>,
+    ) -> T {
+        let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
+        let Q = before.Q.matrix();
+        let S = Q * (I0 * Q.transpose());
+        let Q_next = after.Q.matrix();
+        let S_next = Q_next * (I0 * Q_next.transpose());
+        let t1 = S.trace();
+        let t2 = determinant(&(S));
+        let t3 = S_next.trace();
+        let t4 = determinant(&(S_next));
+        (T::from_f64(2.0)
+            * (C0
+                * ((g_matrix - SMatrix::<T, N, N>::identity())
+                    * (S * (g_matrix.transpose() - SMatrix::<T, N, N>::identity()))))
+                .trace()) / ((T::from_f64(2.0) * h) * (T::from_f64(2.0) * h))
+            + T::from_f64(0.5) * a * t1 + T::from_f64(0.25) * b * (t1 * t1)
+            - T::from_f64(0.25) * b * (S * S).trace() + T::from_f64(0.5) * c * t2
+            - T::from_f64(0.25) * d * t2.ln() + T::from_f64(0.5) * a * t3
+            + T::from_f64(0.25) * b * (t3 * t3)
+            - T::from_f64(0.25) * b * (S_next * S_next).trace()
+            + T::from_f64(0.5) * c * t4 - T::from_f64(0.25) * d * t4.ln()
+    }
+    /// The state after a step of `h` that is tried, or none.
+    #[cold]
+    fn attempt(
+        &self,
+        state: &EllipsoidSpatialState<N, T>,
+        h: T,
+    ) -> Option<EllipsoidSpatialState<N, T>> {
+        let mut moving = *state;
+        self.step(&mut moving, &mut EllipsoidSpatialWorkspace { h }).ok()?;
+        Some(moving)
+    }
+}
+impl<const N: usize> EllipsoidSpatial<N, f64> {
+    /// All observables, in the order of the card.
+    fn observe(&self, state: &EllipsoidSpatialState<N, f64>, out: &mut [f64]) {
+        let out = put(out, rows(state.Q().matrix()));
+        let out = put(out, rows(state.body_momentum().0));
+        let out = put(out, rows(state.spatial_momentum().0));
+        let out = put(out, rows(self.S(state)));
+    }
+    /// All invariants, in the order of the card.
+    fn invariants(
+        &self,
+        state: &EllipsoidSpatialState<N, f64>,
+        _: Option<&EllipsoidSpatialWorkspace<N, f64>>,
+        out: &mut [f64],
+    ) {
+        let out = put(out, [self.energy(state)]);
+        let out = put(out, [self.circulation_S_2(state)]);
+        let out = put(out, [self.circulation_S_4(state)]);
+        let out = put(out, rows(self.body_momentum_skew_I0_inverse_right(state)));
+    }
+    /// Their sizes at a state, in steps of `h`.
+    fn scales(&self, state: &EllipsoidSpatialState<N, f64>, h: f64, out: &mut [f64]) {
+        let mut enlarged = *state;
+        {
             type T = f64;
-            let EllipsoidSpatialParameters { C0, I0, .. } = self.parameters;
+            let EllipsoidSpatialParameters { I0, a, b, c, d, .. } = self.parameters;
             let Q = state.Q.matrix();
             let S = Q * (I0 * Q.transpose());
-            let mut inertia = SMatrix::<T, 16, 16>::zeros();
-            for axis in 0..(N * N) {
-                let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
-                let t1 = C0 * (ξ * S) * T::from_f64(0.5);
-                let parts: [SMatrix<T, N, N>; 1] = [t1 + t1];
-                inertia
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 16>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_matrix(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            KineticWarning::of(&inertia, 0 + (N * N))
+            let t1 = (h * h).sqrt();
+            let t2 = (S * S).trace().sqrt();
+            let t3 = (b * b).sqrt();
+            let t4 = determinant(&(S));
+            enlarged.momentum = SpatialMomentumMatrix(
+                not_less(
+                    enlarged.momentum.0,
+                    (0, N),
+                    t1 * (a * a).sqrt() * t2 + t1 * t3 * t2 * t2
+                        + T::from_f64(2.0) * t1 * t3 * t2 * t2
+                        + t1 * (c * c).sqrt() * (t4 * t4).sqrt()
+                        + T::from_f64(0.5) * t1 * (d * d).sqrt(),
+                ),
+            );
         }
-        /// The card of the model at the given sizes, in the order of their declaration.
-        fn sized(sizes: &[usize]) -> Option<Card> {
-            match sizes {
-                [2] => Some(EllipsoidSpatial::<2, f64>::CARD),
-                [3] => Some(EllipsoidSpatial::<3, f64>::CARD),
-                [4] => Some(EllipsoidSpatial::<4, f64>::CARD),
-                _ => None,
-            }
+        let state = &enlarged;
+        type T = f64;
+        let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+        let Q = state.Q.matrix();
+        let S = Q * (I0 * Q.transpose());
+        let m = state.spatial_momentum().0;
+        let t1 = inverse_or_nan(&(S));
+        let t2 = (m.tr_mul(&m)).trace().sqrt() * (S * S).trace().sqrt()
+            * (t1 * t1).trace().sqrt();
+        let t3 = inverse_or_nan(&(Q));
+        let t4 = inverse_or_nan(&(I0));
+        let out = put(
+            out,
+            ::core::iter::repeat_n(sum_of_sizes(self.energies(state)), 1usize),
+        );
+        let out = put(out, ::core::iter::repeat_n(t2 * t2, 1usize));
+        let out = put(out, ::core::iter::repeat_n(t2.powi(4), 1usize));
+        let out = put(
+            out,
+            ::core::iter::repeat_n(
+                (t3 * m.tr_mul(&(Q * Q.tr_mul(&(m * t3.transpose()))))).trace().sqrt()
+                    * (t4 * t4).trace().sqrt(),
+                N * N,
+            ),
+        );
+    }
+    /// The model as data.
+    pub const CARD: Card = Card {
+        name: "EllipsoidSpatial",
+        kebab: "ellipsoid-spatial",
+        doc: "Elastic ellipsoid, spatial representation.",
+        source: Self::SOURCE,
+        fingerprint: Self::FINGERPRINT,
+        summary: "discrete Lagrangian  tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h) - ½ h a tr(S_k) - ¼ h b tr(S_k)² + ¼ h b tr(S_k²) - ½ h c det(S_k) + ¼ h d log(det(S_k)) - ½ h a tr(S_{k+1}) - ¼ h b tr(S_{k+1})² + ¼ h b tr(S_{k+1}²) - ½ h c det(S_{k+1}) + ¼ h d log(det(S_{k+1}))\nmomentum of Q        C₀ (g_k - Id) S_k g_kᵀ/h\nRiccati form         none; linear, L = C₀/h, R = S_k\ninvariants           energy, circulation_S_2, circulation_S_4, body_momentum_skew_I0_inverse_right\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
+        solver: "Explicit: the balance is linear: two small linear systems",
+        order: 2u32,
+        orders: &[2, 4, 6, 8],
+        preprocessed: false,
+        reversible: true,
+        parameters: &[
+            Kind::Symmetric.field("C0", [N, N], "metric of space"),
+            Kind::Symmetric
+                .field("I0", [N, N], "second moments of mass in the reference"),
+            Kind::Scalar
+                .field("a", [1, 1], "stiffness of lengths, of areas and of volumes"),
+            Kind::Scalar
+                .field("b", [1, 1], "stiffness of lengths, of areas and of volumes"),
+            Kind::Scalar
+                .field("c", [1, 1], "stiffness of lengths, of areas and of volumes"),
+            Kind::Scalar
+                .field(
+                    "d",
+                    [1, 1],
+                    "resistance to collapse; without stress at the identity if d = 2 a + 2 (n - 1) b + 2 c",
+                ),
+        ],
+        initial: &[
+            Kind::Matrix.field("Q", [N, N], "placement, reference to space"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum", [N, N], "momentum, space frame"),
+        ],
+        observables: &[
+            Kind::Matrix.field("Q", [N, N], "placement, reference to space"),
+            Kind::BodyMomentum.field("body_momentum", [N, N], "momentum, body frame"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum", [N, N], "momentum, space frame"),
+            Kind::Symmetric.field("S", [N, N], "second moments in space"),
+        ],
+        invariants: &[
+            Invariant::bounded(
+                "energy",
+                "½ tr(m_kᵀ ζ) + a tr(S_k) + ½ b tr(S_k)² - ½ b tr(S_k²) + c det(S_k) - ½ d log(det(S_k)), where m_k = C₀ ζ S_k",
+                1usize,
+            ),
+            Invariant::exact(
+                "circulation_S_2",
+                "tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)",
+                1usize,
+            ),
+            Invariant::exact(
+                "circulation_S_4",
+                "tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)",
+                1usize,
+            ),
+            Invariant::exact(
+                "body_momentum_skew_I0_inverse_right",
+                "skew(Q_kᵀ m_k Q_k⁻ᵀ I₀⁻¹)",
+                N * N,
+            ),
+        ],
+        discrete_energy: Invariant::bounded(
+            "discrete_energy",
+            "2 tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h)² + ½ a tr(S_k) + ¼ b tr(S_k)² - ¼ b tr(S_k²) + ½ c det(S_k) - ¼ d log(det(S_k)) + ½ a tr(S_{k+1}) + ¼ b tr(S_{k+1})² - ¼ b tr(S_{k+1}²) + ½ c det(S_{k+1}) - ¼ d log(det(S_{k+1}))",
+            1,
+        ),
+        open: open::<Self>,
+        solvers: &[],
+        dimensions: &[
+            Dimension {
+                name: "n",
+                from: 2,
+                to: 4,
+                value: N,
+            },
+        ],
+        sized: Self::sized,
+    };
+    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+    /// definite.
+    #[cold]
+    pub fn kinetic_warning(
+        &self,
+        state: &EllipsoidSpatialState<N, f64>,
+    ) -> Option<KineticWarning> {
+        KineticWarning::of(&self.inertia_at(state), 0 + (N * N))
+    }
+    /// The card of the model at the given sizes, in the order of their declaration.
+    fn sized(sizes: &[usize]) -> Option<Card> {
+        match sizes {
+            [2] => Some(EllipsoidSpatial::<2, f64>::CARD),
+            [3] => Some(EllipsoidSpatial::<3, f64>::CARD),
+            [4] => Some(EllipsoidSpatial::<4, f64>::CARD),
+            _ => None,
         }
     }
 }
-#[allow(unused_imports)]
-pub use ellipsoid_spatial::*;

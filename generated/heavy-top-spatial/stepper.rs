@@ -1,834 +1,574 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-/// The model [`HeavyTopSpatial`](struct@HeavyTopSpatial) and what belongs to it.
-#[allow(
+//! The model [`HeavyTopSpatial`](struct@HeavyTopSpatial) and what belongs to it.
+#![allow(
     non_snake_case,
     uncommon_codepoints,
     mixed_script_confusables,
     confusable_idents,
+    unused_variables,
     clippy::all
 )]
-pub mod heavy_top_spatial {
-    use ::clebsch::emitted::*;
-    /// Parameters of [`HeavyTopSpatial`](struct@HeavyTopSpatial), as given.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct HeavyTopSpatialParameters<T = f64> {
-        /// `w`: weight; a number.
-        pub w: T,
-        /// `z`: vertical (up), space frame; a vector of 3 components.
-        pub z: SVector<T, 3>,
-    }
-    /// Heavy top, spatial representation.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct HeavyTopSpatial<T = f64> {
+use ::clebsch::emitted::*;
+/// Parameters of [`HeavyTopSpatial`](struct@HeavyTopSpatial), as given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeavyTopSpatialParameters<T = f64> {
+    /// `w`: weight; a number.
+    pub w: T,
+    /// `z`: vertical (up), space frame; a vector of 3 components.
+    pub z: SVector<T, 3>,
+}
+/// Heavy top, spatial representation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeavyTopSpatial<T = f64> {
+    parameters: HeavyTopSpatialParameters<T>,
+    method: Method,
+}
+impl<T: Real> HeavyTopSpatial<T> {
+    /// The model as it was stated.
+    pub const SOURCE: &'static str = "/// Heavy top, spatial representation.\npub model HeavyTopSpatial {\n    /// weight\n    param w: Real;\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity ω;\n    /// Poinsot (second-moment) matrix in space axes\n    advected J: Sym<3>;\n    /// support -> centre of mass, space axes\n    advected χ: Vec<3>;\n    /// reconstruction\n    constraint next(Λ) = ω*Λ;\n    /// the body carries its second moments along\n    constraint next(J) = ω*J*ω^T;\n    /// and its centre of mass\n    constraint next(χ) = ω*χ;\n    lagrangian = -tr(ω*J)/h - h*w*dot(χ, z);\n}";
+    /// A number that changes when the model or its derivation does.
+    pub const FINGERPRINT: u64 = 9639972943391398617u64;
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+    /// assumption, or is no admissible factor of the equation to solve.
+    pub fn new(
         parameters: HeavyTopSpatialParameters<T>,
-        method: Method,
-    }
-    impl<T: Real> HeavyTopSpatial<T> {
-        /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Heavy top, spatial representation.\npub model HeavyTopSpatial {\n    /// weight\n    param w: Real;\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity ω;\n    /// Poinsot (second-moment) matrix in space axes\n    advected J: Sym<3>;\n    /// support -> centre of mass, space axes\n    advected χ: Vec<3>;\n    /// reconstruction\n    constraint next(Λ) = ω*Λ;\n    /// the body carries its second moments along\n    constraint next(J) = ω*J*ω^T;\n    /// and its centre of mass\n    constraint next(χ) = ω*χ;\n    lagrangian = -tr(ω*J)/h - h*w*dot(χ, z);\n}";
-        /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 9639972943391398617u64;
-        /// Checks the parameters.
-        ///
-        /// # Errors
-        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-        /// assumption, or is no admissible factor of the equation to solve.
-        pub fn new(
-            parameters: HeavyTopSpatialParameters<T>,
-        ) -> Result<Self, ParameterError> {
-            validate::finite("w", &[parameters.w])?;
-            validate::finite("z", parameters.z.as_slice())?;
-            Ok(Self {
-                parameters,
-                method: Method::of_size(3),
-            })
-        }
-        /// The same model, its steps solved by the solver named.
-        #[must_use]
-        pub fn with_solver(self, method: Method) -> Self {
-            Self { method, ..self }
-        }
-        /// The parameters.
-        pub fn parameters(&self) -> &HeavyTopSpatialParameters<T> {
-            &self.parameters
-        }
-    }
-    /// Initial data.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct HeavyTopSpatialInitial<T = f64> {
-        /// `Λ` at node 0: body -> space.
-        pub Λ: Rotation<T>,
-        /// Momentum at node 0, in the space frame.
-        pub spatial_momentum: SpatialMomentum<T>,
-        /// `J` at node 0.
-        pub J: SMatrix<T, 3, 3>,
-        /// `χ` at node 0.
-        pub χ: SVector<T, 3>,
-    }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct HeavyTopSpatialState<T = f64> {
-        Λ: Rotation<T>,
-        momentum: SpatialMomentum<T>,
-        J: SMatrix<T, 3, 3>,
-        χ: SVector<T, 3>,
-        node: u64,
-    }
-    impl<T: Real> HeavyTopSpatialState<T> {
-        /// `Λ` at this node: body -> space.
-        pub fn Λ(&self) -> Rotation<T> {
-            self.Λ
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
-            self.momentum
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum(&self) -> BodyMomentum<T> {
-            self.momentum.to_body(&self.Λ)
-        }
-        /// The number of the node.
-        pub fn node(&self) -> u64 {
-            self.node
-        }
-    }
-    /// The step, the solver's name, the body, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
-    #[derive(Clone, Copy, Debug)]
-    pub struct HeavyTopSpatialWorkspace<T = f64> {
-        h: T,
-        method: Method,
-        factor: Poinsot<T>,
-        edge: Edge<T>,
-        here: HeavyTopSpatialState<T>,
-    }
-    ::clebsch::saved! {
-        [] HeavyTopSpatialWorkspace { h, method, factor, edge, here }
-    }
-    impl<T: Real> HeavyTopSpatial<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not admissible, or says why the first step cannot be solved and
-        /// which could.
-        pub fn start(
-            &self,
-            initial: HeavyTopSpatialInitial<T>,
-            h: T,
-        ) -> Result<(HeavyTopSpatialState<T>, HeavyTopSpatialWorkspace<T>), StartError> {
-            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
-        }
-        /// As `start`, with the solver named.
-        ///
-        /// # Errors
-        /// As `start`; also for what this size or scalar does not have.
-        pub fn start_with(
-            &self,
-            initial: HeavyTopSpatialInitial<T>,
-            h: T,
-            choice: impl Into<Option<Method>>,
-        ) -> Result<(HeavyTopSpatialState<T>, HeavyTopSpatialWorkspace<T>), StartError> {
-            ::clebsch::integrate::Model::start_with(self, initial, h, choice.into())
-        }
-        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
-        pub fn workspace(
-            &self,
-            state: &HeavyTopSpatialState<T>,
-            h: T,
-        ) -> Result<HeavyTopSpatialWorkspace<T>, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        /// The body behind the quantities of a state.
-        #[inline(never)]
-        fn factor(
-            &self,
-            state: &HeavyTopSpatialState<T>,
-        ) -> Result<Poinsot<T>, ParameterError> {
-            let J = state.J;
-            Poinsot::new(J).map_err(|e| e.in_field("J_k"))
-        }
-        /// One step, in place. Solved thus: C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-        #[inline]
-        pub fn step(
-            &self,
-            state: &mut HeavyTopSpatialState<T>,
-            work: &mut HeavyTopSpatialWorkspace<T>,
-        ) -> Result<(), StepError> {
-            let h = work.h;
-            if work.here.Λ != state.Λ || work.here.momentum != state.momentum
-                || !(same(&work.here.J, &state.J) & same(&work.here.χ, &state.χ))
-            {
-                if !(same(&work.here.J, &state.J)) {
-                    work.factor = match self.factor(state) {
-                        Ok(factor) => factor,
-                        Err(_) => {
-                            return Err(
-                                StepCause::NotFinite {
-                                    what: "body",
-                                }
-                                    .at_node(state.node),
-                            );
-                        }
-                    };
-                }
-                work.edge = self.edge(state, h);
-                work.here = *state;
-            }
-            let edge = &work.edge;
-            let turned = match work.method {
-                Method::Kappa => edge.turn(&work.factor, h, &state.Λ),
-                method => edge.turn_by(method, &work.factor, h, &state.Λ),
-            };
-            let Λ_moved = match turned {
-                Ok(turned) => turned,
-                Err(e) => return Err(self.refused(*state, &work.factor, h, e)),
-            };
-            let arrival = self.arrived(state, edge, h, Λ_moved);
-            if !(all_finite(&arrival.momentum.0)) {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
-            }
-            (state.Λ, work.here.Λ) = (arrival.attitude, arrival.attitude);
-            (state.momentum, work.here.momentum) = (arrival.momentum, arrival.momentum);
-            state.node += 1;
-            work.edge = arrival.edge;
-            Ok(())
-        }
-        /// The next node and the edge that begins there, given the attitude there.
-        #[inline(always)]
-        fn arrived(
-            &self,
-            state: &HeavyTopSpatialState<T>,
-            edge: &Edge<T>,
-            h: T,
-            Λ_moved: TurnedRotation<T>,
-        ) -> Moving<T> {
-            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-            let Λ_next = Λ_moved.matrix();
-            let χ_reference = state.χ;
-            let χ_next = Λ_next * χ_reference;
-            let space = edge.space();
-            let torque = (Λ_next.tr_mul(&z)).cross(&(χ_reference * (h * w)));
-            let kick = (z * (h * w)).cross(&χ_next);
-            let momentum_next = space + kick * T::from_f64(0.5);
-            let left = space + kick;
-            let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, left);
-            Moving {
-                attitude: Λ_moved.rotation(),
-                momentum: SpatialMomentum(momentum_next),
-                edge: edge_next,
-            }
-        }
-        /// The edge that begins at this state, for a step `h`.
-        #[inline(never)]
-        fn edge(&self, state: &HeavyTopSpatialState<T>, h: T) -> Edge<T> {
-            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let χ_reference = state.χ;
-            let χ = Λ * χ_reference;
-            let space = state.momentum.0
-                - (-(z.cross(&χ) * (T::from_f64(0.5) * h * w)));
-            Edge::new(state.Λ.matrix().tr_mul(&space), space)
-        }
-        /// Says how far the step is beyond the bound, and which step could be solved.
-        #[cold]
-        fn refused(
-            &self,
-            state: HeavyTopSpatialState<T>,
-            factor: &Poinsot<T>,
-            h: T,
-            e: MoserVeselovError,
-        ) -> StepError {
-            let e = e
-                .with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
-            StepCause::from(e).at_node(state.node)
-        }
-        /// `J` at the node of this state.
-        #[inline]
-        pub fn J(&self, state: &HeavyTopSpatialState<T>) -> SMatrix<T, 3, 3> {
-            let Λ = state.Λ.matrix();
-            let J_reference = state.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            J
-        }
-        /// `χ` at the node of this state.
-        #[inline]
-        pub fn χ(&self, state: &HeavyTopSpatialState<T>) -> SVector<T, 3> {
-            let Λ = state.Λ.matrix();
-            let χ_reference = state.χ;
-            let χ = Λ * χ_reference;
-            χ
-        }
-    }
-    impl<T: Real> Stepper for HeavyTopSpatial<T> {
-        type Scalar = T;
-        type State = HeavyTopSpatialState<T>;
-        type Workspace = HeavyTopSpatialWorkspace<T>;
-        fn workspace(
-            &self,
-            state: &Self::State,
-            h: T,
-        ) -> Result<Self::Workspace, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        #[inline(always)]
-        fn advance(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-        ) -> Result<(), StepError> {
-            self.step(state, work)
-        }
-        #[inline(always)]
-        fn advance_many(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-            count: u64,
-        ) -> Result<(), StepError> {
-            if T::LANES > 1 {
-                return advance_side_by_side(self, state, work, count);
-            }
-            for _ in 0..count {
-                self.step(state, work)?;
-            }
-            Ok(())
-        }
-        fn node(state: &Self::State) -> u64 {
-            state.node
-        }
-        fn at_node(state: Self::State, node: u64) -> Self::State {
-            HeavyTopSpatialState {
-                node: node,
-                ..state
-            }
-        }
-    }
-    impl<T: Real> SideBySide for HeavyTopSpatial<T> {
-        #[inline(always)]
-        fn moving(
-            &self,
-            state: &HeavyTopSpatialState<T>,
-            work: &HeavyTopSpatialWorkspace<T>,
-        ) -> Option<Moving<T>> {
-            let another = work.method != Method::Kappa || work.here.Λ != state.Λ
-                || work.here.momentum != state.momentum
-                || !(same(&work.here.J, &state.J) & same(&work.here.χ, &state.χ));
-            (!another)
-                .then_some(Moving {
-                    attitude: state.Λ,
-                    momentum: state.momentum,
-                    edge: work.edge,
-                })
-        }
-        #[inline(always)]
-        fn arrive(
-            state: &mut HeavyTopSpatialState<T>,
-            work: &mut HeavyTopSpatialWorkspace<T>,
-            moving: &Moving<T>,
-            steps: u64,
-        ) {
-            (state.Λ, state.momentum) = (moving.attitude, moving.momentum);
-            state.node += steps;
-            (work.here, work.edge) = (*state, moving.edge);
-        }
-        #[inline(always)]
-        fn is_diagonal(&self, work: &HeavyTopSpatialWorkspace<T>) -> bool {
-            let _ = work;
-            work.factor.is_diagonal()
-        }
-        #[inline(always)]
-        fn step_lanes<const DIAGONAL: bool>(
-            &self,
-            state: &HeavyTopSpatialState<T>,
-            work: &HeavyTopSpatialWorkspace<T>,
-            from: &Moving<T>,
-            to: &mut Moving<T>,
-        ) -> bool {
-            let mut easy = true;
-            for lane in 0..T::LANES {
-                let (attitude, edge) = from.from(lane);
-                let (h, factor) = (work.h.one_of(lane), work.factor.in_lane(lane));
-                let (turned, found) = edge
-                    .turn_at_once::<DIAGONAL>(&factor, h, &attitude);
-                let model = HeavyTopSpatial::<<T as Real>::One> {
-                    parameters: HeavyTopSpatialParameters {
-                        w: self.parameters.w.in_lane(lane),
-                        z: self.parameters.z.in_lane(lane),
-                    },
-                    method: self.method,
-                };
-                let state = HeavyTopSpatialState::<<T as Real>::One> {
-                    Λ: attitude,
-                    momentum: from.momentum.in_lane(lane),
-                    J: state.J.in_lane(lane),
-                    χ: state.χ.in_lane(lane),
-                    node: state.node,
-                };
-                easy &= found & to.set(lane, model.arrived(&state, &edge, h, turned));
-            }
-            easy
-        }
-    }
-    impl<T: Real> Reversible for HeavyTopSpatial<T> {}
-    ::clebsch::of_scalars! {
-        [] HeavyTopSpatialParameters { w, z }
-    }
-    ::clebsch::of_scalars! {
-        [] HeavyTopSpatialInitial { Λ, spatial_momentum, J, χ }
-    }
-    ::clebsch::of_scalars! {
-        [] HeavyTopSpatialState { Λ, momentum, J, χ } at node
-    }
-    impl<T: Real> ::clebsch::integrate::Model for HeavyTopSpatial<T> {
-        type Parameters = HeavyTopSpatialParameters<T>;
-        type Initial = HeavyTopSpatialInitial<T>;
-        type Choice = Option<Method>;
-        type Over<U: Real> = HeavyTopSpatial<U>;
-        const SIDE_BY_SIDE: bool = true;
-        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
-            Self::new(parameters)
-        }
-        fn given(&self) -> &Self::Parameters {
-            &self.parameters
-        }
-        fn begin(
-            &self,
-            initial: Self::Initial,
-        ) -> Result<HeavyTopSpatialState<T>, StartError> {
-            validate::finite("Λ", &initial.Λ.quaternion())?;
-            validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
-            validate::finite_entries("J", &initial.J)?;
-            validate::finite("χ", initial.χ.as_slice())?;
-            let J = {
-                let Λ = initial.Λ.matrix();
-                let J_start = initial.J;
-                Λ.tr_mul(&(J_start * Λ))
-            };
-            let χ = {
-                let Λ = initial.Λ.matrix();
-                let χ_start = initial.χ;
-                Λ.tr_mul(&χ_start)
-            };
-            Ok(HeavyTopSpatialState {
-                Λ: initial.Λ,
-                momentum: initial.spatial_momentum,
-                J,
-                χ,
-                node: 0,
-            })
-        }
-        fn prepared(
-            &self,
-            state: &HeavyTopSpatialState<T>,
-            h: T,
-            choice: Self::Choice,
-        ) -> Result<Self::Workspace, StartError> {
-            let method = choice.unwrap_or(self.method);
-            Ok(HeavyTopSpatialWorkspace {
-                h,
-                method,
-                factor: self.factor(state)?,
-                edge: self.edge(state, h),
-                here: *state,
-            })
-        }
-    }
-    /// A configuration at one node, solution or not.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct HeavyTopSpatialConfiguration<T = f64> {
-        /// `Λ` at the node: body -> space.
-        pub Λ: Rotation<T>,
-        /// `J` at the node, as its constraint carries it.
-        pub J: SMatrix<T, 3, 3>,
-        /// `χ` at the node, as its constraint carries it.
-        pub χ: SVector<T, 3>,
-    }
-    impl<T: Real> HeavyTopSpatial<T> {
-        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
-        /// consecutive configurations: component `i` is the derivative of the action of the
-        /// two edges when the middle element is rotated about its axis `i` (a body axis on
-        /// the body side, a space axis on the spatial side). Zero on solutions.
-        pub fn balance(
-            &self,
-            h: T,
-            before: &HeavyTopSpatialConfiguration<T>,
-            here: &HeavyTopSpatialConfiguration<T>,
-            after: &HeavyTopSpatialConfiguration<T>,
-        ) -> SVector<T, 3> {
-            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-            let J_before = before.J;
-            let χ_before = before.χ;
-            let J = here.J;
-            let χ = here.χ;
-            let J_next = after.J;
-            let χ_next = after.χ;
-            let ω_before = before.Λ.spatial_velocity(&here.Λ).matrix();
-            let ω = here.Λ.spatial_velocity(&after.Λ).matrix();
-            let t1 = h.powi(-1);
-            let t2 = z.cross(&χ) * (T::from_f64(0.5) * h * w);
-            let parts: [SVector<T, 3>; 1] = [
-                axial_of_difference(&(ω_before * J_before)) * t1 + t2
-                    - axial_of_difference(&(ω * J)) * t1 + t2,
-            ];
-            parts[0]
-        }
-    }
-    impl<T: Real> HeavyTopSpatial<T> {
-        /// What the step of size `h` from one state to the next leaves of its equations: the
-        /// momentum that is carried to the second state, less the one that the motion between
-        /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a spatial
-        /// velocity are the two elements it is made from, as they are stored.
-        pub fn residual(
-            &self,
-            before: &HeavyTopSpatialState<T>,
-            after: &HeavyTopSpatialState<T>,
-            h: T,
-        ) -> [Residual; 1] {
-            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-            let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-            let Λ = before.Λ.matrix();
-            let J_reference = before.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            let Λ_next = after.Λ.matrix();
-            let χ_reference = before.χ;
-            let χ_next = Λ_next * χ_reference;
-            let t1 = h.powi(-1);
-            let _ = h;
-            [
-                {
-                    let momentum = after.momentum.0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (axial_of_difference(&(ω_matrix * J)) * t1
-                                        + z.cross(&χ_next) * (T::from_f64(0.5) * h * w))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (T::from_f64(2.0) * (t1 * t1).sqrt()
-                                * (ω_matrix.tr_mul(&ω_matrix)).trace().sqrt()
-                                * (J * J).trace().sqrt()
-                                + T::from_f64(0.5) * (h * h).sqrt() * (w * w).sqrt()
-                                    * z.dot(&z).sqrt() * χ_next.dot(&χ_next).sqrt())
-                                .magnitude(),
-                    }
-                },
-            ]
-        }
-    }
-    impl<T: Real> HeavyTopSpatial<T> {
-        /// The kinetic and the potential energy at this node: those of the limit of small steps,
-        /// at the node's momentum.
-        pub fn energies(&self, state: &HeavyTopSpatialState<T>) -> (T, T) {
-            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let J_reference = state.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            let χ_reference = state.χ;
-            let χ = Λ * χ_reference;
-            let parts: [SVector<T, 3>; 1] = [state.spatial_momentum().0];
-            let momentum: SVector<T, 3> = parts[0];
-            let inertia = SMatrix::<
-                T,
-                3,
-                3,
-            >::from_fn(|i, j| {
-                let ξ = basis::<T>(i);
-                let η = basis::<T>(j);
-                T::from_f64(0.5) * J.trace()
-                    * (vee(&η).dot(&vee(&ξ)) + vee(&ξ).dot(&vee(&η)))
-                    - T::from_f64(0.5)
-                        * (vee(&η).dot(&(J * vee(&ξ))) + vee(&ξ).dot(&(J * vee(&η))))
-            });
-            let velocity = solve_or_nan(&inertia, &momentum);
-            (momentum.dot(&velocity) * T::from_f64(0.5), w * z.dot(&χ))
-        }
-        /// The physical energy at this node.
-        pub fn energy(&self, state: &HeavyTopSpatialState<T>) -> T {
-            let (kinetic, potential) = self.energies(state);
-            kinetic + potential
-        }
-        /// `χ_k·χ_k`: Casimir: invariant under the group action.
-        pub fn chi_squared(&self, state: &HeavyTopSpatialState<T>) -> T {
-            let Λ = state.Λ.matrix();
-            let χ_reference = state.χ;
-            let χ = Λ * χ_reference;
-            χ.dot(&χ)
-        }
-        /// `tr(J_k)`: Casimir: invariant under the group action.
-        pub fn trace_J1(&self, state: &HeavyTopSpatialState<T>) -> T {
-            let Λ = state.Λ.matrix();
-            let J_reference = state.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            J.trace()
-        }
-        /// `tr(J_k²)`: Casimir: invariant under the group action.
-        pub fn trace_J2(&self, state: &HeavyTopSpatialState<T>) -> T {
-            let Λ = state.Λ.matrix();
-            let J_reference = state.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            (J * J).trace()
-        }
-        /// `tr(J_k³)`: Casimir: invariant under the group action.
-        pub fn trace_J3(&self, state: &HeavyTopSpatialState<T>) -> T {
-            let Λ = state.Λ.matrix();
-            let J_reference = state.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            (J * (J * J)).trace()
-        }
-        /// `χ_k·(J_k χ_k)`: Casimir: invariant under the group action.
-        pub fn chi_J_chi(&self, state: &HeavyTopSpatialState<T>) -> T {
-            let Λ = state.Λ.matrix();
-            let J_reference = state.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            let χ_reference = state.χ;
-            let χ = Λ * χ_reference;
-            χ.dot(&(J * χ))
-        }
-        /// `χ_k·(J_k² χ_k)`: Casimir: invariant under the group action.
-        pub fn chi_J2_chi(&self, state: &HeavyTopSpatialState<T>) -> T {
-            let Λ = state.Λ.matrix();
-            let J_reference = state.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            let χ_reference = state.χ;
-            let χ = Λ * χ_reference;
-            χ.dot(&(J * (J * χ)))
-        }
-        /// `m_k·z`: Noether: the action is invariant under rotations about the axis in space.
-        pub fn momentum_z(&self, state: &HeavyTopSpatialState<T>) -> T {
-            let HeavyTopSpatialParameters { z, .. } = self.parameters;
-            let m = state.spatial_momentum().0;
-            m.dot(&z)
-        }
-    }
-    impl<T: Real> HeavyTopSpatial<T> {
-        /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h² + ½ w z·χ_k + ½ w z·χ_{k+1}`: bounded, since the stepper is symplectic.
-        pub fn discrete_energy(
-            &self,
-            h: T,
-            before: &HeavyTopSpatialState<T>,
-            after: &HeavyTopSpatialState<T>,
-        ) -> T {
-            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-            let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-            let Λ = before.Λ.matrix();
-            let J_reference = before.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            let χ_reference = before.χ;
-            let χ = Λ * χ_reference;
-            let Λ_next = after.Λ.matrix();
-            let χ_reference = before.χ;
-            let χ_next = Λ_next * χ_reference;
-            T::from_f64(0.5) * w * z.dot(&χ) + T::from_f64(0.5) * w * z.dot(&χ_next)
-                - (less_identity(&ω_matrix) * J).trace() / (h * h)
-        }
-    }
-    impl ::clebsch::integrate::Described for HeavyTopSpatial<f64> {
-        fn card() -> &'static Card {
-            &Self::CARD
-        }
-        fn read(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-        ) -> Result<(Self, Self::Initial), OpenError> {
-            let model = Self::new(HeavyTopSpatialParameters {
-                w: number_of("w", parameters.get(0usize))?,
-                z: matrix_of("z", parameters.get(1usize))?,
-            })?;
-            let initial = HeavyTopSpatialInitial {
-                Λ: rotation_of("Λ", initial.get(0usize))?,
-                spatial_momentum: SpatialMomentum(
-                    matrix_of("spatial_momentum", initial.get(1usize))?,
-                ),
-                J: matrix_of("J", initial.get(2usize))?,
-                χ: matrix_of("χ", initial.get(3usize))?,
-            };
-            Ok((model, initial))
-        }
-        fn ways(
-            self,
-            state: &Self::State,
-            settings: Settings,
-        ) -> Result<(Self, Steps<Self>), OpenError> {
-            let model = match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => self.with_solver(method),
-                None => self,
-            };
-            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
-            Ok((model, steps))
-        }
-        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
-            self.kinetic_warning(state)
-        }
-        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-            Residual::largest(&self.residual(before, after, h))
-        }
-        fn observe(&self, state: &Self::State, out: &mut [f64]) {
-            let out = put(out, rows(state.Λ().matrix()));
-            let out = put(out, rows(state.body_momentum().0));
-            let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, rows(self.J(state)));
-            let out = put(out, rows(self.χ(state)));
-            let _ = out;
-        }
-        fn invariants(
-            &self,
-            state: &Self::State,
-            _: Option<&Self::Workspace>,
-            out: &mut [f64],
-        ) {
-            let out = put(out, [self.energy(state)]);
-            let out = put(out, [self.chi_squared(state)]);
-            let out = put(out, [self.trace_J1(state)]);
-            let out = put(out, [self.trace_J2(state)]);
-            let out = put(out, [self.trace_J3(state)]);
-            let out = put(out, [self.chi_J_chi(state)]);
-            let out = put(out, [self.chi_J2_chi(state)]);
-            let out = put(out, [self.momentum_z(state)]);
-            let _ = (state, out);
-        }
-        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
-            let mut enlarged = *state;
-            {
-                type T = f64;
-                let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-                let Λ = state.Λ.matrix();
-                let χ_reference = state.χ;
-                let χ = Λ * χ_reference;
-                enlarged.momentum = SpatialMomentum(
-                    not_less(
-                        enlarged.momentum.0,
-                        (0, 3),
-                        T::from_f64(0.5) * (h * h).sqrt() * (w * w).sqrt()
-                            * z.dot(&z).sqrt() * χ.dot(&χ).sqrt(),
-                    ),
-                );
-            }
-            let state = &enlarged;
-            type T = f64;
-            let HeavyTopSpatialParameters { z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let J_reference = state.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            let χ_reference = state.χ;
-            let χ = Λ * χ_reference;
-            let m = state.spatial_momentum().0;
-            let t1 = χ.dot(&χ).sqrt();
-            let t2 = (J * J).trace().sqrt();
-            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-            let out = put(out, [t1 * t1; 1usize]);
-            let out = put(out, [T::from_f64(3.0).sqrt() * t2; 1usize]);
-            let out = put(out, [t2 * t2; 1usize]);
-            let out = put(out, [t2 * t2 * t2; 1usize]);
-            let out = put(out, [t1 * t2 * t1; 1usize]);
-            let out = put(out, [t1 * t2 * t2 * t1; 1usize]);
-            let out = put(out, [m.dot(&m).sqrt() * z.dot(&z).sqrt(); 1usize]);
-            let _ = (state, h, out);
-        }
-    }
-    impl HeavyTopSpatial<f64> {
-        /// The model as data.
-        pub const CARD: Card = Card {
-            name: "HeavyTopSpatial",
-            kebab: "heavy-top-spatial",
-            doc: "Heavy top, spatial representation.",
-            source: Self::SOURCE,
-            fingerprint: Self::FINGERPRINT,
-            summary: "discrete Lagrangian  -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi, chi_J2_chi, momentum_z\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
-            solver: "Moser-Veselov: C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step",
-            order: 2u32,
-            orders: &[2, 4, 6, 8],
-            preprocessed: false,
-            reversible: true,
-            parameters: &[
-                Kind::Scalar.field("w", [1, 1], "weight"),
-                Kind::Vector.field("z", [3, 1], "vertical (up), space frame"),
-            ],
-            initial: &[
-                Kind::Rotation
-                    .field("Λ", [3, 3], "attitude, body to space")
-                    .spelt("Lambda"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
-                Kind::SecondMoments
-                    .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
-                Kind::Vector
-                    .field("χ", [3, 1], "support -> centre of mass, space axes")
-                    .spelt("chi"),
-            ],
-            observables: &[
-                Kind::Rotation
-                    .field("Λ", [3, 3], "attitude, body to space")
-                    .spelt("Lambda"),
-                Kind::BodyMomentum
-                    .field("body_momentum", [3, 1], "momentum, body frame"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
-                Kind::SecondMoments
-                    .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
-                Kind::Vector
-                    .field("χ", [3, 1], "support -> centre of mass, space axes")
-                    .spelt("chi"),
-            ],
-            invariants: &[
-                Invariant::bounded(
-                    "energy",
-                    "½ m_k·ζ + w z·χ_k, where m_k = -J_k ζ + tr(J_k) ζ",
-                    1usize,
-                ),
-                Invariant::exact("chi_squared", "χ_k·χ_k", 1usize),
-                Invariant::exact("trace_J1", "tr(J_k)", 1usize),
-                Invariant::exact("trace_J2", "tr(J_k²)", 1usize),
-                Invariant::exact("trace_J3", "tr(J_k³)", 1usize),
-                Invariant::exact("chi_J_chi", "χ_k·(J_k χ_k)", 1usize),
-                Invariant::exact("chi_J2_chi", "χ_k·(J_k² χ_k)", 1usize),
-                Invariant::exact("momentum_z", "m_k·z", 1usize),
-            ],
-            discrete_energy: Invariant::bounded(
-                "discrete_energy",
-                "-tr(ω_k J_k)/h² + tr(J_k)/h² + ½ w z·χ_k + ½ w z·χ_{k+1}",
-                1,
-            ),
-            open: open::<Self>,
-            solvers: &Method::NAMES,
-            dimensions: &[],
-            sized: only_size::<Self>,
-        };
-        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
-        /// velocities together, at the identity, should be positive definite.
-        #[cold]
-        #[allow(unused_variables)]
-        pub fn kinetic_warning(
-            &self,
-            state: &HeavyTopSpatialState<f64>,
-        ) -> Option<KineticWarning> {
-            type T = f64;
-            let Λ = state.Λ.matrix();
-            let J_reference = state.J;
-            let J = Λ * (J_reference * Λ.transpose());
-            let mut inertia = SMatrix::<T, 3, 3>::zeros();
-            for axis in 0..3 {
-                let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
-                let t1 = vee(&ξ);
-                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-                let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let parts: [SVector<T, 3>; 1] = [
-                    axial_of_difference(&(t2 + t2 + t3 + t3)),
-                ];
-                inertia.set_column(axis, &parts[0]);
-            }
-            KineticWarning::of(&inertia, 3)
-        }
+    ) -> Result<Self, ParameterError> {
+        validate::finite("w", &[parameters.w])?;
+        validate::finite("z", parameters.z.as_slice())?;
+        Ok(Self {
+            parameters,
+            method: Method::of_size(3),
+        })
     }
 }
-#[allow(unused_imports)]
-pub use heavy_top_spatial::*;
+/// Initial data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeavyTopSpatialInitial<T = f64> {
+    /// `Λ` at node 0: body -> space.
+    pub Λ: Rotation<T>,
+    /// Momentum at node 0, in the space frame.
+    pub spatial_momentum: SpatialMomentum<T>,
+    /// `J` at node 0.
+    pub J: SMatrix<T, 3, 3>,
+    /// `χ` at node 0.
+    pub χ: SVector<T, 3>,
+}
+/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeavyTopSpatialState<T = f64> {
+    Λ: Rotation<T>,
+    momentum: SpatialMomentum<T>,
+    J: SMatrix<T, 3, 3>,
+    χ: SVector<T, 3>,
+    node: u64,
+}
+impl<T: Real> HeavyTopSpatialState<T> {
+    /// `Λ` at this node: body -> space.
+    pub fn Λ(&self) -> Rotation<T> {
+        self.Λ
+    }
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+        self.momentum
+    }
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum(&self) -> BodyMomentum<T> {
+        self.momentum.to_body(&self.Λ)
+    }
+}
+/// The step, the solver's name, the body, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+#[derive(Clone, Copy, Debug)]
+pub struct HeavyTopSpatialWorkspace<T = f64> {
+    h: T,
+    method: Method,
+    factor: Poinsot<T>,
+    edge: Edge<T>,
+    here: HeavyTopSpatialState<T>,
+}
+impl<T: Real> HeavyTopSpatial<T> {
+    /// The state at node 0.
+    fn begin(
+        &self,
+        initial: HeavyTopSpatialInitial<T>,
+    ) -> Result<HeavyTopSpatialState<T>, StartError> {
+        validate::finite("Λ", &initial.Λ.quaternion())?;
+        validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
+        validate::finite_entries("J", &initial.J)?;
+        validate::finite("χ", initial.χ.as_slice())?;
+        let J = {
+            let Λ = initial.Λ.matrix();
+            let J_start = initial.J;
+            Λ.tr_mul(&(J_start * Λ))
+        };
+        let χ = {
+            let Λ = initial.Λ.matrix();
+            let χ_start = initial.χ;
+            Λ.tr_mul(&χ_start)
+        };
+        Ok(HeavyTopSpatialState {
+            Λ: initial.Λ,
+            momentum: initial.spatial_momentum,
+            J,
+            χ,
+            node: 0,
+        })
+    }
+    /// What steps of `h` from `state` begin with.
+    fn prepared(
+        &self,
+        state: &HeavyTopSpatialState<T>,
+        h: T,
+        choice: Option<Method>,
+    ) -> Result<HeavyTopSpatialWorkspace<T>, StartError> {
+        let method = choice.unwrap_or(self.method);
+        Ok(HeavyTopSpatialWorkspace {
+            h,
+            method,
+            factor: self.factor(state)?,
+            edge: self.edge(state, h),
+            here: *state,
+        })
+    }
+    /// The body behind the quantities of a state.
+    #[inline(never)]
+    fn factor(
+        &self,
+        state: &HeavyTopSpatialState<T>,
+    ) -> Result<Poinsot<T>, ParameterError> {
+        let J = state.J;
+        Poinsot::new(J).map_err(|e| e.in_field("J_k"))
+    }
+    /// One step, in place. Solved thus: C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    #[inline]
+    pub fn step(
+        &self,
+        state: &mut HeavyTopSpatialState<T>,
+        work: &mut HeavyTopSpatialWorkspace<T>,
+    ) -> Result<(), StepError> {
+        let h = work.h;
+        if work.here.Λ != state.Λ || work.here.momentum != state.momentum
+            || !(same(&work.here.J, &state.J) & same(&work.here.χ, &state.χ))
+        {
+            if !(same(&work.here.J, &state.J)) {
+                work.factor = match self.factor(state) {
+                    Ok(factor) => factor,
+                    Err(_) => {
+                        return Err(StepCause::not_finite("body").at_node(state.node));
+                    }
+                };
+            }
+            work.edge = self.edge(state, h);
+            work.here = *state;
+        }
+        let edge = &work.edge;
+        let turned = match work.method {
+            Method::Kappa => edge.turn(&work.factor, h, &state.Λ),
+            method => edge.turn_by(method, &work.factor, h, &state.Λ),
+        };
+        let Λ_moved = match turned {
+            Ok(turned) => turned,
+            Err(e) => return Err(self.refused(*state, &work.factor, h, e)),
+        };
+        let arrival = self.arrived(state, edge, h, Λ_moved);
+        if !(all_finite(&arrival.momentum.0)) {
+            return Err(StepCause::not_finite("momentum").at_node(state.node));
+        }
+        (state.Λ, work.here.Λ) = (arrival.attitude, arrival.attitude);
+        (state.momentum, work.here.momentum) = (arrival.momentum, arrival.momentum);
+        state.node += 1;
+        work.edge = arrival.edge;
+        Ok(())
+    }
+    /// The next node and the edge that begins there, given the attitude there.
+    #[inline(always)]
+    fn arrived(
+        &self,
+        state: &HeavyTopSpatialState<T>,
+        edge: &Edge<T>,
+        h: T,
+        Λ_moved: TurnedRotation<T>,
+    ) -> Moving<T> {
+        let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+        let Λ_next = Λ_moved.matrix();
+        let χ_reference = state.χ;
+        let χ_next = Λ_next * χ_reference;
+        let space = edge.space();
+        let torque = (Λ_next.tr_mul(&z)).cross(&(χ_reference * (h * w)));
+        let kick = (z * (h * w)).cross(&χ_next);
+        let momentum_next = space + kick * T::from_f64(0.5);
+        let left = space + kick;
+        let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, left);
+        Moving {
+            attitude: Λ_moved.rotation(),
+            momentum: SpatialMomentum(momentum_next),
+            edge: edge_next,
+        }
+    }
+    /// The edge that begins at this state, for a step `h`.
+    #[inline(never)]
+    fn edge(&self, state: &HeavyTopSpatialState<T>, h: T) -> Edge<T> {
+        let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let χ_reference = state.χ;
+        let χ = Λ * χ_reference;
+        let space = state.momentum.0 - (-(z.cross(&χ) * (T::from_f64(0.5) * h * w)));
+        Edge::new(state.Λ.matrix().tr_mul(&space), space)
+    }
+    /// Says how far the step is beyond the bound, and which step could be solved.
+    #[cold]
+    fn refused(
+        &self,
+        state: HeavyTopSpatialState<T>,
+        factor: &Poinsot<T>,
+        h: T,
+        e: MoserVeselovError,
+    ) -> StepError {
+        let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
+        StepCause::from(e).at_node(state.node)
+    }
+    /// `J` at the node of this state.
+    #[inline]
+    pub fn J(&self, state: &HeavyTopSpatialState<T>) -> SMatrix<T, 3, 3> {
+        let Λ = state.Λ.matrix();
+        let J_reference = state.J;
+        let J = Λ * (J_reference * Λ.transpose());
+        J
+    }
+    /// `χ` at the node of this state.
+    #[inline]
+    pub fn χ(&self, state: &HeavyTopSpatialState<T>) -> SVector<T, 3> {
+        let Λ = state.Λ.matrix();
+        let χ_reference = state.χ;
+        let χ = Λ * χ_reference;
+        χ
+    }
+}
+::clebsch::stepper! {
+    [] HeavyTopSpatial, HeavyTopSpatialParameters { w, z }, HeavyTopSpatialInitial { Λ,
+    spatial_momentum, J, χ }, HeavyTopSpatialState { Λ, momentum, J, χ } at node,
+    HeavyTopSpatialWorkspace { h, method, factor, edge, here }, forced_of_state { Λ,
+    momentum, J, χ } solver symmetric judged
+}
+/// A configuration at one node, solution or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeavyTopSpatialConfiguration<T = f64> {
+    /// `Λ` at the node: body -> space.
+    pub Λ: Rotation<T>,
+    /// `J` at the node, as its constraint carries it.
+    pub J: SMatrix<T, 3, 3>,
+    /// `χ` at the node, as its constraint carries it.
+    pub χ: SVector<T, 3>,
+}
+impl<T: Real> HeavyTopSpatial<T> {
+    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// consecutive configurations: component `i` is the derivative of the action of the
+    /// two edges when the middle element is rotated about its axis `i` (a body axis on
+    /// the body side, a space axis on the spatial side). Zero on solutions.
+    pub fn balance(
+        &self,
+        h: T,
+        before: &HeavyTopSpatialConfiguration<T>,
+        here: &HeavyTopSpatialConfiguration<T>,
+        after: &HeavyTopSpatialConfiguration<T>,
+    ) -> SVector<T, 3> {
+        let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+        let J_before = before.J;
+        let χ_before = before.χ;
+        let J = here.J;
+        let χ = here.χ;
+        let J_next = after.J;
+        let χ_next = after.χ;
+        let ω_before = before.Λ.spatial_velocity(&here.Λ).matrix();
+        let ω = here.Λ.spatial_velocity(&after.Λ).matrix();
+        let t1 = h.powi(-1);
+        let t2 = z.cross(&χ) * (T::from_f64(0.5) * h * w);
+        let parts: [SVector<T, 3>; 1] = [
+            axial_of_difference(&(ω_before * J_before)) * t1 + t2
+                - axial_of_difference(&(ω * J)) * t1 + t2,
+        ];
+        parts[0]
+    }
+    /// What the step of size `h` from one state to the next leaves of its equations: the
+    /// momentum that is carried to the second state, less the one that the motion between
+    /// them brings there. One part a configuration, angular and linear ones of a rigid
+    /// motion apart, each with the size of the terms it is made of: those of a spatial
+    /// velocity are the two elements it is made from, as they are stored.
+    pub fn residual(
+        &self,
+        before: &HeavyTopSpatialState<T>,
+        after: &HeavyTopSpatialState<T>,
+        h: T,
+    ) -> [Residual; 1] {
+        let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+        let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
+        let Λ = before.Λ.matrix();
+        let J_reference = before.J;
+        let J = Λ * (J_reference * Λ.transpose());
+        let Λ_next = after.Λ.matrix();
+        let χ_reference = before.χ;
+        let χ_next = Λ_next * χ_reference;
+        let t1 = h.powi(-1);
+        [
+            Residual::between(
+                &(after.momentum.0),
+                &(axial_of_difference(&(ω_matrix * J)) * t1
+                    + z.cross(&χ_next) * (T::from_f64(0.5) * h * w)),
+                T::from_f64(2.0) * (t1 * t1).sqrt()
+                    * (ω_matrix.tr_mul(&ω_matrix)).trace().sqrt()
+                    * (J * J).trace().sqrt()
+                    + T::from_f64(0.5) * (h * h).sqrt() * (w * w).sqrt()
+                        * z.dot(&z).sqrt() * χ_next.dot(&χ_next).sqrt(),
+            ),
+        ]
+    }
+    /// The Hessian of the kinetic energy in all velocities together, at the identity.
+    fn inertia_at(&self, state: &HeavyTopSpatialState<T>) -> SMatrix<T, 3, 3> {
+        let Λ = state.Λ.matrix();
+        let J_reference = state.J;
+        let J = Λ * (J_reference * Λ.transpose());
+        let mut inertia = SMatrix::<T, 3, 3>::zeros();
+        for axis in 0..3 {
+            let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
+            let t1 = vee(&ξ);
+            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
+            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
+            let parts: [SVector<T, 3>; 1] = [axial_of_difference(&(t2 + t2 + t3 + t3))];
+            inertia.set_column(axis, &parts[0]);
+        }
+        inertia
+    }
+    /// The kinetic and the potential energy at this node: those of the limit of small steps,
+    /// at the node's momentum.
+    pub fn energies(&self, state: &HeavyTopSpatialState<T>) -> (T, T) {
+        let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let χ_reference = state.χ;
+        let χ = Λ * χ_reference;
+        let momentum = state.spatial_momentum().0;
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
+        (momentum.dot(&velocity) * T::from_f64(0.5), w * z.dot(&χ))
+    }
+    /// The physical energy at this node.
+    pub fn energy(&self, state: &HeavyTopSpatialState<T>) -> T {
+        let (kinetic, potential) = self.energies(state);
+        kinetic + potential
+    }
+    /// `χ_k·χ_k`: Casimir: invariant under the group action.
+    pub fn chi_squared(&self, state: &HeavyTopSpatialState<T>) -> T {
+        let Λ = state.Λ.matrix();
+        let χ_reference = state.χ;
+        let χ = Λ * χ_reference;
+        χ.dot(&χ)
+    }
+    /// `tr(J_k)`: Casimir: invariant under the group action.
+    pub fn trace_J1(&self, state: &HeavyTopSpatialState<T>) -> T {
+        let Λ = state.Λ.matrix();
+        let J_reference = state.J;
+        let J = Λ * (J_reference * Λ.transpose());
+        J.trace()
+    }
+    /// `tr(J_k²)`: Casimir: invariant under the group action.
+    pub fn trace_J2(&self, state: &HeavyTopSpatialState<T>) -> T {
+        let Λ = state.Λ.matrix();
+        let J_reference = state.J;
+        let J = Λ * (J_reference * Λ.transpose());
+        (J * J).trace()
+    }
+    /// `tr(J_k³)`: Casimir: invariant under the group action.
+    pub fn trace_J3(&self, state: &HeavyTopSpatialState<T>) -> T {
+        let Λ = state.Λ.matrix();
+        let J_reference = state.J;
+        let J = Λ * (J_reference * Λ.transpose());
+        (J * (J * J)).trace()
+    }
+    /// `χ_k·(J_k χ_k)`: Casimir: invariant under the group action.
+    pub fn chi_J_chi(&self, state: &HeavyTopSpatialState<T>) -> T {
+        let Λ = state.Λ.matrix();
+        let J_reference = state.J;
+        let J = Λ * (J_reference * Λ.transpose());
+        let χ_reference = state.χ;
+        let χ = Λ * χ_reference;
+        χ.dot(&(J * χ))
+    }
+    /// `χ_k·(J_k² χ_k)`: Casimir: invariant under the group action.
+    pub fn chi_J2_chi(&self, state: &HeavyTopSpatialState<T>) -> T {
+        let Λ = state.Λ.matrix();
+        let J_reference = state.J;
+        let J = Λ * (J_reference * Λ.transpose());
+        let χ_reference = state.χ;
+        let χ = Λ * χ_reference;
+        χ.dot(&(J * (J * χ)))
+    }
+    /// `m_k·z`: Noether: the action is invariant under rotations about the axis in space.
+    pub fn momentum_z(&self, state: &HeavyTopSpatialState<T>) -> T {
+        let HeavyTopSpatialParameters { z, .. } = self.parameters;
+        let m = state.spatial_momentum().0;
+        m.dot(&z)
+    }
+    /// The discrete energy of the edge between two consecutive states, `-tr(ω_k J_k)/h² + tr(J_k)/h² + ½ w z·χ_k + ½ w z·χ_{k+1}`: bounded, since the stepper is symplectic.
+    pub fn discrete_energy(
+        &self,
+        h: T,
+        before: &HeavyTopSpatialState<T>,
+        after: &HeavyTopSpatialState<T>,
+    ) -> T {
+        let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+        let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
+        let Λ = before.Λ.matrix();
+        let J_reference = before.J;
+        let J = Λ * (J_reference * Λ.transpose());
+        let χ_reference = before.χ;
+        let χ = Λ * χ_reference;
+        let Λ_next = after.Λ.matrix();
+        let χ_reference = before.χ;
+        let χ_next = Λ_next * χ_reference;
+        T::from_f64(0.5) * w * z.dot(&χ) + T::from_f64(0.5) * w * z.dot(&χ_next)
+            - (less_identity(&ω_matrix) * J).trace() / (h * h)
+    }
+}
+impl HeavyTopSpatial<f64> {
+    /// All observables, in the order of the card.
+    fn observe(&self, state: &HeavyTopSpatialState<f64>, out: &mut [f64]) {
+        let out = put(out, rows(state.Λ().matrix()));
+        let out = put(out, rows(state.body_momentum().0));
+        let out = put(out, rows(state.spatial_momentum().0));
+        let out = put(out, rows(self.J(state)));
+        let out = put(out, rows(self.χ(state)));
+    }
+    /// All invariants, in the order of the card.
+    fn invariants(
+        &self,
+        state: &HeavyTopSpatialState<f64>,
+        _: Option<&HeavyTopSpatialWorkspace<f64>>,
+        out: &mut [f64],
+    ) {
+        let out = put(out, [self.energy(state)]);
+        let out = put(out, [self.chi_squared(state)]);
+        let out = put(out, [self.trace_J1(state)]);
+        let out = put(out, [self.trace_J2(state)]);
+        let out = put(out, [self.trace_J3(state)]);
+        let out = put(out, [self.chi_J_chi(state)]);
+        let out = put(out, [self.chi_J2_chi(state)]);
+        let out = put(out, [self.momentum_z(state)]);
+    }
+    /// Their sizes at a state, in steps of `h`.
+    fn scales(&self, state: &HeavyTopSpatialState<f64>, h: f64, out: &mut [f64]) {
+        let mut enlarged = *state;
+        {
+            type T = f64;
+            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let χ_reference = state.χ;
+            let χ = Λ * χ_reference;
+            enlarged.momentum = SpatialMomentum(
+                not_less(
+                    enlarged.momentum.0,
+                    (0, 3),
+                    T::from_f64(0.5) * (h * h).sqrt() * (w * w).sqrt() * z.dot(&z).sqrt()
+                        * χ.dot(&χ).sqrt(),
+                ),
+            );
+        }
+        let state = &enlarged;
+        type T = f64;
+        let HeavyTopSpatialParameters { z, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let J_reference = state.J;
+        let J = Λ * (J_reference * Λ.transpose());
+        let χ_reference = state.χ;
+        let χ = Λ * χ_reference;
+        let m = state.spatial_momentum().0;
+        let t1 = χ.dot(&χ).sqrt();
+        let t2 = (J * J).trace().sqrt();
+        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+        let out = put(out, [t1 * t1; 1usize]);
+        let out = put(out, [T::from_f64(3.0).sqrt() * t2; 1usize]);
+        let out = put(out, [t2 * t2; 1usize]);
+        let out = put(out, [t2 * t2 * t2; 1usize]);
+        let out = put(out, [t1 * t2 * t1; 1usize]);
+        let out = put(out, [t1 * t2 * t2 * t1; 1usize]);
+        let out = put(out, [m.dot(&m).sqrt() * z.dot(&z).sqrt(); 1usize]);
+    }
+    /// The model as data.
+    pub const CARD: Card = Card {
+        name: "HeavyTopSpatial",
+        kebab: "heavy-top-spatial",
+        doc: "Heavy top, spatial representation.",
+        source: Self::SOURCE,
+        fingerprint: Self::FINGERPRINT,
+        summary: "discrete Lagrangian  -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi, chi_J2_chi, momentum_z\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
+        solver: "Moser-Veselov: C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step",
+        order: 2u32,
+        orders: &[2, 4, 6, 8],
+        preprocessed: false,
+        reversible: true,
+        parameters: &[
+            Kind::Scalar.field("w", [1, 1], "weight"),
+            Kind::Vector.field("z", [3, 1], "vertical (up), space frame"),
+        ],
+        initial: &[
+            Kind::Rotation
+                .field("Λ", [3, 3], "attitude, body to space")
+                .spelt("Lambda"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum", [3, 1], "momentum, space frame"),
+            Kind::SecondMoments
+                .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
+            Kind::Vector
+                .field("χ", [3, 1], "support -> centre of mass, space axes")
+                .spelt("chi"),
+        ],
+        observables: &[
+            Kind::Rotation
+                .field("Λ", [3, 3], "attitude, body to space")
+                .spelt("Lambda"),
+            Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum", [3, 1], "momentum, space frame"),
+            Kind::SecondMoments
+                .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
+            Kind::Vector
+                .field("χ", [3, 1], "support -> centre of mass, space axes")
+                .spelt("chi"),
+        ],
+        invariants: &[
+            Invariant::bounded(
+                "energy",
+                "½ m_k·ζ + w z·χ_k, where m_k = -J_k ζ + tr(J_k) ζ",
+                1usize,
+            ),
+            Invariant::exact("chi_squared", "χ_k·χ_k", 1usize),
+            Invariant::exact("trace_J1", "tr(J_k)", 1usize),
+            Invariant::exact("trace_J2", "tr(J_k²)", 1usize),
+            Invariant::exact("trace_J3", "tr(J_k³)", 1usize),
+            Invariant::exact("chi_J_chi", "χ_k·(J_k χ_k)", 1usize),
+            Invariant::exact("chi_J2_chi", "χ_k·(J_k² χ_k)", 1usize),
+            Invariant::exact("momentum_z", "m_k·z", 1usize),
+        ],
+        discrete_energy: Invariant::bounded(
+            "discrete_energy",
+            "-tr(ω_k J_k)/h² + tr(J_k)/h² + ½ w z·χ_k + ½ w z·χ_{k+1}",
+            1,
+        ),
+        open: open::<Self>,
+        solvers: &Method::NAMES,
+        dimensions: &[],
+        sized: only_size::<Self>,
+    };
+    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+    /// definite.
+    #[cold]
+    pub fn kinetic_warning(
+        &self,
+        state: &HeavyTopSpatialState<f64>,
+    ) -> Option<KineticWarning> {
+        KineticWarning::of(&self.inertia_at(state), 3)
+    }
+}

@@ -1,693 +1,441 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-/// The model [`HeavyTop`](struct@HeavyTop) and what belongs to it.
-#[allow(
+//! The model [`HeavyTop`](struct@HeavyTop) and what belongs to it.
+#![allow(
     non_snake_case,
     uncommon_codepoints,
     mixed_script_confusables,
     confusable_idents,
+    unused_variables,
     clippy::all
 )]
-pub mod heavy_top {
-    use ::clebsch::emitted::*;
-    /// Parameters of [`HeavyTop`](struct@HeavyTop), as given.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct HeavyTopParameters<T = f64> {
-        /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
-        pub J: SMatrix<T, 3, 3>,
-        /// `gU`: weight times support -> centre of mass, body frame; a vector of 3 components.
-        pub gU: SVector<T, 3>,
-        /// `z`: vertical (up), space frame; a vector of 3 components.
-        pub z: SVector<T, 3>,
-    }
-    /// Heavy top, body representation.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct HeavyTop<T = f64> {
-        parameters: HeavyTopParameters<T>,
-        factor: Poinsot<T>,
-        method: Method,
-    }
-    impl<T: Real> HeavyTop<T> {
-        /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Heavy top, body representation.\npub model HeavyTop {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// weight times support -> centre of mass, body frame\n    param gU: Vec<3> as \"m g \\chi\";\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// the vertical seen from the body\n    advected Γ: Vec<3> = Λ^T*z;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// how Γ is carried\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);\n}";
-        /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 13467537385938448784u64;
-        /// Checks the parameters.
-        ///
-        /// # Errors
-        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-        /// assumption, or is no admissible factor of the equation to solve.
-        pub fn new(parameters: HeavyTopParameters<T>) -> Result<Self, ParameterError> {
-            validate::finite_entries("J", &parameters.J)?;
-            validate::symmetric("J", &parameters.J)?;
-            validate::finite("gU", parameters.gU.as_slice())?;
-            validate::finite("z", parameters.z.as_slice())?;
-            let HeavyTopParameters { J, .. } = parameters;
-            let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
-            Ok(Self {
-                parameters,
-                factor,
-                method: Method::of_size(3),
-            })
-        }
-        /// The same model, its steps solved by the solver named.
-        #[must_use]
-        pub fn with_solver(self, method: Method) -> Self {
-            Self { method, ..self }
-        }
-        /// The parameters.
-        pub fn parameters(&self) -> &HeavyTopParameters<T> {
-            &self.parameters
-        }
-    }
-    /// Initial data.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct HeavyTopInitial<T = f64> {
-        /// `Λ` at node 0: body -> space.
-        pub Λ: Rotation<T>,
-        /// Momentum at node 0, in the body frame.
-        pub body_momentum: BodyMomentum<T>,
-    }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct HeavyTopState<T = f64> {
-        Λ: Rotation<T>,
-        momentum: SpatialMomentum<T>,
-        node: u64,
-    }
-    impl<T: Real> HeavyTopState<T> {
-        /// `Λ` at this node: body -> space.
-        pub fn Λ(&self) -> Rotation<T> {
-            self.Λ
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
-            self.momentum
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum(&self) -> BodyMomentum<T> {
-            self.momentum.to_body(&self.Λ)
-        }
-        /// The number of the node.
-        pub fn node(&self) -> u64 {
-            self.node
-        }
-    }
-    /// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
-    #[derive(Clone, Copy, Debug)]
-    pub struct HeavyTopWorkspace<T = f64> {
-        h: T,
-        method: Method,
-        edge: Edge<T>,
-        here: HeavyTopState<T>,
-    }
-    ::clebsch::saved! {
-        [] HeavyTopWorkspace { h, method, edge, here }
-    }
-    impl<T: Real> HeavyTop<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not admissible, or says why the first step cannot be solved and
-        /// which could.
-        pub fn start(
-            &self,
-            initial: HeavyTopInitial<T>,
-            h: T,
-        ) -> Result<(HeavyTopState<T>, HeavyTopWorkspace<T>), StartError> {
-            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
-        }
-        /// As `start`, with the solver named.
-        ///
-        /// # Errors
-        /// As `start`; also for what this size or scalar does not have.
-        pub fn start_with(
-            &self,
-            initial: HeavyTopInitial<T>,
-            h: T,
-            choice: impl Into<Option<Method>>,
-        ) -> Result<(HeavyTopState<T>, HeavyTopWorkspace<T>), StartError> {
-            ::clebsch::integrate::Model::start_with(self, initial, h, choice.into())
-        }
-        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
-        pub fn workspace(
-            &self,
-            state: &HeavyTopState<T>,
-            h: T,
-        ) -> Result<HeavyTopWorkspace<T>, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        /// One step, in place. Solved thus: C is constant and symmetric: explicit up to the root of one quartic per step.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-        #[inline]
-        pub fn step(
-            &self,
-            state: &mut HeavyTopState<T>,
-            work: &mut HeavyTopWorkspace<T>,
-        ) -> Result<(), StepError> {
-            let h = work.h;
-            if work.here.Λ != state.Λ || work.here.momentum != state.momentum {
-                work.edge = self.edge(state, h);
-                work.here = *state;
-            }
-            let edge = &work.edge;
-            let turned = match work.method {
-                Method::Kappa => edge.turn(&self.factor, h, &state.Λ),
-                method => edge.turn_by(method, &self.factor, h, &state.Λ),
-            };
-            let Λ_moved = match turned {
-                Ok(turned) => turned,
-                Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
-            };
-            let arrival = self.arrived(state, edge, h, Λ_moved);
-            if !(all_finite(&arrival.momentum.0)) {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
-            }
-            (state.Λ, work.here.Λ) = (arrival.attitude, arrival.attitude);
-            (state.momentum, work.here.momentum) = (arrival.momentum, arrival.momentum);
-            state.node += 1;
-            work.edge = arrival.edge;
-            Ok(())
-        }
-        /// The next node and the edge that begins there, given the attitude there.
-        #[inline(always)]
-        fn arrived(
-            &self,
-            state: &HeavyTopState<T>,
-            edge: &Edge<T>,
-            h: T,
-            Λ_moved: TurnedRotation<T>,
-        ) -> Moving<T> {
-            let HeavyTopParameters { gU, z, .. } = self.parameters;
-            let Λ_next = Λ_moved.matrix();
-            let Γ_next = Λ_next.tr_mul(&z);
-            let space = edge.space();
-            let torque = -(gU * h).cross(&Γ_next);
-            let kick = Λ_next * torque;
-            let momentum_next = space + kick * T::from_f64(0.5);
-            let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
-            Moving {
-                attitude: Λ_moved.rotation(),
-                momentum: SpatialMomentum(momentum_next),
-                edge: edge_next,
-            }
-        }
-        /// The edge that begins at this state, for a step `h`.
-        #[inline(never)]
-        fn edge(&self, state: &HeavyTopState<T>, h: T) -> Edge<T> {
-            let HeavyTopParameters { gU, z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let Γ = Λ.tr_mul(&z);
-            let kick = gU.cross(&Γ) * (T::from_f64(0.5) * h);
-            Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
-        }
-        /// Says how far the step is beyond the bound, and which step could be solved.
-        #[cold]
-        fn refused(
-            &self,
-            state: HeavyTopState<T>,
-            factor: &Poinsot<T>,
-            h: T,
-            e: MoserVeselovError,
-        ) -> StepError {
-            let e = e
-                .with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
-            StepCause::from(e).at_node(state.node)
-        }
-        /// `Γ` at the node of this state.
-        #[inline]
-        pub fn Γ(&self, state: &HeavyTopState<T>) -> SVector<T, 3> {
-            let HeavyTopParameters { z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let Γ = Λ.tr_mul(&z);
-            Γ
-        }
-    }
-    impl<T: Real> Stepper for HeavyTop<T> {
-        type Scalar = T;
-        type State = HeavyTopState<T>;
-        type Workspace = HeavyTopWorkspace<T>;
-        fn workspace(
-            &self,
-            state: &Self::State,
-            h: T,
-        ) -> Result<Self::Workspace, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        #[inline(always)]
-        fn advance(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-        ) -> Result<(), StepError> {
-            self.step(state, work)
-        }
-        #[inline(always)]
-        fn advance_many(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-            count: u64,
-        ) -> Result<(), StepError> {
-            if T::LANES > 1 {
-                return advance_side_by_side(self, state, work, count);
-            }
-            for _ in 0..count {
-                self.step(state, work)?;
-            }
-            Ok(())
-        }
-        fn node(state: &Self::State) -> u64 {
-            state.node
-        }
-        fn at_node(state: Self::State, node: u64) -> Self::State {
-            HeavyTopState {
-                node: node,
-                ..state
-            }
-        }
-    }
-    impl<T: Real> SideBySide for HeavyTop<T> {
-        #[inline(always)]
-        fn moving(
-            &self,
-            state: &HeavyTopState<T>,
-            work: &HeavyTopWorkspace<T>,
-        ) -> Option<Moving<T>> {
-            let another = work.method != Method::Kappa || work.here.Λ != state.Λ
-                || work.here.momentum != state.momentum;
-            (!another)
-                .then_some(Moving {
-                    attitude: state.Λ,
-                    momentum: state.momentum,
-                    edge: work.edge,
-                })
-        }
-        #[inline(always)]
-        fn arrive(
-            state: &mut HeavyTopState<T>,
-            work: &mut HeavyTopWorkspace<T>,
-            moving: &Moving<T>,
-            steps: u64,
-        ) {
-            (state.Λ, state.momentum) = (moving.attitude, moving.momentum);
-            state.node += steps;
-            (work.here, work.edge) = (*state, moving.edge);
-        }
-        #[inline(always)]
-        fn is_diagonal(&self, work: &HeavyTopWorkspace<T>) -> bool {
-            let _ = work;
-            self.factor.is_diagonal()
-        }
-        #[inline(always)]
-        fn step_lanes<const DIAGONAL: bool>(
-            &self,
-            state: &HeavyTopState<T>,
-            work: &HeavyTopWorkspace<T>,
-            from: &Moving<T>,
-            to: &mut Moving<T>,
-        ) -> bool {
-            let mut easy = true;
-            for lane in 0..T::LANES {
-                let (attitude, edge) = from.from(lane);
-                let (h, factor) = (work.h.one_of(lane), self.factor.in_lane(lane));
-                let (turned, found) = edge
-                    .turn_at_once::<DIAGONAL>(&factor, h, &attitude);
-                let model = HeavyTop::<<T as Real>::One> {
-                    parameters: HeavyTopParameters {
-                        J: self.parameters.J.in_lane(lane),
-                        gU: self.parameters.gU.in_lane(lane),
-                        z: self.parameters.z.in_lane(lane),
-                    },
-                    factor: self.factor.in_lane(lane),
-                    method: self.method,
-                };
-                let state = HeavyTopState::<<T as Real>::One> {
-                    Λ: attitude,
-                    momentum: from.momentum.in_lane(lane),
-                    node: state.node,
-                };
-                easy &= found & to.set(lane, model.arrived(&state, &edge, h, turned));
-            }
-            easy
-        }
-    }
-    impl<T: Real> Reversible for HeavyTop<T> {}
-    ::clebsch::of_scalars! {
-        [] HeavyTopParameters { J, gU, z }
-    }
-    ::clebsch::of_scalars! {
-        [] HeavyTopInitial { Λ, body_momentum }
-    }
-    ::clebsch::of_scalars! {
-        [] HeavyTopState { Λ, momentum } at node
-    }
-    impl<T: Real> ::clebsch::integrate::Model for HeavyTop<T> {
-        type Parameters = HeavyTopParameters<T>;
-        type Initial = HeavyTopInitial<T>;
-        type Choice = Option<Method>;
-        type Over<U: Real> = HeavyTop<U>;
-        const SIDE_BY_SIDE: bool = true;
-        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
-            Self::new(parameters)
-        }
-        fn given(&self) -> &Self::Parameters {
-            &self.parameters
-        }
-        fn begin(&self, initial: Self::Initial) -> Result<HeavyTopState<T>, StartError> {
-            validate::finite("Λ", &initial.Λ.quaternion())?;
-            validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-            Ok(HeavyTopState {
-                Λ: initial.Λ,
-                momentum: initial.body_momentum.to_space(&initial.Λ),
-                node: 0,
-            })
-        }
-        fn prepared(
-            &self,
-            state: &HeavyTopState<T>,
-            h: T,
-            choice: Self::Choice,
-        ) -> Result<Self::Workspace, StartError> {
-            let method = choice.unwrap_or(self.method);
-            Ok(HeavyTopWorkspace {
-                h,
-                method,
-                edge: self.edge(state, h),
-                here: *state,
-            })
-        }
-    }
-    /// A configuration at one node, solution or not.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct HeavyTopConfiguration<T = f64> {
-        /// `Λ` at the node: body -> space.
-        pub Λ: Rotation<T>,
-    }
-    impl<T: Real> HeavyTop<T> {
-        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
-        /// consecutive configurations: component `i` is the derivative of the action of the
-        /// two edges when the middle element is rotated about its axis `i` (a body axis on
-        /// the body side, a space axis on the spatial side). Zero on solutions.
-        pub fn balance(
-            &self,
-            h: T,
-            before: &HeavyTopConfiguration<T>,
-            here: &HeavyTopConfiguration<T>,
-            after: &HeavyTopConfiguration<T>,
-        ) -> SVector<T, 3> {
-            let HeavyTopParameters { J, gU, z, .. } = self.parameters;
-            let Λ = here.Λ.matrix();
-            let Γ = Λ.tr_mul(&z);
-            let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
-            let Ω = here.Λ.body_velocity(&after.Λ).matrix();
-            let t1 = h.powi(-1);
-            let t2 = -(gU.cross(&Γ) * (T::from_f64(0.5) * h));
-            let parts: [SVector<T, 3>; 1] = [
-                axial_of_difference(&(J * Ω_before)) * t1 + t2
-                    + axial_of_difference(&(J * Ω.transpose())) * t1 + t2,
-            ];
-            parts[0]
-        }
-    }
-    impl<T: Real> HeavyTop<T> {
-        /// What the step of size `h` from one state to the next leaves of its equations: the
-        /// momentum that is carried to the second state, less the one that the motion between
-        /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a spatial
-        /// velocity are the two elements it is made from, as they are stored.
-        pub fn residual(
-            &self,
-            before: &HeavyTopState<T>,
-            after: &HeavyTopState<T>,
-            h: T,
-        ) -> [Residual; 1] {
-            let HeavyTopParameters { J, gU, z, .. } = self.parameters;
-            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-            let Λ_next = after.Λ.matrix();
-            let Γ_next = Λ_next.tr_mul(&z);
-            let t1 = h.powi(-1);
-            let _ = h;
-            [
-                {
-                    let momentum = after.momentum.to_body(&after.Λ).0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (axial_of_difference(&(J * Ω_matrix)) * t1
-                                        - gU.cross(&Γ_next) * (T::from_f64(0.5) * h))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (T::from_f64(2.0) * (t1 * t1).sqrt()
-                                * (J * J).trace().sqrt()
-                                * (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt()
-                                + T::from_f64(0.5) * (h * h).sqrt() * gU.dot(&gU).sqrt()
-                                    * Γ_next.dot(&Γ_next).sqrt())
-                                .magnitude(),
-                    }
-                },
-            ]
-        }
-    }
-    impl<T: Real> HeavyTop<T> {
-        /// The kinetic and the potential energy at this node: those of the limit of small steps,
-        /// at the node's momentum.
-        pub fn energies(&self, state: &HeavyTopState<T>) -> (T, T) {
-            let HeavyTopParameters { J, gU, z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let Γ = Λ.tr_mul(&z);
-            let parts: [SVector<T, 3>; 1] = [state.body_momentum().0];
-            let momentum: SVector<T, 3> = parts[0];
-            let inertia = SMatrix::<
-                T,
-                3,
-                3,
-            >::from_fn(|i, j| {
-                let ξ = basis::<T>(i);
-                let η = basis::<T>(j);
-                T::from_f64(0.5) * J.trace()
-                    * (vee(&η).dot(&vee(&ξ)) + vee(&ξ).dot(&vee(&η)))
-                    - T::from_f64(0.5)
-                        * (vee(&η).dot(&(J * vee(&ξ))) + vee(&ξ).dot(&(J * vee(&η))))
-            });
-            let velocity = solve_or_nan(&inertia, &momentum);
-            (momentum.dot(&velocity) * T::from_f64(0.5), gU.dot(&Γ))
-        }
-        /// The physical energy at this node.
-        pub fn energy(&self, state: &HeavyTopState<T>) -> T {
-            let (kinetic, potential) = self.energies(state);
-            kinetic + potential
-        }
-        /// `μ_k·Γ_k`: Casimir: the Kelvin-Noether quantity of the advected quantities.
-        pub fn momentum_Gamma(&self, state: &HeavyTopState<T>) -> T {
-            let HeavyTopParameters { z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let Γ = Λ.tr_mul(&z);
-            let μ = state.body_momentum().0;
-            μ.dot(&Γ)
-        }
-        /// `Γ_k·Γ_k`: Casimir: invariant under the group action.
-        pub fn Gamma_squared(&self, state: &HeavyTopState<T>) -> T {
-            let HeavyTopParameters { z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let Γ = Λ.tr_mul(&z);
-            Γ.dot(&Γ)
-        }
-    }
-    impl<T: Real> HeavyTop<T> {
-        /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h² + ½ gU·Γ_k + ½ gU·Γ_{k+1}`: bounded, since the stepper is symplectic.
-        pub fn discrete_energy(
-            &self,
-            h: T,
-            before: &HeavyTopState<T>,
-            after: &HeavyTopState<T>,
-        ) -> T {
-            let HeavyTopParameters { J, gU, z, .. } = self.parameters;
-            let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-            let Λ = before.Λ.matrix();
-            let Γ = Λ.tr_mul(&z);
-            let Λ_next = after.Λ.matrix();
-            let Γ_next = Λ_next.tr_mul(&z);
-            T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
-                - (J * less_identity(&Ω_matrix)).trace() / (h * h)
-        }
-    }
-    impl ::clebsch::integrate::Described for HeavyTop<f64> {
-        fn card() -> &'static Card {
-            &Self::CARD
-        }
-        fn read(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-        ) -> Result<(Self, Self::Initial), OpenError> {
-            let model = Self::new(HeavyTopParameters {
-                J: matrix_of("J", parameters.get(0usize))?,
-                gU: matrix_of("gU", parameters.get(1usize))?,
-                z: matrix_of("z", parameters.get(2usize))?,
-            })?;
-            let initial = HeavyTopInitial {
-                Λ: rotation_of("Λ", initial.get(0usize))?,
-                body_momentum: BodyMomentum(
-                    matrix_of("body_momentum", initial.get(1usize))?,
-                ),
-            };
-            Ok((model, initial))
-        }
-        fn ways(
-            self,
-            state: &Self::State,
-            settings: Settings,
-        ) -> Result<(Self, Steps<Self>), OpenError> {
-            let model = match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => self.with_solver(method),
-                None => self,
-            };
-            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
-            Ok((model, steps))
-        }
-        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
-            self.kinetic_warning(state)
-        }
-        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-            Residual::largest(&self.residual(before, after, h))
-        }
-        fn observe(&self, state: &Self::State, out: &mut [f64]) {
-            let out = put(out, rows(state.Λ().matrix()));
-            let out = put(out, rows(state.body_momentum().0));
-            let out = put(out, rows(state.spatial_momentum().0));
-            let out = put(out, rows(self.Γ(state)));
-            let _ = out;
-        }
-        fn invariants(
-            &self,
-            state: &Self::State,
-            _: Option<&Self::Workspace>,
-            out: &mut [f64],
-        ) {
-            let out = put(out, [self.energy(state)]);
-            let out = put(out, [self.momentum_Gamma(state)]);
-            let out = put(out, [self.Gamma_squared(state)]);
-            let _ = (state, out);
-        }
-        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
-            let mut enlarged = *state;
-            {
-                type T = f64;
-                let HeavyTopParameters { gU, z, .. } = self.parameters;
-                let Λ = state.Λ.matrix();
-                let Γ = Λ.tr_mul(&z);
-                let t1 = T::from_f64(0.5) * (h * h).sqrt() * gU.dot(&gU).sqrt()
-                    * Γ.dot(&Γ).sqrt();
-                enlarged.momentum = SpatialMomentum(
-                    not_less(enlarged.momentum.0, (0, 3), t1 + t1),
-                );
-            }
-            let state = &enlarged;
-            type T = f64;
-            let HeavyTopParameters { z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let Γ = Λ.tr_mul(&z);
-            let μ = state.body_momentum().0;
-            let t1 = Γ.dot(&Γ).sqrt();
-            let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-            let out = put(out, [μ.dot(&μ).sqrt() * t1; 1usize]);
-            let out = put(out, [t1 * t1; 1usize]);
-            let _ = (state, h, out);
-        }
-    }
-    impl HeavyTop<f64> {
-        /// The model as data.
-        pub const CARD: Card = Card {
-            name: "HeavyTop",
-            kebab: "heavy-top",
-            doc: "Heavy top, body representation.",
-            source: Self::SOURCE,
-            fingerprint: Self::FINGERPRINT,
-            summary: "discrete Lagrangian  -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
-            solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
-            order: 2u32,
-            orders: &[2, 4, 6, 8],
-            preprocessed: false,
-            reversible: true,
-            parameters: &[
-                Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
-                Kind::Vector
-                    .field(
-                        "gU",
-                        [3, 1],
-                        "weight times support -> centre of mass, body frame",
-                    ),
-                Kind::Vector.field("z", [3, 1], "vertical (up), space frame"),
-            ],
-            initial: &[
-                Kind::Rotation
-                    .field("Λ", [3, 3], "attitude, body to space")
-                    .spelt("Lambda"),
-                Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
-            ],
-            observables: &[
-                Kind::Rotation
-                    .field("Λ", [3, 3], "attitude, body to space")
-                    .spelt("Lambda"),
-                Kind::BodyMomentum
-                    .field("body_momentum", [3, 1], "momentum, body frame"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum", [3, 1], "momentum, space frame"),
-                Kind::Vector
-                    .field("Γ", [3, 1], "the vertical seen from the body")
-                    .spelt("Gamma"),
-            ],
-            invariants: &[
-                Invariant::bounded(
-                    "energy",
-                    "½ μ_k·ζ + gU·Γ_k, where μ_k = -J ζ + tr(J) ζ",
-                    1usize,
-                ),
-                Invariant::exact("momentum_Gamma", "μ_k·Γ_k", 1usize),
-                Invariant::exact("Gamma_squared", "Γ_k·Γ_k", 1usize),
-            ],
-            discrete_energy: Invariant::bounded(
-                "discrete_energy",
-                "tr(J)/h² - tr(J Ω_k)/h² + ½ gU·Γ_k + ½ gU·Γ_{k+1}",
-                1,
-            ),
-            open: open::<Self>,
-            solvers: &Method::NAMES,
-            dimensions: &[],
-            sized: only_size::<Self>,
-        };
-        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
-        /// velocities together, at the identity, should be positive definite.
-        #[cold]
-        #[allow(unused_variables)]
-        pub fn kinetic_warning(
-            &self,
-            state: &HeavyTopState<f64>,
-        ) -> Option<KineticWarning> {
-            type T = f64;
-            let HeavyTopParameters { J, .. } = self.parameters;
-            let mut inertia = SMatrix::<T, 3, 3>::zeros();
-            for axis in 0..3 {
-                let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
-                let t1 = vee(&ξ);
-                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-                let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let parts: [SVector<T, 3>; 1] = [
-                    axial_of_difference(&(t2 + t2 + t3 + t3)),
-                ];
-                inertia.set_column(axis, &parts[0]);
-            }
-            KineticWarning::of(&inertia, 3)
-        }
+use ::clebsch::emitted::*;
+/// Parameters of [`HeavyTop`](struct@HeavyTop), as given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeavyTopParameters<T = f64> {
+    /// `J`: Poinsot (second-moment) matrix; a 3 x 3 matrix, symmetric.
+    pub J: SMatrix<T, 3, 3>,
+    /// `gU`: weight times support -> centre of mass, body frame; a vector of 3 components.
+    pub gU: SVector<T, 3>,
+    /// `z`: vertical (up), space frame; a vector of 3 components.
+    pub z: SVector<T, 3>,
+}
+/// Heavy top, body representation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeavyTop<T = f64> {
+    parameters: HeavyTopParameters<T>,
+    factor: Poinsot<T>,
+    method: Method,
+}
+impl<T: Real> HeavyTop<T> {
+    /// The model as it was stated.
+    pub const SOURCE: &'static str = "/// Heavy top, body representation.\npub model HeavyTop {\n    /// Poinsot (second-moment) matrix\n    param J: Sym<3>;\n    /// weight times support -> centre of mass, body frame\n    param gU: Vec<3> as \"m g \\chi\";\n    /// vertical (up), space frame\n    param z: Vec<3>;\n    /// attitude, body to space\n    group Λ: SO<3> velocity Ω;\n    /// the vertical seen from the body\n    advected Γ: Vec<3> = Λ^T*z;\n    /// reconstruction\n    constraint next(Λ) = Λ*Ω;\n    /// how Γ is carried\n    constraint next(Γ) = Ω^T*Γ;\n    lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);\n}";
+    /// A number that changes when the model or its derivation does.
+    pub const FINGERPRINT: u64 = 13467537385938448784u64;
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+    /// assumption, or is no admissible factor of the equation to solve.
+    pub fn new(parameters: HeavyTopParameters<T>) -> Result<Self, ParameterError> {
+        validate::finite_entries("J", &parameters.J)?;
+        validate::symmetric("J", &parameters.J)?;
+        validate::finite("gU", parameters.gU.as_slice())?;
+        validate::finite("z", parameters.z.as_slice())?;
+        let HeavyTopParameters { J, .. } = parameters;
+        let factor = Poinsot::new(J).map_err(|e| e.in_field("J"))?;
+        Ok(Self {
+            parameters,
+            factor,
+            method: Method::of_size(3),
+        })
     }
 }
-#[allow(unused_imports)]
-pub use heavy_top::*;
+/// Initial data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeavyTopInitial<T = f64> {
+    /// `Λ` at node 0: body -> space.
+    pub Λ: Rotation<T>,
+    /// Momentum at node 0, in the body frame.
+    pub body_momentum: BodyMomentum<T>,
+}
+/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeavyTopState<T = f64> {
+    Λ: Rotation<T>,
+    momentum: SpatialMomentum<T>,
+    node: u64,
+}
+impl<T: Real> HeavyTopState<T> {
+    /// `Λ` at this node: body -> space.
+    pub fn Λ(&self) -> Rotation<T> {
+        self.Λ
+    }
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum(&self) -> SpatialMomentum<T> {
+        self.momentum
+    }
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum(&self) -> BodyMomentum<T> {
+        self.momentum.to_body(&self.Λ)
+    }
+}
+/// The step, the solver's name, and the momentum of the edge that begins at the state `here`. Made anew for any other state.
+#[derive(Clone, Copy, Debug)]
+pub struct HeavyTopWorkspace<T = f64> {
+    h: T,
+    method: Method,
+    edge: Edge<T>,
+    here: HeavyTopState<T>,
+}
+impl<T: Real> HeavyTop<T> {
+    /// The state at node 0.
+    fn begin(
+        &self,
+        initial: HeavyTopInitial<T>,
+    ) -> Result<HeavyTopState<T>, StartError> {
+        validate::finite("Λ", &initial.Λ.quaternion())?;
+        validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
+        Ok(HeavyTopState {
+            Λ: initial.Λ,
+            momentum: initial.body_momentum.to_space(&initial.Λ),
+            node: 0,
+        })
+    }
+    /// What steps of `h` from `state` begin with.
+    fn prepared(
+        &self,
+        state: &HeavyTopState<T>,
+        h: T,
+        choice: Option<Method>,
+    ) -> Result<HeavyTopWorkspace<T>, StartError> {
+        let method = choice.unwrap_or(self.method);
+        Ok(HeavyTopWorkspace {
+            h,
+            method,
+            edge: self.edge(state, h),
+            here: *state,
+        })
+    }
+    /// One step, in place. Solved thus: C is constant and symmetric: explicit up to the root of one quartic per step.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    #[inline]
+    pub fn step(
+        &self,
+        state: &mut HeavyTopState<T>,
+        work: &mut HeavyTopWorkspace<T>,
+    ) -> Result<(), StepError> {
+        let h = work.h;
+        if work.here.Λ != state.Λ || work.here.momentum != state.momentum {
+            work.edge = self.edge(state, h);
+            work.here = *state;
+        }
+        let edge = &work.edge;
+        let turned = match work.method {
+            Method::Kappa => edge.turn(&self.factor, h, &state.Λ),
+            method => edge.turn_by(method, &self.factor, h, &state.Λ),
+        };
+        let Λ_moved = match turned {
+            Ok(turned) => turned,
+            Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
+        };
+        let arrival = self.arrived(state, edge, h, Λ_moved);
+        if !(all_finite(&arrival.momentum.0)) {
+            return Err(StepCause::not_finite("momentum").at_node(state.node));
+        }
+        (state.Λ, work.here.Λ) = (arrival.attitude, arrival.attitude);
+        (state.momentum, work.here.momentum) = (arrival.momentum, arrival.momentum);
+        state.node += 1;
+        work.edge = arrival.edge;
+        Ok(())
+    }
+    /// The next node and the edge that begins there, given the attitude there.
+    #[inline(always)]
+    fn arrived(
+        &self,
+        state: &HeavyTopState<T>,
+        edge: &Edge<T>,
+        h: T,
+        Λ_moved: TurnedRotation<T>,
+    ) -> Moving<T> {
+        let HeavyTopParameters { gU, z, .. } = self.parameters;
+        let Λ_next = Λ_moved.matrix();
+        let Γ_next = Λ_next.tr_mul(&z);
+        let space = edge.space();
+        let torque = -(gU * h).cross(&Γ_next);
+        let kick = Λ_next * torque;
+        let momentum_next = space + kick * T::from_f64(0.5);
+        let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
+        Moving {
+            attitude: Λ_moved.rotation(),
+            momentum: SpatialMomentum(momentum_next),
+            edge: edge_next,
+        }
+    }
+    /// The edge that begins at this state, for a step `h`.
+    #[inline(never)]
+    fn edge(&self, state: &HeavyTopState<T>, h: T) -> Edge<T> {
+        let HeavyTopParameters { gU, z, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let Γ = Λ.tr_mul(&z);
+        let kick = gU.cross(&Γ) * (T::from_f64(0.5) * h);
+        Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
+    }
+    /// Says how far the step is beyond the bound, and which step could be solved.
+    #[cold]
+    fn refused(
+        &self,
+        state: HeavyTopState<T>,
+        factor: &Poinsot<T>,
+        h: T,
+        e: MoserVeselovError,
+    ) -> StepError {
+        let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
+        StepCause::from(e).at_node(state.node)
+    }
+    /// `Γ` at the node of this state.
+    #[inline]
+    pub fn Γ(&self, state: &HeavyTopState<T>) -> SVector<T, 3> {
+        let HeavyTopParameters { z, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let Γ = Λ.tr_mul(&z);
+        Γ
+    }
+}
+::clebsch::stepper! {
+    [] HeavyTop, HeavyTopParameters { J, gU, z }, HeavyTopInitial { Λ, body_momentum },
+    HeavyTopState { Λ, momentum } at node, HeavyTopWorkspace { h, method, edge, here },
+    forced { Λ, momentum } solver symmetric judged
+}
+/// A configuration at one node, solution or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeavyTopConfiguration<T = f64> {
+    /// `Λ` at the node: body -> space.
+    pub Λ: Rotation<T>,
+}
+impl<T: Real> HeavyTop<T> {
+    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// consecutive configurations: component `i` is the derivative of the action of the
+    /// two edges when the middle element is rotated about its axis `i` (a body axis on
+    /// the body side, a space axis on the spatial side). Zero on solutions.
+    pub fn balance(
+        &self,
+        h: T,
+        before: &HeavyTopConfiguration<T>,
+        here: &HeavyTopConfiguration<T>,
+        after: &HeavyTopConfiguration<T>,
+    ) -> SVector<T, 3> {
+        let HeavyTopParameters { J, gU, z, .. } = self.parameters;
+        let Λ = here.Λ.matrix();
+        let Γ = Λ.tr_mul(&z);
+        let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
+        let Ω = here.Λ.body_velocity(&after.Λ).matrix();
+        let t1 = h.powi(-1);
+        let t2 = -(gU.cross(&Γ) * (T::from_f64(0.5) * h));
+        let parts: [SVector<T, 3>; 1] = [
+            axial_of_difference(&(J * Ω_before)) * t1 + t2
+                + axial_of_difference(&(J * Ω.transpose())) * t1 + t2,
+        ];
+        parts[0]
+    }
+    /// What the step of size `h` from one state to the next leaves of its equations: the
+    /// momentum that is carried to the second state, less the one that the motion between
+    /// them brings there. One part a configuration, angular and linear ones of a rigid
+    /// motion apart, each with the size of the terms it is made of: those of a spatial
+    /// velocity are the two elements it is made from, as they are stored.
+    pub fn residual(
+        &self,
+        before: &HeavyTopState<T>,
+        after: &HeavyTopState<T>,
+        h: T,
+    ) -> [Residual; 1] {
+        let HeavyTopParameters { J, gU, z, .. } = self.parameters;
+        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
+        let Λ_next = after.Λ.matrix();
+        let Γ_next = Λ_next.tr_mul(&z);
+        let t1 = h.powi(-1);
+        [
+            Residual::between(
+                &(after.momentum.to_body(&after.Λ).0),
+                &(axial_of_difference(&(J * Ω_matrix)) * t1
+                    - gU.cross(&Γ_next) * (T::from_f64(0.5) * h)),
+                T::from_f64(2.0) * (t1 * t1).sqrt() * (J * J).trace().sqrt()
+                    * (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt()
+                    + T::from_f64(0.5) * (h * h).sqrt() * gU.dot(&gU).sqrt()
+                        * Γ_next.dot(&Γ_next).sqrt(),
+            ),
+        ]
+    }
+    /// The Hessian of the kinetic energy in all velocities together, at the identity.
+    fn inertia_at(&self, state: &HeavyTopState<T>) -> SMatrix<T, 3, 3> {
+        let HeavyTopParameters { J, .. } = self.parameters;
+        let mut inertia = SMatrix::<T, 3, 3>::zeros();
+        for axis in 0..3 {
+            let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
+            let t1 = vee(&ξ);
+            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
+            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
+            let parts: [SVector<T, 3>; 1] = [axial_of_difference(&(t2 + t2 + t3 + t3))];
+            inertia.set_column(axis, &parts[0]);
+        }
+        inertia
+    }
+    /// The kinetic and the potential energy at this node: those of the limit of small steps,
+    /// at the node's momentum.
+    pub fn energies(&self, state: &HeavyTopState<T>) -> (T, T) {
+        let HeavyTopParameters { gU, z, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let Γ = Λ.tr_mul(&z);
+        let momentum = state.body_momentum().0;
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
+        (momentum.dot(&velocity) * T::from_f64(0.5), gU.dot(&Γ))
+    }
+    /// The physical energy at this node.
+    pub fn energy(&self, state: &HeavyTopState<T>) -> T {
+        let (kinetic, potential) = self.energies(state);
+        kinetic + potential
+    }
+    /// `μ_k·Γ_k`: Casimir: the Kelvin-Noether quantity of the advected quantities.
+    pub fn momentum_Gamma(&self, state: &HeavyTopState<T>) -> T {
+        let HeavyTopParameters { z, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let Γ = Λ.tr_mul(&z);
+        let μ = state.body_momentum().0;
+        μ.dot(&Γ)
+    }
+    /// `Γ_k·Γ_k`: Casimir: invariant under the group action.
+    pub fn Gamma_squared(&self, state: &HeavyTopState<T>) -> T {
+        let HeavyTopParameters { z, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let Γ = Λ.tr_mul(&z);
+        Γ.dot(&Γ)
+    }
+    /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h² + ½ gU·Γ_k + ½ gU·Γ_{k+1}`: bounded, since the stepper is symplectic.
+    pub fn discrete_energy(
+        &self,
+        h: T,
+        before: &HeavyTopState<T>,
+        after: &HeavyTopState<T>,
+    ) -> T {
+        let HeavyTopParameters { J, gU, z, .. } = self.parameters;
+        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
+        let Λ = before.Λ.matrix();
+        let Γ = Λ.tr_mul(&z);
+        let Λ_next = after.Λ.matrix();
+        let Γ_next = Λ_next.tr_mul(&z);
+        T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
+            - (J * less_identity(&Ω_matrix)).trace() / (h * h)
+    }
+}
+impl HeavyTop<f64> {
+    /// All observables, in the order of the card.
+    fn observe(&self, state: &HeavyTopState<f64>, out: &mut [f64]) {
+        let out = put(out, rows(state.Λ().matrix()));
+        let out = put(out, rows(state.body_momentum().0));
+        let out = put(out, rows(state.spatial_momentum().0));
+        let out = put(out, rows(self.Γ(state)));
+    }
+    /// All invariants, in the order of the card.
+    fn invariants(
+        &self,
+        state: &HeavyTopState<f64>,
+        _: Option<&HeavyTopWorkspace<f64>>,
+        out: &mut [f64],
+    ) {
+        let out = put(out, [self.energy(state)]);
+        let out = put(out, [self.momentum_Gamma(state)]);
+        let out = put(out, [self.Gamma_squared(state)]);
+    }
+    /// Their sizes at a state, in steps of `h`.
+    fn scales(&self, state: &HeavyTopState<f64>, h: f64, out: &mut [f64]) {
+        let mut enlarged = *state;
+        {
+            type T = f64;
+            let HeavyTopParameters { gU, z, .. } = self.parameters;
+            let Λ = state.Λ.matrix();
+            let Γ = Λ.tr_mul(&z);
+            let t1 = T::from_f64(0.5) * (h * h).sqrt() * gU.dot(&gU).sqrt()
+                * Γ.dot(&Γ).sqrt();
+            enlarged.momentum = SpatialMomentum(
+                not_less(enlarged.momentum.0, (0, 3), t1 + t1),
+            );
+        }
+        let state = &enlarged;
+        type T = f64;
+        let HeavyTopParameters { z, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let Γ = Λ.tr_mul(&z);
+        let μ = state.body_momentum().0;
+        let t1 = Γ.dot(&Γ).sqrt();
+        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+        let out = put(out, [μ.dot(&μ).sqrt() * t1; 1usize]);
+        let out = put(out, [t1 * t1; 1usize]);
+    }
+    /// The model as data.
+    pub const CARD: Card = Card {
+        name: "HeavyTop",
+        kebab: "heavy-top",
+        doc: "Heavy top, body representation.",
+        source: Self::SOURCE,
+        fingerprint: Self::FINGERPRINT,
+        summary: "discrete Lagrangian  -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
+        solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
+        order: 2u32,
+        orders: &[2, 4, 6, 8],
+        preprocessed: false,
+        reversible: true,
+        parameters: &[
+            Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
+            Kind::Vector
+                .field(
+                    "gU",
+                    [3, 1],
+                    "weight times support -> centre of mass, body frame",
+                ),
+            Kind::Vector.field("z", [3, 1], "vertical (up), space frame"),
+        ],
+        initial: &[
+            Kind::Rotation
+                .field("Λ", [3, 3], "attitude, body to space")
+                .spelt("Lambda"),
+            Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
+        ],
+        observables: &[
+            Kind::Rotation
+                .field("Λ", [3, 3], "attitude, body to space")
+                .spelt("Lambda"),
+            Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum", [3, 1], "momentum, space frame"),
+            Kind::Vector
+                .field("Γ", [3, 1], "the vertical seen from the body")
+                .spelt("Gamma"),
+        ],
+        invariants: &[
+            Invariant::bounded(
+                "energy",
+                "½ μ_k·ζ + gU·Γ_k, where μ_k = -J ζ + tr(J) ζ",
+                1usize,
+            ),
+            Invariant::exact("momentum_Gamma", "μ_k·Γ_k", 1usize),
+            Invariant::exact("Gamma_squared", "Γ_k·Γ_k", 1usize),
+        ],
+        discrete_energy: Invariant::bounded(
+            "discrete_energy",
+            "tr(J)/h² - tr(J Ω_k)/h² + ½ gU·Γ_k + ½ gU·Γ_{k+1}",
+            1,
+        ),
+        open: open::<Self>,
+        solvers: &Method::NAMES,
+        dimensions: &[],
+        sized: only_size::<Self>,
+    };
+    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+    /// definite.
+    #[cold]
+    pub fn kinetic_warning(&self, state: &HeavyTopState<f64>) -> Option<KineticWarning> {
+        KineticWarning::of(&self.inertia_at(state), 3)
+    }
+}

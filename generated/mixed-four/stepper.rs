@@ -1,187 +1,568 @@
 // Written by `clebsch derive --write`. Do not edit.
 
-/// The model [`MixedFour`](struct@MixedFour) and what belongs to it.
-#[allow(
+//! The model [`MixedFour`](struct@MixedFour) and what belongs to it.
+#![allow(
     non_snake_case,
     uncommon_codepoints,
     mixed_script_confusables,
     confusable_idents,
+    unused_variables,
     clippy::all
 )]
-pub mod mixed_four {
-    use ::clebsch::emitted::*;
-    /// Parameters of [`MixedFour`](struct@MixedFour), as given.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct MixedFourParameters<T = f64> {
-        /// `J`: second moments of the first body about its fixed point; a 3 x 3 matrix, symmetric.
-        pub J: SMatrix<T, 3, 3>,
-        /// `A`: second moments of the rigid motion about its own point; a 3 x 3 matrix, symmetric.
-        pub A: SMatrix<T, 3, 3>,
-        /// `M`: mass of the rigid motion; a number.
-        pub M: T,
-        /// `I`: principal moments of inertia of the second body; a 3 x 3 matrix, diagonal.
-        pub I: SMatrix<T, 3, 3>,
-        /// `m`: mass of the point; a number.
-        pub m: T,
-        /// `b`: weight of the quartic term of its kinetic energy; a number.
-        pub b: T,
-        /// `k`: stiffness of the springs; a number.
-        pub k: T,
-        /// `p`: where springs are fixed: in the first body, in the rigid motion, in the second body; a vector of 3 components.
-        pub p: SVector<T, 3>,
-        /// `s`: where springs are fixed: in the first body, in the rigid motion, in the second body; a vector of 3 components.
-        pub s: SVector<T, 3>,
-        /// `e`: where springs are fixed: in the first body, in the rigid motion, in the second body; a vector of 3 components.
-        pub e: SVector<T, 3>,
-        /// `g`: acceleration of gravity, which acts on the point; a vector of 3 components.
-        pub g: SVector<T, 3>,
+use ::clebsch::emitted::*;
+/// Parameters of [`MixedFour`](struct@MixedFour), as given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MixedFourParameters<T = f64> {
+    /// `J`: second moments of the first body about its fixed point; a 3 x 3 matrix, symmetric.
+    pub J: SMatrix<T, 3, 3>,
+    /// `A`: second moments of the rigid motion about its own point; a 3 x 3 matrix, symmetric.
+    pub A: SMatrix<T, 3, 3>,
+    /// `M`: mass of the rigid motion; a number.
+    pub M: T,
+    /// `I`: principal moments of inertia of the second body; a 3 x 3 matrix, diagonal.
+    pub I: SMatrix<T, 3, 3>,
+    /// `m`: mass of the point; a number.
+    pub m: T,
+    /// `b`: weight of the quartic term of its kinetic energy; a number.
+    pub b: T,
+    /// `k`: stiffness of the springs; a number.
+    pub k: T,
+    /// `p`: where springs are fixed: in the first body, in the rigid motion, in the second body; a vector of 3 components.
+    pub p: SVector<T, 3>,
+    /// `s`: where springs are fixed: in the first body, in the rigid motion, in the second body; a vector of 3 components.
+    pub s: SVector<T, 3>,
+    /// `e`: where springs are fixed: in the first body, in the rigid motion, in the second body; a vector of 3 components.
+    pub e: SVector<T, 3>,
+    /// `g`: acceleration of gravity, which acts on the point; a vector of 3 components.
+    pub g: SVector<T, 3>,
+}
+/// Two bodies, a rigid motion and a point mass joined by springs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MixedFour<T = f64> {
+    parameters: MixedFourParameters<T>,
+    factor_1: LeftFactor<3, T>,
+    factor_3: QuaternionBody<T>,
+    method: Method,
+}
+impl<T: Real> MixedFour<T> {
+    /// The model as it was stated.
+    pub const SOURCE: &'static str = "/// Two bodies, a rigid motion and a point mass joined by springs.\npub model MixedFour {\n    /// second moments of the first body about its fixed point\n    param J: Sym<3>;\n    /// second moments of the rigid motion about its own point\n    param A: Sym<3>;\n    /// mass of the rigid motion\n    param M: Real;\n    /// principal moments of inertia of the second body\n    param I: Diag<3>;\n    /// mass of the point\n    param m: Real;\n    /// weight of the quartic term of its kinetic energy\n    param b: Real;\n    /// stiffness of the springs\n    param k: Real;\n    /// where springs are fixed: in the first body, in the rigid motion, in the second body\n    param p: Vec<3>;\n    /// where springs are fixed: in the first body, in the rigid motion, in the second body\n    param s: Vec<3>;\n    /// where springs are fixed: in the first body, in the rigid motion, in the second body\n    param e: Vec<3>;\n    /// acceleration of gravity, which acts on the point\n    param g: Vec<3>;\n    /// attitude of the first body\n    group R: SO<3> velocity V;\n    /// attitude and place of the rigid motion\n    group G: SE<3> velocity W;\n    /// attitude of the second body\n    group q: SU<2> velocity Y;\n    /// place of the point\n    field X: Vec<3>;\n    constraint next(R) = R*V;\n    constraint next(G) = G*W;\n    constraint next(q) = q*Y;\n    lagrangian = -tr(J*V)/h - tr(A*rot(W))/h + M*dot(pos(next(G)) - pos(G), pos(next(G)) - pos(G))/(2*h) + 2*dot(im(Y), I*im(Y))/h + m*dot(next(X) - X, next(X) - X)/(2*h) + b*dot(next(X) - X, next(X) - X)^2/h^3 + h*m*dot(g, X) - (1/2)*h*k*dot(X - R*p, X - R*p) - (1/2)*h*k*dot(pos(G) + rot(G)*s - X, pos(G) + rot(G)*s - X) - h*k*dot(rot(q)*e, R*p);\n}";
+    /// A number that changes when the model or its derivation does.
+    pub const FINGERPRINT: u64 = 497044879311639715u64;
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
+    /// assumption, or is no admissible factor of the equation to solve.
+    pub fn new(parameters: MixedFourParameters<T>) -> Result<Self, ParameterError> {
+        validate::finite_entries("J", &parameters.J)?;
+        validate::symmetric("J", &parameters.J)?;
+        validate::finite_entries("A", &parameters.A)?;
+        validate::symmetric("A", &parameters.A)?;
+        validate::finite("M", &[parameters.M])?;
+        validate::finite_entries("I", &parameters.I)?;
+        validate::diagonal("I", &parameters.I)?;
+        validate::finite("m", &[parameters.m])?;
+        validate::finite("b", &[parameters.b])?;
+        validate::finite("k", &[parameters.k])?;
+        validate::finite("p", parameters.p.as_slice())?;
+        validate::finite("s", parameters.s.as_slice())?;
+        validate::finite("e", parameters.e.as_slice())?;
+        validate::finite("g", parameters.g.as_slice())?;
+        let MixedFourParameters { J, I, .. } = parameters;
+        let factor_1 = LeftFactor::new(J).map_err(|e| e.in_field("J"))?;
+        let factor_3 = QuaternionBody::new("I", I, T::from_f64(0.0))?;
+        Ok(Self {
+            parameters,
+            factor_1,
+            factor_3,
+            method: Method::of_size(if 3 == 3 { 3 } else { 4 }),
+        })
     }
-    /// Two bodies, a rigid motion and a point mass joined by springs.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct MixedFour<T = f64> {
-        parameters: MixedFourParameters<T>,
-        factor_1: LeftFactor<3, T>,
-        factor_3: QuaternionBody<T>,
-        method: Method,
+}
+/// Initial data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MixedFourInitial<T = f64> {
+    /// `R` at node 0: body -> space.
+    pub R: Rotation<T>,
+    /// Momentum at node 0, in the body frame.
+    pub body_momentum_R: BodyMomentum<T>,
+    /// `G` at node 0: body -> space.
+    pub G: RigidMotion<T>,
+    /// Momentum at node 0, in the body frame.
+    pub body_momentum_G: BodyImpulse<T>,
+    /// `q` at node 0: body -> space.
+    pub q: UnitQuaternion<T>,
+    /// Momentum at node 0, in the body frame.
+    pub body_momentum_q: BodyMomentum<T>,
+    /// `X` at node 0.
+    pub X: Additive<3, 1, T>,
+    /// Its momentum at node 0.
+    pub momentum_X: FieldMomentum<3, 1, T>,
+}
+/// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame (of a rigid motion about the body's own origin), advected quantities by their value carried back to the identity, so that roundoff does not accumulate. Places and their momenta are kept in two numbers, the rest below the rounding of the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MixedFourState<T = f64> {
+    R: Rotation<T>,
+    momentum_R: SpatialMomentum<T>,
+    G: RigidMotion<T>,
+    momentum_G: CarriedImpulse<T>,
+    place_rest_G: SMatrix<T, 3, 1>,
+    momentum_rest_G: SVector<T, 6>,
+    q: UnitQuaternion<T>,
+    momentum_q: SpatialMomentum<T>,
+    X: Additive<3, 1, T>,
+    momentum_X: FieldMomentum<3, 1, T>,
+    place_rest_X: SMatrix<T, 3, 1>,
+    momentum_rest_X: SMatrix<T, 3, 1>,
+    node: u64,
+}
+impl<T: Real> MixedFourState<T> {
+    /// `R` at this node: body -> space.
+    pub fn R(&self) -> Rotation<T> {
+        self.R
     }
-    impl<T: Real> MixedFour<T> {
-        /// The model as it was stated.
-        pub const SOURCE: &'static str = "/// Two bodies, a rigid motion and a point mass joined by springs.\npub model MixedFour {\n    /// second moments of the first body about its fixed point\n    param J: Sym<3>;\n    /// second moments of the rigid motion about its own point\n    param A: Sym<3>;\n    /// mass of the rigid motion\n    param M: Real;\n    /// principal moments of inertia of the second body\n    param I: Diag<3>;\n    /// mass of the point\n    param m: Real;\n    /// weight of the quartic term of its kinetic energy\n    param b: Real;\n    /// stiffness of the springs\n    param k: Real;\n    /// where springs are fixed: in the first body, in the rigid motion, in the second body\n    param p: Vec<3>;\n    /// where springs are fixed: in the first body, in the rigid motion, in the second body\n    param s: Vec<3>;\n    /// where springs are fixed: in the first body, in the rigid motion, in the second body\n    param e: Vec<3>;\n    /// acceleration of gravity, which acts on the point\n    param g: Vec<3>;\n    /// attitude of the first body\n    group R: SO<3> velocity V;\n    /// attitude and place of the rigid motion\n    group G: SE<3> velocity W;\n    /// attitude of the second body\n    group q: SU<2> velocity Y;\n    /// place of the point\n    field X: Vec<3>;\n    constraint next(R) = R*V;\n    constraint next(G) = G*W;\n    constraint next(q) = q*Y;\n    lagrangian = -tr(J*V)/h - tr(A*rot(W))/h + M*dot(pos(next(G)) - pos(G), pos(next(G)) - pos(G))/(2*h) + 2*dot(im(Y), I*im(Y))/h + m*dot(next(X) - X, next(X) - X)/(2*h) + b*dot(next(X) - X, next(X) - X)^2/h^3 + h*m*dot(g, X) - (1/2)*h*k*dot(X - R*p, X - R*p) - (1/2)*h*k*dot(pos(G) + rot(G)*s - X, pos(G) + rot(G)*s - X) - h*k*dot(rot(q)*e, R*p);\n}";
-        /// A number that changes when the model or its derivation does.
-        pub const FINGERPRINT: u64 = 497044879311639715u64;
-        /// Checks the parameters.
-        ///
-        /// # Errors
-        /// Names the parameter that is not finite, lacks its stated symmetry, breaks an
-        /// assumption, or is no admissible factor of the equation to solve.
-        pub fn new(parameters: MixedFourParameters<T>) -> Result<Self, ParameterError> {
-            validate::finite_entries("J", &parameters.J)?;
-            validate::symmetric("J", &parameters.J)?;
-            validate::finite_entries("A", &parameters.A)?;
-            validate::symmetric("A", &parameters.A)?;
-            validate::finite("M", &[parameters.M])?;
-            validate::finite_entries("I", &parameters.I)?;
-            validate::diagonal("I", &parameters.I)?;
-            validate::finite("m", &[parameters.m])?;
-            validate::finite("b", &[parameters.b])?;
-            validate::finite("k", &[parameters.k])?;
-            validate::finite("p", parameters.p.as_slice())?;
-            validate::finite("s", parameters.s.as_slice())?;
-            validate::finite("e", parameters.e.as_slice())?;
-            validate::finite("g", parameters.g.as_slice())?;
-            let MixedFourParameters { J, I, .. } = parameters;
-            let factor_1 = LeftFactor::new(J).map_err(|e| e.in_field("J"))?;
-            let factor_3 = QuaternionBody::new("I", I, T::from_f64(0.0))?;
-            Ok(Self {
-                parameters,
-                factor_1,
-                factor_3,
-                method: Method::of_size(if 3 == 3 { 3 } else { 4 }),
-            })
-        }
-        /// The same model, its steps solved by the solver named.
-        #[must_use]
-        pub fn with_solver(self, method: Method) -> Self {
-            Self { method, ..self }
-        }
-        /// The parameters.
-        pub fn parameters(&self) -> &MixedFourParameters<T> {
-            &self.parameters
-        }
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum_R(&self) -> SpatialMomentum<T> {
+        self.momentum_R
     }
-    /// Initial data.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct MixedFourInitial<T = f64> {
-        /// `R` at node 0: body -> space.
-        pub R: Rotation<T>,
-        /// Momentum at node 0, in the body frame.
-        pub body_momentum_R: BodyMomentum<T>,
-        /// `G` at node 0: body -> space.
-        pub G: RigidMotion<T>,
-        /// Momentum at node 0, in the body frame.
-        pub body_momentum_G: BodyImpulse<T>,
-        /// `q` at node 0: body -> space.
-        pub q: UnitQuaternion<T>,
-        /// Momentum at node 0, in the body frame.
-        pub body_momentum_q: BodyMomentum<T>,
-        /// `X` at node 0.
-        pub X: Additive<3, 1, T>,
-        /// Its momentum at node 0.
-        pub momentum_X: FieldMomentum<3, 1, T>,
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum_R(&self) -> BodyMomentum<T> {
+        self.momentum_R.to_body(&self.R)
     }
-    /// What moves, at one node: comparable, to be saved. The momentum is kept in the space frame (of a rigid motion about the body's own origin), advected quantities by their value carried back to the identity, so that roundoff does not accumulate. Places and their momenta are kept in two numbers, the rest below the rounding of the other.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct MixedFourState<T = f64> {
-        R: Rotation<T>,
-        momentum_R: SpatialMomentum<T>,
-        G: RigidMotion<T>,
-        momentum_G: CarriedImpulse<T>,
-        place_rest_G: SMatrix<T, 3, 1>,
-        momentum_rest_G: SVector<T, 6>,
-        q: UnitQuaternion<T>,
-        momentum_q: SpatialMomentum<T>,
-        X: Additive<3, 1, T>,
-        momentum_X: FieldMomentum<3, 1, T>,
-        place_rest_X: SMatrix<T, 3, 1>,
-        momentum_rest_X: SMatrix<T, 3, 1>,
-        node: u64,
+    /// `G` at this node: body -> space.
+    pub fn G(&self) -> RigidMotion<T> {
+        self.G
     }
-    impl<T: Real> MixedFourState<T> {
-        /// `R` at this node: body -> space.
-        pub fn R(&self) -> Rotation<T> {
-            self.R
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum_R(&self) -> SpatialMomentum<T> {
-            self.momentum_R
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum_R(&self) -> BodyMomentum<T> {
-            self.momentum_R.to_body(&self.R)
-        }
-        /// `G` at this node: body -> space.
-        pub fn G(&self) -> RigidMotion<T> {
-            self.G
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum_G(&self) -> SpatialImpulse<T> {
-            self.momentum_G.to_space(&self.G)
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum_G(&self) -> BodyImpulse<T> {
-            self.momentum_G.to_body(&self.G)
-        }
-        /// `q` at this node: body -> space.
-        pub fn q(&self) -> UnitQuaternion<T> {
-            self.q
-        }
-        /// The momentum at this node, in the space frame.
-        pub fn spatial_momentum_q(&self) -> SpatialMomentum<T> {
-            self.momentum_q
-        }
-        /// The momentum at this node, in the body frame.
-        pub fn body_momentum_q(&self) -> BodyMomentum<T> {
-            self.momentum_q.to_body(&self.q)
-        }
-        /// `X` at this node.
-        pub fn X(&self) -> Additive<3, 1, T> {
-            self.X
-        }
-        /// Its momentum at this node.
-        pub fn momentum_X(&self) -> FieldMomentum<3, 1, T> {
-            self.momentum_X
-        }
-        /// The number of the node.
-        pub fn node(&self) -> u64 {
-            self.node
-        }
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum_G(&self) -> SpatialImpulse<T> {
+        self.momentum_G.to_space(&self.G)
     }
-    /// The step, the solver's name, and the last velocities, from which the next solves start.
-    #[derive(Clone, Copy, Debug)]
-    pub struct MixedFourWorkspace<T = f64> {
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum_G(&self) -> BodyImpulse<T> {
+        self.momentum_G.to_body(&self.G)
+    }
+    /// `q` at this node: body -> space.
+    pub fn q(&self) -> UnitQuaternion<T> {
+        self.q
+    }
+    /// The momentum at this node, in the space frame.
+    pub fn spatial_momentum_q(&self) -> SpatialMomentum<T> {
+        self.momentum_q
+    }
+    /// The momentum at this node, in the body frame.
+    pub fn body_momentum_q(&self) -> BodyMomentum<T> {
+        self.momentum_q.to_body(&self.q)
+    }
+    /// `X` at this node.
+    pub fn X(&self) -> Additive<3, 1, T> {
+        self.X
+    }
+    /// Its momentum at this node.
+    pub fn momentum_X(&self) -> FieldMomentum<3, 1, T> {
+        self.momentum_X
+    }
+}
+/// The step, the solver's name, and the last velocities, from which the next solves start.
+#[derive(Clone, Copy, Debug)]
+pub struct MixedFourWorkspace<T = f64> {
+    h: T,
+    method: Method,
+    search_2: newton::Search<
+        T,
+        [Rotation<T>; 1],
+        MixedFourNode2<T>,
+        3,
+        [RigidMotion<T>; 1],
+        6,
+    >,
+    search_4: newton::Search<T, [Additive<3, 1, T>; 1], MixedFourNode4<T>, 3>,
+}
+type MixedFourNode2<T> = [T; 0];
+type MixedFourNode4<T> = [T; 0];
+impl<T: Real> MixedFour<T> {
+    /// The state at node 0.
+    fn begin(
+        &self,
+        initial: MixedFourInitial<T>,
+    ) -> Result<MixedFourState<T>, StartError> {
+        validate::finite("R", &initial.R.quaternion())?;
+        validate::finite("body_momentum_R", initial.body_momentum_R.0.as_slice())?;
+        validate::finite("G", initial.G.matrix().as_slice())?;
+        validate::finite("body_momentum_G", initial.body_momentum_G.0.as_slice())?;
+        validate::finite("q", &initial.q.components())?;
+        validate::finite("body_momentum_q", initial.body_momentum_q.0.as_slice())?;
+        validate::finite("X", initial.X.matrix().as_slice())?;
+        validate::finite("momentum_X", initial.momentum_X.0.as_slice())?;
+        Ok(MixedFourState {
+            R: initial.R,
+            momentum_R: initial.body_momentum_R.to_space(&initial.R),
+            G: initial.G,
+            momentum_G: initial.body_momentum_G.carried(&initial.G),
+            place_rest_G: SMatrix::zeros(),
+            momentum_rest_G: SMatrix::zeros(),
+            q: initial.q,
+            momentum_q: initial.body_momentum_q.to_space(&initial.q),
+            X: initial.X,
+            momentum_X: initial.momentum_X,
+            place_rest_X: SMatrix::zeros(),
+            momentum_rest_X: SMatrix::zeros(),
+            node: 0,
+        })
+    }
+    /// What steps of `h` from `state` begin with.
+    fn prepared(
+        &self,
+        _: &MixedFourState<T>,
         h: T,
-        method: Method,
-        search_2: newton::Search<
+        choice: Option<Method>,
+    ) -> Result<MixedFourWorkspace<T>, StartError> {
+        {
+            let h = h;
+            validate::inside(
+                domain::Domain::NotZero,
+                domain::Function::Quotient,
+                "h³",
+                h.powi(3),
+            )?;
+        }
+        let method = choice.unwrap_or(self.method);
+        Ok(MixedFourWorkspace {
+            h,
+            method,
+            search_2: newton::Search::from_rest(),
+            search_4: newton::Search::from_rest(),
+        })
+    }
+    /// One step, in place. Solved thus: block by block: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton.
+    ///
+    /// # Errors
+    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
+    #[inline]
+    pub fn step(
+        &self,
+        state: &mut MixedFourState<T>,
+        work: &mut MixedFourWorkspace<T>,
+    ) -> Result<(), StepError> {
+        let h = work.h;
+        let MixedFourParameters { A, M, m, b, k, p, s, e: e_, g, .. } = self.parameters;
+        let R = state.R.matrix();
+        let G = state.G.matrix();
+        let q = state.q.matrix();
+        let X = state.X.matrix();
+        let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
+        let b1 = relative_R_q * e_;
+        let V = match self
+            .factor_1
+            .rotation(
+                &((R.tr_mul(&state.momentum_R.0)
+                    - (p.cross(&(b1 - R.tr_mul(&X))) * (T::from_f64(0.5) * h * k))) * h),
+                work.method,
+            )
+        {
+            Ok(solved) => solved,
+            Err(e) => return Err(self.refused(*state, work, e)),
+        };
+        let found_2: newton::Solved<[RigidMotion<T>; 1]> = {
+            let momenta_six = state.momentum_G.to_body(&state.G).0;
+            let momenta: [SVector<T, 3>; 2] = [
+                rows_from::<T, 6, 3, 1>(&momenta_six, 0),
+                rows_from::<T, 6, 3, 1>(&momenta_six, 3),
+            ];
+            let W_pos_momentum = momenta[1];
+            let s1 = motion_rotation(&G);
+            let s2 = s1.transpose();
+            let s3 = motion_translation(&G);
+            let s4 = M.powi(-1);
+            let k1 = h.powi(-1);
+            let k2 = s.cross(&(s2 * (s3 - X))) * (T::from_f64(0.5) * h * k);
+            let k3 = W_pos_momentum * (h * s4)
+                - s2 * (s3 - X + s1 * s) * (T::from_f64(0.5) * (h * h) * k * s4);
+            let mut iteration = work.search_2.begin(state.node, []);
+            loop {
+                let turned = iteration.trial();
+                let W_pos = k3;
+                let trial = [rigid_motion(turned[0], W_pos)];
+                if iteration.wants_scale() {
+                    iteration
+                        .set_scale(move |lane| {
+                            self.rounding_2(h, &(G, (X, [])), &momenta, &trial, lane)
+                        });
+                }
+                let (W_rot, W_pos) = (trial[0].rotation.matrix(), trial[0].translation);
+                if iteration.wants_residual()
+                    && iteration
+                        .assess({
+                            (axial_of_difference(&(W_rot * A)) * k1 + k2) - momenta[0]
+                        })
+                {
+                    iteration
+                        .set_tangent_times(
+                            &{
+                                let t1 = W_rot * A;
+                                trace_complement(&t1)
+                            },
+                            h,
+                        );
+                }
+                match iteration.correct_part_from_left(trial) {
+                    newton::Progress::Continue => {}
+                    newton::Progress::Solved(
+                        solved,
+                    ) if iteration.is_principal(&solved.element) => break solved,
+                    ended => {
+                        if let Some(solved) = self
+                            .settled_2(
+                                h,
+                                *state,
+                                (G, (X, [])),
+                                momenta,
+                                &mut iteration,
+                                ended,
+                                work.method,
+                            )?
+                        {
+                            break solved;
+                        }
+                    }
+                }
+            }
+        };
+        let solved_2 = found_2.element;
+        let W_matrix = solved_2[0].matrix();
+        let Y = match self
+            .factor_3
+            .velocity(
+                &((state.momentum_q.to_body(&state.q).0
+                    - (-(relative_R_q.tr_mul(&p.cross(&b1))
+                        * (T::from_f64(0.5) * h * k)))) * h),
+            )
+        {
+            Ok(solved) => solved,
+            Err(e) => return Err(self.refused_3(*state, work, e)),
+        };
+        let found_4: newton::Solved<[Additive<3, 1, T>; 1]> = {
+            let momenta: [SVector<T, 3>; 1] = [state.momentum_X.0];
+            let convex = { (m).least() > 0.0 && (b).least() >= 0.0 };
+            let mut iteration = work.search_4.begin(state.node, []);
+            loop {
+                let trial = iteration.trial();
+                if iteration.wants_scale() {
+                    iteration
+                        .set_scale(move |lane| {
+                            self
+                                .rounding_4(
+                                    h,
+                                    &(newton::Turn(R), (G, (X, []))),
+                                    &momenta,
+                                    &trial,
+                                    lane,
+                                )
+                        });
+                }
+                let ΔX = trial[0].matrix();
+                if iteration
+                    .assess({
+                        let parts: [SVector<T, 3>; 1] = [
+                            (ΔX * (T::from_f64(4.0) * b * ΔX.dot(&ΔX) / h.powi(3))
+                                + ΔX * (m / h) - g * (T::from_f64(0.5) * h * m)
+                                - R * p * (T::from_f64(0.5) * h * k) + X * (h * k)
+                                - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
+                                - motion_translation(&G) * (T::from_f64(0.5) * h * k))
+                                - momenta[0],
+                        ];
+                        {
+                            let mut all = SVector::<T, 3>::zeros();
+                            let rest = all.as_mut_slice();
+                            let rest = put_matrix(rest, &parts[0]);
+                            let _ = rest;
+                            all
+                        }
+                    })
+                {
+                    iteration
+                        .set_tangent(
+                            &{
+                                let mut matrix = SMatrix::<T, 3, 3>::zeros();
+                                for axis in 0..(3 * 1) {
+                                    let η4 = array_basis::<T, 3, 1>(axis);
+                                    let t1 = h.powi(-3);
+                                    let parts: [SVector<T, 3>; 1] = [
+                                        ΔX
+                                            * (T::from_f64(4.0) * t1 * b
+                                                * (η4.dot(&ΔX) + ΔX.dot(&η4)))
+                                            + η4 * (T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX))
+                                            + η4 * (m / h),
+                                    ];
+                                    matrix
+                                        .set_column(
+                                            axis,
+                                            &{
+                                                let mut all = SVector::<T, 3>::zeros();
+                                                let rest = all.as_mut_slice();
+                                                let rest = put_matrix(rest, &parts[0]);
+                                                let _ = rest;
+                                                all
+                                            },
+                                        );
+                                }
+                                matrix
+                            },
+                        );
+                }
+                match iteration.correct() {
+                    newton::Progress::Continue => {}
+                    newton::Progress::Solved(
+                        solved,
+                    ) if convex || iteration.is_principal(&solved.element) => {
+                        break solved;
+                    }
+                    ended => {
+                        if let Some(solved) = self
+                            .settled_4(
+                                h,
+                                *state,
+                                (newton::Turn(R), (G, (X, []))),
+                                momenta,
+                                &mut iteration,
+                                ended,
+                                work.method,
+                            )?
+                        {
+                            break solved;
+                        }
+                    }
+                }
+            }
+        };
+        let solved_4 = found_4.element;
+        let ΔX_matrix = solved_4[0].matrix();
+        let R_moved = state.R * V;
+        let (G_moved, G_rest) = state.G.moved(&(solved_2[0]), &state.place_rest_G);
+        let q_moved = state.q * Y;
+        let (X_moved, X_rest) = state.X.moved(&(solved_4[0]), &state.place_rest_X);
+        let R_next = R_moved.matrix();
+        let G_next = G_moved.matrix();
+        let q_next = q_moved.matrix();
+        let X_next = X_moved.matrix();
+        let relative_R_q_next = R_next.tr_mul(&quaternion_rotation(&q_next));
+        let t1 = relative_R_q * e_;
+        let t2 = relative_R_q_next * e_;
+        let t3 = motion_rotation(&G);
+        let t4 = t3.transpose();
+        let t5 = motion_translation(&G);
+        let t6 = t5 - X + t3 * s;
+        let t7 = motion_rotation(&G_next);
+        let t8 = t7.transpose();
+        let t9 = motion_translation(&G_next);
+        let t10 = t9 - X_next + t7 * s;
+        let momentum_R_next = state.momentum_R.0
+            + R * (p.cross(&(R.tr_mul(&X) - t1)) * (T::from_f64(0.5) * h * k))
+            + R_next
+                * (p.cross(&(R_next.tr_mul(&X_next) - t2)) * (T::from_f64(0.5) * h * k));
+        let (momentum_G_next, momentum_G_rest) = added(
+            &state.momentum_G.0,
+            &state.momentum_rest_G,
+            &({
+                let leaving = state
+                    .G
+                    .covector_turned(
+                        &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t4 * t6)), 0)))
+                            - into_rows::<T, 6, 3, 1>(&(t4 * t6), 3))
+                            * (T::from_f64(0.5) * h * k)),
+                    );
+                leaving
+                    + G_moved
+                        .covector_turned(
+                            &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t8 * t10)), 0)))
+                                - into_rows::<T, 6, 3, 1>(&(t8 * t10), 3))
+                                * (T::from_f64(0.5) * h * k)),
+                        )
+            }),
+        );
+        let momentum_q_next = state.momentum_q.0
+            + state
+                .q
+                .covector_to_space(
+                    &(relative_R_q.tr_mul(&p.cross(&t1)) * (T::from_f64(0.5) * h * k)),
+                )
+            + q_moved
+                .covector_to_space(
+                    &(relative_R_q_next.tr_mul(&p.cross(&t2))
+                        * (T::from_f64(0.5) * h * k)),
+                );
+        let (momentum_X_next, momentum_X_rest) = added(
+            &state.momentum_X.0,
+            &state.momentum_rest_X,
+            &(g * (h * m)
+                + ((R + R_next) * p * T::from_f64(0.5) + (t3 + t7) * s * T::from_f64(0.5)
+                    - X - X_next + t5 * T::from_f64(0.5) + t9 * T::from_f64(0.5))
+                    * (h * k)),
+        );
+        if !(all_finite(&momentum_R_next) && all_finite(&momentum_G_next)
+            && all_finite(&momentum_q_next) && all_finite(&momentum_X_next))
+        {
+            return Err(StepCause::not_finite("momentum").at_node(state.node));
+        }
+        state.R = R_moved;
+        state.G = G_moved;
+        state.place_rest_G = G_rest;
+        state.q = q_moved;
+        state.X = X_moved;
+        state.place_rest_X = X_rest;
+        state.momentum_R = SpatialMomentum(momentum_R_next);
+        state.momentum_G = CarriedImpulse(momentum_G_next);
+        state.momentum_rest_G = momentum_G_rest;
+        state.momentum_q = SpatialMomentum(momentum_q_next);
+        state.momentum_X = FieldMomentum(momentum_X_next);
+        state.momentum_rest_X = momentum_X_rest;
+        state.node += 1;
+        work.search_2.remember(state.node - 1, &found_2);
+        work.search_4.remember(state.node - 1, &found_4);
+        Ok(())
+    }
+    /// Says how far the step is beyond the bound, and which step could be made.
+    #[cold]
+    #[inline(never)]
+    fn refused(
+        &self,
+        state: MixedFourState<T>,
+        work: &MixedFourWorkspace<T>,
+        e: Unsolved,
+    ) -> StepError {
+        let method = work.method;
+        let e = e
+            .with_searched_step(
+                work.h.value(),
+                |h| {
+                    let h = T::from_f64(h);
+                    let made = self
+                        .step(
+                            &mut { state },
+                            &mut MixedFourWorkspace {
+                                h,
+                                method,
+                                search_2: newton::Search::to_offer(),
+                                search_4: newton::Search::to_offer(),
+                            },
+                        );
+                    made.ok().map(|()| 0.0)
+                },
+            );
+        StepCause::from(e).at_node(state.node)
+    }
+    /// The solution to be taken where the one found is not known to be principal, or none was
+    /// found. None where the iteration begins again, at the principal root.
+    #[cold]
+    #[inline(never)]
+    fn settled_2(
+        &self,
+        h: T,
+        state: MixedFourState<T>,
+        given: (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
+        momenta: [SVector<T, 3>; 2],
+        iteration: &mut newton::Newton<
+            '_,
             T,
             [Rotation<T>; 1],
             MixedFourNode2<T>,
@@ -189,1859 +570,1189 @@ pub mod mixed_four {
             [RigidMotion<T>; 1],
             6,
         >,
-        search_4: newton::Search<T, [Additive<3, 1, T>; 1], MixedFourNode4<T>, 3>,
+        ended: newton::Progress<[RigidMotion<T>; 1]>,
+        method: Method,
+    ) -> Result<Option<newton::Solved<[RigidMotion<T>; 1]>>, StepError> {
+        let failed = match ended {
+            newton::Progress::Continue => return Ok(None),
+            newton::Progress::Solved(solved) => Ok(solved),
+            newton::Progress::Failed(e) => Err(e),
+        };
+        let asked = failed.as_ref().ok().map(|solved| &solved.element);
+        let values = iteration.values();
+        let traced = self
+            .principal_2(h, &given, &values, &momenta, iteration.certificate(), asked);
+        let e = match (traced, failed) {
+            (Ok(None), Ok(solved)) => return Ok(Some(solved)),
+            (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
+            (Ok(_), Err(e)) => e,
+            (Ok(_), Ok(_)) => iteration.unpolished(),
+            (Err(fold), failed) => iteration.folded(fold, failed.err()),
+        };
+        Err(self.refused_2(state, h, e, method))
     }
-    ::clebsch::saved! {
-        [] MixedFourWorkspace { h, method, search_2, search_4 }
+    /// Says which equation is worst, and which step could be solved.
+    #[cold]
+    #[inline(never)]
+    fn refused_2(
+        &self,
+        state: MixedFourState<T>,
+        h: T,
+        e: newton::NewtonError,
+        method: Method,
+    ) -> StepError {
+        const CONFIGURATIONS: &[&str] = &["G"];
+        let e = e
+            .explained(
+                h,
+                &CONFIGURATIONS,
+                |h, search| {
+                    self.step(
+                        &mut { state },
+                        &mut MixedFourWorkspace {
+                            h,
+                            method,
+                            search_2: search,
+                            search_4: search.alike(),
+                        },
+                    )
+                },
+            );
+        StepCause::from(e).at_node(state.node)
     }
-    type MixedFourNode2<T> = [T; 0];
-    type MixedFourNode4<T> = [T; 0];
-    impl<T: Real> MixedFour<T> {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not admissible, or says why the first step cannot be solved and
-        /// which could.
-        pub fn start(
-            &self,
-            initial: MixedFourInitial<T>,
-            h: T,
-        ) -> Result<(MixedFourState<T>, MixedFourWorkspace<T>), StartError> {
-            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
+    /// The trial with these rotations, its translations found.
+    #[cold]
+    #[inline(never)]
+    #[allow(unused_variables)]
+    fn completed_at_2(
+        parameters: &MixedFourParameters<T>,
+        h: T,
+        given: &(SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
+        momenta: &[SVector<T, 3>; 2],
+        turned: &[Rotation<T>; 1],
+    ) -> [RigidMotion<T>; 1] {
+        let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
+        let G = given.0;
+        let X = given.1.0;
+        let W_pos_momentum = momenta[1];
+        let W_pos = {
+            let t1 = M.powi(-1);
+            let t2 = motion_rotation(&G);
+            W_pos_momentum * (h * t1)
+                - t2.tr_mul(&(motion_translation(&G) - X + t2 * s))
+                    * (T::from_f64(0.5) * (h * h) * k * t1)
+        };
+        [rigid_motion(turned[0], W_pos)]
+    }
+    /// The residual of the equations of a step.
+    #[cold]
+    #[inline(never)]
+    #[allow(unused_variables)]
+    fn residual_at_2(
+        parameters: &MixedFourParameters<T>,
+        h: T,
+        given: &(SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
+        momenta: &[SVector<T, 3>; 2],
+        trial: &[RigidMotion<T>; 1],
+    ) -> SVector<T, 6> {
+        let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
+        let G = given.0;
+        let X = given.1.0;
+        let (W_rot, W_pos) = (trial[0].rotation.matrix(), trial[0].translation);
+        let t1 = h.powi(-1);
+        let t2 = motion_rotation(&G);
+        let t3 = t2.transpose();
+        let t4 = motion_translation(&G);
+        joined::<
+            T,
+            2,
+            6,
+        >(
+            &[
+                (axial_of_difference(&(W_rot * A)) * t1
+                    + s.cross(&(t3 * (t4 - X))) * (T::from_f64(0.5) * h * k))
+                    - momenta[0],
+                (W_pos * (M * t1) + t3 * (t4 - X + t2 * s) * (T::from_f64(0.5) * h * k))
+                    - momenta[1],
+            ],
+        )
+    }
+    /// Their tangent.
+    #[cold]
+    #[inline(never)]
+    #[allow(unused_variables)]
+    fn tangent_at_2(
+        parameters: &MixedFourParameters<T>,
+        h: T,
+        values: &[T; 0],
+        W_rot: SMatrix<T, 3, 3>,
+        W_pos: SVector<T, 3>,
+    ) -> SMatrix<T, 6, 6> {
+        let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
+        let t1 = h.powi(-1);
+        let t2 = W_rot * A;
+        assembled::<
+            T,
+            2,
+            6,
+        >(
+            &[
+                [(trace_complement(&t2)) * W_rot * t1, SMatrix::<T, 3, 3>::zeros()],
+                [SMatrix::<T, 3, 3>::zeros(), W_rot * (M * t1)],
+            ],
+        )
+    }
+    /// Bounds of the rounding of the residual, in one lane.
+    #[cold]
+    #[inline(never)]
+    fn rounding_2(
+        &self,
+        h: T,
+        given: &(SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
+        momenta: &[SVector<T, 3>; 2],
+        trial: &[RigidMotion<T>; 1],
+        lane: usize,
+    ) -> SVector<f64, 3> {
+        let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
+        let parameters = self.parameters.over(change);
+        let (step, given, momenta) = (
+            h.over(change),
+            given.over(change),
+            momenta.map(|part| part.over(change)),
+        );
+        let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
+        let trial = [trial[0].over(change)];
+        let trial = MixedFour::<
+            newton::Enclosure<0>,
+        >::completed_at_2(
+            &parameters,
+            step,
+            &given,
+            &momenta,
+            &newton::Found::within(&trial),
+        );
+        {
+            let all = MixedFour::<
+                newton::Enclosure<0>,
+            >::residual_at_2(&parameters, step, &given, &momenta, &trial)
+                .map(|x| x.rest());
+            SVector::from([all[0], all[1], all[2]])
         }
-        /// As `start`, with the solver named.
-        ///
-        /// # Errors
-        /// As `start`; also for what this size or scalar does not have.
-        pub fn start_with(
-            &self,
-            initial: MixedFourInitial<T>,
-            h: T,
-            choice: impl Into<Option<Method>>,
-        ) -> Result<(MixedFourState<T>, MixedFourWorkspace<T>), StartError> {
-            ::clebsch::integrate::Model::start_with(self, initial, h, choice.into())
-        }
-        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
-        pub fn workspace(
-            &self,
-            state: &MixedFourState<T>,
-            h: T,
-        ) -> Result<MixedFourWorkspace<T>, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        /// One step, in place. Solved thus: block by block: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton.
-        ///
-        /// # Errors
-        /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-        #[inline]
-        pub fn step(
-            &self,
-            state: &mut MixedFourState<T>,
-            work: &mut MixedFourWorkspace<T>,
-        ) -> Result<(), StepError> {
-            let h = work.h;
-            let MixedFourParameters { A, M, m, b, k, p, s, e: e_, g, .. } = self
-                .parameters;
-            let R = state.R.matrix();
-            let G = state.G.matrix();
-            let q = state.q.matrix();
-            let X = state.X.matrix();
-            let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
-            let b1 = relative_R_q * e_;
-            let V = match self
-                .factor_1
-                .rotation(
-                    &((R.tr_mul(&state.momentum_R.0)
-                        - (p.cross(&(b1 - R.tr_mul(&X))) * (T::from_f64(0.5) * h * k)))
-                        * h),
-                    work.method,
-                )
-            {
-                Ok(solved) => solved,
-                Err(e) => return Err(self.refused(*state, work, e)),
+    }
+    /// Finds the principal root, or shows that the solution is.
+    #[cold]
+    #[inline(never)]
+    fn principal_2(
+        &self,
+        h: T,
+        given: &(SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
+        values: &[T; 0],
+        momenta: &[SVector<T, 3>; 2],
+        certificate: &mut newton::Certificate<[T; 0], 6>,
+        solution: Option<&[RigidMotion<T>; 1]>,
+    ) -> Result<Option<newton::Anchor<[RigidMotion<T>; 1], 6>>, newton::Fold> {
+        let first = solution.copied().unwrap_or_else(Group::<T>::identity);
+        let mut verdict = newton::Verdict::<[RigidMotion<T>; 1], 6>::about(first);
+        for lane in 0..T::LANES {
+            let change = &mut |x: T| newton::Enclosure::<12>::exactly(x.lane(lane));
+            let (bound, bound_step) = (self.parameters.over(change), h.over(change));
+            let change = &mut |x: T| x.lane(lane);
+            let (parameters, step) = (self.parameters.over(change), h.over(change));
+            let (given, near, momenta) = (
+                given.over(change),
+                values.over(change),
+                momenta.map(|part| part.over(change)),
+            );
+            let found = match solution {
+                Some(found) => Some([found[0].over(change)]),
+                None => None,
             };
-            let found_2: newton::Solved<[RigidMotion<T>; 1]> = {
-                let momenta_six = state.momentum_G.to_body(&state.G).0;
-                let momenta: [SVector<T, 3>; 2] = [
-                    rows_from::<T, 6, 3, 1>(&momenta_six, 0),
-                    rows_from::<T, 6, 3, 1>(&momenta_six, 3),
-                ];
-                let W_pos_momentum = momenta[1];
-                let s1 = motion_rotation(&G);
-                let s2 = s1.transpose();
-                let s3 = motion_translation(&G);
-                let s4 = M.powi(-1);
-                let k1 = h.powi(-1);
-                let k2 = s.cross(&(s2 * (s3 - X))) * (T::from_f64(0.5) * h * k);
-                let k3 = W_pos_momentum * (h * s4)
-                    - s2 * (s3 - X + s1 * s) * (T::from_f64(0.5) * (h * h) * k * s4);
-                let mut iteration = work.search_2.begin(state.node, []);
-                loop {
-                    let turned = iteration.trial();
-                    let W_pos = k3;
-                    let trial = [rigid_motion(turned[0], W_pos)];
-                    if iteration.wants_scale() {
-                        iteration
-                            .set_scale(move |lane| {
-                                self.rounding_2(h, &(G, (X, [])), &momenta, &trial, lane)
-                            });
-                    }
+            let equations = newton::Equations {
+                residual: &|trial: &[RigidMotion<f64>; 1]| MixedFour::<
+                    f64,
+                >::residual_at_2(&parameters, step, &given, &momenta, trial),
+                tangent: &|trial: &[RigidMotion<f64>; 1]| {
                     let (W_rot, W_pos) = (
                         trial[0].rotation.matrix(),
                         trial[0].translation,
                     );
-                    if iteration.wants_residual()
-                        && iteration
-                            .assess({
-                                (axial_of_difference(&(W_rot * A)) * k1 + k2) - momenta[0]
-                            })
-                    {
-                        iteration
-                            .set_tangent_times(
-                                &{
-                                    let t1 = W_rot * A;
-                                    trace_complement(&t1)
-                                },
-                                h,
-                            );
-                    }
-                    match iteration.correct_part_from_left(trial) {
-                        newton::Progress::Continue => {}
-                        newton::Progress::Solved(
-                            solved,
-                        ) if iteration.is_principal(&solved.element) => break solved,
-                        ended => {
-                            if let Some(solved) = self
-                                .settled_2(
-                                    h,
-                                    *state,
-                                    (G, (X, [])),
-                                    momenta,
-                                    &mut iteration,
-                                    ended,
-                                    work.method,
-                                )?
-                            {
-                                break solved;
-                            }
-                        }
-                    }
-                }
-            };
-            let solved_2 = found_2.element;
-            let W_matrix = solved_2[0].matrix();
-            let Y = match self
-                .factor_3
-                .velocity(
-                    &((state.momentum_q.to_body(&state.q).0
-                        - (-(relative_R_q.tr_mul(&p.cross(&b1))
-                            * (T::from_f64(0.5) * h * k)))) * h),
-                )
-            {
-                Ok(solved) => solved,
-                Err(e) => return Err(self.refused_3(*state, work, e)),
-            };
-            let found_4: newton::Solved<[Additive<3, 1, T>; 1]> = {
-                let momenta: [SVector<T, 3>; 1] = [state.momentum_X.0];
-                let convex = { (m).least() > 0.0 && (b).least() >= 0.0 };
-                let mut iteration = work.search_4.begin(state.node, []);
-                loop {
-                    let trial = iteration.trial();
-                    if iteration.wants_scale() {
-                        iteration
-                            .set_scale(move |lane| {
-                                self
-                                    .rounding_4(
-                                        h,
-                                        &(newton::Turn(R), (G, (X, []))),
-                                        &momenta,
-                                        &trial,
-                                        lane,
-                                    )
-                            });
-                    }
-                    let ΔX = trial[0].matrix();
-                    if iteration
-                        .assess({
-                            let parts: [SVector<T, 3>; 1] = [
-                                (ΔX * (T::from_f64(4.0) * b * ΔX.dot(&ΔX) / h.powi(3))
-                                    + ΔX * (m / h) - g * (T::from_f64(0.5) * h * m)
-                                    - R * p * (T::from_f64(0.5) * h * k) + X * (h * k)
-                                    - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
-                                    - motion_translation(&G) * (T::from_f64(0.5) * h * k))
-                                    - momenta[0],
-                            ];
-                            {
-                                let mut all = SVector::<T, 3>::zeros();
-                                let rest = all.as_mut_slice();
-                                let rest = put_matrix(rest, &parts[0]);
-                                let _ = rest;
-                                all
-                            }
-                        })
-                    {
-                        iteration
-                            .set_tangent(
-                                &{
-                                    let mut matrix = SMatrix::<T, 3, 3>::zeros();
-                                    for axis in 0..(3 * 1) {
-                                        let η4 = array_basis::<T, 3, 1>(axis);
-                                        let t1 = h.powi(-3);
-                                        let parts: [SVector<T, 3>; 1] = [
-                                            ΔX
-                                                * (T::from_f64(4.0) * t1 * b
-                                                    * (η4.dot(&ΔX) + ΔX.dot(&η4)))
-                                                + η4 * (T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX))
-                                                + η4 * (m / h),
-                                        ];
-                                        matrix
-                                            .set_column(
-                                                axis,
-                                                &{
-                                                    let mut all = SVector::<T, 3>::zeros();
-                                                    let rest = all.as_mut_slice();
-                                                    let rest = put_matrix(rest, &parts[0]);
-                                                    let _ = rest;
-                                                    all
-                                                },
-                                            );
-                                    }
-                                    matrix
-                                },
-                            );
-                    }
-                    match iteration.correct() {
-                        newton::Progress::Continue => {}
-                        newton::Progress::Solved(
-                            solved,
-                        ) if convex || iteration.is_principal(&solved.element) => {
-                            break solved;
-                        }
-                        ended => {
-                            if let Some(solved) = self
-                                .settled_4(
-                                    h,
-                                    *state,
-                                    (newton::Turn(R), (G, (X, []))),
-                                    momenta,
-                                    &mut iteration,
-                                    ended,
-                                    work.method,
-                                )?
-                            {
-                                break solved;
-                            }
-                        }
-                    }
-                }
-            };
-            let solved_4 = found_4.element;
-            let ΔX_matrix = solved_4[0].matrix();
-            let R_moved = state.R * V;
-            let (G_moved, G_rest) = state.G.moved(&(solved_2[0]), &state.place_rest_G);
-            let q_moved = state.q * Y;
-            let (X_moved, X_rest) = state.X.moved(&(solved_4[0]), &state.place_rest_X);
-            let R_next = R_moved.matrix();
-            let G_next = G_moved.matrix();
-            let q_next = q_moved.matrix();
-            let X_next = X_moved.matrix();
-            let relative_R_q_next = R_next.tr_mul(&quaternion_rotation(&q_next));
-            let t1 = relative_R_q * e_;
-            let t2 = relative_R_q_next * e_;
-            let t3 = motion_rotation(&G);
-            let t4 = t3.transpose();
-            let t5 = motion_translation(&G);
-            let t6 = t5 - X + t3 * s;
-            let t7 = motion_rotation(&G_next);
-            let t8 = t7.transpose();
-            let t9 = motion_translation(&G_next);
-            let t10 = t9 - X_next + t7 * s;
-            let momentum_R_next = state.momentum_R.0
-                + R * (p.cross(&(R.tr_mul(&X) - t1)) * (T::from_f64(0.5) * h * k))
-                + R_next
-                    * (p.cross(&(R_next.tr_mul(&X_next) - t2))
-                        * (T::from_f64(0.5) * h * k));
-            let (momentum_G_next, momentum_G_rest) = added(
-                &state.momentum_G.0,
-                &state.momentum_rest_G,
-                &({
-                    let leaving = state
-                        .G
-                        .covector_turned(
-                            &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t4 * t6)), 0)))
-                                - into_rows::<T, 6, 3, 1>(&(t4 * t6), 3))
-                                * (T::from_f64(0.5) * h * k)),
-                        );
-                    leaving
-                        + G_moved
-                            .covector_turned(
-                                &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t8 * t10)), 0)))
-                                    - into_rows::<T, 6, 3, 1>(&(t8 * t10), 3))
-                                    * (T::from_f64(0.5) * h * k)),
-                            )
-                }),
-            );
-            let momentum_q_next = state.momentum_q.0
-                + state
-                    .q
-                    .covector_to_space(
-                        &(relative_R_q.tr_mul(&p.cross(&t1))
-                            * (T::from_f64(0.5) * h * k)),
-                    )
-                + q_moved
-                    .covector_to_space(
-                        &(relative_R_q_next.tr_mul(&p.cross(&t2))
-                            * (T::from_f64(0.5) * h * k)),
-                    );
-            let (momentum_X_next, momentum_X_rest) = added(
-                &state.momentum_X.0,
-                &state.momentum_rest_X,
-                &(g * (h * m)
-                    + ((R + R_next) * p * T::from_f64(0.5)
-                        + (t3 + t7) * s * T::from_f64(0.5) - X - X_next
-                        + t5 * T::from_f64(0.5) + t9 * T::from_f64(0.5)) * (h * k)),
-            );
-            if !(all_finite(&momentum_R_next) && all_finite(&momentum_G_next)
-                && all_finite(&momentum_q_next) && all_finite(&momentum_X_next))
-            {
-                return Err(
-                    StepCause::NotFinite {
-                        what: "momentum",
-                    }
-                        .at_node(state.node),
-                );
-            }
-            state.R = R_moved;
-            state.G = G_moved;
-            state.place_rest_G = G_rest;
-            state.q = q_moved;
-            state.X = X_moved;
-            state.place_rest_X = X_rest;
-            state.momentum_R = SpatialMomentum(momentum_R_next);
-            state.momentum_G = CarriedImpulse(momentum_G_next);
-            state.momentum_rest_G = momentum_G_rest;
-            state.momentum_q = SpatialMomentum(momentum_q_next);
-            state.momentum_X = FieldMomentum(momentum_X_next);
-            state.momentum_rest_X = momentum_X_rest;
-            state.node += 1;
-            work.search_2.remember(state.node - 1, &found_2);
-            work.search_4.remember(state.node - 1, &found_4);
-            Ok(())
-        }
-        /// Says how far the step is beyond the bound, and which step could be made.
-        #[cold]
-        #[inline(never)]
-        fn refused(
-            &self,
-            state: MixedFourState<T>,
-            work: &MixedFourWorkspace<T>,
-            e: Unsolved,
-        ) -> StepError {
-            let method = work.method;
-            let e = e
-                .with_searched_step(
-                    work.h.value(),
-                    |h| {
-                        let h = T::from_f64(h);
-                        let made = self
-                            .step(
-                                &mut { state },
-                                &mut MixedFourWorkspace {
-                                    h,
-                                    method,
-                                    search_2: newton::Search::to_offer(),
-                                    search_4: newton::Search::to_offer(),
-                                },
-                            );
-                        made.ok().map(|()| 0.0)
-                    },
-                );
-            StepCause::from(e).at_node(state.node)
-        }
-        /// The solution to be taken where the one found is not known to be principal, or none was
-        /// found. None where the iteration begins again, at the principal root.
-        #[cold]
-        #[inline(never)]
-        fn settled_2(
-            &self,
-            h: T,
-            state: MixedFourState<T>,
-            given: (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-            momenta: [SVector<T, 3>; 2],
-            iteration: &mut newton::Newton<
-                '_,
-                T,
-                [Rotation<T>; 1],
-                MixedFourNode2<T>,
-                3,
-                [RigidMotion<T>; 1],
-                6,
-            >,
-            ended: newton::Progress<[RigidMotion<T>; 1]>,
-            method: Method,
-        ) -> Result<Option<newton::Solved<[RigidMotion<T>; 1]>>, StepError> {
-            let failed = match ended {
-                newton::Progress::Continue => return Ok(None),
-                newton::Progress::Solved(solved) => Ok(solved),
-                newton::Progress::Failed(e) => Err(e),
-            };
-            let asked = failed.as_ref().ok().map(|solved| &solved.element);
-            let values = iteration.values();
-            let traced = self
-                .principal_2(
-                    h,
-                    &given,
-                    &values,
-                    &momenta,
-                    iteration.certificate(),
-                    asked,
-                );
-            let e = match (traced, failed) {
-                (Ok(None), Ok(solved)) => return Ok(Some(solved)),
-                (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
-                (Ok(_), Err(e)) => e,
-                (Ok(_), Ok(_)) => iteration.unpolished(),
-                (Err(fold), failed) => iteration.folded(fold, failed.err()),
-            };
-            Err(self.refused_2(state, h, e, method))
-        }
-        /// Says which equation is worst, and which step could be solved.
-        #[cold]
-        #[inline(never)]
-        fn refused_2(
-            &self,
-            state: MixedFourState<T>,
-            h: T,
-            e: newton::NewtonError,
-            method: Method,
-        ) -> StepError {
-            const CONFIGURATIONS: &[&str] = &["G"];
-            let e = e
-                .explained(
-                    h,
-                    &CONFIGURATIONS,
-                    |h, search| {
-                        self.step(
-                            &mut { state },
-                            &mut MixedFourWorkspace {
-                                h,
-                                method,
-                                search_2: search,
-                                search_4: search.alike(),
-                            },
-                        )
-                    },
-                );
-            StepCause::from(e).at_node(state.node)
-        }
-        /// The trial with these rotations, its translations found.
-        #[cold]
-        #[inline(never)]
-        #[allow(unused_variables)]
-        fn completed_at_2(
-            parameters: &MixedFourParameters<T>,
-            h: T,
-            given: &(SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-            momenta: &[SVector<T, 3>; 2],
-            turned: &[Rotation<T>; 1],
-        ) -> [RigidMotion<T>; 1] {
-            let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
-            let G = given.0;
-            let X = given.1.0;
-            let W_pos_momentum = momenta[1];
-            let W_pos = {
-                let t1 = M.powi(-1);
-                let t2 = motion_rotation(&G);
-                W_pos_momentum * (h * t1)
-                    - t2.tr_mul(&(motion_translation(&G) - X + t2 * s))
-                        * (T::from_f64(0.5) * (h * h) * k * t1)
-            };
-            [rigid_motion(turned[0], W_pos)]
-        }
-        /// The residual of the equations of a step.
-        #[cold]
-        #[inline(never)]
-        #[allow(unused_variables)]
-        fn residual_at_2(
-            parameters: &MixedFourParameters<T>,
-            h: T,
-            given: &(SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-            momenta: &[SVector<T, 3>; 2],
-            trial: &[RigidMotion<T>; 1],
-        ) -> SVector<T, 6> {
-            let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
-            let G = given.0;
-            let X = given.1.0;
-            let (W_rot, W_pos) = (trial[0].rotation.matrix(), trial[0].translation);
-            let t1 = h.powi(-1);
-            let t2 = motion_rotation(&G);
-            let t3 = t2.transpose();
-            let t4 = motion_translation(&G);
-            joined::<
-                T,
-                2,
-                6,
-            >(
-                &[
-                    (axial_of_difference(&(W_rot * A)) * t1
-                        + s.cross(&(t3 * (t4 - X))) * (T::from_f64(0.5) * h * k))
-                        - momenta[0],
-                    (W_pos * (M * t1)
-                        + t3 * (t4 - X + t2 * s) * (T::from_f64(0.5) * h * k))
-                        - momenta[1],
-                ],
-            )
-        }
-        /// Their tangent.
-        #[cold]
-        #[inline(never)]
-        #[allow(unused_variables)]
-        fn tangent_at_2(
-            parameters: &MixedFourParameters<T>,
-            h: T,
-            values: &[T; 0],
-            W_rot: SMatrix<T, 3, 3>,
-            W_pos: SVector<T, 3>,
-        ) -> SMatrix<T, 6, 6> {
-            let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
-            let t1 = h.powi(-1);
-            let t2 = W_rot * A;
-            assembled::<
-                T,
-                2,
-                6,
-            >(
-                &[
-                    [(trace_complement(&t2)) * W_rot * t1, SMatrix::<T, 3, 3>::zeros()],
-                    [SMatrix::<T, 3, 3>::zeros(), W_rot * (M * t1)],
-                ],
-            )
-        }
-        /// Bounds of the rounding of the residual, in one lane.
-        #[cold]
-        #[inline(never)]
-        fn rounding_2(
-            &self,
-            h: T,
-            given: &(SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-            momenta: &[SVector<T, 3>; 2],
-            trial: &[RigidMotion<T>; 1],
-            lane: usize,
-        ) -> SVector<f64, 3> {
-            let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
-            let parameters = self.parameters.over(change);
-            let (step, given, momenta) = (
-                h.over(change),
-                given.over(change),
-                momenta.map(|part| part.over(change)),
-            );
-            let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
-            let trial = [trial[0].over(change)];
-            let trial = MixedFour::<
-                newton::Enclosure<0>,
-            >::completed_at_2(
-                &parameters,
-                step,
-                &given,
-                &momenta,
-                &newton::Found::within(&trial),
-            );
-            {
-                let all = MixedFour::<
-                    newton::Enclosure<0>,
-                >::residual_at_2(&parameters, step, &given, &momenta, &trial)
-                    .map(|x| x.rest());
-                SVector::from([all[0], all[1], all[2]])
-            }
-        }
-        /// Finds the principal root, or shows that the solution is.
-        #[cold]
-        #[inline(never)]
-        fn principal_2(
-            &self,
-            h: T,
-            given: &(SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-            values: &[T; 0],
-            momenta: &[SVector<T, 3>; 2],
-            certificate: &mut newton::Certificate<[T; 0], 6>,
-            solution: Option<&[RigidMotion<T>; 1]>,
-        ) -> Result<Option<newton::Anchor<[RigidMotion<T>; 1], 6>>, newton::Fold> {
-            let first = solution.copied().unwrap_or_else(Group::<T>::identity);
-            let mut verdict = newton::Verdict::<[RigidMotion<T>; 1], 6>::about(first);
-            for lane in 0..T::LANES {
-                let change = &mut |x: T| newton::Enclosure::<12>::exactly(x.lane(lane));
-                let (bound, bound_step) = (self.parameters.over(change), h.over(change));
-                let change = &mut |x: T| x.lane(lane);
-                let (parameters, step) = (self.parameters.over(change), h.over(change));
-                let (given, near, momenta) = (
-                    given.over(change),
-                    values.over(change),
-                    momenta.map(|part| part.over(change)),
-                );
-                let found = match solution {
-                    Some(found) => Some([found[0].over(change)]),
-                    None => None,
-                };
-                let equations = newton::Equations {
-                    residual: &|trial: &[RigidMotion<f64>; 1]| MixedFour::<
+                    MixedFour::<
                         f64,
-                    >::residual_at_2(&parameters, step, &given, &momenta, trial),
-                    tangent: &|trial: &[RigidMotion<f64>; 1]| {
-                        let (W_rot, W_pos) = (
-                            trial[0].rotation.matrix(),
-                            trial[0].translation,
-                        );
-                        MixedFour::<
-                            f64,
-                        >::tangent_at_2(&parameters, step, &near, W_rot, W_pos)
-                    },
-                    enclosed: &|spread, trial: &[newton::MotionRegion<12>; 1]| {
-                        let (W_rot, W_pos) = (
-                            trial[0].rotation.matrix(),
-                            trial[0].translation,
-                        );
-                        let values = newton::NodeValues::enclosed(values, lane, spread);
-                        MixedFour::<
-                            newton::Enclosure<12>,
-                        >::tangent_at_2(&bound, bound_step, &values, W_rot, W_pos)
-                    },
-                };
-                let care = certificate.care();
-                let traced = newton::trace(&equations, found.as_ref(), care);
-                if let Some(root) = verdict
-                    .add(traced.map_err(|fold| fold.in_lane(lane))?)
-                {
-                    let all = verdict.root_mut();
-                    all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
-                }
-            }
-            Ok(verdict.close(certificate, values))
-        }
-        /// Says how far the step is beyond the bound, and which step could be made.
-        #[cold]
-        #[inline(never)]
-        fn refused_3(
-            &self,
-            state: MixedFourState<T>,
-            work: &MixedFourWorkspace<T>,
-            e: QuaternionError,
-        ) -> StepError {
-            let method = work.method;
-            let e = e
-                .with_searched_steps(
-                    work.h.value(),
-                    |h| {
-                        let h = T::from_f64(h);
-                        let made = self
-                            .step(
-                                &mut { state },
-                                &mut MixedFourWorkspace {
-                                    h,
-                                    method,
-                                    search_2: newton::Search::to_offer(),
-                                    search_4: newton::Search::to_offer(),
-                                },
-                            );
-                        made.ok().map(|()| 0.0)
-                    },
-                );
-            StepCause::from(e).at_node(state.node)
-        }
-        /// The solution to be taken where the one found is not known to be principal, or none was
-        /// found. None where the iteration begins again, at the principal root.
-        #[cold]
-        #[inline(never)]
-        fn settled_4(
-            &self,
-            h: T,
-            state: MixedFourState<T>,
-            given: (
-                newton::Turn<SMatrix<T, 3, 3>>,
-                (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-            ),
-            momenta: [SVector<T, 3>; 1],
-            iteration: &mut newton::Newton<
-                '_,
-                T,
-                [Additive<3, 1, T>; 1],
-                MixedFourNode4<T>,
-                3,
-            >,
-            ended: newton::Progress<[Additive<3, 1, T>; 1]>,
-            method: Method,
-        ) -> Result<Option<newton::Solved<[Additive<3, 1, T>; 1]>>, StepError> {
-            let failed = match ended {
-                newton::Progress::Continue => return Ok(None),
-                newton::Progress::Solved(solved) => Ok(solved),
-                newton::Progress::Failed(e) => Err(e),
-            };
-            let asked = failed.as_ref().ok().map(|solved| &solved.element);
-            let values = iteration.values();
-            let traced = self
-                .principal_4(
-                    h,
-                    &given,
-                    &values,
-                    &momenta,
-                    iteration.certificate(),
-                    asked,
-                );
-            let e = match (traced, failed) {
-                (Ok(None), Ok(solved)) => return Ok(Some(solved)),
-                (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
-                (Ok(_), Err(e)) => e,
-                (Ok(_), Ok(_)) => iteration.unpolished(),
-                (Err(fold), failed) => iteration.folded(fold, failed.err()),
-            };
-            Err(self.refused_4(state, h, e, method))
-        }
-        /// Says which equation is worst, and which step could be solved.
-        #[cold]
-        #[inline(never)]
-        fn refused_4(
-            &self,
-            state: MixedFourState<T>,
-            h: T,
-            e: newton::NewtonError,
-            method: Method,
-        ) -> StepError {
-            const CONFIGURATIONS: &[&str] = &["X"];
-            let e = e
-                .explained(
-                    h,
-                    &CONFIGURATIONS,
-                    |h, search| {
-                        self.step(
-                            &mut { state },
-                            &mut MixedFourWorkspace {
-                                h,
-                                method,
-                                search_2: search.alike(),
-                                search_4: search,
-                            },
-                        )
-                    },
-                );
-            StepCause::from(e).at_node(state.node)
-        }
-        /// The residual of the equations of a step.
-        #[cold]
-        #[inline(never)]
-        #[allow(unused_variables)]
-        fn residual_at_4(
-            parameters: &MixedFourParameters<T>,
-            h: T,
-            given: &(
-                newton::Turn<SMatrix<T, 3, 3>>,
-                (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-            ),
-            momenta: &[SVector<T, 3>; 1],
-            trial: &[Additive<3, 1, T>; 1],
-        ) -> SVector<T, 3> {
-            let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
-            let R = given.0.0;
-            let G = given.1.0;
-            let X = given.1.1.0;
-            let ΔX = trial[0].matrix();
-            let parts: [SVector<T, 3>; 1] = [
-                (ΔX * (T::from_f64(4.0) * b * ΔX.dot(&ΔX) / h.powi(3)) + ΔX * (m / h)
-                    - g * (T::from_f64(0.5) * h * m) - R * p * (T::from_f64(0.5) * h * k)
-                    + X * (h * k) - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
-                    - motion_translation(&G) * (T::from_f64(0.5) * h * k)) - momenta[0],
-            ];
-            {
-                let mut all = SVector::<T, 3>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_matrix(rest, &parts[0]);
-                let _ = rest;
-                all
-            }
-        }
-        /// Their tangent.
-        #[cold]
-        #[inline(never)]
-        #[allow(unused_variables)]
-        fn tangent_at_4(
-            parameters: &MixedFourParameters<T>,
-            h: T,
-            values: &[T; 0],
-            ΔX: SVector<T, 3>,
-        ) -> SMatrix<T, 3, 3> {
-            let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
-            let mut matrix = SMatrix::<T, 3, 3>::zeros();
-            for axis in 0..(3 * 1) {
-                let η4 = array_basis::<T, 3, 1>(axis);
-                let t1 = h.powi(-3);
-                let parts: [SVector<T, 3>; 1] = [
-                    ΔX * (T::from_f64(4.0) * t1 * b * (η4.dot(&ΔX) + ΔX.dot(&η4)))
-                        + η4 * (T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX))
-                        + η4 * (m / h),
-                ];
-                matrix
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 3>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_matrix(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        },
+                    >::tangent_at_2(&parameters, step, &near, W_rot, W_pos)
+                },
+                enclosed: &|spread, trial: &[newton::MotionRegion<12>; 1]| {
+                    let (W_rot, W_pos) = (
+                        trial[0].rotation.matrix(),
+                        trial[0].translation,
                     );
+                    let values = newton::NodeValues::enclosed(values, lane, spread);
+                    MixedFour::<
+                        newton::Enclosure<12>,
+                    >::tangent_at_2(&bound, bound_step, &values, W_rot, W_pos)
+                },
+            };
+            let care = certificate.care();
+            let traced = newton::trace(&equations, found.as_ref(), care);
+            if let Some(root) = verdict.add(traced.map_err(|fold| fold.in_lane(lane))?) {
+                let all = verdict.root_mut();
+                all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
             }
-            matrix
         }
-        /// Bounds of the rounding of the residual, in one lane.
-        #[cold]
-        #[inline(never)]
-        fn rounding_4(
-            &self,
-            h: T,
-            given: &(
-                newton::Turn<SMatrix<T, 3, 3>>,
-                (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-            ),
-            momenta: &[SVector<T, 3>; 1],
-            trial: &[Additive<3, 1, T>; 1],
-            lane: usize,
-        ) -> SVector<f64, 3> {
-            let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
-            let parameters = self.parameters.over(change);
-            let (step, given, momenta) = (
-                h.over(change),
-                given.over(change),
-                [momenta[0].over(change)],
-            );
-            let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
-            let trial = [trial[0].over(change)];
-            MixedFour::<
-                newton::Enclosure<0>,
-            >::residual_at_4(&parameters, step, &given, &momenta, &trial)
-                .map(|x| x.rest())
-        }
-        /// Finds the principal root, or shows that the solution is.
-        #[cold]
-        #[inline(never)]
-        fn principal_4(
-            &self,
-            h: T,
-            given: &(
-                newton::Turn<SMatrix<T, 3, 3>>,
-                (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-            ),
-            values: &[T; 0],
-            momenta: &[SVector<T, 3>; 1],
-            certificate: &mut newton::Certificate<[T; 0], 3>,
-            solution: Option<&[Additive<3, 1, T>; 1]>,
-        ) -> Result<Option<newton::Anchor<[Additive<3, 1, T>; 1], 3>>, newton::Fold> {
-            let first = solution.copied().unwrap_or_else(Group::<T>::identity);
-            let mut verdict = newton::Verdict::<[Additive<3, 1, T>; 1], 3>::about(first);
-            for lane in 0..T::LANES {
-                let change = &mut |x: T| newton::Enclosure::<3>::exactly(x.lane(lane));
-                let (bound, bound_step) = (self.parameters.over(change), h.over(change));
-                let change = &mut |x: T| x.lane(lane);
-                let (parameters, step) = (self.parameters.over(change), h.over(change));
-                let (given, near, momenta) = (
-                    given.over(change),
-                    values.over(change),
-                    [momenta[0].over(change)],
-                );
-                let found = match solution {
-                    Some(found) => Some([found[0].over(change)]),
-                    None => None,
-                };
-                let equations = newton::Equations {
-                    residual: &|trial: &[Additive<3, 1, f64>; 1]| MixedFour::<
-                        f64,
-                    >::residual_at_4(&parameters, step, &given, &momenta, trial),
-                    tangent: &|trial: &[Additive<3, 1, f64>; 1]| {
-                        let ΔX = trial[0].matrix();
-                        MixedFour::<f64>::tangent_at_4(&parameters, step, &near, ΔX)
-                    },
-                    enclosed: &|spread, trial: &[newton::AdditiveRegion<3, 1, 3>; 1]| {
-                        let ΔX = trial[0].matrix();
-                        let values = newton::NodeValues::enclosed(values, lane, spread);
-                        MixedFour::<
-                            newton::Enclosure<3>,
-                        >::tangent_at_4(&bound, bound_step, &values, ΔX)
-                    },
-                };
-                let care = certificate.care();
-                let traced = newton::trace(&equations, found.as_ref(), care);
-                if let Some(root) = verdict
-                    .add(traced.map_err(|fold| fold.in_lane(lane))?)
-                {
-                    let all = verdict.root_mut();
-                    all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
-                }
-            }
-            Ok(verdict.close(certificate, values))
-        }
-        /// `relative_R_q` at the node of this state.
-        #[inline]
-        pub fn relative_R_q(&self, state: &MixedFourState<T>) -> SMatrix<T, 3, 3> {
-            let R = state.R.matrix();
-            let q = state.q.matrix();
-            let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
-            relative_R_q
-        }
+        Ok(verdict.close(certificate, values))
     }
-    impl<T: Real> Stepper for MixedFour<T> {
-        type Scalar = T;
-        type State = MixedFourState<T>;
-        type Workspace = MixedFourWorkspace<T>;
-        fn workspace(
-            &self,
-            state: &Self::State,
-            h: T,
-        ) -> Result<Self::Workspace, StartError> {
-            self.prepare(state, h, Default::default())
-        }
-        #[inline(always)]
-        fn advance(
-            &self,
-            state: &mut Self::State,
-            work: &mut Self::Workspace,
-        ) -> Result<(), StepError> {
-            self.step(state, work)
-        }
-        #[cold]
-        fn attempt(&self, state: &Self::State, h: T) -> Option<Self::State> {
-            let mut moving = *state;
-            self.step(
-                    &mut moving,
-                    &mut {
-                        let method = self.method;
-                        MixedFourWorkspace {
+    /// Says how far the step is beyond the bound, and which step could be made.
+    #[cold]
+    #[inline(never)]
+    fn refused_3(
+        &self,
+        state: MixedFourState<T>,
+        work: &MixedFourWorkspace<T>,
+        e: QuaternionError,
+    ) -> StepError {
+        let method = work.method;
+        let e = e
+            .with_searched_steps(
+                work.h.value(),
+                |h| {
+                    let h = T::from_f64(h);
+                    let made = self
+                        .step(
+                            &mut { state },
+                            &mut MixedFourWorkspace {
+                                h,
+                                method,
+                                search_2: newton::Search::to_offer(),
+                                search_4: newton::Search::to_offer(),
+                            },
+                        );
+                    made.ok().map(|()| 0.0)
+                },
+            );
+        StepCause::from(e).at_node(state.node)
+    }
+    /// The solution to be taken where the one found is not known to be principal, or none was
+    /// found. None where the iteration begins again, at the principal root.
+    #[cold]
+    #[inline(never)]
+    fn settled_4(
+        &self,
+        h: T,
+        state: MixedFourState<T>,
+        given: (
+            newton::Turn<SMatrix<T, 3, 3>>,
+            (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
+        ),
+        momenta: [SVector<T, 3>; 1],
+        iteration: &mut newton::Newton<
+            '_,
+            T,
+            [Additive<3, 1, T>; 1],
+            MixedFourNode4<T>,
+            3,
+        >,
+        ended: newton::Progress<[Additive<3, 1, T>; 1]>,
+        method: Method,
+    ) -> Result<Option<newton::Solved<[Additive<3, 1, T>; 1]>>, StepError> {
+        let failed = match ended {
+            newton::Progress::Continue => return Ok(None),
+            newton::Progress::Solved(solved) => Ok(solved),
+            newton::Progress::Failed(e) => Err(e),
+        };
+        let asked = failed.as_ref().ok().map(|solved| &solved.element);
+        let values = iteration.values();
+        let traced = self
+            .principal_4(h, &given, &values, &momenta, iteration.certificate(), asked);
+        let e = match (traced, failed) {
+            (Ok(None), Ok(solved)) => return Ok(Some(solved)),
+            (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
+            (Ok(_), Err(e)) => e,
+            (Ok(_), Ok(_)) => iteration.unpolished(),
+            (Err(fold), failed) => iteration.folded(fold, failed.err()),
+        };
+        Err(self.refused_4(state, h, e, method))
+    }
+    /// Says which equation is worst, and which step could be solved.
+    #[cold]
+    #[inline(never)]
+    fn refused_4(
+        &self,
+        state: MixedFourState<T>,
+        h: T,
+        e: newton::NewtonError,
+        method: Method,
+    ) -> StepError {
+        const CONFIGURATIONS: &[&str] = &["X"];
+        let e = e
+            .explained(
+                h,
+                &CONFIGURATIONS,
+                |h, search| {
+                    self.step(
+                        &mut { state },
+                        &mut MixedFourWorkspace {
                             h,
                             method,
-                            search_2: newton::Search::to_try(),
-                            search_4: newton::Search::to_try(),
-                        }
-                    },
-                )
-                .ok()?;
-            Some(moving)
-        }
-        fn node(state: &Self::State) -> u64 {
-            state.node
-        }
-        fn at_node(state: Self::State, node: u64) -> Self::State {
-            MixedFourState {
-                node: node,
-                ..state
-            }
-        }
-    }
-    impl<T: Real> Reversible for MixedFour<T> {}
-    ::clebsch::of_scalars! {
-        [] MixedFourParameters { J, A, M, I, m, b, k, p, s, e, g }
-    }
-    ::clebsch::of_scalars! {
-        [] MixedFourInitial { R, body_momentum_R, G, body_momentum_G, q, body_momentum_q,
-        X, momentum_X }
-    }
-    ::clebsch::of_scalars! {
-        [] MixedFourState { R, momentum_R, G, momentum_G, place_rest_G, momentum_rest_G,
-        q, momentum_q, X, momentum_X, place_rest_X, momentum_rest_X } at node
-    }
-    impl<T: Real> ::clebsch::integrate::Model for MixedFour<T> {
-        type Parameters = MixedFourParameters<T>;
-        type Initial = MixedFourInitial<T>;
-        type Choice = Option<Method>;
-        type Over<U: Real> = MixedFour<U>;
-        const SIDE_BY_SIDE: bool = false;
-        fn of(parameters: Self::Parameters) -> Result<Self, ParameterError> {
-            Self::new(parameters)
-        }
-        fn given(&self) -> &Self::Parameters {
-            &self.parameters
-        }
-        fn begin(
-            &self,
-            initial: Self::Initial,
-        ) -> Result<MixedFourState<T>, StartError> {
-            validate::finite("R", &initial.R.quaternion())?;
-            validate::finite("body_momentum_R", initial.body_momentum_R.0.as_slice())?;
-            validate::finite("G", initial.G.matrix().as_slice())?;
-            validate::finite("body_momentum_G", initial.body_momentum_G.0.as_slice())?;
-            validate::finite("q", &initial.q.components())?;
-            validate::finite("body_momentum_q", initial.body_momentum_q.0.as_slice())?;
-            validate::finite("X", initial.X.matrix().as_slice())?;
-            validate::finite("momentum_X", initial.momentum_X.0.as_slice())?;
-            Ok(MixedFourState {
-                R: initial.R,
-                momentum_R: initial.body_momentum_R.to_space(&initial.R),
-                G: initial.G,
-                momentum_G: initial.body_momentum_G.carried(&initial.G),
-                place_rest_G: SMatrix::zeros(),
-                momentum_rest_G: SMatrix::zeros(),
-                q: initial.q,
-                momentum_q: initial.body_momentum_q.to_space(&initial.q),
-                X: initial.X,
-                momentum_X: initial.momentum_X,
-                place_rest_X: SMatrix::zeros(),
-                momentum_rest_X: SMatrix::zeros(),
-                node: 0,
-            })
-        }
-        fn prepared(
-            &self,
-            _: &MixedFourState<T>,
-            h: T,
-            choice: Self::Choice,
-        ) -> Result<Self::Workspace, StartError> {
-            {
-                let h = h;
-                validate::inside(
-                    domain::Domain::NotZero,
-                    domain::Function::Quotient,
-                    "h³",
-                    h.powi(3),
-                )?;
-            }
-            let method = choice.unwrap_or(self.method);
-            Ok(MixedFourWorkspace {
-                h,
-                method,
-                search_2: newton::Search::from_rest(),
-                search_4: newton::Search::from_rest(),
-            })
-        }
-    }
-    /// A configuration at one node, solution or not.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub struct MixedFourConfiguration<T = f64> {
-        /// `R` at the node: body -> space.
-        pub R: Rotation<T>,
-        /// `G` at the node: body -> space.
-        pub G: RigidMotion<T>,
-        /// `q` at the node: body -> space.
-        pub q: UnitQuaternion<T>,
-        /// `X` at the node.
-        pub X: Additive<3, 1, T>,
-    }
-    impl<T: Real> MixedFour<T> {
-        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
-        /// consecutive configurations: components are derivatives of the action of the two edges
-        /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
-        /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
-        /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
-        pub fn balance(
-            &self,
-            h: T,
-            before: &MixedFourConfiguration<T>,
-            here: &MixedFourConfiguration<T>,
-            after: &MixedFourConfiguration<T>,
-        ) -> SVector<T, 15> {
-            let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = self
-                .parameters;
-            let R = here.R.matrix();
-            let G = here.G.matrix();
-            let q = here.q.matrix();
-            let X = here.X.matrix();
-            let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
-            let V_before = before.R.body_velocity(&here.R).matrix();
-            let V = here.R.body_velocity(&after.R).matrix();
-            let W_before = before.G.body_velocity(&here.G).matrix();
-            let W = here.G.body_velocity(&after.G).matrix();
-            let Y_before = before.q.body_velocity(&here.q).matrix();
-            let Y = here.q.body_velocity(&after.q).matrix();
-            let ΔX_before = before.X.spatial_velocity(&here.X).matrix();
-            let ΔX = here.X.spatial_velocity(&after.X).matrix();
-            let t1 = h.powi(-1);
-            let t2 = p.cross(&(R.tr_mul(&X))) * (T::from_f64(0.5) * h * k);
-            let t3 = p.cross(&(relative_R_q * e_));
-            let t4 = -(t3 * (T::from_f64(0.5) * h * k));
-            let t5 = motion_rotation(&W_before);
-            let t6 = motion_rotation(&G);
-            let t7 = t6.transpose();
-            let t8 = motion_translation(&G);
-            let t9 = s.cross(&(t7 * (t8 - X))) * (T::from_f64(0.5) * h * k);
-            let t10 = t7 * (t8 + t6 * s - X) * (T::from_f64(0.5) * h * k);
-            let t11 = relative_R_q.tr_mul(&t3) * (T::from_f64(0.5) * h * k);
-            let t12 = h.powi(-3);
-            let t13 = g * (T::from_f64(0.5) * h * m);
-            let t14 = R * p * (T::from_f64(0.5) * h * k);
-            let t15 = -(X * (h * k));
-            let t16 = t6 * s * (T::from_f64(0.5) * h * k);
-            let t17 = t8 * (T::from_f64(0.5) * h * k);
-            let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-                axial_of_difference(&(J * V_before)) * t1 + t2 + t4
-                    + axial_of_difference(&(J * V.transpose())) * t1 + t2 + t4,
-                into_rows::<T, 6, 3, 1>(&(axial_of_difference(&(A * t5)) * t1 - t9), 0)
-                    + into_rows::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(&(t5.tr_mul(&motion_translation(&W_before)) * (t1 * M) - t10), 3)
-                    - into_rows::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(
-                        &(t9
-                            - axial_of_difference(&(A * motion_rotation(&W).transpose()))
-                                * t1),
-                        0,
+                            search_2: search.alike(),
+                            search_4: search,
+                        },
                     )
-                    - into_rows::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(&(motion_translation(&W) * (t1 * M) + t10), 3),
-                quaternion_imaginary(
-                    &(Y_before
-                        .tr_mul(
-                            &pure_quaternion(
-                                &(diagonal_times(&I, &quaternion_imaginary(&Y_before))),
-                            ),
-                        )),
-                ) * (T::from_f64(2.0) * t1) + t11
-                    - quaternion_imaginary(
-                        &(Y
-                            * pure_quaternion(
-                                &(diagonal_times(&I, &quaternion_imaginary(&Y))),
-                            )),
-                    ) * (T::from_f64(2.0) * t1) + t11,
-                ΔX_before * (T::from_f64(4.0) * t12 * b * ΔX_before.dot(&ΔX_before))
-                    + ΔX_before * (t1 * m) + t13 + t14 + t15 + t16 + t17
-                    - ΔX * (T::from_f64(4.0) * t12 * b * ΔX.dot(&ΔX)) - ΔX * (t1 * m)
-                    + t13 + t14 + t15 + t16 + t17,
+                },
             );
-            {
-                let mut all = SVector::<T, 15>::zeros();
-                let rest = all.as_mut_slice();
-                let rest = put_vector(rest, &parts.0);
-                let rest = put_vector(rest, &parts.1);
-                let rest = put_vector(rest, &parts.2);
-                let rest = put_matrix(rest, &parts.3);
-                let _ = rest;
-                all
-            }
+        StepCause::from(e).at_node(state.node)
+    }
+    /// The residual of the equations of a step.
+    #[cold]
+    #[inline(never)]
+    #[allow(unused_variables)]
+    fn residual_at_4(
+        parameters: &MixedFourParameters<T>,
+        h: T,
+        given: &(
+            newton::Turn<SMatrix<T, 3, 3>>,
+            (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
+        ),
+        momenta: &[SVector<T, 3>; 1],
+        trial: &[Additive<3, 1, T>; 1],
+    ) -> SVector<T, 3> {
+        let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
+        let R = given.0.0;
+        let G = given.1.0;
+        let X = given.1.1.0;
+        let ΔX = trial[0].matrix();
+        let parts: [SVector<T, 3>; 1] = [
+            (ΔX * (T::from_f64(4.0) * b * ΔX.dot(&ΔX) / h.powi(3)) + ΔX * (m / h)
+                - g * (T::from_f64(0.5) * h * m) - R * p * (T::from_f64(0.5) * h * k)
+                + X * (h * k) - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
+                - motion_translation(&G) * (T::from_f64(0.5) * h * k)) - momenta[0],
+        ];
+        {
+            let mut all = SVector::<T, 3>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_matrix(rest, &parts[0]);
+            let _ = rest;
+            all
         }
     }
-    impl<T: Real> MixedFour<T> {
-        /// What the step of size `h` from one state to the next leaves of its equations: the
-        /// momentum that is carried to the second state, less the one that the motion between
-        /// them brings there. One part a configuration, angular and linear ones of a rigid
-        /// motion apart, each with the size of the terms it is made of: those of a spatial
-        /// velocity are the two elements it is made from, as they are stored.
-        pub fn residual(
-            &self,
-            before: &MixedFourState<T>,
-            after: &MixedFourState<T>,
-            h: T,
-        ) -> [Residual; 5] {
-            let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = self
-                .parameters;
-            let V_matrix = before.R.body_velocity(&after.R).matrix();
-            let W_matrix = before
-                .G
-                .velocity_between(&before.place_rest_G, &after.G, &after.place_rest_G)
-                .matrix();
-            let Y_matrix = before.q.body_velocity(&after.q).matrix();
-            let ΔX_matrix = before
-                .X
-                .velocity_between(&before.place_rest_X, &after.X, &after.place_rest_X)
-                .matrix();
-            let R_next = after.R.matrix();
-            let G_next = after.G.matrix();
-            let q_next = after.q.matrix();
-            let X_next = after.X.matrix();
-            let relative_R_q_next = R_next.tr_mul(&quaternion_rotation(&q_next));
-            let t1 = h.powi(-1);
-            let t2 = p.cross(&(relative_R_q_next * e_));
-            let t3 = motion_rotation(&W_matrix);
-            let t4 = motion_rotation(&G_next);
-            let t5 = t4.transpose();
-            let t6 = motion_translation(&G_next);
-            let t7 = t3.transpose();
-            let t8 = motion_translation(&W_matrix);
-            let t9 = quaternion_imaginary(&Y_matrix);
-            let t10 = h.powi(-3);
-            let t11 = ΔX_matrix.dot(&ΔX_matrix);
-            let t12 = (t1 * t1).sqrt();
-            let t13 = (h * h).sqrt();
-            let t14 = (k * k).sqrt();
-            let t15 = p.dot(&p).sqrt();
-            let t16 = (R_next.tr_mul(&R_next)).trace().sqrt();
-            let t17 = X_next.dot(&X_next).sqrt();
-            let t18 = (relative_R_q_next.tr_mul(&relative_R_q_next)).trace().sqrt();
-            let t19 = e_.dot(&e_).sqrt();
-            let t20 = (t7 * t3).trace().sqrt();
-            let t21 = s.dot(&s).sqrt();
-            let t22 = (t5 * t4).trace().sqrt();
-            let t23 = t6.dot(&t6).sqrt();
-            let t24 = (Y_matrix.tr_mul(&Y_matrix)).trace().sqrt();
-            let t25 = (diagonal_times(&I, &I)).trace().sqrt();
-            let t26 = t11.sqrt();
-            let t27 = (m * m).sqrt();
-            let _ = h;
-            [
-                {
-                    let momentum = after.momentum_R.to_body(&after.R).0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (axial_of_difference(&(J * V_matrix)) * t1
-                                        + p.cross(&(R_next.tr_mul(&X_next)))
-                                            * (T::from_f64(0.5) * h * k)
-                                        - t2 * (T::from_f64(0.5) * h * k))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (T::from_f64(2.0) * t12 * (J * J).trace().sqrt()
-                                * (V_matrix.tr_mul(&V_matrix)).trace().sqrt()
-                                + T::from_f64(0.5) * t13 * t14 * t15 * t16 * t17
-                                + T::from_f64(0.5) * t13 * t14 * t15 * t18 * t19)
-                                .magnitude(),
-                    }
-                },
-                {
-                    let momentum = rows_from::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(&after.momentum_G.to_body(&after.G).0, 0);
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (axial_of_difference(&(A * t3)) * t1
-                                        - s.cross(&(t5 * (t6 - X_next)))
-                                            * (T::from_f64(0.5) * h * k))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (T::from_f64(2.0) * t12 * (A * A).trace().sqrt() * t20
-                                + T::from_f64(0.5) * t13 * t14 * t21 * t22 * (t23 + t17))
-                                .magnitude(),
-                    }
-                },
-                {
-                    let momentum = rows_from::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(&after.momentum_G.to_body(&after.G).0, 3);
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (t7 * t8 * (t1 * M)
-                                        - t5 * (t6 + t4 * s - X_next) * (T::from_f64(0.5) * h * k))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (t12 * (M * M).sqrt() * t20 * t8.dot(&t8).sqrt()
-                                + T::from_f64(0.5) * t13 * t14 * t22
-                                    * (t23 + t22 * t21 + t17))
-                                .magnitude(),
-                    }
-                },
-                {
-                    let momentum = after.momentum_q.to_body(&after.q).0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (quaternion_imaginary(
-                                        &(Y_matrix
-                                            .tr_mul(&pure_quaternion(&(diagonal_times(&I, &t9))))),
-                                    ) * (T::from_f64(2.0) * t1)
-                                        + relative_R_q_next.tr_mul(&t2)
-                                            * (T::from_f64(0.5) * h * k))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (T::from_f64(4.0) * t12 * t24 * t25 * t9.dot(&t9).sqrt()
-                                + T::from_f64(0.5) * t13 * t14 * t18 * t15 * t18 * t19
-                                + T::from_f64(4.0) * t12 * t24 * t25)
-                                .magnitude(),
-                    }
-                },
-                {
-                    let momentum = after.momentum_X.0;
-                    Residual {
-                        size: length(
-                                &(momentum
-                                    - (ΔX_matrix * (T::from_f64(4.0) * t10 * b * t11)
-                                        + ΔX_matrix * (t1 * m) + g * (T::from_f64(0.5) * h * m)
-                                        + R_next * p * (T::from_f64(0.5) * h * k) - X_next * (h * k)
-                                        + t4 * s * (T::from_f64(0.5) * h * k)
-                                        + t6 * (T::from_f64(0.5) * h * k))),
-                            )
-                            .magnitude(),
-                        scale: length(&momentum).magnitude()
-                            + (T::from_f64(4.0) * (t10 * t10).sqrt() * (b * b).sqrt()
-                                * t26 * t26 * t26 + t12 * t27 * t26
-                                + T::from_f64(0.5) * t13 * t27 * g.dot(&g).sqrt()
-                                + T::from_f64(0.5) * t13 * t14 * t16 * t15 + t13 * t14 * t17
-                                + T::from_f64(0.5) * t13 * t14 * t22 * t21
-                                + T::from_f64(0.5) * t13 * t14 * t23)
-                                .magnitude(),
-                    }
-                },
-            ]
+    /// Their tangent.
+    #[cold]
+    #[inline(never)]
+    #[allow(unused_variables)]
+    fn tangent_at_4(
+        parameters: &MixedFourParameters<T>,
+        h: T,
+        values: &[T; 0],
+        ΔX: SVector<T, 3>,
+    ) -> SMatrix<T, 3, 3> {
+        let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
+        let mut matrix = SMatrix::<T, 3, 3>::zeros();
+        for axis in 0..(3 * 1) {
+            let η4 = array_basis::<T, 3, 1>(axis);
+            let t1 = h.powi(-3);
+            let parts: [SVector<T, 3>; 1] = [
+                ΔX * (T::from_f64(4.0) * t1 * b * (η4.dot(&ΔX) + ΔX.dot(&η4)))
+                    + η4 * (T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX)) + η4 * (m / h),
+            ];
+            matrix
+                .set_column(
+                    axis,
+                    &{
+                        let mut all = SVector::<T, 3>::zeros();
+                        let rest = all.as_mut_slice();
+                        let rest = put_matrix(rest, &parts[0]);
+                        let _ = rest;
+                        all
+                    },
+                );
         }
+        matrix
     }
-    impl<T: Real> MixedFour<T> {
-        /// `(R_k μ_{1,k} + rot(G_k) ang(μ_{2,k}) + pos(G_k) × (rot(G_k) lin(μ_{2,k})) + rot(q_k) μ_{3,k} + X_k × ϖ_{4,k})·g`: Noether: the action is invariant under rotations about the axis in space.
-        pub fn total_momentum_angular_g(&self, state: &MixedFourState<T>) -> T {
-            let MixedFourParameters { g, .. } = self.parameters;
-            let R = state.R.matrix();
-            let G = state.G.matrix();
-            let q = state.q.matrix();
-            let X = state.X.matrix();
-            let μ1 = state.body_momentum_R().0;
-            let μ2 = state.body_momentum_G().0;
-            let μ3 = state.body_momentum_q().0;
-            let ϖ4 = state.momentum_X().0;
-            let t1 = motion_rotation(&G);
-            (R * μ1 + t1 * rows_from::<T, 6, 3, 1>(&μ2, 0)
-                + motion_translation(&G).cross(&(t1 * rows_from::<T, 6, 3, 1>(&μ2, 3)))
-                + quaternion_rotation(&q) * μ3 + X.cross(&ϖ4))
-                .dot(&g)
-        }
+    /// Bounds of the rounding of the residual, in one lane.
+    #[cold]
+    #[inline(never)]
+    fn rounding_4(
+        &self,
+        h: T,
+        given: &(
+            newton::Turn<SMatrix<T, 3, 3>>,
+            (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
+        ),
+        momenta: &[SVector<T, 3>; 1],
+        trial: &[Additive<3, 1, T>; 1],
+        lane: usize,
+    ) -> SVector<f64, 3> {
+        let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
+        let parameters = self.parameters.over(change);
+        let (step, given, momenta) = (
+            h.over(change),
+            given.over(change),
+            [momenta[0].over(change)],
+        );
+        let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
+        let trial = [trial[0].over(change)];
+        MixedFour::<
+            newton::Enclosure<0>,
+        >::residual_at_4(&parameters, step, &given, &momenta, &trial)
+            .map(|x| x.rest())
     }
-    impl<T: Real> MixedFour<T> {
-        /// The discrete energy of the edge between two consecutive states, `-tr(J V_k)/h² - tr(A rot(W_k))/h² + 2 M pos(W_k)·pos(W_k)/(2 h)² + 2 im(Y_k)·(I im(Y_k))/h² + 2 m ΔX_k·ΔX_k/(2 h)² + 3 b (ΔX_k·ΔX_k)² h²/h⁶ - ½ m g·X_k + ¼ k (X_k - R_k p)·(X_k - R_k p) + ¼ k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) + ½ k e·(relative_{R,q,k}ᵀ p) - ½ m g·X_{k+1} + ¼ k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) + ¼ k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) + ½ k e·(relative_{R,q,k+1}ᵀ p) + tr(J)/h² + tr(A)/h²`: bounded, since the stepper is symplectic.
-        pub fn discrete_energy(
-            &self,
-            h: T,
-            before: &MixedFourState<T>,
-            after: &MixedFourState<T>,
-        ) -> T {
-            let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = self
-                .parameters;
-            let V_matrix = before.R.body_velocity(&after.R).matrix();
-            let W_matrix = before
-                .G
-                .velocity_between(&before.place_rest_G, &after.G, &after.place_rest_G)
-                .matrix();
-            let Y_matrix = before.q.body_velocity(&after.q).matrix();
-            let ΔX_matrix = before
-                .X
-                .velocity_between(&before.place_rest_X, &after.X, &after.place_rest_X)
-                .matrix();
-            let R = before.R.matrix();
-            let G = before.G.matrix();
-            let q = before.q.matrix();
-            let X = before.X.matrix();
-            let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
-            let R_next = after.R.matrix();
-            let G_next = after.G.matrix();
-            let q_next = after.q.matrix();
-            let X_next = after.X.matrix();
-            let relative_R_q_next = R_next.tr_mul(&quaternion_rotation(&q_next));
-            let t1 = motion_translation(&W_matrix);
-            let t2 = (T::from_f64(2.0) * h) * (T::from_f64(2.0) * h);
-            let t3 = quaternion_imaginary(&Y_matrix);
-            let t4 = ΔX_matrix.dot(&ΔX_matrix);
-            let t5 = X - R * p;
-            let t6 = motion_translation(&G) + motion_rotation(&G) * s - X;
-            let t7 = X_next - R_next * p;
-            let t8 = motion_translation(&G_next) + motion_rotation(&G_next) * s - X_next;
-            (T::from_f64(2.0) * M * t1.dot(&t1)) / t2
-                + (T::from_f64(2.0) * t3.dot(&(diagonal_times(&I, &t3)))) / (h * h)
-                + (T::from_f64(2.0) * m * t4) / t2
-                + (T::from_f64(3.0) * b * (t4 * t4) * (h * h)) / h.powi(6)
-                - T::from_f64(0.5) * m * g.dot(&X) + T::from_f64(0.25) * k * t5.dot(&t5)
-                + T::from_f64(0.25) * k * t6.dot(&t6)
-                + T::from_f64(0.5) * k * e_.dot(&(relative_R_q.tr_mul(&p)))
-                - T::from_f64(0.5) * m * g.dot(&X_next)
-                + T::from_f64(0.25) * k * t7.dot(&t7)
-                + T::from_f64(0.25) * k * t8.dot(&t8)
-                + T::from_f64(0.5) * k * e_.dot(&(relative_R_q_next.tr_mul(&p)))
-                - (J * less_identity(&V_matrix)).trace() / (h * h)
-                - (A * less_identity(&motion_rotation(&W_matrix))).trace() / (h * h)
-        }
-    }
-    impl ::clebsch::integrate::Described for MixedFour<f64> {
-        fn card() -> &'static Card {
-            &Self::CARD
-        }
-        fn read(
-            parameters: &[Vec<f64>],
-            initial: &[Vec<f64>],
-        ) -> Result<(Self, Self::Initial), OpenError> {
-            let model = Self::new(MixedFourParameters {
-                J: matrix_of("J", parameters.get(0usize))?,
-                A: matrix_of("A", parameters.get(1usize))?,
-                M: number_of("M", parameters.get(2usize))?,
-                I: matrix_of("I", parameters.get(3usize))?,
-                m: number_of("m", parameters.get(4usize))?,
-                b: number_of("b", parameters.get(5usize))?,
-                k: number_of("k", parameters.get(6usize))?,
-                p: matrix_of("p", parameters.get(7usize))?,
-                s: matrix_of("s", parameters.get(8usize))?,
-                e: matrix_of("e", parameters.get(9usize))?,
-                g: matrix_of("g", parameters.get(10usize))?,
-            })?;
-            let initial = MixedFourInitial {
-                R: rotation_of("R", initial.get(0usize))?,
-                body_momentum_R: BodyMomentum(
-                    matrix_of("body_momentum_R", initial.get(1usize))?,
-                ),
-                G: motion_of("G", initial.get(2usize))?,
-                body_momentum_G: BodyImpulse(
-                    matrix_of("body_momentum_G", initial.get(3usize))?,
-                ),
-                q: quaternion_of("q", initial.get(4usize))?,
-                body_momentum_q: BodyMomentum(
-                    matrix_of("body_momentum_q", initial.get(5usize))?,
-                ),
-                X: additive_of("X", initial.get(6usize))?,
-                momentum_X: FieldMomentum(matrix_of("momentum_X", initial.get(7usize))?),
-            };
-            Ok((model, initial))
-        }
-        fn ways(
-            self,
-            state: &Self::State,
-            settings: Settings,
-        ) -> Result<(Self, Steps<Self>), OpenError> {
-            let model = match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => self.with_solver(method),
-                None => self,
-            };
-            let steps = Steps::of_order(&model, state, settings, Self::CARD.orders)?;
-            Ok((model, steps))
-        }
-        fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
-            self.kinetic_warning(state)
-        }
-        fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-            Residual::largest(&self.residual(before, after, h))
-        }
-        fn observe(&self, state: &Self::State, out: &mut [f64]) {
-            let out = put(out, rows(state.R().matrix()));
-            let out = put(out, rows(state.body_momentum_R().0));
-            let out = put(out, rows(state.spatial_momentum_R().0));
-            let out = put(out, rows(state.G().matrix()));
-            let out = put(out, rows(state.body_momentum_G().0));
-            let out = put(out, rows(state.spatial_momentum_G().0));
-            let out = put(out, state.q().components());
-            let out = put(out, rows(state.body_momentum_q().0));
-            let out = put(out, rows(state.spatial_momentum_q().0));
-            let out = put(out, rows(state.X().matrix()));
-            let out = put(out, rows(state.momentum_X().0));
-            let out = put(out, rows(self.relative_R_q(state)));
-            let _ = out;
-        }
-        fn invariants(
-            &self,
-            state: &Self::State,
-            _: Option<&Self::Workspace>,
-            out: &mut [f64],
-        ) {
-            let out = put(out, [self.total_momentum_angular_g(state)]);
-            let _ = (state, out);
-        }
-        fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
-            let mut enlarged = *state;
-            {
-                type T = f64;
-                let MixedFourParameters { m, k, p, s, e: e_, g, .. } = self.parameters;
-                let R = state.R.matrix();
-                let G = state.G.matrix();
-                let q = state.q.matrix();
-                let X = state.X.matrix();
-                let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
-                let t1 = (h * h).sqrt();
-                let t2 = (k * k).sqrt();
-                let t3 = p.dot(&p).sqrt();
-                let t4 = (R.tr_mul(&R)).trace().sqrt();
-                let t5 = X.dot(&X).sqrt();
-                let t6 = T::from_f64(0.5) * t1 * t2 * t3 * t4 * t5;
-                let t7 = (relative_R_q.tr_mul(&relative_R_q)).trace().sqrt();
-                let t8 = e_.dot(&e_).sqrt();
-                let t9 = T::from_f64(0.5) * t1 * t2 * t3 * t7 * t8;
-                let t10 = s.dot(&s).sqrt();
-                let t11 = motion_rotation(&G);
-                let t12 = (t11.tr_mul(&t11)).trace().sqrt();
-                let t13 = motion_translation(&G);
-                let t14 = t13 + t11 * s - X;
-                let t15 = t14.dot(&t14).sqrt();
-                let t16 = T::from_f64(0.5) * t1 * t2 * t10 * t12 * t15;
-                let t17 = t13.dot(&t13).sqrt();
-                let t18 = t17 + t12 * t10 + t5;
-                let t19 = T::from_f64(0.5) * t1 * t2 * t10 * t12 * t18;
-                let t20 = T::from_f64(0.5) * t1 * t2 * t12 * t15;
-                let t21 = T::from_f64(0.5) * t1 * t2 * t12 * t18;
-                let t22 = T::from_f64(0.5) * t1 * t2 * t7 * t3 * t7 * t8;
-                let t23 = T::from_f64(0.5) * t1 * (m * m).sqrt() * g.dot(&g).sqrt();
-                let t24 = T::from_f64(0.5) * t1 * t2 * t4 * t3;
-                let t25 = t1 * t2 * t5;
-                let t26 = T::from_f64(0.5) * t1 * t2 * t12 * t10;
-                let t27 = T::from_f64(0.5) * t1 * t2 * t17;
-                enlarged.momentum_R = SpatialMomentum(
-                    not_less(enlarged.momentum_R.0, (0, 3), t6 + t9 + t6 + t9),
-                );
-                enlarged.momentum_G = CarriedImpulse(
-                    not_less(enlarged.momentum_G.0, (0, 3), t16 + t19 + t16 + t19),
-                );
-                enlarged.momentum_G = CarriedImpulse(
-                    not_less(enlarged.momentum_G.0, (3, 3), t20 + t21 + t20 + t21),
-                );
-                enlarged.momentum_q = SpatialMomentum(
-                    not_less(enlarged.momentum_q.0, (0, 3), t22 + t22),
-                );
-                enlarged.momentum_X = FieldMomentum(
-                    not_less(
-                        enlarged.momentum_X.0,
-                        (0, 3),
-                        t23 + t24 + t25 + t26 + t27 + t23 + t24 + t25 + t26 + t27,
-                    ),
-                );
-            }
-            let state = &enlarged;
-            type T = f64;
-            let MixedFourParameters { g, .. } = self.parameters;
-            let R = state.R.matrix();
-            let G = state.G.matrix();
-            let q = state.q.matrix();
-            let X = state.X.matrix();
-            let μ1 = state.body_momentum_R().0;
-            let μ2 = state.body_momentum_G().0;
-            let μ3 = state.body_momentum_q().0;
-            let ϖ4 = state.momentum_X().0;
-            let t1 = R * μ1;
-            let t2 = g.dot(&g).sqrt();
-            let t3 = rows_from::<T, 6, 3, 1>(&μ2, 0);
-            let t4 = motion_translation(&G);
-            let t5 = rows_from::<T, 6, 3, 1>(&μ2, 3);
-            let t6 = quaternion_rotation(&q) * μ3;
-            let out = put(
-                out,
-                [t1.dot(&t1).sqrt() * t2
-                    + (t3.dot(&t3).sqrt() + t4.dot(&t4).sqrt() * t5.dot(&t5).sqrt()) * t2
-                    + t6.dot(&t6).sqrt() * t2
-                    + ϖ4.dot(&ϖ4).sqrt() * X.dot(&X).sqrt() * t2; 1usize],
+    /// Finds the principal root, or shows that the solution is.
+    #[cold]
+    #[inline(never)]
+    fn principal_4(
+        &self,
+        h: T,
+        given: &(
+            newton::Turn<SMatrix<T, 3, 3>>,
+            (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
+        ),
+        values: &[T; 0],
+        momenta: &[SVector<T, 3>; 1],
+        certificate: &mut newton::Certificate<[T; 0], 3>,
+        solution: Option<&[Additive<3, 1, T>; 1]>,
+    ) -> Result<Option<newton::Anchor<[Additive<3, 1, T>; 1], 3>>, newton::Fold> {
+        let first = solution.copied().unwrap_or_else(Group::<T>::identity);
+        let mut verdict = newton::Verdict::<[Additive<3, 1, T>; 1], 3>::about(first);
+        for lane in 0..T::LANES {
+            let change = &mut |x: T| newton::Enclosure::<3>::exactly(x.lane(lane));
+            let (bound, bound_step) = (self.parameters.over(change), h.over(change));
+            let change = &mut |x: T| x.lane(lane);
+            let (parameters, step) = (self.parameters.over(change), h.over(change));
+            let (given, near, momenta) = (
+                given.over(change),
+                values.over(change),
+                [momenta[0].over(change)],
             );
-            let _ = (state, h, out);
+            let found = match solution {
+                Some(found) => Some([found[0].over(change)]),
+                None => None,
+            };
+            let equations = newton::Equations {
+                residual: &|trial: &[Additive<3, 1, f64>; 1]| MixedFour::<
+                    f64,
+                >::residual_at_4(&parameters, step, &given, &momenta, trial),
+                tangent: &|trial: &[Additive<3, 1, f64>; 1]| {
+                    let ΔX = trial[0].matrix();
+                    MixedFour::<f64>::tangent_at_4(&parameters, step, &near, ΔX)
+                },
+                enclosed: &|spread, trial: &[newton::AdditiveRegion<3, 1, 3>; 1]| {
+                    let ΔX = trial[0].matrix();
+                    let values = newton::NodeValues::enclosed(values, lane, spread);
+                    MixedFour::<
+                        newton::Enclosure<3>,
+                    >::tangent_at_4(&bound, bound_step, &values, ΔX)
+                },
+            };
+            let care = certificate.care();
+            let traced = newton::trace(&equations, found.as_ref(), care);
+            if let Some(root) = verdict.add(traced.map_err(|fold| fold.in_lane(lane))?) {
+                let all = verdict.root_mut();
+                all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
+            }
         }
+        Ok(verdict.close(certificate, values))
     }
-    impl MixedFour<f64> {
-        /// The model as data.
-        pub const CARD: Card = Card {
-            name: "MixedFour",
-            kebab: "mixed-four",
-            doc: "Two bodies, a rigid motion and a point mass joined by springs.",
-            source: Self::SOURCE,
-            fingerprint: Self::FINGERPRINT,
-            summary: "discrete Lagrangian  -tr(J V_k)/h - tr(A rot(W_k))/h + M pos(W_k)·pos(W_k)/(2 h) + 2 im(Y_k)·(I im(Y_k))/h + m ΔX_k·ΔX_k/(2 h) + b (ΔX_k·ΔX_k)²/h³ + ½ h m g·X_k - ¼ h k (X_k - R_k p)·(X_k - R_k p) - ¼ h k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) - ½ h k e·(relative_{R,q,k}ᵀ p) + ½ h m g·X_{k+1} - ¼ h k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) - ¼ h k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) - ½ h k e·(relative_{R,q,k+1}ᵀ p)\nmomentum of R        -J V_kᵀ/h + V_k J/h\nmomentum of G        (-2 vee(A rot(W_k)ᵀ)/h, M pos(W_k)/h)\nmomentum of q        2 im(Y_k quat(I im(Y_k)))/h\nmomentum of X        4 b (ΔX_k·ΔX_k) ΔX_k/h³ + m ΔX_k/h\nRiccati form         exact, C = J; none: the group is not SO(n); none; in unit quaternions, A = I, β = 0; none: the balance is not linear in ΔX\ninvariants           total_momentum_angular_g\ntime reversal        symmetric: second order\ncertificate          51 identities proved by normal form, 10 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
-            solver: "Blocks: block by block: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton",
-            order: 2u32,
-            orders: &[2, 4, 6, 8],
-            preprocessed: false,
-            reversible: true,
-            parameters: &[
-                Kind::SecondMoments
-                    .field(
-                        "J",
-                        [3, 3],
-                        "second moments of the first body about its fixed point",
-                    ),
-                Kind::SecondMoments
-                    .field(
-                        "A",
-                        [3, 3],
-                        "second moments of the rigid motion about its own point",
-                    ),
-                Kind::Scalar.field("M", [1, 1], "mass of the rigid motion"),
-                Kind::Diagonal
-                    .field(
-                        "I",
-                        [3, 3],
-                        "principal moments of inertia of the second body",
-                    ),
-                Kind::Scalar.field("m", [1, 1], "mass of the point"),
-                Kind::Scalar
-                    .field(
-                        "b",
-                        [1, 1],
-                        "weight of the quartic term of its kinetic energy",
-                    ),
-                Kind::Scalar.field("k", [1, 1], "stiffness of the springs"),
-                Kind::Vector
-                    .field(
-                        "p",
-                        [3, 1],
-                        "where springs are fixed: in the first body, in the rigid motion, in the second body",
-                    ),
-                Kind::Vector
-                    .field(
-                        "s",
-                        [3, 1],
-                        "where springs are fixed: in the first body, in the rigid motion, in the second body",
-                    ),
-                Kind::Vector
-                    .field(
-                        "e",
-                        [3, 1],
-                        "where springs are fixed: in the first body, in the rigid motion, in the second body",
-                    ),
-                Kind::Vector
-                    .field(
-                        "g",
-                        [3, 1],
-                        "acceleration of gravity, which acts on the point",
-                    ),
-            ],
-            initial: &[
-                Kind::Rotation.field("R", [3, 3], "attitude of the first body"),
-                Kind::BodyMomentum
-                    .field("body_momentum_R", [3, 1], "momentum, body frame"),
-                Kind::RigidMotion
-                    .field("G", [4, 4], "attitude and place of the rigid motion"),
-                Kind::BodyMomentum
-                    .field("body_momentum_G", [6, 1], "momentum, body frame"),
-                Kind::UnitQuaternion.field("q", [4, 1], "attitude of the second body"),
-                Kind::BodyMomentum
-                    .field("body_momentum_q", [3, 1], "momentum, body frame"),
-                Kind::Vector.field("X", [3, 1], "place of the point"),
-                Kind::FieldMomentum.field("momentum_X", [3, 1], "momentum of X"),
-            ],
-            observables: &[
-                Kind::Rotation.field("R", [3, 3], "attitude of the first body"),
-                Kind::BodyMomentum
-                    .field("body_momentum_R", [3, 1], "momentum, body frame"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum_R", [3, 1], "momentum, space frame"),
-                Kind::RigidMotion
-                    .field("G", [4, 4], "attitude and place of the rigid motion"),
-                Kind::BodyMomentum
-                    .field("body_momentum_G", [6, 1], "momentum, body frame"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum_G", [6, 1], "momentum, space frame"),
-                Kind::UnitQuaternion.field("q", [4, 1], "attitude of the second body"),
-                Kind::BodyMomentum
-                    .field("body_momentum_q", [3, 1], "momentum, body frame"),
-                Kind::SpatialMomentum
-                    .field("spatial_momentum_q", [3, 1], "momentum, space frame"),
-                Kind::Vector.field("X", [3, 1], "place of the point"),
-                Kind::FieldMomentum.field("momentum_X", [3, 1], "momentum of X"),
-                Kind::Matrix.field("relative_R_q", [3, 3], ""),
-            ],
-            invariants: &[
-                Invariant::exact(
-                    "total_momentum_angular_g",
-                    "(R_k μ_{1,k} + rot(G_k) ang(μ_{2,k}) + pos(G_k) × (rot(G_k) lin(μ_{2,k})) + rot(q_k) μ_{3,k} + X_k × ϖ_{4,k})·g",
-                    1usize,
-                ),
-            ],
-            discrete_energy: Invariant::bounded(
-                "discrete_energy",
-                "-tr(J V_k)/h² - tr(A rot(W_k))/h² + 2 M pos(W_k)·pos(W_k)/(2 h)² + 2 im(Y_k)·(I im(Y_k))/h² + 2 m ΔX_k·ΔX_k/(2 h)² + 3 b (ΔX_k·ΔX_k)² h²/h⁶ - ½ m g·X_k + ¼ k (X_k - R_k p)·(X_k - R_k p) + ¼ k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) + ½ k e·(relative_{R,q,k}ᵀ p) - ½ m g·X_{k+1} + ¼ k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) + ¼ k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) + ½ k e·(relative_{R,q,k+1}ᵀ p) + tr(J)/h² + tr(A)/h²",
-                1,
-            ),
-            open: open::<Self>,
-            solvers: &Method::NAMES,
-            dimensions: &[],
-            sized: only_size::<Self>,
-        };
-        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
-        /// velocities together, at the identity, should be positive definite.
-        #[cold]
-        #[allow(unused_variables)]
-        pub fn kinetic_warning(
-            &self,
-            state: &MixedFourState<f64>,
-        ) -> Option<KineticWarning> {
-            type T = f64;
-            let MixedFourParameters { J, A, M, I, m, .. } = self.parameters;
-            let mut inertia = SMatrix::<T, 15, 15>::zeros();
-            for axis in 0..3 {
-                let ξ1: SMatrix<T, 3, 3> = basis::<T>(axis);
-                let ξ2: SVector<T, 6> = SMatrix::zeros();
-                let ξ3: SVector<T, 3> = SMatrix::zeros();
-                let ξ4: SVector<T, 3> = SMatrix::zeros();
-                let t1 = vee(&ξ1);
-                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-                let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
-                    * (T::from_f64(0.5) * M);
-                let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                    * (T::from_f64(0.5) * A.trace());
-                let t6 = -(into_rows::<
-                    T,
-                    6,
-                    3,
-                    1,
-                >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
-                let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
-                let t8 = ξ4 * (T::from_f64(0.5) * m);
-                let parts: (
-                    SVector<T, 3>,
-                    SVector<T, 6>,
-                    SVector<T, 3>,
-                    SVector<T, 3>,
-                ) = (
-                    axial_of_difference(&(t2 + t2 + t3 + t3)),
-                    t4 + t4 + t5 + t5 + t6 + t6,
-                    t7 + t7,
-                    t8 + t8,
-                );
-                inertia
-                    .set_column(
-                        axis,
-                        &{
-                            let mut all = SVector::<T, 15>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_vector(rest, &parts.0);
-                            let rest = put_vector(rest, &parts.1);
-                            let rest = put_vector(rest, &parts.2);
-                            let rest = put_matrix(rest, &parts.3);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            for axis in 0..6 {
-                let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
-                let ξ2: SVector<T, 6> = unit::<T, 6>(axis);
-                let ξ3: SVector<T, 3> = SMatrix::zeros();
-                let ξ4: SVector<T, 3> = SMatrix::zeros();
-                let t1 = vee(&ξ1);
-                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-                let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
-                    * (T::from_f64(0.5) * M);
-                let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                    * (T::from_f64(0.5) * A.trace());
-                let t6 = -(into_rows::<
-                    T,
-                    6,
-                    3,
-                    1,
-                >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
-                let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
-                let t8 = ξ4 * (T::from_f64(0.5) * m);
-                let parts: (
-                    SVector<T, 3>,
-                    SVector<T, 6>,
-                    SVector<T, 3>,
-                    SVector<T, 3>,
-                ) = (
-                    axial_of_difference(&(t2 + t2 + t3 + t3)),
-                    t4 + t4 + t5 + t5 + t6 + t6,
-                    t7 + t7,
-                    t8 + t8,
-                );
-                inertia
-                    .set_column(
-                        0 + 3 + axis,
-                        &{
-                            let mut all = SVector::<T, 15>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_vector(rest, &parts.0);
-                            let rest = put_vector(rest, &parts.1);
-                            let rest = put_vector(rest, &parts.2);
-                            let rest = put_matrix(rest, &parts.3);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            for axis in 0..3 {
-                let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
-                let ξ2: SVector<T, 6> = SMatrix::zeros();
-                let ξ3: SVector<T, 3> = unit::<T, 3>(axis);
-                let ξ4: SVector<T, 3> = SMatrix::zeros();
-                let t1 = vee(&ξ1);
-                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-                let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
-                    * (T::from_f64(0.5) * M);
-                let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                    * (T::from_f64(0.5) * A.trace());
-                let t6 = -(into_rows::<
-                    T,
-                    6,
-                    3,
-                    1,
-                >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
-                let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
-                let t8 = ξ4 * (T::from_f64(0.5) * m);
-                let parts: (
-                    SVector<T, 3>,
-                    SVector<T, 6>,
-                    SVector<T, 3>,
-                    SVector<T, 3>,
-                ) = (
-                    axial_of_difference(&(t2 + t2 + t3 + t3)),
-                    t4 + t4 + t5 + t5 + t6 + t6,
-                    t7 + t7,
-                    t8 + t8,
-                );
-                inertia
-                    .set_column(
-                        0 + 3 + 6 + axis,
-                        &{
-                            let mut all = SVector::<T, 15>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_vector(rest, &parts.0);
-                            let rest = put_vector(rest, &parts.1);
-                            let rest = put_vector(rest, &parts.2);
-                            let rest = put_matrix(rest, &parts.3);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            for axis in 0..(3 * 1) {
-                let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
-                let ξ2: SVector<T, 6> = SMatrix::zeros();
-                let ξ3: SVector<T, 3> = SMatrix::zeros();
-                let ξ4: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-                let t1 = vee(&ξ1);
-                let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-                let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-                let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
-                    * (T::from_f64(0.5) * M);
-                let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                    * (T::from_f64(0.5) * A.trace());
-                let t6 = -(into_rows::<
-                    T,
-                    6,
-                    3,
-                    1,
-                >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
-                let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
-                let t8 = ξ4 * (T::from_f64(0.5) * m);
-                let parts: (
-                    SVector<T, 3>,
-                    SVector<T, 6>,
-                    SVector<T, 3>,
-                    SVector<T, 3>,
-                ) = (
-                    axial_of_difference(&(t2 + t2 + t3 + t3)),
-                    t4 + t4 + t5 + t5 + t6 + t6,
-                    t7 + t7,
-                    t8 + t8,
-                );
-                inertia
-                    .set_column(
-                        0 + 3 + 6 + 3 + axis,
-                        &{
-                            let mut all = SVector::<T, 15>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_vector(rest, &parts.0);
-                            let rest = put_vector(rest, &parts.1);
-                            let rest = put_vector(rest, &parts.2);
-                            let rest = put_matrix(rest, &parts.3);
-                            let _ = rest;
-                            all
-                        },
-                    );
-            }
-            KineticWarning::of(&inertia, 0 + 3 + 6 + 3 + (3 * 1))
-        }
+    /// `relative_R_q` at the node of this state.
+    #[inline]
+    pub fn relative_R_q(&self, state: &MixedFourState<T>) -> SMatrix<T, 3, 3> {
+        let R = state.R.matrix();
+        let q = state.q.matrix();
+        let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
+        relative_R_q
     }
 }
-#[allow(unused_imports)]
-pub use mixed_four::*;
+::clebsch::stepper! {
+    [] MixedFour, MixedFourParameters { J, A, M, I, m, b, k, p, s, e, g },
+    MixedFourInitial { R, body_momentum_R, G, body_momentum_G, q, body_momentum_q, X,
+    momentum_X }, MixedFourState { R, momentum_R, G, momentum_G, place_rest_G,
+    momentum_rest_G, q, momentum_q, X, momentum_X, place_rest_X, momentum_rest_X } at
+    node, MixedFourWorkspace { h, method, search_2, search_4 }, tried {} solver symmetric
+    judged
+}
+/// A configuration at one node, solution or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MixedFourConfiguration<T = f64> {
+    /// `R` at the node: body -> space.
+    pub R: Rotation<T>,
+    /// `G` at the node: body -> space.
+    pub G: RigidMotion<T>,
+    /// `q` at the node: body -> space.
+    pub q: UnitQuaternion<T>,
+    /// `X` at the node.
+    pub X: Additive<3, 1, T>,
+}
+impl<T: Real> MixedFour<T> {
+    /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    /// consecutive configurations: components are derivatives of the action of the two edges
+    /// along the coordinates of the Lie algebra, on the side of the velocity. SO(n): for
+    /// `i < j`, row by row, the element with -1 at (i, j) and +1 at (j, i); GL(n): matrix
+    /// units, row by row. Components beyond the coordinates are zero. Zero on solutions.
+    pub fn balance(
+        &self,
+        h: T,
+        before: &MixedFourConfiguration<T>,
+        here: &MixedFourConfiguration<T>,
+        after: &MixedFourConfiguration<T>,
+    ) -> SVector<T, 15> {
+        let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = self
+            .parameters;
+        let R = here.R.matrix();
+        let G = here.G.matrix();
+        let q = here.q.matrix();
+        let X = here.X.matrix();
+        let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
+        let V_before = before.R.body_velocity(&here.R).matrix();
+        let V = here.R.body_velocity(&after.R).matrix();
+        let W_before = before.G.body_velocity(&here.G).matrix();
+        let W = here.G.body_velocity(&after.G).matrix();
+        let Y_before = before.q.body_velocity(&here.q).matrix();
+        let Y = here.q.body_velocity(&after.q).matrix();
+        let ΔX_before = before.X.spatial_velocity(&here.X).matrix();
+        let ΔX = here.X.spatial_velocity(&after.X).matrix();
+        let t1 = h.powi(-1);
+        let t2 = p.cross(&(R.tr_mul(&X))) * (T::from_f64(0.5) * h * k);
+        let t3 = p.cross(&(relative_R_q * e_));
+        let t4 = -(t3 * (T::from_f64(0.5) * h * k));
+        let t5 = motion_rotation(&W_before);
+        let t6 = motion_rotation(&G);
+        let t7 = t6.transpose();
+        let t8 = motion_translation(&G);
+        let t9 = s.cross(&(t7 * (t8 - X))) * (T::from_f64(0.5) * h * k);
+        let t10 = t7 * (t8 + t6 * s - X) * (T::from_f64(0.5) * h * k);
+        let t11 = relative_R_q.tr_mul(&t3) * (T::from_f64(0.5) * h * k);
+        let t12 = h.powi(-3);
+        let t13 = g * (T::from_f64(0.5) * h * m);
+        let t14 = R * p * (T::from_f64(0.5) * h * k);
+        let t15 = -(X * (h * k));
+        let t16 = t6 * s * (T::from_f64(0.5) * h * k);
+        let t17 = t8 * (T::from_f64(0.5) * h * k);
+        let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
+            axial_of_difference(&(J * V_before)) * t1 + t2 + t4
+                + axial_of_difference(&(J * V.transpose())) * t1 + t2 + t4,
+            into_rows::<T, 6, 3, 1>(&(axial_of_difference(&(A * t5)) * t1 - t9), 0)
+                + into_rows::<
+                    T,
+                    6,
+                    3,
+                    1,
+                >(&(t5.tr_mul(&motion_translation(&W_before)) * (t1 * M) - t10), 3)
+                - into_rows::<
+                    T,
+                    6,
+                    3,
+                    1,
+                >(
+                    &(t9
+                        - axial_of_difference(&(A * motion_rotation(&W).transpose()))
+                            * t1),
+                    0,
+                )
+                - into_rows::<T, 6, 3, 1>(&(motion_translation(&W) * (t1 * M) + t10), 3),
+            quaternion_imaginary(
+                &(Y_before
+                    .tr_mul(
+                        &pure_quaternion(
+                            &(diagonal_times(&I, &quaternion_imaginary(&Y_before))),
+                        ),
+                    )),
+            ) * (T::from_f64(2.0) * t1) + t11
+                - quaternion_imaginary(
+                    &(Y
+                        * pure_quaternion(
+                            &(diagonal_times(&I, &quaternion_imaginary(&Y))),
+                        )),
+                ) * (T::from_f64(2.0) * t1) + t11,
+            ΔX_before * (T::from_f64(4.0) * t12 * b * ΔX_before.dot(&ΔX_before))
+                + ΔX_before * (t1 * m) + t13 + t14 + t15 + t16 + t17
+                - ΔX * (T::from_f64(4.0) * t12 * b * ΔX.dot(&ΔX)) - ΔX * (t1 * m)
+                + t13 + t14 + t15 + t16 + t17,
+        );
+        {
+            let mut all = SVector::<T, 15>::zeros();
+            let rest = all.as_mut_slice();
+            let rest = put_vector(rest, &parts.0);
+            let rest = put_vector(rest, &parts.1);
+            let rest = put_vector(rest, &parts.2);
+            let rest = put_matrix(rest, &parts.3);
+            let _ = rest;
+            all
+        }
+    }
+    /// What the step of size `h` from one state to the next leaves of its equations: the
+    /// momentum that is carried to the second state, less the one that the motion between
+    /// them brings there. One part a configuration, angular and linear ones of a rigid
+    /// motion apart, each with the size of the terms it is made of: those of a spatial
+    /// velocity are the two elements it is made from, as they are stored.
+    pub fn residual(
+        &self,
+        before: &MixedFourState<T>,
+        after: &MixedFourState<T>,
+        h: T,
+    ) -> [Residual; 5] {
+        let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = self
+            .parameters;
+        let V_matrix = before.R.body_velocity(&after.R).matrix();
+        let W_matrix = before
+            .G
+            .velocity_between(&before.place_rest_G, &after.G, &after.place_rest_G)
+            .matrix();
+        let Y_matrix = before.q.body_velocity(&after.q).matrix();
+        let ΔX_matrix = before
+            .X
+            .velocity_between(&before.place_rest_X, &after.X, &after.place_rest_X)
+            .matrix();
+        let R_next = after.R.matrix();
+        let G_next = after.G.matrix();
+        let q_next = after.q.matrix();
+        let X_next = after.X.matrix();
+        let relative_R_q_next = R_next.tr_mul(&quaternion_rotation(&q_next));
+        let t1 = h.powi(-1);
+        let t2 = p.cross(&(relative_R_q_next * e_));
+        let t3 = motion_rotation(&W_matrix);
+        let t4 = motion_rotation(&G_next);
+        let t5 = t4.transpose();
+        let t6 = motion_translation(&G_next);
+        let t7 = t3.transpose();
+        let t8 = motion_translation(&W_matrix);
+        let t9 = quaternion_imaginary(&Y_matrix);
+        let t10 = h.powi(-3);
+        let t11 = ΔX_matrix.dot(&ΔX_matrix);
+        let t12 = (t1 * t1).sqrt();
+        let t13 = (h * h).sqrt();
+        let t14 = (k * k).sqrt();
+        let t15 = p.dot(&p).sqrt();
+        let t16 = (R_next.tr_mul(&R_next)).trace().sqrt();
+        let t17 = X_next.dot(&X_next).sqrt();
+        let t18 = (relative_R_q_next.tr_mul(&relative_R_q_next)).trace().sqrt();
+        let t19 = e_.dot(&e_).sqrt();
+        let t20 = (t7 * t3).trace().sqrt();
+        let t21 = s.dot(&s).sqrt();
+        let t22 = (t5 * t4).trace().sqrt();
+        let t23 = t6.dot(&t6).sqrt();
+        let t24 = (Y_matrix.tr_mul(&Y_matrix)).trace().sqrt();
+        let t25 = (diagonal_times(&I, &I)).trace().sqrt();
+        let t26 = t11.sqrt();
+        let t27 = (m * m).sqrt();
+        [
+            Residual::between(
+                &(after.momentum_R.to_body(&after.R).0),
+                &(axial_of_difference(&(J * V_matrix)) * t1
+                    + p.cross(&(R_next.tr_mul(&X_next))) * (T::from_f64(0.5) * h * k)
+                    - t2 * (T::from_f64(0.5) * h * k)),
+                T::from_f64(2.0) * t12 * (J * J).trace().sqrt()
+                    * (V_matrix.tr_mul(&V_matrix)).trace().sqrt()
+                    + T::from_f64(0.5) * t13 * t14 * t15 * t16 * t17
+                    + T::from_f64(0.5) * t13 * t14 * t15 * t18 * t19,
+            ),
+            Residual::between(
+                &(rows_from::<T, 6, 3, 1>(&after.momentum_G.to_body(&after.G).0, 0)),
+                &(axial_of_difference(&(A * t3)) * t1
+                    - s.cross(&(t5 * (t6 - X_next))) * (T::from_f64(0.5) * h * k)),
+                T::from_f64(2.0) * t12 * (A * A).trace().sqrt() * t20
+                    + T::from_f64(0.5) * t13 * t14 * t21 * t22 * (t23 + t17),
+            ),
+            Residual::between(
+                &(rows_from::<T, 6, 3, 1>(&after.momentum_G.to_body(&after.G).0, 3)),
+                &(t7 * t8 * (t1 * M)
+                    - t5 * (t6 + t4 * s - X_next) * (T::from_f64(0.5) * h * k)),
+                t12 * (M * M).sqrt() * t20 * t8.dot(&t8).sqrt()
+                    + T::from_f64(0.5) * t13 * t14 * t22 * (t23 + t22 * t21 + t17),
+            ),
+            Residual::between(
+                &(after.momentum_q.to_body(&after.q).0),
+                &(quaternion_imaginary(
+                    &(Y_matrix.tr_mul(&pure_quaternion(&(diagonal_times(&I, &t9))))),
+                ) * (T::from_f64(2.0) * t1)
+                    + relative_R_q_next.tr_mul(&t2) * (T::from_f64(0.5) * h * k)),
+                T::from_f64(4.0) * t12 * t24 * t25 * t9.dot(&t9).sqrt()
+                    + T::from_f64(0.5) * t13 * t14 * t18 * t15 * t18 * t19
+                    + T::from_f64(4.0) * t12 * t24 * t25,
+            ),
+            Residual::between(
+                &(after.momentum_X.0),
+                &(ΔX_matrix * (T::from_f64(4.0) * t10 * b * t11) + ΔX_matrix * (t1 * m)
+                    + g * (T::from_f64(0.5) * h * m)
+                    + R_next * p * (T::from_f64(0.5) * h * k) - X_next * (h * k)
+                    + t4 * s * (T::from_f64(0.5) * h * k)
+                    + t6 * (T::from_f64(0.5) * h * k)),
+                T::from_f64(4.0) * (t10 * t10).sqrt() * (b * b).sqrt() * t26 * t26 * t26
+                    + t12 * t27 * t26 + T::from_f64(0.5) * t13 * t27 * g.dot(&g).sqrt()
+                    + T::from_f64(0.5) * t13 * t14 * t16 * t15 + t13 * t14 * t17
+                    + T::from_f64(0.5) * t13 * t14 * t22 * t21
+                    + T::from_f64(0.5) * t13 * t14 * t23,
+            ),
+        ]
+    }
+    /// The Hessian of the kinetic energy in all velocities together, at the identity.
+    fn inertia_at(&self, state: &MixedFourState<T>) -> SMatrix<T, 15, 15> {
+        let MixedFourParameters { J, A, M, I, m, .. } = self.parameters;
+        let mut inertia = SMatrix::<T, 15, 15>::zeros();
+        for axis in 0..3 {
+            let ξ1: SMatrix<T, 3, 3> = basis::<T>(axis);
+            let ξ2: SVector<T, 6> = SMatrix::zeros();
+            let ξ3: SVector<T, 3> = SMatrix::zeros();
+            let ξ4: SVector<T, 3> = SMatrix::zeros();
+            let t1 = vee(&ξ1);
+            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
+            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
+            let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
+                * (T::from_f64(0.5) * M);
+            let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
+                * (T::from_f64(0.5) * A.trace());
+            let t6 = -(into_rows::<
+                T,
+                6,
+                3,
+                1,
+            >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
+            let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
+            let t8 = ξ4 * (T::from_f64(0.5) * m);
+            let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
+                axial_of_difference(&(t2 + t2 + t3 + t3)),
+                t4 + t4 + t5 + t5 + t6 + t6,
+                t7 + t7,
+                t8 + t8,
+            );
+            inertia
+                .set_column(
+                    axis,
+                    &{
+                        let mut all = SVector::<T, 15>::zeros();
+                        let rest = all.as_mut_slice();
+                        let rest = put_vector(rest, &parts.0);
+                        let rest = put_vector(rest, &parts.1);
+                        let rest = put_vector(rest, &parts.2);
+                        let rest = put_matrix(rest, &parts.3);
+                        let _ = rest;
+                        all
+                    },
+                );
+        }
+        for axis in 0..6 {
+            let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
+            let ξ2: SVector<T, 6> = unit::<T, 6>(axis);
+            let ξ3: SVector<T, 3> = SMatrix::zeros();
+            let ξ4: SVector<T, 3> = SMatrix::zeros();
+            let t1 = vee(&ξ1);
+            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
+            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
+            let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
+                * (T::from_f64(0.5) * M);
+            let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
+                * (T::from_f64(0.5) * A.trace());
+            let t6 = -(into_rows::<
+                T,
+                6,
+                3,
+                1,
+            >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
+            let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
+            let t8 = ξ4 * (T::from_f64(0.5) * m);
+            let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
+                axial_of_difference(&(t2 + t2 + t3 + t3)),
+                t4 + t4 + t5 + t5 + t6 + t6,
+                t7 + t7,
+                t8 + t8,
+            );
+            inertia
+                .set_column(
+                    0 + 3 + axis,
+                    &{
+                        let mut all = SVector::<T, 15>::zeros();
+                        let rest = all.as_mut_slice();
+                        let rest = put_vector(rest, &parts.0);
+                        let rest = put_vector(rest, &parts.1);
+                        let rest = put_vector(rest, &parts.2);
+                        let rest = put_matrix(rest, &parts.3);
+                        let _ = rest;
+                        all
+                    },
+                );
+        }
+        for axis in 0..3 {
+            let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
+            let ξ2: SVector<T, 6> = SMatrix::zeros();
+            let ξ3: SVector<T, 3> = unit::<T, 3>(axis);
+            let ξ4: SVector<T, 3> = SMatrix::zeros();
+            let t1 = vee(&ξ1);
+            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
+            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
+            let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
+                * (T::from_f64(0.5) * M);
+            let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
+                * (T::from_f64(0.5) * A.trace());
+            let t6 = -(into_rows::<
+                T,
+                6,
+                3,
+                1,
+            >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
+            let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
+            let t8 = ξ4 * (T::from_f64(0.5) * m);
+            let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
+                axial_of_difference(&(t2 + t2 + t3 + t3)),
+                t4 + t4 + t5 + t5 + t6 + t6,
+                t7 + t7,
+                t8 + t8,
+            );
+            inertia
+                .set_column(
+                    0 + 3 + 6 + axis,
+                    &{
+                        let mut all = SVector::<T, 15>::zeros();
+                        let rest = all.as_mut_slice();
+                        let rest = put_vector(rest, &parts.0);
+                        let rest = put_vector(rest, &parts.1);
+                        let rest = put_vector(rest, &parts.2);
+                        let rest = put_matrix(rest, &parts.3);
+                        let _ = rest;
+                        all
+                    },
+                );
+        }
+        for axis in 0..(3 * 1) {
+            let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
+            let ξ2: SVector<T, 6> = SMatrix::zeros();
+            let ξ3: SVector<T, 3> = SMatrix::zeros();
+            let ξ4: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
+            let t1 = vee(&ξ1);
+            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
+            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
+            let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
+                * (T::from_f64(0.5) * M);
+            let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
+                * (T::from_f64(0.5) * A.trace());
+            let t6 = -(into_rows::<
+                T,
+                6,
+                3,
+                1,
+            >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
+            let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
+            let t8 = ξ4 * (T::from_f64(0.5) * m);
+            let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
+                axial_of_difference(&(t2 + t2 + t3 + t3)),
+                t4 + t4 + t5 + t5 + t6 + t6,
+                t7 + t7,
+                t8 + t8,
+            );
+            inertia
+                .set_column(
+                    0 + 3 + 6 + 3 + axis,
+                    &{
+                        let mut all = SVector::<T, 15>::zeros();
+                        let rest = all.as_mut_slice();
+                        let rest = put_vector(rest, &parts.0);
+                        let rest = put_vector(rest, &parts.1);
+                        let rest = put_vector(rest, &parts.2);
+                        let rest = put_matrix(rest, &parts.3);
+                        let _ = rest;
+                        all
+                    },
+                );
+        }
+        inertia
+    }
+    /// `(R_k μ_{1,k} + rot(G_k) ang(μ_{2,k}) + pos(G_k) × (rot(G_k) lin(μ_{2,k})) + rot(q_k) μ_{3,k} + X_k × ϖ_{4,k})·g`: Noether: the action is invariant under rotations about the axis in space.
+    pub fn total_momentum_angular_g(&self, state: &MixedFourState<T>) -> T {
+        let MixedFourParameters { g, .. } = self.parameters;
+        let R = state.R.matrix();
+        let G = state.G.matrix();
+        let q = state.q.matrix();
+        let X = state.X.matrix();
+        let μ1 = state.body_momentum_R().0;
+        let μ2 = state.body_momentum_G().0;
+        let μ3 = state.body_momentum_q().0;
+        let ϖ4 = state.momentum_X().0;
+        let t1 = motion_rotation(&G);
+        (R * μ1 + t1 * rows_from::<T, 6, 3, 1>(&μ2, 0)
+            + motion_translation(&G).cross(&(t1 * rows_from::<T, 6, 3, 1>(&μ2, 3)))
+            + quaternion_rotation(&q) * μ3 + X.cross(&ϖ4))
+            .dot(&g)
+    }
+    /// The discrete energy of the edge between two consecutive states, `-tr(J V_k)/h² - tr(A rot(W_k))/h² + 2 M pos(W_k)·pos(W_k)/(2 h)² + 2 im(Y_k)·(I im(Y_k))/h² + 2 m ΔX_k·ΔX_k/(2 h)² + 3 b (ΔX_k·ΔX_k)² h²/h⁶ - ½ m g·X_k + ¼ k (X_k - R_k p)·(X_k - R_k p) + ¼ k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) + ½ k e·(relative_{R,q,k}ᵀ p) - ½ m g·X_{k+1} + ¼ k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) + ¼ k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) + ½ k e·(relative_{R,q,k+1}ᵀ p) + tr(J)/h² + tr(A)/h²`: bounded, since the stepper is symplectic.
+    pub fn discrete_energy(
+        &self,
+        h: T,
+        before: &MixedFourState<T>,
+        after: &MixedFourState<T>,
+    ) -> T {
+        let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = self
+            .parameters;
+        let V_matrix = before.R.body_velocity(&after.R).matrix();
+        let W_matrix = before
+            .G
+            .velocity_between(&before.place_rest_G, &after.G, &after.place_rest_G)
+            .matrix();
+        let Y_matrix = before.q.body_velocity(&after.q).matrix();
+        let ΔX_matrix = before
+            .X
+            .velocity_between(&before.place_rest_X, &after.X, &after.place_rest_X)
+            .matrix();
+        let R = before.R.matrix();
+        let G = before.G.matrix();
+        let q = before.q.matrix();
+        let X = before.X.matrix();
+        let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
+        let R_next = after.R.matrix();
+        let G_next = after.G.matrix();
+        let q_next = after.q.matrix();
+        let X_next = after.X.matrix();
+        let relative_R_q_next = R_next.tr_mul(&quaternion_rotation(&q_next));
+        let t1 = motion_translation(&W_matrix);
+        let t2 = (T::from_f64(2.0) * h) * (T::from_f64(2.0) * h);
+        let t3 = quaternion_imaginary(&Y_matrix);
+        let t4 = ΔX_matrix.dot(&ΔX_matrix);
+        let t5 = X - R * p;
+        let t6 = motion_translation(&G) + motion_rotation(&G) * s - X;
+        let t7 = X_next - R_next * p;
+        let t8 = motion_translation(&G_next) + motion_rotation(&G_next) * s - X_next;
+        (T::from_f64(2.0) * M * t1.dot(&t1)) / t2
+            + (T::from_f64(2.0) * t3.dot(&(diagonal_times(&I, &t3)))) / (h * h)
+            + (T::from_f64(2.0) * m * t4) / t2
+            + (T::from_f64(3.0) * b * (t4 * t4) * (h * h)) / h.powi(6)
+            - T::from_f64(0.5) * m * g.dot(&X) + T::from_f64(0.25) * k * t5.dot(&t5)
+            + T::from_f64(0.25) * k * t6.dot(&t6)
+            + T::from_f64(0.5) * k * e_.dot(&(relative_R_q.tr_mul(&p)))
+            - T::from_f64(0.5) * m * g.dot(&X_next) + T::from_f64(0.25) * k * t7.dot(&t7)
+            + T::from_f64(0.25) * k * t8.dot(&t8)
+            + T::from_f64(0.5) * k * e_.dot(&(relative_R_q_next.tr_mul(&p)))
+            - (J * less_identity(&V_matrix)).trace() / (h * h)
+            - (A * less_identity(&motion_rotation(&W_matrix))).trace() / (h * h)
+    }
+    /// The state after a step of `h` that is tried, or none.
+    #[cold]
+    fn attempt(&self, state: &MixedFourState<T>, h: T) -> Option<MixedFourState<T>> {
+        let mut moving = *state;
+        self.step(
+                &mut moving,
+                &mut {
+                    let method = self.method;
+                    MixedFourWorkspace {
+                        h,
+                        method,
+                        search_2: newton::Search::to_try(),
+                        search_4: newton::Search::to_try(),
+                    }
+                },
+            )
+            .ok()?;
+        Some(moving)
+    }
+}
+impl MixedFour<f64> {
+    /// All observables, in the order of the card.
+    fn observe(&self, state: &MixedFourState<f64>, out: &mut [f64]) {
+        let out = put(out, rows(state.R().matrix()));
+        let out = put(out, rows(state.body_momentum_R().0));
+        let out = put(out, rows(state.spatial_momentum_R().0));
+        let out = put(out, rows(state.G().matrix()));
+        let out = put(out, rows(state.body_momentum_G().0));
+        let out = put(out, rows(state.spatial_momentum_G().0));
+        let out = put(out, state.q().components());
+        let out = put(out, rows(state.body_momentum_q().0));
+        let out = put(out, rows(state.spatial_momentum_q().0));
+        let out = put(out, rows(state.X().matrix()));
+        let out = put(out, rows(state.momentum_X().0));
+        let out = put(out, rows(self.relative_R_q(state)));
+    }
+    /// All invariants, in the order of the card.
+    fn invariants(
+        &self,
+        state: &MixedFourState<f64>,
+        _: Option<&MixedFourWorkspace<f64>>,
+        out: &mut [f64],
+    ) {
+        let out = put(out, [self.total_momentum_angular_g(state)]);
+    }
+    /// Their sizes at a state, in steps of `h`.
+    fn scales(&self, state: &MixedFourState<f64>, h: f64, out: &mut [f64]) {
+        let mut enlarged = *state;
+        {
+            type T = f64;
+            let MixedFourParameters { m, k, p, s, e: e_, g, .. } = self.parameters;
+            let R = state.R.matrix();
+            let G = state.G.matrix();
+            let q = state.q.matrix();
+            let X = state.X.matrix();
+            let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
+            let t1 = (h * h).sqrt();
+            let t2 = (k * k).sqrt();
+            let t3 = p.dot(&p).sqrt();
+            let t4 = (R.tr_mul(&R)).trace().sqrt();
+            let t5 = X.dot(&X).sqrt();
+            let t6 = T::from_f64(0.5) * t1 * t2 * t3 * t4 * t5;
+            let t7 = (relative_R_q.tr_mul(&relative_R_q)).trace().sqrt();
+            let t8 = e_.dot(&e_).sqrt();
+            let t9 = T::from_f64(0.5) * t1 * t2 * t3 * t7 * t8;
+            let t10 = s.dot(&s).sqrt();
+            let t11 = motion_rotation(&G);
+            let t12 = (t11.tr_mul(&t11)).trace().sqrt();
+            let t13 = motion_translation(&G);
+            let t14 = t13 + t11 * s - X;
+            let t15 = t14.dot(&t14).sqrt();
+            let t16 = T::from_f64(0.5) * t1 * t2 * t10 * t12 * t15;
+            let t17 = t13.dot(&t13).sqrt();
+            let t18 = t17 + t12 * t10 + t5;
+            let t19 = T::from_f64(0.5) * t1 * t2 * t10 * t12 * t18;
+            let t20 = T::from_f64(0.5) * t1 * t2 * t12 * t15;
+            let t21 = T::from_f64(0.5) * t1 * t2 * t12 * t18;
+            let t22 = T::from_f64(0.5) * t1 * t2 * t7 * t3 * t7 * t8;
+            let t23 = T::from_f64(0.5) * t1 * (m * m).sqrt() * g.dot(&g).sqrt();
+            let t24 = T::from_f64(0.5) * t1 * t2 * t4 * t3;
+            let t25 = t1 * t2 * t5;
+            let t26 = T::from_f64(0.5) * t1 * t2 * t12 * t10;
+            let t27 = T::from_f64(0.5) * t1 * t2 * t17;
+            enlarged.momentum_R = SpatialMomentum(
+                not_less(enlarged.momentum_R.0, (0, 3), t6 + t9 + t6 + t9),
+            );
+            enlarged.momentum_G = CarriedImpulse(
+                not_less(enlarged.momentum_G.0, (0, 3), t16 + t19 + t16 + t19),
+            );
+            enlarged.momentum_G = CarriedImpulse(
+                not_less(enlarged.momentum_G.0, (3, 3), t20 + t21 + t20 + t21),
+            );
+            enlarged.momentum_q = SpatialMomentum(
+                not_less(enlarged.momentum_q.0, (0, 3), t22 + t22),
+            );
+            enlarged.momentum_X = FieldMomentum(
+                not_less(
+                    enlarged.momentum_X.0,
+                    (0, 3),
+                    t23 + t24 + t25 + t26 + t27 + t23 + t24 + t25 + t26 + t27,
+                ),
+            );
+        }
+        let state = &enlarged;
+        type T = f64;
+        let MixedFourParameters { g, .. } = self.parameters;
+        let R = state.R.matrix();
+        let G = state.G.matrix();
+        let q = state.q.matrix();
+        let X = state.X.matrix();
+        let μ1 = state.body_momentum_R().0;
+        let μ2 = state.body_momentum_G().0;
+        let μ3 = state.body_momentum_q().0;
+        let ϖ4 = state.momentum_X().0;
+        let t1 = R * μ1;
+        let t2 = g.dot(&g).sqrt();
+        let t3 = rows_from::<T, 6, 3, 1>(&μ2, 0);
+        let t4 = motion_translation(&G);
+        let t5 = rows_from::<T, 6, 3, 1>(&μ2, 3);
+        let t6 = quaternion_rotation(&q) * μ3;
+        let out = put(
+            out,
+            [t1.dot(&t1).sqrt() * t2
+                + (t3.dot(&t3).sqrt() + t4.dot(&t4).sqrt() * t5.dot(&t5).sqrt()) * t2
+                + t6.dot(&t6).sqrt() * t2
+                + ϖ4.dot(&ϖ4).sqrt() * X.dot(&X).sqrt() * t2; 1usize],
+        );
+    }
+    /// The model as data.
+    pub const CARD: Card = Card {
+        name: "MixedFour",
+        kebab: "mixed-four",
+        doc: "Two bodies, a rigid motion and a point mass joined by springs.",
+        source: Self::SOURCE,
+        fingerprint: Self::FINGERPRINT,
+        summary: "discrete Lagrangian  -tr(J V_k)/h - tr(A rot(W_k))/h + M pos(W_k)·pos(W_k)/(2 h) + 2 im(Y_k)·(I im(Y_k))/h + m ΔX_k·ΔX_k/(2 h) + b (ΔX_k·ΔX_k)²/h³ + ½ h m g·X_k - ¼ h k (X_k - R_k p)·(X_k - R_k p) - ¼ h k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) - ½ h k e·(relative_{R,q,k}ᵀ p) + ½ h m g·X_{k+1} - ¼ h k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) - ¼ h k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) - ½ h k e·(relative_{R,q,k+1}ᵀ p)\nmomentum of R        -J V_kᵀ/h + V_k J/h\nmomentum of G        (-2 vee(A rot(W_k)ᵀ)/h, M pos(W_k)/h)\nmomentum of q        2 im(Y_k quat(I im(Y_k)))/h\nmomentum of X        4 b (ΔX_k·ΔX_k) ΔX_k/h³ + m ΔX_k/h\nRiccati form         exact, C = J; none: the group is not SO(n); none; in unit quaternions, A = I, β = 0; none: the balance is not linear in ΔX\ninvariants           total_momentum_angular_g\ntime reversal        symmetric: second order\ncertificate          51 identities proved by normal form, 10 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
+        solver: "Blocks: block by block: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton",
+        order: 2u32,
+        orders: &[2, 4, 6, 8],
+        preprocessed: false,
+        reversible: true,
+        parameters: &[
+            Kind::SecondMoments
+                .field(
+                    "J",
+                    [3, 3],
+                    "second moments of the first body about its fixed point",
+                ),
+            Kind::SecondMoments
+                .field(
+                    "A",
+                    [3, 3],
+                    "second moments of the rigid motion about its own point",
+                ),
+            Kind::Scalar.field("M", [1, 1], "mass of the rigid motion"),
+            Kind::Diagonal
+                .field("I", [3, 3], "principal moments of inertia of the second body"),
+            Kind::Scalar.field("m", [1, 1], "mass of the point"),
+            Kind::Scalar
+                .field("b", [1, 1], "weight of the quartic term of its kinetic energy"),
+            Kind::Scalar.field("k", [1, 1], "stiffness of the springs"),
+            Kind::Vector
+                .field(
+                    "p",
+                    [3, 1],
+                    "where springs are fixed: in the first body, in the rigid motion, in the second body",
+                ),
+            Kind::Vector
+                .field(
+                    "s",
+                    [3, 1],
+                    "where springs are fixed: in the first body, in the rigid motion, in the second body",
+                ),
+            Kind::Vector
+                .field(
+                    "e",
+                    [3, 1],
+                    "where springs are fixed: in the first body, in the rigid motion, in the second body",
+                ),
+            Kind::Vector
+                .field("g", [3, 1], "acceleration of gravity, which acts on the point"),
+        ],
+        initial: &[
+            Kind::Rotation.field("R", [3, 3], "attitude of the first body"),
+            Kind::BodyMomentum.field("body_momentum_R", [3, 1], "momentum, body frame"),
+            Kind::RigidMotion
+                .field("G", [4, 4], "attitude and place of the rigid motion"),
+            Kind::BodyMomentum.field("body_momentum_G", [6, 1], "momentum, body frame"),
+            Kind::UnitQuaternion.field("q", [4, 1], "attitude of the second body"),
+            Kind::BodyMomentum.field("body_momentum_q", [3, 1], "momentum, body frame"),
+            Kind::Vector.field("X", [3, 1], "place of the point"),
+            Kind::FieldMomentum.field("momentum_X", [3, 1], "momentum of X"),
+        ],
+        observables: &[
+            Kind::Rotation.field("R", [3, 3], "attitude of the first body"),
+            Kind::BodyMomentum.field("body_momentum_R", [3, 1], "momentum, body frame"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum_R", [3, 1], "momentum, space frame"),
+            Kind::RigidMotion
+                .field("G", [4, 4], "attitude and place of the rigid motion"),
+            Kind::BodyMomentum.field("body_momentum_G", [6, 1], "momentum, body frame"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum_G", [6, 1], "momentum, space frame"),
+            Kind::UnitQuaternion.field("q", [4, 1], "attitude of the second body"),
+            Kind::BodyMomentum.field("body_momentum_q", [3, 1], "momentum, body frame"),
+            Kind::SpatialMomentum
+                .field("spatial_momentum_q", [3, 1], "momentum, space frame"),
+            Kind::Vector.field("X", [3, 1], "place of the point"),
+            Kind::FieldMomentum.field("momentum_X", [3, 1], "momentum of X"),
+            Kind::Matrix.field("relative_R_q", [3, 3], ""),
+        ],
+        invariants: &[
+            Invariant::exact(
+                "total_momentum_angular_g",
+                "(R_k μ_{1,k} + rot(G_k) ang(μ_{2,k}) + pos(G_k) × (rot(G_k) lin(μ_{2,k})) + rot(q_k) μ_{3,k} + X_k × ϖ_{4,k})·g",
+                1usize,
+            ),
+        ],
+        discrete_energy: Invariant::bounded(
+            "discrete_energy",
+            "-tr(J V_k)/h² - tr(A rot(W_k))/h² + 2 M pos(W_k)·pos(W_k)/(2 h)² + 2 im(Y_k)·(I im(Y_k))/h² + 2 m ΔX_k·ΔX_k/(2 h)² + 3 b (ΔX_k·ΔX_k)² h²/h⁶ - ½ m g·X_k + ¼ k (X_k - R_k p)·(X_k - R_k p) + ¼ k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) + ½ k e·(relative_{R,q,k}ᵀ p) - ½ m g·X_{k+1} + ¼ k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) + ¼ k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) + ½ k e·(relative_{R,q,k+1}ᵀ p) + tr(J)/h² + tr(A)/h²",
+            1,
+        ),
+        open: open::<Self>,
+        solvers: &Method::NAMES,
+        dimensions: &[],
+        sized: only_size::<Self>,
+    };
+    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+    /// definite.
+    #[cold]
+    pub fn kinetic_warning(
+        &self,
+        state: &MixedFourState<f64>,
+    ) -> Option<KineticWarning> {
+        KineticWarning::of(&self.inertia_at(state), 0 + 3 + 6 + 3 + (3 * 1))
+    }
+}

@@ -262,27 +262,29 @@ fn functions(shared: &mut Shared<'_, f64>, name: &str) -> Result<Functions, Refu
     use at::{BEFORE, GIVEN, MODEL, OUT, STATE, STEP, WORK};
     let program = shared.program;
     let mut lower =
-        |function: &str, given: &[usize]| entry(shared, (name, function), given, at::FIRST);
-    let mut where_given = |function: &str, given: &[usize]| match program.function(name, function) {
-        Some(_) => lower(function, given).map(Some),
-        None => Ok(None),
-    };
-    let with_solver = where_given("with_solver", &[MODEL, GIVEN])?;
-    let compensated = where_given("Model::compensated", &[WORK])?;
-    let attempt = where_given("Stepper::attempt", &[MODEL, STATE, STEP])?;
-    let kinetic = where_given("kinetic_warning", &[MODEL, STATE])?;
+        |ty: &str, function: &str, given: &[usize]| entry(shared, (ty, function), given, at::FIRST);
+    let mut where_given =
+        |ty: &str, function: &str, given: &[usize]| match program.function(ty, function) {
+            Some(_) => lower(ty, function, given).map(Some),
+            None => Ok(None),
+        };
+    let with_solver = where_given(name, "with_solver", &[MODEL, GIVEN])?;
+    let compensated = where_given(&format!("{name}Workspace"), "compensated", &[WORK])?;
+    let attempt = where_given(name, "attempt", &[MODEL, STATE, STEP])?;
+    let kinetic = where_given(name, "kinetic_warning", &[MODEL, STATE])?;
+    let mut lower = |function: &str, given: &[usize]| lower(name, function, given);
     Ok(Functions {
         new: lower("new", &[GIVEN])?,
-        begin: lower("Model::begin", &[MODEL, GIVEN])?,
+        begin: lower("begin", &[MODEL, GIVEN])?,
         with_solver,
-        prepared: lower("Model::prepared", &[MODEL, STATE, STEP, GIVEN])?,
+        prepared: lower("prepared", &[MODEL, STATE, STEP, GIVEN])?,
         compensated,
         attempt,
         step: lower("step", &[MODEL, STATE, WORK])?,
         residual: lower("residual", &[MODEL, BEFORE, STATE, STEP])?,
-        observe: lower("Described::observe", &[MODEL, STATE, OUT])?,
-        invariants: lower("Described::invariants", &[MODEL, STATE, WORK, OUT])?,
-        scales: lower("Described::scales", &[MODEL, STATE, STEP, OUT])?,
+        observe: lower("observe", &[MODEL, STATE, OUT])?,
+        invariants: lower("invariants", &[MODEL, STATE, WORK, OUT])?,
+        scales: lower("scales", &[MODEL, STATE, STEP, OUT])?,
         kinetic,
     })
 }

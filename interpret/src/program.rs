@@ -2,7 +2,7 @@
 //! Takes the tokens that a build would compile; gives tables by name.
 
 use crate::Refused;
-use proc_macro2::TokenStream;
+use proc_macro2::{TokenStream, TokenTree};
 use std::collections::BTreeMap;
 
 /// The items of a model.
@@ -12,7 +12,7 @@ pub struct Program {
     pub structs: BTreeMap<String, Vec<(String, syn::Type)>>,
     /// The variants of each enum, in order.
     pub variants: BTreeMap<String, Vec<String>>,
-    /// Functions by type and name; those of a trait have its name before theirs.
+    /// Functions by type and name.
     pub functions: BTreeMap<(String, String), syn::ImplItemFn>,
     /// Functions that the model is given: the path of each by its name in the model.
     pub given: BTreeMap<String, String>,
@@ -67,6 +67,9 @@ impl Program {
                     self.aliases.insert(item.ident.to_string(), *item.ty);
                 }
                 syn::Item::Impl(item) => self.take_impl(item),
+                syn::Item::Macro(item) if named(&item.mac.path) == "stepper" => {
+                    self.take_protocol(item.mac.tokens);
+                }
                 syn::Item::Use(item) => self.take_use(&item.tree, String::new()),
                 _ => {}
             }
@@ -88,30 +91,63 @@ impl Program {
     }
 
     fn take_impl(&mut self, item: syn::ItemImpl) {
-        // Of the traits those that only the model can answer: the others repeat what types have.
-        let of_trait = item.trait_.as_ref().map(|t| named(&t.0));
-        let prefix = match of_trait.as_deref() {
-            None => "",
-            Some("Model") => "Model::",
-            Some("Described") => "Described::",
-            Some("Stepper") => "Stepper::",
-            Some(_) => return,
-        };
+        // Traits repeat what types have.
+        if item.trait_.is_some() {
+            return;
+        }
         let Some(ty) = type_name(&item.self_ty) else {
             return;
         };
         for inner in item.items {
             match inner {
                 syn::ImplItem::Fn(f) => {
-                    let name = format!("{prefix}{}", f.sig.ident);
-                    self.functions.insert((ty.clone(), name), f);
+                    self.functions
+                        .insert((ty.clone(), f.sig.ident.to_string()), f);
                 }
-                syn::ImplItem::Const(c) if prefix.is_empty() => {
+                syn::ImplItem::Const(c) => {
                     self.constants
                         .insert((ty.clone(), c.ident.to_string()), c.expr);
                 }
                 _ => {}
             }
+        }
+    }
+
+    /// Of what the runtime's protocol adds to a model the two functions that change a value of it: the
+    /// others are the interpreter's own.
+    fn take_protocol(&mut self, tokens: TokenStream) {
+        let names = tokens.into_iter().filter_map(|tree| match tree {
+            TokenTree::Ident(name) => Some(name.to_string()),
+            _ => None,
+        });
+        let names: Vec<String> = names.collect();
+        let [model, _, _, _, _, _, work, form, choice, ..] = names.as_slice() else {
+            return;
+        };
+        let mut add = |ty: &str, function: syn::ImplItemFn| {
+            let name = function.sig.ident.to_string();
+            self.functions.insert((ty.to_owned(), name), function);
+        };
+        if choice != "nothing" {
+            add(
+                model,
+                syn::parse_quote! {
+                    fn with_solver(self, method: Method) -> Self {
+                        Self { method, ..self }
+                    }
+                },
+            );
+        }
+        if form == "free" {
+            add(
+                work,
+                syn::parse_quote! {
+                    fn compensated(mut self) -> Self {
+                        self.solver = self.solver.compensated();
+                        self
+                    }
+                },
+            );
         }
     }
 

@@ -6,9 +6,9 @@ use crate::opened::{Opened, Read, at};
 use crate::packed::Packed;
 use crate::value::{Frame, Kept, Layout, Struct, Value};
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver};
-use clebsch::emitted as e;
 use clebsch::integrate::{Composition, Offer, Residual, Reversible, Stepper, Way, counted};
 use clebsch::kinetic::KineticWarning;
+use clebsch::of_numbers::OfNumbers;
 use clebsch::saved::{Saved, Words};
 use clebsch::{ParameterError, StartError, StepError, validate};
 use std::cell::RefCell;
@@ -192,7 +192,6 @@ fn one(read: Read, field: &'static Field, list: &Vec<f64>) -> Result<Value<f64>,
     use clebsch::groups::{invertible_map, nearest_rotation};
     use clebsch::linalg::Dense;
     let (name, rows, cols) = (field.name, field.rows, field.cols);
-    let given = Some(list);
     let matrix = || {
         if list.len() != rows * cols {
             return Err(OpenError::Count {
@@ -214,13 +213,13 @@ fn one(read: Read, field: &'static Field, list: &Vec<f64>) -> Result<Value<f64>,
         Value::momentum(frame, &Value::of(matrix()?)).ok_or_else(wide)
     };
     Ok(match read {
-        Read::Number => Value::Real(e::number_of(name, given)?),
+        Read::Number => Value::Real(f64::of_numbers(name, list)?),
         Read::Matrix => Value::of(matrix()?),
         Read::Of(kind) => match kind {
-            "Rotation" => Value::Rotation(e::rotation_of(name, given)?),
-            "UnitQuaternion" => Value::Quaternion(e::quaternion_of(name, given)?),
-            "RigidMotion" => Value::Motion(Box::new(e::motion_of(name, given)?)),
-            "PlaneMotion" => Value::Plane(Box::new(e::plane_motion_of(name, given)?)),
+            "Rotation" => Value::Rotation(OfNumbers::of_numbers(name, list)?),
+            "UnitQuaternion" => Value::Quaternion(OfNumbers::of_numbers(name, list)?),
+            "RigidMotion" => Value::Motion(Box::new(OfNumbers::of_numbers(name, list)?)),
+            "PlaneMotion" => Value::Plane(Box::new(OfNumbers::of_numbers(name, list)?)),
             "Orthogonal" => {
                 let nearest = nearest_rotation(&matrix()?);
                 let nearest = nearest.map_err(|e| initial(e.in_field(name)))?;

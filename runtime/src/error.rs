@@ -451,6 +451,13 @@ pub enum StepCause {
 }
 
 impl StepCause {
+    /// A quantity of this name is NaN or infinite.
+    #[cold]
+    #[must_use]
+    pub fn not_finite(what: &'static str) -> Self {
+        Self::NotFinite { what }
+    }
+
     /// The error of the step from node `node`.
     #[cold]
     pub fn at_node(self, node: u64) -> StepError {

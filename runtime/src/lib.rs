@@ -26,6 +26,8 @@ pub mod language;
 pub mod linalg;
 pub mod line;
 pub mod mesh;
+#[doc(hidden)]
+pub mod of_numbers;
 pub mod prelude;
 pub mod record;
 mod said;

@@ -190,7 +190,7 @@ macro_rules! square_to_square {
     };
 }
 
-fn length<T: Real>(x: &Value<T>) -> Option<T> {
+pub(super) fn length<T: Real>(x: &Value<T>) -> Option<T> {
     let all = numbers(x)?;
     Some(all.iter().fold(T::zero(), |s, x| s + *x * *x).sqrt())
 }

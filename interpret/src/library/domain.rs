@@ -1,6 +1,7 @@
 //! Where functions are defined, and what a step leaves of its equations.
 
-use crate::code::Native;
+use super::algebra::{binary, length};
+use crate::code::{Native, Operator};
 use crate::value::{Kept, Value};
 use clebsch::Real;
 use clebsch::domain;
@@ -51,11 +52,20 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             [Value::Domain(d), Value::Real(x)] => Some(Value::Bool(d.admits(*x))),
             _ => None,
         },
-        ("Residual", 2) => |a, _| match a {
-            [Value::Double(size), Value::Double(scale)] => Some(Value::Residual(Residual {
-                size: *size,
-                scale: *scale,
-            })),
+        ("Residual::between", 3) => |a, _| match a {
+            [carried, brought, Value::Real(size)] => {
+                let left = length(&binary(Operator::Sub, carried, brought)?)?;
+                Some(Value::Residual(Residual {
+                    size: left.magnitude(),
+                    scale: length(carried)?.magnitude() + size.magnitude(),
+                }))
+            }
+            _ => None,
+        },
+        ("with_arm", 2) => |a, _| match a {
+            [Value::Residual(part), Value::Real(moment)] => {
+                Some(Value::Residual(part.with_arm(*moment)))
+            }
             _ => None,
         },
         // Rows of a momentum, by the impulse that they get.

@@ -374,7 +374,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             Value::Failed(e) => Some(Value::failed((**e).clone().cause())),
             _ => None,
         },
-        ("StepCause::NotFinite", 1) => |a, _| {
+        ("StepCause::not_finite", 1) => |a, _| {
             let what = text(a.first()?)?;
             Some(Value::failed(StepCause::NotFinite { what }))
         },

@@ -9,10 +9,10 @@ use crate::sites::Column;
 use crate::value::{Frame, Layout, Struct, Value};
 use crate::{Refused, text};
 use clebsch::card::OpenError;
-use clebsch::emitted as e;
 use clebsch::linalg::Dense;
 use clebsch::line::{LineError, Place};
 use clebsch::mesh::{Domain, Wall};
+use clebsch::of_numbers::OfNumbers;
 use clebsch::{ParameterError, StartError};
 use clebsch_core::lattice::Choice;
 use std::collections::BTreeMap;
@@ -163,13 +163,9 @@ impl Read {
         Ok(match self {
             Read::Array(rows, cols) => matrix(*rows, *cols),
             Read::Number => Value::Real(list.first().copied().unwrap_or(f64::NAN)),
-            Read::Rotation => opened(
-                name,
-                e::rotation_of(name, Some(&list.to_vec())),
-                Value::Rotation,
-            )?,
+            Read::Rotation => opened(name, OfNumbers::of_numbers(name, list), Value::Rotation)?,
             Read::Quaternion => {
-                let read = e::quaternion_of(name, Some(&list.to_vec()));
+                let read = OfNumbers::of_numbers(name, list);
                 opened(name, read, Value::Quaternion)?
             }
             Read::Momentum => {

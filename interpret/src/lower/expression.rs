@@ -359,22 +359,6 @@ impl<T: Lowered> Lower<'_, '_, T> {
             .collect();
         let by_name = |field: &str| values.iter().find(|(n, _)| n == field).map(|(_, e)| *e);
         match name.as_str() {
-            "Residual" => {
-                let (Some(size), Some(scale)) = (by_name("size"), by_name("scale")) else {
-                    return Err(refuse(s));
-                };
-                let arguments = self.all([size, scale].into_iter())?;
-                return self
-                    .native("Residual", arguments, Vec::new())
-                    .ok_or_else(|| refuse(s));
-            }
-            "NotFinite" => {
-                let arguments = self.all(by_name("what").into_iter())?;
-                let name = "StepCause::NotFinite";
-                return self
-                    .native(name, arguments, Vec::new())
-                    .ok_or_else(|| refuse(s));
-            }
             "Call" => {
                 let all = [by_name("function"), by_name("argument")];
                 let all = self.all(all.into_iter().flatten())?;

@@ -1,7 +1,8 @@
 //! The compiled lines of the gallery with random data, and the same data as numbers.
 
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
-use clebsch::{BodyMomentum, Rotation, emitted};
+use clebsch::of_numbers::OfNumbers;
+use clebsch::{BodyMomentum, Rotation};
 use clebsch_models::lattices::coupled_tops::*;
 use clebsch_models::lattices::geometrically_exact_rod::*;
 use clebsch_models::lattices::shallow_water_1d::*;
@@ -79,7 +80,7 @@ impl Data {
 
     fn rotations(&self, name: &'static str) -> Vec<Rotation> {
         let each = self.0[name].chunks(9);
-        each.map(|m| emitted::rotation_of(name, Some(&m.to_vec())).expect("a rotation"))
+        each.map(|m| OfNumbers::of_numbers(name, m).expect("a rotation"))
             .collect()
     }
 

@@ -2,7 +2,8 @@
 
 use super::{Case, Compiled, Data, Line, Made, Named, Random, cases, flat};
 use clebsch::nalgebra::Vector3;
-use clebsch::{Rotation, UnitQuaternion, emitted};
+use clebsch::of_numbers::OfNumbers;
+use clebsch::{Rotation, UnitQuaternion};
 use clebsch_models::lattices::quaternion_rod::*;
 use std::collections::BTreeMap;
 
@@ -89,7 +90,7 @@ fn turns(r: &mut Random, count: usize, size: f64) -> Vec<f64> {
 
 fn quaternions(data: &Data, name: &'static str) -> Vec<UnitQuaternion> {
     let each = data.0[name].chunks(4);
-    each.map(|q| emitted::quaternion_of(name, Some(&q.to_vec())).expect("of unit length"))
+    each.map(|q| OfNumbers::of_numbers(name, q).expect("of unit length"))
         .collect()
 }
 

@@ -6,6 +6,8 @@ use crate::document::printed;
 use crate::emit::emit;
 use crate::pretty::pretty;
 use crate::print::Format;
+use proc_macro2::TokenStream;
+use quote::quote;
 
 /// Names and contents of the files.
 ///
@@ -29,7 +31,7 @@ pub fn files(d: &Derivation) -> Result<Vec<(String, String)>, String> {
     ])
 }
 
-/// The emitted Rust, formatted, without the derivation in its documentation.
+/// The emitted module as a file of its own, formatted, without the derivation in its documentation.
 ///
 /// # Errors
 /// The reason why no stepper is emitted for the model.
@@ -37,5 +39,29 @@ pub fn rust(d: &Derivation) -> Result<String, String> {
     if let Some(refused) = crate::emit::refusal(d) {
         return Err(refused.text());
     }
-    pretty(emit(d, false))
+    pretty(of_module(emit(d, false)))
+}
+
+/// What stands inside the module that is emitted, as the file of that module: its documentation and what it
+/// allows are those of the file.
+fn of_module(emitted: TokenStream) -> TokenStream {
+    let Ok(file) = syn::parse2::<syn::File>(emitted.clone()) else {
+        return emitted;
+    };
+    let module = file.items.into_iter().find_map(|item| match item {
+        syn::Item::Mod(module) => Some(module),
+        _ => None,
+    });
+    let Some(syn::ItemMod {
+        mut attrs,
+        content: Some((_, items)),
+        ..
+    }) = module
+    else {
+        return emitted;
+    };
+    for attribute in &mut attrs {
+        attribute.style = syn::AttrStyle::Inner(syn::token::Not::default());
+    }
+    quote!(#(#attrs)* #(#items)*)
 }

@@ -9,6 +9,7 @@ mod ensemble;
 mod halved;
 mod longest_step;
 mod model;
+mod protocol;
 mod residual;
 mod run;
 mod side_by_side;

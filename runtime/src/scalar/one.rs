@@ -27,6 +27,15 @@ impl<T: Real> InLanes for T {
     }
 }
 
+impl<T: Real> InLanes for core::marker::PhantomData<T> {
+    type One = core::marker::PhantomData<T::One>;
+
+    #[inline(always)]
+    fn in_lane(&self, _: usize) -> Self::One {
+        core::marker::PhantomData
+    }
+}
+
 impl<T: Real, const K: usize> InLanes for [T; K] {
     type One = [T::One; K];
 

@@ -6,7 +6,7 @@ use super::declare::Declared;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 
 /// Methods and constants that every model has.
-const MEMBERS: [&str; 40] = [
+const MEMBERS: [&str; 46] = [
     "kinetic_warning",
     "ADMITTED",
     "CARD",
@@ -16,7 +16,9 @@ const MEMBERS: [&str; 40] = [
     "advance_many",
     "at_node",
     "at_node_0",
+    "attempt",
     "balance",
+    "begin",
     "discrete_energy",
     "domain_arguments",
     "edge",
@@ -28,9 +30,13 @@ const MEMBERS: [&str; 40] = [
     "new",
     "node",
     "open",
+    "invariants",
+    "observe",
     "parameters",
+    "prepared",
     "refused",
     "residual",
+    "scales",
     "sized",
     "start",
     "start_of_order",

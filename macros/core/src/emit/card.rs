@@ -243,7 +243,6 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             quote!(Invariant::#conserved(#label, #text, #rows))
         })
         .collect();
-    let constructor = constructor(d);
     let (kebab_name, model_name) = (kebab(&d.spec.name), &d.spec.name);
     let doc = d
         .spec
@@ -279,75 +278,41 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let g = Generics::of(d);
     let (bound, plain) = (g.sizes_bound(), g.plain());
     let solvers = super::left_factor::offered(d);
-    let model = match super::left_factor::default_solver(d).is_some() {
-        true => quote! {
-            match chosen_solver(settings, Self::CARD.solvers)? {
-                Some(method) => self.with_solver(method),
-                None => self,
-            }
-        },
-        false => quote!(chosen_solver(settings, Self::CARD.solvers).map(|_| self)?),
-    };
     let dimensions = dimensions(d);
     let (sized, sized_by) = match d.spec.dimensions.is_empty() {
         true => (TokenStream::new(), quote!(only_size::<Self>)),
         false => (sized(d), quote!(Self::sized)),
     };
-    let kinetic_warning = super::kinetic::kinetic_warning(d, names);
-    let judged = (!kinetic_warning.is_empty()).then(|| {
-        quote! {
-            fn judged(&self, state: &Self::State) -> Option<KineticWarning> {
-                self.kinetic_warning(state)
-            }
-        }
-    });
+    let kinetic_warning = super::kinetic::kinetic_warning(d);
     let orders = match (preprocessed, d.reversible) {
         (true, _) => quote!(&[2, 4, 6, 8, 10]),
         (false, true) => quote!(&[2, 4, 6, 8]),
         (false, false) => quote!(&[1]),
-    };
-    let of_order = match (preprocessed, d.reversible) {
-        (true, _) => quote!(modified),
-        (false, true) => quote!(of_order),
-        (false, false) => quote!(plain),
     };
     let work = match values.to_string().contains("work") {
         true => quote!(work),
         false => quote!(_),
     };
     let enlarged = super::impulses::not_less_than_impulses(d, names);
-    let arguments = quote!(parameters: &[Vec<f64>], initial: &[Vec<f64>]);
+    let (state, workspace) = (item(d, "State"), item(d, "Workspace"));
     quote! {
-        impl #bound ::clebsch::integrate::Described for #name #plain {
-            fn card() -> &'static Card { &Self::CARD }
-            fn read(#arguments) -> Result<(Self, Self::Initial), OpenError> {
-                #constructor
-            }
-            fn ways(self, state: &Self::State, settings: Settings) -> Result<(Self, Steps<Self>), OpenError> {
-                let model = #model;
-                let steps = Steps::#of_order(&model, state, settings, Self::CARD.orders)?;
-                Ok((model, steps))
-            }
-            #judged
-            fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-                Residual::largest(&self.residual(before, after, h))
-            }
-            fn observe(&self, state: &Self::State, out: &mut [f64]) {
+        impl #bound #name #plain {
+            /// All observables, in the order of the card.
+            fn observe(&self, state: &#state #plain, out: &mut [f64]) {
                 #(#observed)*
-                let _ = out;
             }
-            fn invariants(&self, state: &Self::State, #work: Option<&Self::Workspace>, out: &mut [f64]) {
+
+            /// All invariants, in the order of the card.
+            fn invariants(&self, state: &#state #plain, #work: Option<&#workspace #plain>, out: &mut [f64]) {
                 #values
-                let _ = (state, out);
             }
-            fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
+
+            /// Their sizes at a state, in steps of `h`.
+            fn scales(&self, state: &#state #plain, h: f64, out: &mut [f64]) {
                 #enlarged
                 #scales
-                let _ = (state, h, out);
             }
-        }
 
-        impl #bound #name #plain {
             /// The model as data.
             pub const CARD: Card = Card {
                 name: #model_name,
@@ -385,64 +350,6 @@ fn discrete_energy(d: &Derivation) -> TokenStream {
     let formula = super::items::text(d, &energy.value);
     let conserved = format_ident!("{}", if energy.exact { "exact" } else { "bounded" });
     quote!(Invariant::#conserved("discrete_energy", #formula, 1))
-}
-
-/// From lists of numbers to parameters and initial data.
-fn constructor(d: &Derivation) -> TokenStream {
-    let s = &d.letters.symbols;
-    let (data, start) = (item(d, "Parameters"), item(d, "Initial"));
-    let read = |id: SymbolId, source: TokenStream, index: usize| {
-        let (field, label) = (own(d, id), &s.get(id).name);
-        if s.get(id).shape.is_scalar() {
-            quote!(#field: number_of(#label, #source.get(#index))?)
-        } else {
-            quote!(#field: matrix_of(#label, #source.get(#index))?)
-        }
-    };
-    let mut parameters: Vec<TokenStream> = d
-        .spec
-        .parameters
-        .iter()
-        .enumerate()
-        .map(|(i, p)| read(*p, quote!(parameters), i))
-        .collect();
-    if parameters.is_empty() {
-        parameters.push(quote!(scalar: ::core::marker::PhantomData));
-    }
-    let mut initial = Vec::new();
-    for (i, c) in d.spec.configurations.iter().enumerate() {
-        let (element, label) = (own(d, c.element), &s.get(c.element).name);
-        let index = 2 * i;
-        let read = match family(c) {
-            Family::Rotation => quote!(rotation_of),
-            Family::Orthogonal(_) => quote!(orthogonal_of),
-            Family::Linear(_) => quote!(linear_of),
-            Family::Quaternion => quote!(quaternion_of),
-            Family::Coordinates(names) => {
-                let reader = format_ident!("{}", names.reader);
-                quote!(#reader)
-            }
-            Family::Field(_) => quote!(additive_of),
-        };
-        initial.push(quote!(#element: #read(#label, initial.get(#index))?));
-        let field = element::momentum_field(d, i, c.side);
-        let label = field.to_string();
-        let kind = element::momentum_name(d, i, c.side);
-        let index = index + 1;
-        initial.push(quote!(#field: #kind(matrix_of(#label, initial.get(#index))?)));
-    }
-    for (i, id) in kept(d).into_iter().enumerate() {
-        initial.push(read(
-            id,
-            quote!(initial),
-            2 * d.spec.configurations.len() + i,
-        ));
-    }
-    quote! {
-        let model = Self::new(#data { #(#parameters),* })?;
-        let initial = #start { #(#initial),* };
-        Ok((model, initial))
-    }
 }
 
 /// The named sizes of the model, with the value of this card.

@@ -18,9 +18,8 @@ pub fn discrete_energy(d: &Derivation, names: &Names) -> TokenStream {
     symbols.keep_differences(true);
     let s = &symbols;
     let energy = &d.integrability.discrete_energy;
-    let (name, state) = (item(d, ""), item(d, "State"));
-    let g = Generics::of(d);
-    let (bound, used) = (g.bound(), g.used());
+    let state = item(d, "State");
+    let used = Generics::of(d).used();
     let (before, after) = (names.local("before"), names.local("after"));
     let wanted = std::slice::from_ref(&energy.value);
     let Edge {
@@ -37,8 +36,7 @@ pub fn discrete_energy(d: &Derivation, names: &Names) -> TokenStream {
         text(d, &energy.value),
     );
     quote! {
-        impl #bound #name #used {
-            #[doc = #doc]
+        #[doc = #doc]
             pub fn discrete_energy(
                 &self,
                 #step: T,
@@ -50,6 +48,5 @@ pub fn discrete_energy(d: &Derivation, names: &Names) -> TokenStream {
                 #lets
                 #value
             }
-        }
     }
 }

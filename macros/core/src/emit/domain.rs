@@ -384,7 +384,7 @@ pub(super) fn finite_in_step(d: &Derivation, names: &Names, finite: &[TokenStrea
     let node = names.local("node");
     quote! {
         if !(#(#finite)&&*) {
-            return Err(StepCause::NotFinite { what: "momentum" }.at_node(state.#node));
+            return Err(StepCause::not_finite("momentum").at_node(state.#node));
         }
     }
 }
@@ -441,7 +441,7 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
                 }
                 _ => {
                     *state = #before;
-                    Err(StepCause::NotFinite { what: "momentum" }.at_node(state.#node))
+                    Err(StepCause::not_finite("momentum").at_node(state.#node))
                 }
             }
         }

@@ -9,17 +9,16 @@ use super::sizes::Generics;
 use super::step::{at, here};
 use crate::derive::Derivation;
 use crate::derive::limit::Limit;
-use crate::expr::{self, Expr, Letter, Shift};
+use crate::expr::{self, Expr, Shift};
 use crate::schedule;
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 /// `energies` and `energy`.
 pub fn energy(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
-    match (parts(d, limit).as_slice(), element::only_rotations(d)) {
-        ([_, _, ..], _) => in_parts(d, names, limit),
-        (_, true) => of_rotations(d, names, limit),
-        (_, false) => of_matrices(d, names, limit),
+    match parts(d, limit).as_slice() {
+        [_, _, ..] => in_parts(d, names, limit),
+        _ => whole(d, names, limit),
     }
 }
 
@@ -110,10 +109,7 @@ pub(super) fn twice_kinetic_of(
     let each = own.map(|members| {
         part_of(&mut part, d, &members);
         let own = members.iter().map(|i| momenta[*i].clone()).collect();
-        let inverted = match element::only_rotations(&part) {
-            true => rotations(&part, bindings, limit, own),
-            false => matrices(&part, bindings, limit, own),
-        };
+        let inverted = matrices(&part, bindings, limit, own);
         quote!({ #inverted momentum.dot(&velocity) })
     });
     let kinetic: Vec<TokenStream> = each.collect();
@@ -154,7 +150,7 @@ fn both(d: &Derivation, body: TokenStream) -> TokenStream {
 }
 
 /// The momenta along each configuration, of a form in the velocities.
-fn gradients(d: &Derivation, e: &Expr) -> Vec<Expr> {
+pub(super) fn gradients(d: &Derivation, e: &Expr) -> Vec<Expr> {
     let s = &d.letters.symbols;
     let list = d.spec.configurations.iter().zip(&d.letters.variation);
     list.map(|(c, xi)| {
@@ -164,61 +160,77 @@ fn gradients(d: &Derivation, e: &Expr) -> Vec<Expr> {
     .collect()
 }
 
-fn of_matrices(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
-    let (kinetic, linear) = (gradients(d, &limit.kinetic), gradients(d, &limit.linear));
-    let needed = letters_of(kinetic.iter().chain(&linear).chain([&limit.potential]));
+/// `energies` and `energy`, the kinetic energy by the inertia of all velocities together.
+fn whole(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
+    let linear = gradients(d, &limit.linear);
+    let needed = letters_of(linear.iter().chain([&limit.potential]));
     let all = with_transports(d, &needed, 0);
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
     let mut bindings = Bindings::new();
     let locals = here(d, names, &needed, &mut bindings);
-    let inverted = matrices(d, &bindings, limit, momenta(d));
+    let momentum = momentum(d, &bindings, &linear, momenta(d));
     let potential = potential(d, &bindings, limit);
+    let coordinates = element::offset(d, d.spec.configurations.len());
     let body = quote! {
         #parameters
         #locals
-        #inverted
+        #momentum
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, #coordinates);
         (momentum.dot(&velocity) * T::from_f64(0.5), #potential)
     };
     both(d, body)
 }
 
-/// The inertia column by column: the momentum of each unit velocity is the gradient of the kinetic
-/// energy, which costs less than the form on all pairs.
-pub(super) fn matrices(
+/// The momenta on top of each other, less what is linear in the velocity, as the local `momentum`.
+fn momentum(
     d: &Derivation,
     bindings: &Bindings,
-    limit: &Limit,
+    linear: &[Expr],
     mut own: Vec<TokenStream>,
 ) -> TokenStream {
-    let s = &d.letters.symbols;
-    let bodies = d.spec.configurations.len();
-    let bundle = Bundle::of(d);
+    let writer = Writer {
+        symbols: &d.letters.symbols,
+        bindings,
+    };
+    for (value, e) in own.iter_mut().zip(linear) {
+        if !e.is_zero() {
+            let shift = writer.operand(e);
+            *value = quote!(#value - #shift);
+        }
+    }
+    if let ([only], true) = (own.as_slice(), element::only_rotations(d)) {
+        return quote!(let momentum = #only;);
+    }
     let covectors = element::covectors(d);
-    let (kinetic, linear) = (gradients(d, &limit.kinetic), gradients(d, &limit.linear));
-    let p = schedule::program(s, &kinetic, "t");
-    let (lets, values) = program(&p, bindings);
-    let values = bundle.value(&values);
+    let own = Bundle::of(d).value(&own);
     let stacked = stack(d, quote!(parts));
-    let mut columns = TokenStream::new();
-    for j in 0..bodies {
-        let directions: TokenStream = d
-            .letters
-            .variation
-            .iter()
-            .enumerate()
-            .map(|(i, xi)| {
-                let name = variable(s, *xi);
-                let value = if i == j {
-                    element::basis(d, i, quote!(axis))
-                } else if s.get(*xi).shape.is_scalar() {
-                    quote!(T::zero())
-                } else {
-                    quote!(SMatrix::zeros())
-                };
-                let t = super::expression::ty(s, s.get(*xi).shape);
-                quote!(let #name: #t = #value;)
-            })
-            .collect();
+    quote! {
+        let parts: #covectors = #own;
+        let momentum = #stacked;
+    }
+}
+
+/// The inertia column by column, as the local `inertia`: the momentum of each unit velocity is the gradient
+/// of the kinetic energy, which costs less than the form on all pairs.
+pub(super) fn inertia(d: &Derivation, bindings: &Bindings, kinetic: &[Expr]) -> TokenStream {
+    let s = &d.letters.symbols;
+    let covectors = element::covectors(d);
+    let p = schedule::program(s, kinetic, "t");
+    let (lets, values) = program(&p, bindings);
+    let values = Bundle::of(d).value(&values);
+    let stacked = stack(d, quote!(parts));
+    let columns = (0..d.spec.configurations.len()).map(|j| {
+        let directions = d.letters.variation.iter().enumerate().map(|(i, xi)| {
+            let name = variable(s, *xi);
+            let t = super::expression::ty(s, s.get(*xi).shape);
+            let value = match i == j {
+                true => element::basis(d, i, quote!(axis)),
+                false if s.get(*xi).shape.is_scalar() => quote!(T::zero()),
+                false => quote!(SMatrix::zeros()),
+            };
+            quote!(let #name: #t = #value;)
+        });
+        let count = element::coordinates(d, j);
         let column = match j {
             0 => quote!(axis),
             _ => {
@@ -226,122 +238,35 @@ pub(super) fn matrices(
                 quote!(#offset + axis)
             }
         };
-        let count = element::coordinates(d, j);
-        columns.extend(quote! {
+        quote! {
             for axis in 0..#count {
-                #directions
+                #(#directions)*
                 #lets
                 let parts: #covectors = #values;
                 inertia.set_column(#column, &#stacked);
             }
-        });
-    }
-    let writer = Writer {
-        symbols: s,
-        bindings,
-    };
-    if !limit.linear.is_zero() {
-        for (value, e) in own.iter_mut().zip(&linear) {
-            if !e.is_zero() {
-                let shift = writer.operand(e);
-                *value = quote!(#value - #shift);
-            }
         }
-    }
-    let own = bundle.value(&own);
-    let (dimension, coordinates) = (element::total(d), element::offset(d, bodies));
+    });
+    let dimension = element::total(d);
     quote! {
-        let parts: #covectors = #own;
-        let momentum = #stacked;
         let mut inertia = SMatrix::<T, #dimension, #dimension>::zeros();
-        #columns
-        let velocity = solve_leading_or_nan(&inertia, &momentum, #coordinates);
+        #(#columns)*
     }
-}
-
-fn of_rotations(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
-    let (form, linear) = forms(d, limit);
-    let needed = letters_of([&form, &linear, &limit.potential]);
-    let all = with_transports(d, &needed, 0);
-    let parameters = parameter_locals(d, quote!(self.parameters), &all);
-    let mut bindings = Bindings::new();
-    let locals = here(d, names, &needed, &mut bindings);
-    let inverted = rotations(d, &bindings, limit, momenta(d));
-    let potential = potential(d, &bindings, limit);
-    let body = quote! {
-        #parameters
-        #locals
-        #inverted
-        (momentum.dot(&velocity) * T::from_f64(0.5), #potential)
-    };
-    both(d, body)
-}
-
-/// B(ξ, η), with B(ξ, ξ)/2 the kinetic energy, and what is linear in the velocity.
-fn forms(d: &Derivation, limit: &Limit) -> (Expr, Expr) {
-    let s = &d.letters.symbols;
-    let pairs = d.letters.variation.iter().zip(&d.letters.direction);
-    let along: Vec<(Letter, Expr)> = pairs
-        .map(|(xi, eta)| (at(*xi, Shift::HERE), expr::here(s, *eta)))
-        .collect();
-    let form = expr::directional(s, &limit.kinetic, &along);
-    (form, expr::directional(s, &limit.linear, &along))
 }
 
 /// The kinetic energy of the limit, inverted for the momentum.
-fn rotations(
+pub(super) fn matrices(
     d: &Derivation,
     bindings: &Bindings,
     limit: &Limit,
     own: Vec<TokenStream>,
 ) -> TokenStream {
-    let s = &d.letters.symbols;
-    let bodies = d.spec.configurations.len();
-    let (count, dimension) = (
-        Literal::usize_unsuffixed(bodies),
-        Literal::usize_unsuffixed(3 * bodies),
-    );
-    let (form, linear) = forms(d, limit);
-    let writer = Writer {
-        symbols: s,
-        bindings,
-    };
-    let axis = |index: TokenStream, i: usize| {
-        let i = Literal::usize_unsuffixed(i);
-        if bodies == 1 {
-            quote!(basis::<T>(#index))
-        } else {
-            quote!(if #index / 3 == #i { basis::<T>(#index % 3) } else { SMatrix::<T, 3, 3>::zeros() })
-        }
-    };
-    let directions = |ids: &[crate::expr::symbol::SymbolId], index: TokenStream| -> TokenStream {
-        ids.iter()
-            .enumerate()
-            .map(|(i, id)| {
-                let (name, value) = (variable(s, *id), axis(index.clone(), i));
-                quote!(let #name = #value;)
-            })
-            .collect()
-    };
-    let xi = directions(&d.letters.variation, quote!(i));
-    let eta = directions(&d.letters.direction, quote!(j));
-    let eta_i = directions(&d.letters.direction, quote!(i));
-    let form = writer.write(&form);
-    let shift = (!limit.linear.is_zero()).then(|| {
-        let linear = writer.write(&linear);
-        quote! {
-            - SVector::<T, #dimension>::from_fn(|i, _| { #eta_i #linear })
-        }
-    });
-    let stacked = stack(d, quote!(parts));
+    let momentum = momentum(d, bindings, &gradients(d, &limit.linear), own);
+    let inertia = inertia(d, bindings, &gradients(d, &limit.kinetic));
+    let coordinates = element::offset(d, d.spec.configurations.len());
     quote! {
-        let parts: [SVector<T, 3>; #count] = [#(#own),*];
-        let momentum: SVector<T, #dimension> = #stacked #shift;
-        let inertia = SMatrix::<T, #dimension, #dimension>::from_fn(|i, j| {
-            #xi
-            #eta
-            #form
-        });
-        let velocity = solve_or_nan(&inertia, &momentum);
+        #momentum
+        #inertia
+        let velocity = solve_leading_or_nan(&inertia, &momentum, #coordinates);
     }
 }

@@ -346,7 +346,7 @@ pub(super) fn follow(d: &Derivation, names: &Names) -> TokenStream {
             if !(#(#same)&*) {
                 work.factor = match self.factor(state) {
                     Ok(factor) => factor,
-                    Err(_) => return Err(StepCause::NotFinite { what: "body" }.at_node(state.#node)),
+                    Err(_) => return Err(StepCause::not_finite("body").at_node(state.#node)),
                 };
             }
         }
@@ -382,74 +382,6 @@ fn moved_away(d: &Derivation) -> TokenStream {
     let others = (!equal.is_empty()).then(|| quote!(|| !(#(#equal)&*)));
     quote! {
         work.here.#element != state.#element || work.here.#momentum != state.#momentum #others
-    }
-}
-
-/// The same step lane by lane, for ensembles.
-pub(super) fn side_by_side(d: &Derivation, names: &Names) -> TokenStream {
-    let (name, given) = (item(d, ""), item(d, "Parameters"));
-    let (state, work) = (item(d, "State"), item(d, "Workspace"));
-    let g = Generics::of(d);
-    let (bound, used) = (g.bound(), g.used());
-    let one = g.used_over_tokens(&quote!(<T as Real>::One));
-    let element = own(d, d.spec.configurations[0].element);
-    let momentum = per_configuration(d, "momentum", 0);
-    let node = names.local("node");
-    let moved_away = moved_away(d);
-    let parameters: Vec<Ident> = d.spec.parameters.iter().map(|p| own(d, *p)).collect();
-    let kept: Vec<Ident> = items::kept(d).into_iter().map(|id| own(d, id)).collect();
-    let of_state = !items::factor_references(d).is_empty();
-    let (factor, own_factor) = match of_state {
-        true => (quote!(work.factor), None),
-        false => (
-            quote!(self.factor),
-            Some(quote!(factor: self.factor.in_lane(lane),)),
-        ),
-    };
-    let no_parameters = parameters
-        .is_empty()
-        .then(|| quote!(scalar: ::core::marker::PhantomData));
-    quote! {
-        impl #bound SideBySide for #name #used {
-            #[inline(always)]
-            fn moving(&self, state: &#state #used, work: &#work #used) -> Option<Moving<T>> {
-                let another = work.method != Method::Kappa || #moved_away;
-                (!another).then_some(Moving { attitude: state.#element, momentum: state.#momentum, edge: work.edge })
-            }
-            #[inline(always)]
-            fn arrive(state: &mut #state #used, work: &mut #work #used, moving: &Moving<T>, steps: u64) {
-                (state.#element, state.#momentum) = (moving.attitude, moving.momentum);
-                state.#node += steps;
-                (work.here, work.edge) = (*state, moving.edge);
-            }
-            #[inline(always)]
-            fn is_diagonal(&self, work: &#work #used) -> bool {
-                let _ = work;
-                #factor.is_diagonal()
-            }
-            #[inline(always)]
-            fn step_lanes<const DIAGONAL: bool>(&self, state: &#state #used, work: &#work #used, from: &Moving<T>, to: &mut Moving<T>) -> bool {
-                let mut easy = true;
-                for lane in 0..T::LANES {
-                    let (attitude, edge) = from.from(lane);
-                    let (h, factor) = (work.h.one_of(lane), #factor.in_lane(lane));
-                    let (turned, found) = edge.turn_at_once::<DIAGONAL>(&factor, h, &attitude);
-                    let model = #name::#one {
-                        parameters: #given { #(#parameters: self.parameters.#parameters.in_lane(lane),)* #no_parameters },
-                        #own_factor
-                        method: self.method,
-                    };
-                    let state = #state::#one {
-                        #element: attitude,
-                        #momentum: from.momentum.in_lane(lane),
-                        #(#kept: state.#kept.in_lane(lane),)*
-                        #node: state.#node,
-                    };
-                    easy &= found & to.set(lane, model.arrived(&state, &edge, h, turned));
-                }
-                easy
-            }
-        }
     }
 }
 

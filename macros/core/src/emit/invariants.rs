@@ -164,9 +164,8 @@ fn momentum_rows(d: &Derivation, i: usize) -> TokenStream {
 /// One function for every invariant.
 pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
-    let (name, state) = (item(d, ""), item(d, "State"));
-    let g = Generics::of(d);
-    let (bound, used) = (g.bound(), g.used());
+    let state = item(d, "State");
+    let used = Generics::of(d).used();
     let mut functions = TokenStream::new();
     for v in &d.invariants {
         let method = format_ident!("{}", v.name);
@@ -214,7 +213,7 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
             (Kind::Value | Kind::Energy | Kind::ConstraintRate(_), None, _) => {}
         }
     }
-    quote!(impl #bound #name #used { #functions })
+    functions
 }
 
 /// The scales of all components of all invariants, written to `out` one after the other.

@@ -464,7 +464,7 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
         .map(|(name, _, made)| quote!(let #name = #made;))
         .collect();
     let init: TokenStream = kept.iter().map(|(name, _, _)| quote!(#name,)).collect();
-    let (solver_field, solver_init, with_solver) = super::left_factor::of_model(d);
+    let (solver_field, solver_init) = super::left_factor::of_model(d);
     let docs = crate::document::rustdoc(d, documented);
     let source = crate::document::source(d);
     let fingerprint = crate::document::fingerprint(d);
@@ -497,13 +497,6 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
                 #inside
                 #build
                 Ok(Self { parameters, #init #solver_init })
-            }
-
-            #with_solver
-
-            /// The parameters.
-            pub fn parameters(&self) -> &#data #used {
-                &self.parameters
             }
         }
     }

@@ -1,85 +1,57 @@
-//! Whether the kinetic energy is positive at a state. Takes the quadratic form of the derivation;
-//! gives `kinetic_warning`, which evaluates its matrix once, when a trajectory starts.
+//! The inertia at a state, and whether it is positive there. Takes the quadratic form of the kinetic energy;
+//! gives `inertia_at`, and `kinetic_warning`, which judges it once, when a trajectory starts.
 
-use super::element::{self, Bundle, stack};
-use super::expression::{Bindings, program};
+use super::element;
+use super::energy::{gradients, inertia};
+use super::expression::Bindings;
 use super::items::{letters_of, parameter_locals, with_transports};
-use super::names::{Names, item, variable};
+use super::names::{Names, item};
 use super::sizes::Generics;
 use super::step::here;
 use crate::derive::Derivation;
-use crate::derive::kinetic;
-use crate::expr::Expr;
-use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// `kinetic_warning`, for models over `f64`; nothing where the form is not known.
-pub fn kinetic_warning(d: &Derivation, names: &Names) -> TokenStream {
+/// `inertia_at`; nothing where the form is not known.
+pub fn inertia_at(d: &Derivation, names: &Names) -> TokenStream {
     let Some(form) = &d.kinetic else {
         return TokenStream::new();
     };
-    let s = &d.letters.symbols;
     let state = item(d, "State");
-    let plain = Generics::of(d).plain();
-    let bodies = d.spec.configurations.len();
-    let bundle = Bundle::of(d);
-    let covectors = element::covectors(d);
-    let gradients: Vec<Expr> = kinetic::gradients(&d.letters, &form.energy)
-        .into_iter()
-        .zip(&d.spec.configurations)
-        .map(|(y, c)| c.group.of_gradient(&d.letters.symbols, y))
-        .collect();
+    let used = Generics::of(d).used();
+    let gradients = gradients(d, &form.energy);
     let needed = letters_of(&gradients);
     let all = with_transports(d, &needed, 0);
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
     let mut bindings = Bindings::new();
     let locals = here(d, names, &needed, &mut bindings);
-    let p = schedule::program(s, &gradients, "t");
-    let (lets, values) = program(&p, &bindings);
-    let values = bundle.value(&values);
-    let stacked = stack(d, quote!(parts));
-    let columns = (0..bodies).map(|j| {
-        let directions = d.letters.variation.iter().enumerate().map(|(i, xi)| {
-            let name = variable(s, *xi);
-            let t = super::expression::ty(s, s.get(*xi).shape);
-            let value = match i == j {
-                true => element::basis(d, i, quote!(axis)),
-                false if s.get(*xi).shape.is_scalar() => quote!(T::zero()),
-                false => quote!(SMatrix::zeros()),
-            };
-            quote!(let #name: #t = #value;)
-        });
-        let count = element::coordinates(d, j);
-        let column = match j {
-            0 => quote!(axis),
-            _ => {
-                let offset = element::offset(d, j);
-                quote!(#offset + axis)
-            }
-        };
-        quote! {
-            for axis in 0..#count {
-                #(#directions)*
-                #lets
-                let parts: #covectors = #values;
-                inertia.set_column(#column, &#stacked);
-            }
-        }
-    });
-    let (dimension, coordinates) = (element::total(d), element::offset(d, bodies));
+    let inertia = inertia(d, &bindings, &gradients);
+    let dimension = element::total(d);
     quote! {
-        /// What is wrong with the kinetic energy at a state, if anything: its Hessian in all
-        /// velocities together, at the identity, should be positive definite.
+        /// The Hessian of the kinetic energy in all velocities together, at the identity.
+            fn inertia_at(&self, state: &#state #used) -> SMatrix<T, #dimension, #dimension> {
+                #parameters
+                #locals
+                #inertia
+                inertia
+            }
+    }
+}
+
+/// `kinetic_warning`, for models over `f64`; nothing where the form is not known.
+pub fn kinetic_warning(d: &Derivation) -> TokenStream {
+    if d.kinetic.is_none() {
+        return TokenStream::new();
+    }
+    let state = item(d, "State");
+    let plain = Generics::of(d).plain();
+    let coordinates = element::offset(d, d.spec.configurations.len());
+    quote! {
+        /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+        /// definite.
         #[cold]
-        #[allow(unused_variables)]
         pub fn kinetic_warning(&self, state: &#state #plain) -> Option<KineticWarning> {
-            type T = f64;
-            #parameters
-            #locals
-            let mut inertia = SMatrix::<T, #dimension, #dimension>::zeros();
-            #(#columns)*
-            KineticWarning::of(&inertia, #coordinates)
+            KineticWarning::of(&self.inertia_at(state), #coordinates)
         }
     }
 }

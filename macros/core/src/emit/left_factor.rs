@@ -80,21 +80,11 @@ pub(super) fn default_solver(d: &Derivation) -> Option<TokenStream> {
 }
 
 /// What the model keeps of the solver: a field, its value, and the function that changes it.
-pub(super) fn of_model(d: &Derivation) -> (TokenStream, TokenStream, TokenStream) {
+pub(super) fn of_model(d: &Derivation) -> (TokenStream, TokenStream) {
     let Some(default) = default_solver(d) else {
         return Default::default();
     };
-    (
-        quote!(method: Method,),
-        quote!(method: #default,),
-        quote! {
-            /// The same model, its steps solved by the solver named.
-            #[must_use]
-            pub fn with_solver(self, method: Method) -> Self {
-                Self { method, ..self }
-            }
-        },
-    )
+    (quote!(method: Method,), quote!(method: #default,))
 }
 
 /// The names of the solvers that can be chosen, the one taken otherwise first.

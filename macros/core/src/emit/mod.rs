@@ -21,7 +21,6 @@ mod impulses;
 mod invariants;
 mod items;
 mod kinetic;
-mod lanes;
 mod left_factor;
 mod line;
 mod names;
@@ -190,17 +189,27 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     let names = Names::new(d);
     let module = format_ident!("{}", names.module);
     let visibility = d.spec.public.then(|| quote!(pub));
+    let [configuration, balance] = residual::balance(d, &names);
+    // What is asked of states, beside the step.
+    let asked = [
+        balance,
+        residual_of_step::residual_of_step(d, &names),
+        kinetic::inertia_at(d, &names),
+        invariants::invariants(d, &names),
+        discrete_energy::discrete_energy(d, &names),
+        stepper::attempt(d),
+    ];
+    let (name, g) = (names::item(d, ""), sizes::Generics::of(d));
+    let (bound, used) = (g.bound(), g.used());
+    let asked = quote!(impl #bound #name #used { #(#asked)* });
     let items = [
         items::parameters(d),
         items::model(d, documented),
         state::state(d, &names),
         step::start_and_step(d, &names),
-        stepper::traits(d, &names),
-        lanes::over_any_scalar(d, &names),
-        residual::balance(d, &names),
-        residual_of_step::residual_of_step(d, &names),
-        invariants::invariants(d, &names),
-        discrete_energy::discrete_energy(d, &names),
+        stepper::protocol(d, &names),
+        configuration,
+        asked,
         card::card(d, &names),
     ];
     let given = functional::paths(&d.letters.symbols);
@@ -210,7 +219,7 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     );
     quote! {
         #[doc = #about]
-        #[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables, confusable_idents, clippy::all)]
+        #[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables, confusable_idents, unused_variables, clippy::all)]
         #visibility mod #module {
             use ::clebsch::emitted::*;
             #given

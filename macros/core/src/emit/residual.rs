@@ -14,9 +14,9 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 /// The configuration struct and the method.
-pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
+pub fn balance(d: &Derivation, names: &Names) -> [TokenStream; 2] {
     let s = &d.letters.symbols;
-    let (name, configuration) = (item(d, ""), item(d, "Configuration"));
+    let configuration = item(d, "Configuration");
     let elements = d.spec.configurations.iter().enumerate().map(|(i, c)| {
         let (e, kind) = (own(d, c.element), element::ty(d, i));
         let doc = match c.group.is_additive() {
@@ -127,15 +127,15 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
     let stacked = stack(d, quote!(parts));
     let step = variable(s, d.spec.step);
     let g = Generics::of(d);
-    let (declared, bound, used) = (g.declared(), g.bound(), g.used());
+    let (declared, used) = (g.declared(), g.used());
     let components = components(d);
-    quote! {
+    let data = quote! {
         /// A configuration at one node, solution or not.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct #configuration #declared { #(#elements,)* #(#others,)* #(#multipliers,)* }
-
-        impl #bound #name #used {
-            /// The residual of the discrete Euler-Lagrange equations at the middle one of three
+    };
+    let function = quote! {
+        /// The residual of the discrete Euler-Lagrange equations at the middle one of three
             #(#[doc = #components])*
             pub fn balance(
                 &self,
@@ -151,8 +151,8 @@ pub fn balance(d: &Derivation, names: &Names) -> TokenStream {
                 let parts: #covectors = #value;
                 #stacked
             }
-        }
-    }
+    };
+    [data, function]
 }
 
 /// What the components of the residual are.

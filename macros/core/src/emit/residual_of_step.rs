@@ -17,7 +17,7 @@ use quote::quote;
 /// `residual`.
 pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
-    let (name, state) = (item(d, ""), item(d, "State"));
+    let state = item(d, "State");
     let (before, after) = (names.local("before"), names.local("after"));
     let step = variable(s, d.spec.step);
     // What the edge brings, in parts that are measured by themselves, and the sizes of their terms.
@@ -58,7 +58,7 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
                     };
                     let arm = lever.filter(|_| at == 0).map(|lever| {
                         let linear = taken(quote!(#after.#field.0), first, count);
-                        quote!(+ (#lever * length(&#linear)).magnitude())
+                        quote!(.with_arm(#lever * length(&#linear)))
                     });
                     carried.push((taken(momentum.clone(), at, rows), arm));
                 }
@@ -100,19 +100,11 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
         });
     let parts = values.zip(sizes).zip(&carried);
     let parts = parts.map(|((value, size), (momentum, arm))| {
-        quote! {{
-            let momentum = #momentum;
-            Residual {
-                size: length(&(momentum - (#value))).magnitude(),
-                scale: length(&momentum).magnitude() + (#size).magnitude() #arm,
-            }
-        }}
+        quote!(Residual::between(&(#momentum), &(#value), #size) #arm)
     });
-    let g = Generics::of(d);
-    let (bound, used) = (g.bound(), g.used());
+    let used = Generics::of(d).used();
     quote! {
-        impl #bound #name #used {
-            /// What the step of size `h` from one state to the next leaves of its equations: the
+        /// What the step of size `h` from one state to the next leaves of its equations: the
             /// momentum that is carried to the second state, less the one that the motion between
             /// them brings there. One part a configuration, angular and linear ones of a rigid
             /// motion apart, each with the size of the terms it is made of: those of a spatial
@@ -122,10 +114,8 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
                 #locals
                 #arrivals
                 #lets
-                let _ = #step;
                 [#(#parts),*]
             }
-        }
     }
 }
 

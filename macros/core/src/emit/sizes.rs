@@ -79,12 +79,6 @@ impl Generics {
     }
 
     /// As a type over another scalar takes them: `<N, U>`.
-    pub fn used_over(&self, scalar: &Ident) -> TokenStream {
-        let list = &self.constants;
-        quote!(<#(#list,)* #scalar>)
-    }
-
-    /// The same over a type.
     pub fn used_over_tokens(&self, scalar: &TokenStream) -> TokenStream {
         let list = &self.constants;
         quote!(<#(#list,)* #scalar>)

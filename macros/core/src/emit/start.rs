@@ -1,6 +1,5 @@
 //! How a trajectory begins: the state at node 0 from initial data, and the workspace of its steps.
-//! Takes the derivation; gives the bodies of what the runtime's protocol asks of a model, and its
-//! entry.
+//! Takes the derivation; gives the two functions of which the runtime's protocol makes `start`.
 
 use super::element::{self, Family, family};
 use super::expression::{Bindings, Writer};
@@ -38,8 +37,17 @@ impl Choice {
         }
     }
 
+    /// What the protocol calls it.
+    pub fn word(self) -> TokenStream {
+        match self {
+            Choice::Order => quote!(order),
+            Choice::Solver => quote!(solver),
+            Choice::Nothing => quote!(nothing),
+        }
+    }
+
     /// Its type.
-    pub fn ty(self) -> TokenStream {
+    fn ty(self) -> TokenStream {
         match self {
             Choice::Order => quote!(Order),
             Choice::Solver => quote!(Option<Method>),
@@ -48,57 +56,37 @@ impl Choice {
     }
 }
 
-/// `start` and `workspace`, which the runtime's protocol makes of [`state_of`] and [`workspace_of`].
-pub(super) fn entry(d: &Derivation) -> TokenStream {
+/// `begin` and `prepared`, of which the runtime's protocol makes `start` and `workspace`.
+pub(super) fn start(d: &Derivation, names: &Names) -> TokenStream {
     let (initial, state) = (item(d, "Initial"), item(d, "State"));
     let work = item(d, "Workspace");
     let used = Generics::of(d).used();
     let choice = Choice::of(d);
-    let (kind, open) = (choice.ty(), choice != Choice::Nothing);
-    let doc = match choice {
-        Choice::Order => " As `start`, with steps of this order: see [`Order`].",
-        Choice::Solver | Choice::Nothing => " As `start`, with the solver named.",
-    };
-    let kind = match choice {
-        Choice::Solver => quote!(impl Into<#kind>),
-        Choice::Order | Choice::Nothing => kind,
-    };
     let chosen = match choice {
-        Choice::Solver => quote!(choice.into()),
-        Choice::Order | Choice::Nothing => quote!(choice),
+        Choice::Nothing => quote!(_),
+        Choice::Order | Choice::Solver => quote!(choice),
     };
-    let start_with = open.then(|| {
-        quote! {
-            #[doc = #doc]
-            ///
-            /// # Errors
-            /// As `start`; also for what this size or scalar does not have.
-            pub fn start_with(&self, initial: #initial #used, h: T, choice: #kind) -> Result<(#state #used, #work #used), StartError> {
-                ::clebsch::integrate::Model::start_with(self, initial, h, #chosen)
-            }
-        }
-    });
+    let choice = choice.ty();
+    let (begin, prepared) = (state_of(d, names), workspace_of(d, names));
+    let from = match prepared.to_string().contains("state") {
+        true => quote!(state),
+        false => quote!(_),
+    };
     quote! {
-        /// Starts a trajectory with step `h` from data at node 0.
-        ///
-        /// # Errors
-        /// Names the value that is not admissible, or says why the first step cannot be solved and
-        /// which could.
-        pub fn start(&self, initial: #initial #used, h: T) -> Result<(#state #used, #work #used), StartError> {
-            ::clebsch::integrate::Model::start_with(self, initial, h, Default::default())
+        /// The state at node 0.
+        fn begin(&self, initial: #initial #used) -> Result<#state #used, StartError> {
+            #begin
         }
 
-        #start_with
-
-        /// A workspace for steps of `h`, of either sign, from any state; errors as of `start`.
-        pub fn workspace(&self, state: &#state #used, h: T) -> Result<#work #used, StartError> {
-            self.prepare(state, h, Default::default())
+        /// What steps of `h` from `state` begin with.
+        fn prepared(&self, #from: &#state #used, h: T, #chosen: #choice) -> Result<#work #used, StartError> {
+            #prepared
         }
     }
 }
 
 /// The state at node 0, as the body of a function of the initial data.
-pub(super) fn state_of(d: &Derivation, names: &Names) -> TokenStream {
+fn state_of(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
     let state = item(d, "State");
     let node = names.local("node");
@@ -193,7 +181,7 @@ pub(super) fn state_of(d: &Derivation, names: &Names) -> TokenStream {
 }
 
 /// The workspace of steps of `h` from a state, as the body of a function of both and of the choice.
-pub(super) fn workspace_of(d: &Derivation, names: &Names) -> TokenStream {
+fn workspace_of(d: &Derivation, names: &Names) -> TokenStream {
     let work = item(d, "Workspace");
     let admitted = super::domain::of_step(d);
     let defined = super::domain::of_start(d, names);

@@ -10,7 +10,7 @@ use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::recognise::Method;
 use proc_macro2::{Ident, Spacing, TokenStream, TokenTree};
-use quote::quote;
+use quote::{format_ident, quote};
 
 /// Initial data, state and workspace.
 pub fn state(d: &Derivation, names: &Names) -> TokenStream {
@@ -83,7 +83,58 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
     access.extend(shown);
     let g = Generics::of(d);
     let (declared, bound, used) = (g.declared(), g.bound(), g.used());
-    let (work_field, work_doc) = match d.solve.method {
+    let (work_field, work_doc) = workspace(d, names);
+    let list = &d.spec.configurations;
+    let place = match list.iter().any(element::is_placed) {
+        true => {
+            " Places and their momenta are kept in two numbers, the rest below the rounding of the other."
+        }
+        false => "",
+    };
+    let about = match list.iter().any(element::about_body) {
+        true => " (of a rigid motion about the body's own origin)",
+        false => "",
+    };
+    let state_doc = format!(
+        " What moves, at one node: comparable, to be saved. The momentum is kept in the space frame{about}, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.{place}"
+    );
+    let summary = matches!(d.solve.method, Method::Newton).then(|| {
+        quote! {
+            impl #bound #work #used {
+                /// How the last step was solved: tangents, corrections, and the residual before the last.
+                pub fn solved(&self) -> newton::Summary {
+                    self.search.last()
+                }
+            }
+        }
+    });
+    quote! {
+        /// Initial data.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct #initial #declared { #(#given,)* }
+
+        #[doc = #state_doc]
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct #state #declared { #(#kept_fields,)* #node: u64 }
+
+        impl #bound #state #used {
+            #(#access)*
+        }
+
+        #[doc = #work_doc]
+        #[derive(Clone, Copy, Debug)]
+        pub struct #work #declared { h: T, #work_field }
+
+        #summary
+    }
+}
+
+/// The fields of the workspace behind the step size, and what they are for.
+fn workspace(d: &Derivation, names: &Names) -> (TokenStream, &'static str) {
+    let s = &d.letters.symbols;
+    let state = item(d, "State");
+    let used = Generics::of(d).used();
+    match d.solve.method {
         Method::FreeMoserVeselov if !factor_references(d).is_empty() => {
             let kept = factor_references(d).into_iter().map(|id| {
                 let (field, t) = (own(d, id), ty(s, s.get(id).shape));
@@ -123,76 +174,16 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
             )
         }
         Method::Linear | Method::Blocks => super::blocks::work(d, names),
-    };
-    let sizes = super::sizes::constants(s);
-    let remembered = fields_of(&work_field);
-    let rounding = matches!(d.solve.method, Method::FreeMoserVeselov).then(|| {
-        quote! {
-            impl #bound #work #used {
-                /// The solver: the momentum that it keeps, and what its last projection corrected.
-                pub fn solver(&self) -> &Free<T> { &self.solver }
-                /// The same, with rounding left to gather, so that it can be measured.
-                #[must_use]
-                pub fn without_projection(mut self) -> Self {
-                    self.solver = self.solver.without_projection();
-                    self
-                }
-                /// The same, with steps of an order above two made symplectic with the attitude.
-                #[must_use]
-                pub fn compensated(mut self) -> Self {
-                    self.solver = self.solver.compensated();
-                    self
-                }
-            }
-        }
-    });
-    let list = &d.spec.configurations;
-    let place = match list.iter().any(element::is_placed) {
-        true => {
-            " Places and their momenta are kept in two numbers, the rest below the rounding of the other."
-        }
-        false => "",
-    };
-    let about = match list.iter().any(element::about_body) {
-        true => " (of a rigid motion about the body's own origin)",
-        false => "",
-    };
-    let state_doc = format!(
-        " What moves, at one node: comparable, to be saved. The momentum is kept in the space frame{about}, advected quantities by their value carried back to the identity, so that roundoff does not accumulate.{place}"
-    );
-    let summary = matches!(d.solve.method, Method::Newton).then(|| {
-        quote! {
-            impl #bound #work #used {
-                /// How the last step was solved: tangents, corrections, and the residual before the last.
-                pub fn solved(&self) -> newton::Summary {
-                    self.search.last()
-                }
-            }
-        }
-    });
-    quote! {
-        /// Initial data.
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct #initial #declared { #(#given,)* }
-
-        #[doc = #state_doc]
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct #state #declared { #(#kept_fields,)* #node: u64 }
-
-        impl #bound #state #used {
-            #(#access)*
-            /// The number of the node.
-            pub fn node(&self) -> u64 { self.#node }
-        }
-
-        #[doc = #work_doc]
-        #[derive(Clone, Copy, Debug)]
-        pub struct #work #declared { h: T, #work_field }
-        ::clebsch::saved! { [#(#sizes)*] #work { h, #(#remembered),* } }
-
-        #rounding
-        #summary
     }
+}
+
+/// The names of the fields of the workspace, all of which are saved.
+pub(super) fn remembered(d: &Derivation, names: &Names) -> Vec<Ident> {
+    let (fields, _) = workspace(d, names);
+    [format_ident!("h")]
+        .into_iter()
+        .chain(fields_of(&fields))
+        .collect()
 }
 
 /// The names of the fields in `a: A, b: B<C>,`: what stands before a single colon.

@@ -24,7 +24,7 @@ pub(super) fn at(symbol: crate::expr::symbol::SymbolId, shift: Shift) -> Letter 
 /// `start` and `step`.
 pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     let name = item(d, "");
-    let start = super::start::entry(d);
+    let start = super::start::start(d, names);
     let factor = items::factor_of_state(d);
     let access = advected_access(d, names);
     let held = super::holds::functions(d, names);
@@ -97,7 +97,7 @@ fn free_step(d: &Derivation, names: &Names) -> TokenStream {
         quote! {
             if !(#(same(&work.#references, &state.#references))&*) {
                 let Ok(factor) = self.factor(state) else {
-                    return Err(StepCause::NotFinite { what: "body" }.at_node(state.#node));
+                    return Err(StepCause::not_finite("body").at_node(state.#node));
                 };
                 if let Err(e) = work.solver.restart_as(&factor, &state.#element, &state.#momentum) {
                     return Err(StepCause::from(e).at_node(state.#node));

@@ -224,8 +224,6 @@ pub struct Names {
     pub variables: u64,
     /// How many coordinates the Lie algebra has.
     pub coordinates: u32,
-    /// What reads an element from a list of numbers.
-    pub reader: &'static str,
     /// What case files call an element.
     pub kind: &'static str,
     /// What an element says.

@@ -87,7 +87,6 @@ impl Record for PlaneMotions {
             region: "PlaneMotionRegion",
             variables: 9,
             coordinates: 3,
-            reader: "plane_motion_of",
             kind: "RigidMotion",
             words: "position, body to plane",
         })

@@ -86,7 +86,6 @@ impl Record for RigidMotions {
             region: "MotionRegion",
             variables: 12,
             coordinates: 6,
-            reader: "motion_of",
             kind: "RigidMotion",
             words: "position, body to space",
         })

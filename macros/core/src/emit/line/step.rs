@@ -549,7 +549,7 @@ fn arrive(l: &Lines, m: &Moving) -> TokenStream {
                 },
             );
             if let Err(i) = made {
-                let cause = StepCause::NotFinite { what: "momentum" };
+                let cause = StepCause::not_finite("momentum");
                 return Err(self.refused(state, h, line::Place { quantity: #text, site: first + i }, cause));
             }
         }
