@@ -9,6 +9,9 @@ use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Part};
 
+/// Rows of a number.
+const ONE: Dim = Dim::Fixed(1);
+
 /// Most parameters that are tried as axes or forms.
 const AXES: usize = 12;
 
@@ -34,6 +37,8 @@ enum What {
     /// What keeps an axis a: `|a|² m` less its parts along a.
     Keeping(Expr),
     Plane(Expr, Expr),
+    /// A number in proportion to a parameter.
+    Times(Expr),
     /// What keeps a quadratic form: for `δQ = ζ Q` with `ζ^T P + P ζ = 0` the skew part of `P⁻¹ m`.
     Form(Expr),
     FormRight(Expr),
@@ -72,6 +77,7 @@ impl Reading {
                 )
             }
             What::Plane(a, b) => expr::dot(a.clone(), expr::mul(m, b.clone())),
+            What::Times(a) => expr::mul(a.clone(), m),
             What::Form(p) => expr::part(Part::Skew, expr::mul(p.clone(), m)),
             What::FormRight(p) => expr::part(Part::Skew, expr::mul(m, p.clone())),
             What::Column(a) => expr::mul(m, a.clone()),
@@ -88,7 +94,8 @@ impl Reading {
 
     /// Whether it gives one number.
     pub(super) fn is_number(&self) -> bool {
-        matches!(self.what, What::Along(_) | What::Plane(..)) || self.sort == Sort::Mixed
+        let of_number = matches!(self.sort, Sort::Mixed | Sort::Entries(ONE));
+        matches!(self.what, What::Along(_) | What::Plane(..)) || of_number
     }
 }
 
@@ -135,7 +142,7 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
         let told = |a: &Axis| !matches!(a.value.node(), expr::Node::Unit(..));
         push(String::new(), What::Whole, one());
         let axes = match sort {
-            Sort::Rigid(_) | Sort::Mixed => Vec::new(),
+            Sort::Rigid(_) | Sort::Mixed | Sort::Entries(ONE) => Vec::new(),
             Sort::Shifts(shape) if shape.is_vector() && !shape.is_scalar() => axes(x, shape.rows),
             Sort::Shifts(_) => Vec::new(),
             Sort::Angular | Sort::Linear => axes(x, Dim::Fixed(3)),
@@ -153,6 +160,11 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
                         What::About(point),
                         far,
                     );
+                }
+            }
+            Sort::Entries(ONE) => {
+                for a in numbers(x) {
+                    push(a.name, What::Times(a.value), a.length);
                 }
             }
             Sort::Shifts(shape) => {
@@ -267,6 +279,24 @@ fn axes(x: &Inputs, n: Dim) -> Vec<Axis> {
         push(p, homogeneous::spatial_part(s, &expr::here(s, p)));
     }
     out
+}
+
+/// Parameters that are numbers: of several fields one may move in proportion to such a one.
+fn numbers(x: &Inputs) -> Vec<Axis> {
+    let s = &x.letters.symbols;
+    let fields = x.spec.configurations.iter();
+    let fields = fields.filter(|c| c.group.is_additive() && c.group.shape().is_scalar());
+    if fields.count() < 2 {
+        return Vec::new();
+    }
+    let parameters = x.spec.parameters.iter().copied();
+    let numbers = parameters.filter(|p| s.get(*p).shape.is_scalar());
+    let axis = |p: SymbolId| Axis {
+        name: ascii(x, p),
+        value: expr::here(s, p),
+        length: length(x, &expr::here(s, p)),
+    };
+    numbers.take(AXES).map(axis).collect()
 }
 
 /// Symmetric parameters and their inverses.

@@ -85,3 +85,62 @@ fn linear_maps_that_are_no_turns_are_found_and_total_differences() {
             - h*k*(x^2 + y^2)^2; }";
     assert_eq!(names(field), ["momentum_angular_x_y"]);
 }
+
+/// Names with their formulas.
+fn told(text: &str) -> Vec<String> {
+    let list = momenta(text).into_iter();
+    list.map(|(name, value)| format!("{name} = {value}"))
+        .collect()
+}
+
+#[test]
+fn numbers_move_along_components_of_vectors() {
+    let cart = |constraint: &str, potential: &str| {
+        format!(
+            "model Cart {{ param m, M, l, g: Real; field x: Real; field y: Vec<2>; hold n: {constraint} = l^2; \
+             lagrangian = M*(next(x) - x)^2/(2*h) + m*dot(next(y) - y, next(y) - y)/(2*h) - h*m*g*{potential}; }}"
+        )
+    };
+    let bob = "dot(y - x*E1, y - x*E1)";
+    let kept = "total_momentum_E1 = p_{2,k}·E₁ + p_{1,k}";
+    assert_eq!(told(&cart(bob, "dot(E2, y)")), [kept]);
+    // A cart on a slope, and one that the bob is tied to the other way round, keep nothing.
+    assert!(told(&cart(bob, "(dot(E2, y) + x)")).is_empty());
+    let crossed = "dot(y - x*E1, y - x*E1) + x*dot(E1, y)";
+    assert!(told(&cart(crossed, "dot(E2, y)")).is_empty());
+}
+
+#[test]
+fn an_angle_turns_with_a_vector() {
+    let spring = |angle: &str| {
+        format!(
+            "model Slot {{ param m, k, j: Real; field a: Real; field y: Vec<2>; lagrangian = \
+             j*(next(a) - a)^2/(2*h) + m*dot(next(y) - y, next(y) - y)/(2*h) \
+             - h*k*(dot(E1, y)*cos({angle}) + dot(E2, y)*sin({angle}))^2/2; }}"
+        )
+    };
+    assert_eq!(
+        told(&spring("a")),
+        ["joint_momentum_angular_E1_E2 = p_{1,k} + E₁·((-p_{2,k} y_kᵀ + y_k p_{2,k}ᵀ) E₂)"]
+    );
+    // Twice the angle turns half as far.
+    let twice = told(&spring("2*a"));
+    assert_eq!(twice.len(), 1, "{twice:?}");
+    assert!(twice[0].contains('2') && twice != told(&spring("a")));
+    assert!(told(&spring("a^2")).is_empty());
+}
+
+#[test]
+fn numbers_move_in_proportion_to_parameters() {
+    let wheel = |way: &str| {
+        format!(
+            "model Wheel {{ param m, j, r, k: Real; field x: Real; field p: Real; lagrangian = \
+             m*(next(x) - x)^2/(2*h) + j*(next(p) - p)^2/(2*h) - h*k*({way})^2/2; }}"
+        )
+    };
+    assert_eq!(
+        told(&wheel("x - r*p")),
+        ["total_momentum_r = ϖ_{2,k} + r ϖ_{1,k}"]
+    );
+    assert!(told(&wheel("x - r*p^2")).is_empty());
+}
