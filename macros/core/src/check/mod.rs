@@ -10,6 +10,7 @@ mod hold;
 mod lets;
 mod members;
 mod messages;
+mod names;
 mod shapes;
 pub mod spec;
 #[cfg(test)]
@@ -21,8 +22,8 @@ use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::syntax::ast::{Expression, Kindred, Model, NodeRule, Statement};
 use crate::{schedule, work};
-pub(crate) use declare::is_rust_word;
 pub(crate) use members::name_of_function;
+pub(crate) use names::is_rust_word;
 
 use declare::Declared;
 use elaborate::Elaborator;

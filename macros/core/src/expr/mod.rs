@@ -4,6 +4,7 @@
 mod build;
 mod collect;
 mod constant;
+mod determinant;
 mod diagonal;
 mod directional;
 mod factored;
@@ -37,6 +38,7 @@ use symbol::SymbolId;
 pub use build::*;
 pub use collect::{coefficient, collect, positive_first};
 pub use constant::Constant;
+pub use determinant::{adjugate, adjugate_polynomial, det, without_adjugates};
 pub use diagonal::{diagonal, diagonal_of};
 pub use directional::directional;
 pub use factored::{axial_of_outer, factored};

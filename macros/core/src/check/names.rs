@@ -1,0 +1,79 @@
+//! Which names a model cannot bear: those with a fixed meaning in the language, in derivations and in Rust, and
+//! letters that look like others. Takes a name; gives what is wrong with it.
+
+use crate::diagnostic::{Diagnostic, Errors};
+use crate::expr::spelling::{seen, twin};
+use crate::syntax::ast::Name;
+use crate::syntax::{FUNCTIONS, HIDEABLE};
+
+/// Names with a fixed meaning.
+const RESERVED: [&str; 5] = ["Id", "T", "E1", "E2", "E3"];
+
+/// What derivations write for the action, the identity and unit vectors.
+pub(super) const PRINTED: [&str; 10] = ["ℓ", "Id", "E1", "E2", "E3", "E4", "E5", "E6", "E7", "E8"];
+
+/// Words that no field, method or local of the emitted Rust can bear.
+const RUST: [&str; 53] = [
+    "_", "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
+    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
+    "impl", "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
+    "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type", "typeof",
+    "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
+];
+
+/// Whether Rust keeps the word for itself.
+pub fn is_rust_word(name: &str) -> bool {
+    RUST.contains(&name)
+}
+
+/// What is wrong with a name whatever else is declared.
+pub(super) fn unusable(name: &Name) -> Option<Diagnostic> {
+    let text = name.text.as_str();
+    let function = FUNCTIONS.contains(&text) && !HIDEABLE.contains(&text);
+    let shown = seen(text, "");
+    let printed = PRINTED.into_iter().find(|sign| seen(sign, "") == shown);
+    let message = if RESERVED.contains(&text) || function {
+        format!("`{text}` has a fixed meaning in the language")
+    } else if let Some(sign) = printed {
+        format!("`{text}` prints as `{sign}`, which has a fixed meaning in derivations")
+    } else if RUST.contains(&text) {
+        format!("`{text}` is a Rust keyword and cannot be used as a name")
+    } else {
+        return None;
+    };
+    Some(Diagnostic::new(name.place, message).help("choose another name"))
+}
+
+/// The characters of two names that look like one letter and are two, with their numbers.
+pub(super) fn foreign(a: &str, b: &str) -> Option<String> {
+    let strange = |text: &str| text.chars().find(|c| twin(*c).is_some());
+    let c = strange(a).or_else(|| strange(b))?;
+    let plain = twin(c)?;
+    Some(format!(
+        "`{c}` is U+{:04X}, which looks like `{plain}`, U+{:04X}, and is another character: write `{plain}` everywhere",
+        u32::from(c),
+        u32::from(plain)
+    ))
+}
+
+/// The model's name is that of a type.
+pub(super) fn model_name(name: &Name, errors: &mut Errors) {
+    if RUST.contains(&name.text.as_str()) {
+        errors.extend(unusable(name));
+    } else if !name.text.starts_with(char::is_uppercase) {
+        let mut letters = name.text.chars();
+        let first = letters.next().into_iter().flat_map(char::to_uppercase);
+        let capital: String = first.chain(letters).collect();
+        let d = Diagnostic::new(
+            name.place,
+            format!(
+                "`{}` names a type, which starts with a capital letter",
+                name.text
+            ),
+        );
+        errors.push(d.help(match capital.starts_with(char::is_uppercase) {
+            true => format!("write `model {capital}`"),
+            false => "write for example `model HeavyTop`".to_owned(),
+        }));
+    }
+}
