@@ -28,6 +28,7 @@ pub mod plots;
 mod record;
 mod run;
 mod sample;
+mod step_limit;
 mod suggestion;
 mod sweep;
 mod verdict;

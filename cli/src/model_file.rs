@@ -149,8 +149,8 @@ fn sample(card: &Card, file: &str) -> Case {
     case
 }
 
-/// The same of a card.
-fn is_held(card: &Card) -> bool {
+/// Whether the model of a card holds constraints.
+pub(crate) fn is_held(card: &Card) -> bool {
     pipeline::parse_source(card.source).is_ok_and(|model| has_holds(&model))
 }
 

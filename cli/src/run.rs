@@ -7,7 +7,7 @@ use crate::beside;
 use crate::checkpoint::{Checkpoint, Identity};
 use crate::failure::{BOUND_LEFT, BY_SIGNAL, DONE, FAILED, Failure};
 use crate::follow::{End, Kept, Run};
-use crate::gallery::{Case, Gallery};
+use crate::gallery::Gallery;
 use crate::list::first_line;
 use crate::output::samples::{self, Stream};
 use crate::output::{self, Finished, Found, Staging, Stopped, run_json};
@@ -15,11 +15,12 @@ use crate::plain::{shown, steps};
 use crate::plan::Plan;
 use crate::plots::axis;
 use crate::record::{LARGEST, Recorder};
+use crate::step_limit::StepLimit;
 use crate::verdict::{Verdict, judge, table};
 use crate::width::paragraph;
 use clap::ArgMatches;
 use clebsch::card::Card;
-use clebsch::integrate::{self, LongestStep, Watch};
+use clebsch::integrate::{self, Watch};
 use clebsch::record::Record;
 use serde_json::json;
 use std::io::{self, Write};
@@ -81,15 +82,19 @@ pub fn run(
             }
         }
     };
-    let mut trajectory = plan.open(card)?;
-    let limit = longest_step(card, &plan);
-    let too_long = limit.and_then(|limit| limit.warning(plan.case.h));
+    let limit = StepLimit::of(card, &plan);
+    let too_long = limit.warning(plan.case.h);
+    // With `--json` a warning stands in the object as well; nothing is lost when it cannot be written.
+    let mut warn = |warning: &str| {
+        let _ = writeln!(streams.err, "clebsch: warning: {warning}");
+    };
+    // Where the first step is refused, that it is too long is why, mostly.
+    let mut trajectory = plan.open(card).inspect_err(|_| {
+        too_long.iter().for_each(|warning| warn(warning));
+    })?;
     let kinetic = trajectory.kinetic_warning().map(|w| w.to_string());
     let warnings: Vec<String> = kinetic.into_iter().chain(too_long).collect();
-    for warning in &warnings {
-        // With `--json` it stands in the object as well; nothing is lost when it cannot be written.
-        let _ = writeln!(streams.err, "clebsch: warning: {warning}");
-    }
+    warnings.iter().for_each(|warning| warn(warning));
     let mut out = Told {
         out: &mut *streams.out,
         // Results that are written to files are worth the work, whoever listens.
@@ -99,12 +104,7 @@ pub fn run(
     let width = streams.width;
     if !as_json {
         introduce(&mut out, width, card, &plan)?;
-        if let Some(limit) = limit.filter(|limit| limit.step.is_finite()) {
-            let text = format!(
-                "longest step of small motions about the start, at rest: {}; this is {} of it",
-                axis::plain(three_digits(limit.step)),
-                axis::plain(three_digits(plan.case.h.abs() / limit.step)),
-            );
+        if let Some(text) = limit.told(plan.case.h) {
             out.write_all(paragraph(&text, width, 2).as_bytes())?;
         }
     }
@@ -224,6 +224,7 @@ pub fn run(
             object.insert("out".to_owned(), json!(place));
             object.insert("exit_code".to_owned(), json!(code));
             object.insert("warnings".to_owned(), json!(warnings));
+            object.insert("longest_step".to_owned(), limit.json(plan.case.h));
             if let Some(stopped) = &run.stopped {
                 object.insert("error".to_owned(), json!(stopped.why));
             }
@@ -257,31 +258,6 @@ pub fn run(
         let _ = writeln!(streams.err, "clebsch: {}", stopped.why);
     }
     Ok(code)
-}
-
-/// Most numbers of initial values of which the longest step is sought: each of some sixty openings reads them all.
-const SOUGHT: usize = 20_000;
-
-/// What the start asks of a step, where sites move one another or the step is not far below what is too long; of a
-/// plain step, which the others are made of.
-fn longest_step(card: &Card, plan: &Plan) -> Option<LongestStep> {
-    let Case {
-        parameters,
-        initial,
-        h,
-        ..
-    } = &plan.case;
-    let numbers: usize = initial.iter().map(Vec::len).sum();
-    if numbers > SOUGHT {
-        return None;
-    }
-    let limit = LongestStep::of(card, parameters, initial, *h)?;
-    let near = h.abs() > 0.5 * limit.step || limit.warning(*h).is_some();
-    (plan.choice.is_some() || near).then_some(limit)
-}
-
-fn three_digits(x: f64) -> f64 {
-    format!("{x:.2e}").parse().unwrap_or(x)
 }
 
 /// The samples of a run that is gone on with.

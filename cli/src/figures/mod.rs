@@ -1,7 +1,9 @@
-//! `clebsch figures`: the figures of the thesis's second chapter, each from a named case of the gallery.
+//! `clebsch figures`: the figures of the thesis's second chapter, each from a named case of the gallery, and 3.1 to 3.3 from a
+//! model file.
 //! Takes the gallery; gives one SVG per figure in a new folder. What each shows: docs/figures.md.
 
 mod bodies;
+mod elastic;
 mod fibration;
 mod quaternions;
 mod sheet;
@@ -27,7 +29,7 @@ struct Figure {
 }
 
 /// All figures, in the order of the thesis; the last one is not in it.
-const FIGURES: [Figure; 14] = [
+const FIGURES: [Figure; 17] = [
     Figure {
         number: "2.5",
         file: "figure-2-05.svg",
@@ -107,6 +109,24 @@ const FIGURES: [Figure; 14] = [
         draw: splitting::drift,
     },
     Figure {
+        number: "3.1",
+        file: "figure-3-01.svg",
+        model: "mooney-rivlin",
+        draw: elastic::stretches,
+    },
+    Figure {
+        number: "3.2",
+        file: "figure-3-02.svg",
+        model: "mooney-rivlin",
+        draw: elastic::momenta,
+    },
+    Figure {
+        number: "3.3",
+        file: "figure-3-03.svg",
+        model: "mooney-rivlin",
+        draw: elastic::drift,
+    },
+    Figure {
         number: "Hopf",
         file: "hopf.svg",
         model: "cayley-klein",
@@ -129,6 +149,7 @@ pub fn figures(
     };
     let staging = Staging::new(target, matches.get_flag("force"), &files)?;
     let as_json = matches.get_flag("json");
+    let gallery = &elastic::with_file(gallery)?;
     let has = |figure: &Figure| {
         gallery
             .entries

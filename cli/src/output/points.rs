@@ -1,5 +1,5 @@
 //! Which fields are points of the plane or of space: vectors that move, but no diagonals of matrices, which are kept as
-//! vectors. Takes a card; gives the names of the latter.
+//! vectors; and which matrices are invertible maps. Takes a card; gives the names of diagonals and of maps.
 
 use clebsch::card::{Card, Field, Kind};
 use std::collections::HashSet;
@@ -28,5 +28,23 @@ impl Diagonals {
             && field.cols == 1
             && [2, 3].contains(&field.rows)
             && !self.have(field)
+    }
+}
+
+/// The elements of GL(n) of a model.
+pub(crate) struct Linear(HashSet<&'static str>);
+
+impl Linear {
+    /// As the model is stated.
+    pub(crate) fn of(card: &Card) -> Self {
+        let text: String = card.source.split_whitespace().collect();
+        let stated = |name: &str| text.contains(&format!("group{name}:GL<"));
+        let fields = card.observables.iter().filter(|f| stated(f.name));
+        Self(fields.map(|f| f.ascii).collect())
+    }
+
+    /// Whether it is one of them.
+    pub(crate) fn have(&self, field: &Field) -> bool {
+        self.0.contains(field.ascii)
     }
 }

@@ -21,12 +21,12 @@ pub(crate) use particles::{particles, vorticity};
 pub(crate) use snapshots::snapshots;
 
 use crate::output::Finished;
-use crate::output::points::Diagonals;
+use crate::output::points::{Diagonals, Linear};
 use crate::plain::steps;
 use crate::record::Samples;
 use crate::run::end;
 use axis::{Axis, FLOOR, superscript};
-use clebsch::card::{Field, Kind};
+use clebsch::card::{Conserved, Field, Kind};
 use clebsch::integrate::Drift;
 use clebsch::nalgebra::DMatrix;
 use clebsch::record::Record;
@@ -35,6 +35,9 @@ use curve::{Curve, Stroke};
 use figure::{Figure, Panel};
 use std::ops::Range;
 use window::{Window, window};
+
+/// Most panels of invariants that are bounded only.
+const CHANGES: usize = 4;
 
 /// A drawn plot; `None` when the model has nothing of the kind.
 pub(crate) type Plot = Result<Option<String>, String>;
@@ -66,10 +69,14 @@ pub(crate) fn fields(run: &Finished<'_>, samples: &Samples) -> Plot {
     if particles::in_plane(run) {
         return Ok(None);
     }
-    observables(run, samples, "fields", |_, moves| moves)
+    let linear = Linear::of(run.card);
+    observables(run, samples, "fields", |field, moves| {
+        moves || linear.have(field)
+    })
 }
 
-/// Drift of every invariant on a logarithmic axis, with the bounds of the case.
+/// Drift of every invariant on a logarithmic axis, with the bounds of the case; below it the change of each that is bounded
+/// only, with its sign, over the power of the step with which it falls.
 pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
     if run.outcomes.is_empty() {
         return Ok(None);
@@ -139,7 +146,55 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
         count: record.times.len(),
         cut: false,
     };
-    figure(run, shown, "drift of the invariants", vec![panel])
+    let mut panels = vec![panel];
+    panels.extend(changes(run, record));
+    figure(run, shown, "drift of the invariants", panels)
+}
+
+/// A panel for each invariant that is bounded only, as the energy: its change since time 0 over the step to the order of the
+/// scheme, which is about the same for every step. At most [`CHANGES`].
+fn changes(run: &Finished<'_>, record: &Record) -> Vec<Panel> {
+    let order = run.plan.order.unwrap_or(run.card.order);
+    let unit = run.plan.case.h.abs().powi(order.cast_signed());
+    let power = match order {
+        1 => "h".to_owned(),
+        order => format!("h{}", superscript(order.cast_signed())),
+    };
+    let mut from = 0;
+    let mut panels = Vec::new();
+    for outcome in run.outcomes {
+        let invariant = outcome.invariant;
+        let columns = from..from + outcome.components.len();
+        from = columns.end;
+        if invariant.conserved != Conserved::Boundedly || panels.len() == CHANGES {
+            continue;
+        }
+        let curves: Vec<Curve> = columns
+            .enumerate()
+            .map(|(number, column)| {
+                let start = record.invariants.column(column).next().unwrap_or(0.0);
+                let change = record.invariants.column(column).map(|x| (x - start) / unit);
+                Curve {
+                    label: match outcome.components.len() {
+                        1 => invariant.name.to_owned(),
+                        _ => format!("{}{}", invariant.name, subscript(number + 1)),
+                    },
+                    note: None,
+                    points: reduce::extremes(&record.times, change),
+                    stroke: Stroke::number(number),
+                }
+            })
+            .collect();
+        panels.push(Panel {
+            caption: format!("{}: change since time 0, over {power}", invariant.name),
+            y_label: format!("(I(t) − I(0))/{power}"),
+            y: Axis::around(&curves),
+            height: 230,
+            curves,
+            map: None,
+        });
+    }
+    panels
 }
 
 fn figure(run: &Finished<'_>, shown: Window<'_>, what: &str, panels: Vec<Panel>) -> Plot {

@@ -29,8 +29,8 @@ fn every_figure_is_drawn_once() {
     assert_eq!((code, err.as_str()), (0, ""));
     let object: serde_json::Value = serde_json::from_str(&text).expect("one JSON object");
     let list = |key: &str| object[key].as_array().expect("a list").clone();
-    assert_eq!(list("figures").len() + list("left_out").len(), 14);
-    assert!(list("figures").len() >= 11);
+    assert_eq!(list("figures").len() + list("left_out").len(), 17);
+    assert!(list("figures").len() >= 14);
     for figure in list("figures") {
         let file = figure["file"].as_str().expect("a name");
         let svg = std::fs::read_to_string(format!("{out}/{file}")).expect("written");

@@ -6,16 +6,23 @@ fn shipped(file: &str) -> String {
     format!("{}/../models/{file}", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The longest step that is printed for a model with a case.
+/// The longest step that is printed for a model with a case, beside the frequency of which it is twice the inverse.
 fn printed(model: &str, case: &str, more: &[&str]) -> f64 {
     let arguments = ["run", model, "--case", case, "--steps", "1"];
     let done = clebsch(&[&arguments[..], more].concat());
-    let words = "longest step of small motions about the start, at rest: ";
-    let Some((_, rest)) = done.out.split_once(words) else {
-        panic!("{}{}", done.out, done.err);
+    let number = |before: &str, behind: &str| -> f64 {
+        let rest = done.out.split_once(before).map(|(_, rest)| rest);
+        let number = rest.and_then(|rest| rest.split_once(behind));
+        let number = number.and_then(|(number, _)| number.parse().ok());
+        number.unwrap_or_else(|| panic!("{}{}", done.out, done.err))
     };
-    let number = rest.split(';').next().expect("a number");
-    number.parse().expect("a number")
+    let frequency = number(
+        "fastest small motion about the start, at rest: frequency ω = ",
+        "; ",
+    );
+    let step = number("longest step 2/ω = ", ", of which h is ");
+    assert!((frequency * step / 2.0 - 1.0).abs() < 0.01);
+    step
 }
 
 /// Of a straight rod, uniform and unloaded, shear and bending swing together: 2/sqrt of the larger eigenvalue of a pair.
@@ -141,4 +148,89 @@ fn of_steps_of_another_kind_nothing_is_said() {
         at_node.err
     );
     silent(of("node", "h*(k/2)*q^2", "0.5"));
+}
+
+/// A rod that is read along its length is unstable by right, as a body on its head: its sign is not doubted, and the length of
+/// segments that resolves it is told.
+#[test]
+fn of_one_body_that_is_unstable_no_sign_is_doubted() {
+    let (model, case) = (
+        shipped("elastic/kirchhoff-static.clebsch"),
+        shipped("elastic/kirchhoff-static.toml"),
+    );
+    let run = |h: &str| {
+        clebsch(&[
+            "run", &model, "--case", &case, "--h", h, "--steps", "2", "--json",
+        ])
+    };
+    let long = run("0.3");
+    assert_eq!(long.code, 0, "{}{}", long.out, long.err);
+    // The root of the force along the tangent, 0.01448, over the stiffness against bending, 0.002; 0.3 over that.
+    for words in [
+        "rate 2.691",
+        "do not resolve how the start is left; those up to 1.115e-1 do",
+    ] {
+        assert!(long.err.contains(words), "{}", long.err);
+    }
+    assert!(!long.err.contains("sign"), "{}", long.err);
+    let short = run("0.08");
+    assert!(short.err.is_empty(), "{}", short.err);
+}
+
+/// However much too long a step is, it is told how long it may be, a first one that is refused as well.
+#[test]
+fn of_a_step_that_is_far_too_long_the_limit_is_told() {
+    let (model, case) = (
+        shipped("lattices/geometrically-exact-rod.clebsch"),
+        shipped("lattices/geometrically-exact-rod.toml"),
+    );
+    let run = |h: &str| {
+        clebsch(&[
+            "run", &model, "--case", &case, "--h", h, "--steps", "1", "--json",
+        ])
+    };
+    // From eight times to a million times too long.
+    let said = "times the longest one that keeps small motions about the start small, 1.2";
+    for h in ["0.01", "1", "1000"] {
+        let long = run(h);
+        assert!(long.err.contains(said), "{h}: {}", long.err);
+    }
+    // A rod that is struck is refused its first step.
+    let (struck, start) = (
+        shipped("lattices/circular-rod.clebsch"),
+        shipped("lattices/circular-rod.toml"),
+    );
+    let refused = clebsch(&["run", &struck, "--case", &start, "--h", "100"]);
+    assert_eq!(refused.code, 1, "{}{}", refused.out, refused.err);
+    for words in ["times the longest one", "cannot take the first step"] {
+        assert!(refused.err.contains(words), "{}", refused.err);
+    }
+    // The same numbers in JSON.
+    let done = run("0.0005");
+    let object: serde_json::Value = serde_json::from_str(&done.out).expect("one JSON object");
+    let limit = &object["longest_step"];
+    let number = |key: &str| limit[key].as_f64().expect("a number");
+    assert!((number("step") * number("frequency") - 2.0).abs() < 1e-12);
+    assert!((number("share") * number("step") - 0.0005).abs() < 1e-15);
+}
+
+/// Where it is not computed, that is said, of lines.
+#[test]
+fn of_held_lines_it_is_said_that_nothing_is_computed() {
+    let of = |name: &str| {
+        let file = |end: &str| shipped(&format!("lattices/{name}.{end}"));
+        clebsch(&[
+            "run",
+            &file("clebsch"),
+            "--case",
+            &file("toml"),
+            "--steps",
+            "1",
+        ])
+        .out
+    };
+    let words =
+        "longest step of small motions about the start: not computed, since constraints are held";
+    assert!(of("kirchhoff-rod").contains(words));
+    assert!(!of("coupled-tops").contains("not computed"));
 }

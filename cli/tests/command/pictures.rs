@@ -102,3 +102,35 @@ fn entries_of_skew_matrices_are_drawn_once() {
     assert!(svg.contains("μ₁₂") && svg.contains("entries above the diagonal"));
     assert!(!svg.contains("μ₂₁") && !svg.contains("μ₁₁"));
 }
+
+/// The energy's change over the step to the order of the scheme, below the drifts, where the energy is not kept exactly.
+#[test]
+fn changes_of_what_is_bounded_are_drawn_with_their_sign() {
+    let folder = Folder::new("changes");
+    let drawn =
+        |name: &str, arguments: &[&str]| picture(&folder, name, arguments)("invariants.svg");
+    let top = ["heavy-top", "--steps", "200"];
+    let plain = drawn("plain", &top);
+    assert!(plain.contains("energy: change since time 0, over h²"));
+    assert!(!plain.contains("Gamma_squared: change"));
+    let fourth = drawn("fourth", &[&top[..], &["--order", "4"]].concat());
+    assert!(fourth.contains("energy: change since time 0, over h⁴"));
+    let free = drawn("free", &["free-body", "--steps", "200"]);
+    assert!(!free.contains("change since time 0"));
+}
+
+/// Placements by elements of GL(n) are drawn as those by fields are, with the ratio of volumes; rotations are not.
+#[test]
+fn elements_of_the_linear_group_have_their_determinant() {
+    let folder = Folder::new("volumes");
+    let ellipsoid = picture(
+        &folder,
+        "ellipsoid",
+        &["ellipsoid-convective", "--steps", "100"],
+    );
+    for words in ["Q₁₁", "det Q: the ratio of volumes"] {
+        assert!(ellipsoid("fields.svg").contains(words), "{words}");
+    }
+    let body = picture(&folder, "body", &["body-n", "--dim", "4", "--steps", "100"]);
+    assert!(body("fields.svg").is_empty());
+}

@@ -18,6 +18,12 @@ const PART: f64 = 1e-5;
 /// Steps of the inquiry in parts of the run's own: with ω h at most about 2, ω² h² of them is 4e-6 at most.
 const SHORT: f64 = 1e-3;
 
+/// A limit that is a smaller part of the run's step than this is asked for once more by shorter steps.
+const FAR: f64 = 0.1;
+
+/// By which parts of the step.
+const SHORTER: [f64; 2] = [1e-2, 1e-4];
+
 /// Growth in a step of which is warned: that of a body on its head takes many steps.
 const GROWTH: f64 = 0.3;
 
@@ -28,6 +34,8 @@ pub struct LongestStep {
     pub step: f64,
     /// The rate at which the fastest growing one grows, in the inverse unit of time; 0 where none does.
     pub growth: f64,
+    /// How many configurations were disturbed, each at every site.
+    pub configurations: usize,
 }
 
 impl LongestStep {
@@ -38,6 +46,19 @@ impl LongestStep {
     /// a potential in the middle of steps, with strong terms linear in velocities, at a kink, all steps may be stable.
     #[must_use]
     pub fn of(card: &Card, parameters: &[Vec<f64>], initial: &[Vec<f64>], h: f64) -> Option<Self> {
+        let asked = |part: f64| Self::asked(card, parameters, initial, h * part);
+        let found = asked(1.0);
+        if found.is_some_and(|found| found.step > FAR * h.abs()) {
+            return found;
+        }
+        // Of a step that is hundreds of times too long even a small part is no short one.
+        let shorter = SHORTER.into_iter().filter_map(asked);
+        let mut shorter = shorter.filter(|found| found.step < h.abs());
+        shorter.next().or(found)
+    }
+
+    /// The same, asked by steps that are short beside `h`.
+    fn asked(card: &Card, parameters: &[Vec<f64>], initial: &[Vec<f64>], h: f64) -> Option<Self> {
         let probe = Probe::new(card, parameters, initial, h * SHORT)?;
         let [least, largest] = probe.extremes()?;
         // What does not swing within a hundred thousand steps of this size is the rounding of forces that are none, as
@@ -57,7 +78,23 @@ impl LongestStep {
         // A step of the model must move what it is told of as steps of this kind do.
         let moved = (!swings || probe.is_left(&largest, step))
             && (!grows || probe.is_left(&least, 1.0 / growth));
-        (moved && (swings || grows)).then_some(Self { step, growth })
+        (moved && (swings || grows)).then_some(Self {
+            step,
+            growth,
+            configurations: probe.moves.len(),
+        })
+    }
+
+    /// ω of the fastest small motion, in radians by the unit of time; 0 where there is none that swings.
+    #[must_use]
+    pub fn frequency(&self) -> f64 {
+        2.0 / self.step
+    }
+
+    /// The longest step over which the fastest growing motion grows by a third; infinite where none does.
+    #[must_use]
+    pub fn resolving(&self) -> f64 {
+        GROWTH / self.growth
     }
 
     /// What is wrong with steps of `h`, if anything: they are too long, or a motion grows as they go on.
@@ -72,14 +109,26 @@ impl LongestStep {
                 self.step
             ));
         }
-        if h * self.growth > GROWTH {
-            return Some(format!(
-                "small motions about the start, at rest, grow with the rate {:.3e}, by a factor of {:.2} a step: is \
-                 there a sign wrong in the potential energy, or in a term that joins neighbours? Where the start \
-                 is so unstable, steps of h = {h} do not resolve how it is left",
+        if h > self.resolving() {
+            let grow = format!(
+                "small motions about the start, at rest, grow with the rate {:.3e}, by a factor of {:.2} a step",
                 self.growth,
                 (h * self.growth).exp()
-            ));
+            );
+            // A body on its head and a rod that is pulled along its length are unstable by right; between neighbours
+            // what grows so fast is mostly a wrong sign.
+            return Some(match self.configurations {
+                1 => format!(
+                    "{grow}: where the motion is near it, steps of h = {h} do not resolve how the start is left; those \
+                     up to {:.3e} do",
+                    self.resolving()
+                ),
+                _ => format!(
+                    "{grow}: is there a sign wrong in the potential energy, or in a term that joins neighbours? Where \
+                     the start is so unstable, steps of h = {h} do not resolve how it is left; those up to {:.3e} do",
+                    self.resolving()
+                ),
+            });
         }
         None
     }

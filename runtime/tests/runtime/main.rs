@@ -7,6 +7,7 @@
 mod common;
 mod composition;
 mod discrete_energy;
+mod driven;
 mod forced;
 mod free;
 mod groups;

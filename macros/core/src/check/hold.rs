@@ -3,7 +3,7 @@
 
 use super::declare::Declared;
 use super::messages::{self, shape_text};
-use super::spec::Hold;
+use super::spec::{Hold, Spec};
 use crate::algebra::Algebra;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::expr::shape::{Dim, Shape, Structure};
@@ -85,6 +85,28 @@ fn entries(symbols: &Symbols, value: Expr) -> Expr {
         expr::mul(entry, expr::unit(count, k))
     });
     expr::sum(each.collect::<Vec<_>>(), Shape::vector(count))
+}
+
+/// Refuses constraints that know the time: the rate of change of what they hold has a part that no velocity brings.
+pub(super) fn without_clocks(spec: &Spec) -> Result<(), Errors> {
+    let clocks = spec.clocks();
+    let mut errors = Errors::new();
+    for hold in &spec.holds {
+        let letters = expr::letters(&hold.value);
+        let Some(clock) = letters.iter().find(|l| clocks.contains(&l.symbol)) else {
+            continue;
+        };
+        let name = &spec.symbols.get(clock.symbol).name;
+        let message = format!(
+            "`{name}` goes on with the step by itself, and a held constraint is one on configurations: its rate of change \
+             would have a part that no velocity brings"
+        );
+        errors.push(Diagnostic::new(hold.place, message).help(format!(
+            "pull what is driven by a stiff spring to where it should be, as in `-h*(K/2)*(x - A*sin(w*{name}))^2`; or \
+             hold it to a field that moves, whose motion is solved for"
+        )));
+    }
+    errors.propagate()
 }
 
 /// What is wrong with the equation, if anything.

@@ -243,6 +243,7 @@ fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
     )?;
     spec.lets = elaborator.bound().to_vec();
     usage(&spec)?;
+    hold::without_clocks(&spec)?;
     Ok(spec)
 }
 

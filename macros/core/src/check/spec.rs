@@ -263,6 +263,22 @@ impl Spec {
         found.map_or(&[], |(_, lines)| lines)
     }
 
+    /// The advected quantities that know the time: the step stands in how they go on, or another one that knows it does.
+    pub fn clocks(&self) -> Vec<SymbolId> {
+        let mut found: Vec<SymbolId> = Vec::new();
+        loop {
+            let knows = |a: &&Advected| {
+                let letters = expr::letters(&a.update);
+                let tells = |l: &Letter| l.symbol == self.step || found.contains(&l.symbol);
+                !found.contains(&a.quantity) && letters.iter().any(tells)
+            };
+            match self.advected.iter().find(knows) {
+                Some(next) => found.push(next.quantity),
+                None => return found,
+            }
+        }
+    }
+
     /// What stands at the end of an edge, elements and advected quantities, by its start and the
     /// velocities: written so, the dependence on the velocities is complete.
     pub fn end_of_edge(&self) -> Vec<(Letter, Expr)> {

@@ -43,6 +43,9 @@ pub const NOT_QUADRATIC: &str = "the Lagrangian is not quadratic in the velocity
 /// Why there is no limit.
 pub const STANDING: &str = "the action of a step does not shrink in proportion to the step";
 
+/// Why none is sought, and no energy, where a clock stands in the Lagrangian.
+pub const DRIVEN: &str = "the Lagrangian depends on time";
+
 /// Why no limit is found where the step does not come out of a function.
 pub(crate) const INSIDE: &str = "the step stands inside a function or root";
 
@@ -56,6 +59,11 @@ pub fn limit(
     algebra: &Algebra,
 ) -> Result<Limit, String> {
     let s = &letters.symbols;
+    let clocks = spec.clocks();
+    let of_clock = |l: &Letter| clocks.contains(&l.symbol);
+    if expr::letters(&action.total).iter().any(of_clock) {
+        return Err(DRIVEN.to_owned());
+    }
     let (mut identity, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
     // The rate of exp(h ξ) at any h.
     let mut rates = Vec::new();

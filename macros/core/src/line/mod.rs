@@ -100,6 +100,7 @@ impl Line {
         stands_alone(model, &lattice)?;
         let choice = pipeline::representative(model, &lattice)?;
         let representative = written(model, &lattice, choice)?;
+        without_clocks(&representative)?;
         let (pulls, ties) = pull::pulls(&lattice, &representative)?;
         let lone = lone::lone(model, &lattice, &representative, &ties)?;
         let meshed = meshed::meshed(&lattice, &representative)?;
@@ -266,4 +267,16 @@ fn stands_alone(model: &Model, lattice: &Lattice) -> Result<(), Refused> {
         }
     }
     Ok(())
+}
+
+/// Refuses what goes on with the step by itself: loops over sites keep no time.
+fn without_clocks(representative: &Written) -> Result<(), Refused> {
+    let spec = &representative.d.spec;
+    match spec.clocks().first() {
+        None => Ok(()),
+        Some(clock) => Err(Refused::Form(format!(
+            "`{}` goes on with the step by itself",
+            spec.symbols.get(*clock).name
+        ))),
+    }
 }

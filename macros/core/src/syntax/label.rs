@@ -132,7 +132,11 @@ fn alternative(c: &mut Cursor) -> Result<Alternative, Diagnostic> {
                 let remedy = "an end condition holds `param F: Vec<3>;`, `φ = given;` and `term h*dot(F, φ);`";
                 c.punct('=').map_err(|e| e.help(remedy))?;
                 c.word("given").map_err(|e| {
-                    e.help("what is given at an end is a value of the case: write `φ = given;`")
+                    e.help(
+                        "what is given at an end is a value of the case, constant in time: write `φ = given;`. An end that \
+                         is driven is pulled by a term, as `term -h*(K/2)*(φ - A*sin(w*τ))^2;`, where a clock goes along at \
+                         its site: `advected τ: Real at nodes; constraint next(τ) = τ + h;`",
+                    )
                 })?;
                 out.given.push(word);
             }

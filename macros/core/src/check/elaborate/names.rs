@@ -187,9 +187,11 @@ impl Elaborator<'_> {
                 "the time step is `{h}` here; `time k step {n};` at the top calls it `{n}`"
             ));
         } else if TIMES.contains(&n) {
-            d = d.help(
-                "time itself does not stand in a Lagrangian, which is the same at every step",
-            );
+            let h = &self.names.symbols.get(self.names.step).name;
+            d = d.help(format!(
+                "time itself does not stand in a Lagrangian; let a clock go along, which starts at the time of the start: \
+                 `advected τ: Real; constraint next(τ) = τ + {h};`"
+            ));
         } else if let Some(near) = closest(n, declared.into_iter().chain(bound).map(String::as_str))
         {
             d = d.help(format!("did you mean `{near}`?"));

@@ -204,3 +204,15 @@ fn a_sum_needs_sites() {
     let told = held("hold λ: sum(x) = E1;");
     assert!(told.contains("goes over the sites of a label"), "{told}");
 }
+
+#[test]
+fn constraints_know_no_time() {
+    let clock = "advected τ: Real; constraint next(τ) = τ + h;";
+    let message = held(&format!("{clock} hold λ: dot(x, x) = (L + m*τ)^2;"));
+    for part in [
+        "`τ` goes on with the step by itself",
+        "by a stiff spring to where it should be",
+    ] {
+        assert!(message.contains(part), "{message}");
+    }
+}

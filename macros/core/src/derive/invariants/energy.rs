@@ -10,6 +10,7 @@ use crate::algebra::exact::{Matrix, Point, add, inverse, mul, negate};
 use crate::derive::Derivation;
 use crate::derive::balance::shorter;
 use crate::derive::kinetic::Kinetic;
+use crate::derive::limit::DRIVEN;
 use crate::expr::{self, Expr, Shift};
 
 /// The energy, if the limit of small steps exists.
@@ -51,6 +52,9 @@ impl Derivation {
     /// degenerate, a symplectic step bounds nothing.
     pub fn discrete_energy(&self) -> (&'static str, &str) {
         let energy = &self.integrability.discrete_energy;
+        if self.limit.as_ref().is_err_and(|why| why == DRIVEN) {
+            return ("not conserved", DRIVEN);
+        }
         let degenerate = self.kinetic.as_ref().and_then(Kinetic::degenerate);
         match (energy.exact, degenerate) {
             (true, _) => ("constant", &energy.reason),

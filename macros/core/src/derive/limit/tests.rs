@@ -1,6 +1,6 @@
 //! Lagrangians that are not quadratic in the velocity: no quadratic limit is made of them. Takes statements; gives reasons.
 
-use super::NOT_QUADRATIC;
+use super::{DRIVEN, NOT_QUADRATIC};
 use crate::derive_source;
 use crate::print::{Format, Style, expression};
 
@@ -96,4 +96,33 @@ fn potentials_of_differences_are_told_by_differences() {
     ] {
         assert_eq!(potential(term), expected);
     }
+}
+
+/// Of a Lagrangian that depends on time no energy is told, whatever the clock stands in, and none is warned of.
+#[test]
+fn what_a_clock_drives_has_no_energy() {
+    let clock = "advected τ: Real; constraint next(τ) = τ + h;";
+    let behind = "advected y: Real; constraint next(y) = y + h*τ;";
+    let point = format!("{POINT} {clock}");
+    for statement in [
+        format!("{point} lagrangian = a*dot(d, d)/(2*h) - h*b*τ*dot(w, X);"),
+        format!("{point} lagrangian = a*dot(d, d)/(2*h) - h*b*sin(a*τ)*dot(w, X);"),
+        format!("{point} {behind} lagrangian = a*dot(d, d)/(2*h) - h*b*y*dot(w, X);"),
+        format!("{BODY} {clock} lagrangian = -tr(J*V)/h - h*a*b*τ*dot(R*E1, E2);"),
+    ] {
+        let source = format!("model M {{ param a, b: Real; {statement} }}");
+        let d = derive_source(&source).unwrap_or_else(|e| panic!("{statement}: {e}"));
+        assert_eq!(d.limit.as_ref().err().map(String::as_str), Some(DRIVEN));
+        assert!(
+            d.invariants.iter().all(|i| i.name != "energy"),
+            "{statement}"
+        );
+        assert_eq!(d.discrete_energy(), ("not conserved", DRIVEN));
+        assert!(d.warnings.is_empty(), "{statement}");
+        // The scheme is what it was.
+        assert!(d.reversible, "{statement}");
+    }
+    // A clock that drives nothing.
+    let idle = format!("{point} lagrangian = a*dot(d, d)/(2*h) - h*b*dot(w, X);");
+    assert_eq!(reason(&idle), None);
 }

@@ -8,7 +8,7 @@ use crate::diagnostic::Diagnostic;
 /// The warning, if there is no limit.
 pub(super) fn limit(x: &Inputs) -> Option<Warning> {
     let why = x.limit.as_ref().err()?;
-    if why == limit::NOT_QUADRATIC {
+    if [limit::NOT_QUADRATIC, limit::DRIVEN].contains(&why.as_str()) {
         return None;
     }
     // Of a model for all matrices those that are symmetric may have one.

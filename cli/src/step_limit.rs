@@ -1,0 +1,91 @@
+//! What small motions about the start ask of a step, told before it is taken.
+//! Takes a card with its plan; gives the frequency of the fastest motion and the longest step, or why there is none.
+
+use crate::model_file;
+use crate::plan::Plan;
+use crate::plots::axis::plain;
+use clebsch::card::Card;
+use clebsch::integrate::LongestStep;
+use serde_json::{Value, json};
+
+/// Most numbers of initial values of which the longest step is sought: each of some sixty openings reads them all.
+const SOUGHT: usize = 20_000;
+
+/// What is known of the longest step before a run.
+#[derive(Clone, Debug)]
+pub(crate) enum StepLimit {
+    /// It is told: where sites move one another, or the step is not far below what is too long.
+    Known(LongestStep),
+    /// Of a line it would be told, but is not sought.
+    NotSought(String),
+    /// Nothing is to be said.
+    Silent,
+}
+
+impl StepLimit {
+    /// Of a plain step, which the others are made of.
+    pub(crate) fn of(card: &Card, plan: &Plan) -> Self {
+        let case = &plan.case;
+        let has_sites = plan.choice.is_some();
+        let numbers: usize = case.initial.iter().map(Vec::len).sum();
+        let why = if model_file::is_held(card) {
+            "constraints are held".to_owned()
+        } else if numbers > SOUGHT {
+            format!("the state has {numbers} numbers, more than {SOUGHT}")
+        } else {
+            let Some(limit) = LongestStep::of(card, &case.parameters, &case.initial, case.h) else {
+                return Self::Silent;
+            };
+            let near = case.h.abs() > 0.5 * limit.step || limit.warning(case.h).is_some();
+            return match has_sites || near {
+                true => Self::Known(limit),
+                false => Self::Silent,
+            };
+        };
+        match has_sites {
+            true => Self::NotSought(why),
+            false => Self::Silent,
+        }
+    }
+
+    /// What is wrong with steps of `h`, if anything.
+    pub(crate) fn warning(&self, h: f64) -> Option<String> {
+        match self {
+            Self::Known(limit) => limit.warning(h),
+            Self::NotSought(_) | Self::Silent => None,
+        }
+    }
+
+    /// A line above a run with steps of `h`.
+    pub(crate) fn told(&self, h: f64) -> Option<String> {
+        let short = |x: f64| plain(three_digits(x));
+        match self {
+            Self::Known(limit) if limit.step.is_finite() => Some(format!(
+                "fastest small motion about the start, at rest: frequency ω = {}; longest step 2/ω = {}, of which h is {}",
+                short(limit.frequency()),
+                short(limit.step),
+                short(h.abs() / limit.step),
+            )),
+            Self::NotSought(why) => Some(format!(
+                "longest step of small motions about the start: not computed, since {why}"
+            )),
+            Self::Known(_) | Self::Silent => None,
+        }
+    }
+
+    /// The same numbers for programs; null where there are none.
+    pub(crate) fn json(&self, h: f64) -> Value {
+        match self {
+            Self::Known(limit) if limit.step.is_finite() => json!({
+                "frequency": limit.frequency(),
+                "step": limit.step,
+                "share": h.abs() / limit.step,
+            }),
+            _ => Value::Null,
+        }
+    }
+}
+
+fn three_digits(x: f64) -> f64 {
+    format!("{x:.2e}").parse().unwrap_or(x)
+}
