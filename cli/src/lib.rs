@@ -31,6 +31,7 @@ mod sample;
 mod suggestion;
 mod sweep;
 mod verdict;
+mod waiting;
 mod width;
 
 use clap::ArgMatches;

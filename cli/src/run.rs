@@ -16,6 +16,7 @@ use crate::plan::Plan;
 use crate::plots::axis;
 use crate::record::{LARGEST, Recorder};
 use crate::verdict::{Verdict, judge, table};
+use crate::waiting::Waiting;
 use crate::width::paragraph;
 use clap::ArgMatches;
 use clebsch::card::Card;
@@ -52,7 +53,10 @@ pub fn run(
     let case = beside::case(gallery, model, case)?;
     let case = case.as_deref();
     let entry = asked::model(gallery, model, case, &mut streams.err)?;
-    let plan = Plan::new(&entry, case, matches)?;
+    let plan = {
+        let _told = Waiting::told("reading the case".to_owned(), streams.progress);
+        Plan::new(&entry, case, matches)?
+    };
     let card = &entry.card_of(&plan.case);
     let target = matches.get_one::<PathBuf>("out");
     let as_json = matches.get_flag("json");
@@ -81,7 +85,12 @@ pub fn run(
             }
         }
     };
-    let mut trajectory = plan.open(card)?;
+    let mut trajectory = {
+        let numbers: usize = plan.case.initial.iter().map(Vec::len).sum();
+        let what = format!("starting from {numbers} numbers: the first step is tried");
+        let _told = Waiting::told(what, streams.progress);
+        plan.open(card)?
+    };
     let limit = longest_step(card, &plan);
     let too_long = limit.and_then(|limit| limit.warning(plan.case.h));
     let kinetic = trajectory.kinetic_warning().map(|w| w.to_string());
