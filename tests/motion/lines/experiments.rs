@@ -55,7 +55,7 @@ impl Bump {
     /// By how much particles of odd and of even number have moved apart, in units of their distance: no depth changes where
     /// those move against these.
     fn odd_from_even(&self, state: &ShallowWater1DState) -> f64 {
-        let moved = state.X().into_iter().zip(&self.x).enumerate();
+        let moved = state.X().iter().zip(&self.x).enumerate();
         let each = moved.map(|(i, (x, x0))| (x[0] - x0) * if i % 2 == 0 { -1.0 } else { 1.0 });
         2.0 * each.sum::<f64>() / TAU
     }

@@ -60,7 +60,7 @@ fn sheared(side: usize, seed: u64) -> Left {
         model.step(&mut state, &mut work).expect("steps");
         changed = largest([changed, model.energy(&state) - energy]);
         if step % 10 == 0 {
-            mesh.update(&state.X()).expect("a mesh");
+            mesh.update(state.X()).expect("a mesh");
             nearest = nearest.min(mesh.nearest().value / spacing);
         }
     }
