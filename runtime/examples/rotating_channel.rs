@@ -25,7 +25,7 @@ fn main() {
         steps / 4
     );
     println!("|---|---|---|---|---|---|---|---|---|---|");
-    for start in [Start::Depth, Start::Smoothed] {
+    for start in [Start::Depth, Start::Sharpened, Start::Smoothed] {
         for rotation in [Rotation::Centred, Rotation::Exact, Rotation::Midpoint] {
             run::<deposit<f64, 2>>("cubic", start, rotation, 5e-3, steps);
         }
@@ -36,11 +36,12 @@ fn main() {
     }
 }
 
-/// What the velocities at the start are in balance with: the depth as a formula says it, or the smoothed one on the grid, whose
-/// gradient is the force.
+/// What the velocities at the start are in balance with: the depth of the particles by a formula; the same formula, of which the depth of
+/// the particles is what the smoother makes it of; the smoothed depth on the grid, whose gradient is the force.
 #[derive(Clone, Copy, Debug)]
 enum Start {
     Depth,
+    Sharpened,
     Smoothed,
 }
 
@@ -91,17 +92,21 @@ impl Rotation {
     }
 }
 
-/// A high and a low side by side, and the slope of the depth.
-fn depth(x: &Place) -> (f64, Place) {
+/// A high and a low side by side, and the slope of the depth; the depth sharpened over a length, `(1 - α²∂_1²)(1 - α²∂_2²)`.
+fn depth(x: &Place, alpha: f64) -> (f64, Place) {
     let mut all = (1.0, Place::zeros());
     for (height, at) in [(0.1, -0.8), (-0.1, 0.8)] {
         let from = x - Place::new(PI + at, PI);
         let bump = height * (-from.norm_squared() / 0.5).exp();
-        all.0 += bump;
+        let sharpened = from.map(|x| 1.0 + 4.0 * alpha * alpha * (1.0 - 4.0 * x * x));
+        all.0 += bump * sharpened[0] * sharpened[1];
         all.1 -= from * (4.0 * bump);
     }
     all
 }
+
+/// The smoothing length, two cells.
+const ALPHA: f64 = 2.0 * TAU / CELLS[0] as f64;
 
 /// Fields on the grid, and forces.
 struct Water<D> {
@@ -119,11 +124,10 @@ where
     D: for<'a> Functional<f64, 2, Argument = Place, Data<'a> = (&'a [f64],)>,
 {
     fn new(setting: Setting<2>, m: Vec<f64>) -> Self {
-        let alpha = 2.0 * TAU / CELLS[0] as f64;
         let weights = Nodes::new(&setting).expect("a grid").weights::<f64>();
         Self {
             deposit: D::new(&setting, (&m,)).expect("a grid"),
-            smoother: Functional::<f64, 2>::new(&setting, (alpha,)).expect("a grid"),
+            smoother: Functional::<f64, 2>::new(&setting, (ALPHA,)).expect("a grid"),
             depth: vec![0.0; weights.len()],
             smoothed: vec![0.0; weights.len()],
             weights,
@@ -199,14 +203,19 @@ where
     let cell = TAU / SIDE as f64;
     let place = |a: usize| Place::new((a / SIDE) as f64 + 0.5, (a % SIDE) as f64 + 0.5) * cell;
     let mut x: Vec<Place> = (0..count).map(place).collect();
-    let m: Vec<f64> = x.iter().map(|x| depth(x).0 * cell * cell).collect();
+    let sharpened = match start {
+        Start::Sharpened => ALPHA,
+        Start::Depth | Start::Smoothed => 0.0,
+    };
+    let m = x.iter().map(|x| depth(x, sharpened).0 * cell * cell);
+    let m: Vec<f64> = m.collect();
     let domain = setting.domain;
     let mut water = Water::<D>::new(setting, m);
     let mut pulls = vec![Place::zeros(); count];
     let potential = water.force(&x, &mut pulls);
     // In balance: the acceleration and f times the turned velocity cancel.
     let accelerations = x.iter().zip(&pulls).map(|(x, pull)| match start {
-        Start::Depth => depth(x).1 * (-SPEED * SPEED),
+        Start::Depth | Start::Sharpened => depth(x, 0.0).1 * (-SPEED * SPEED),
         Start::Smoothed => *pull,
     });
     let mut v: Vec<Place> = accelerations.map(|a| turned(a) / F).collect();
