@@ -8,6 +8,7 @@
 
 use crate::plan::Plan;
 use clebsch::card::{Card, Field};
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -60,14 +61,8 @@ impl Identity {
             ("compensated".to_owned(), text(&plan.compensated)),
             ("halve".to_owned(), text(&plan.halve)),
         ];
-        let mut values = |table: &str, fields: &[Field], values: &[Vec<f64>]| {
-            let each = fields.iter().zip(values);
-            all.extend(
-                each.map(|(field, value)| (format!("{table}.{}", field.ascii), listed(value))),
-            );
-        };
-        values("parameters", card.parameters, &case.parameters);
-        values("initial", card.initial, &case.initial);
+        all.extend(told("parameters", card.parameters, &case.parameters));
+        all.extend(told("initial", card.initial, &case.initial));
         Self(all)
     }
 
@@ -96,6 +91,33 @@ impl Identity {
             None => "it is of another run, with other values".to_owned(),
         })
     }
+}
+
+/// The values of a table as they are told apart: field by field, those of one quantity at many sites together.
+fn told(table: &str, fields: &[Field], values: &[Vec<f64>]) -> Vec<(String, String)> {
+    let mut sites: BTreeMap<&str, usize> = BTreeMap::new();
+    for quantity in fields.iter().filter_map(quantity) {
+        *sites.entry(quantity).or_default() += 1;
+    }
+    sites.retain(|_, count| *count > TOLD);
+    let mut all = Vec::new();
+    let mut together: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for (field, value) in fields.iter().zip(values) {
+        match quantity(field).filter(|q| sites.contains_key(q)) {
+            Some(quantity) => together.entry(quantity).or_default().extend(value),
+            None => all.push((format!("{table}.{}", field.ascii), listed(value))),
+        }
+    }
+    for (quantity, values) in together {
+        all.push((format!("{table}.{quantity}"), listed(&values)));
+    }
+    all
+}
+
+/// The quantity of which a field is the value at a site: `m` of `m_7`.
+fn quantity(field: &Field) -> Option<&'static str> {
+    let (name, site) = field.ascii.rsplit_once('_')?;
+    site.bytes().all(|b| b.is_ascii_digit()).then_some(name)
 }
 
 /// Numbers as they are told apart: those of a million particles by how many they are and a checksum.
@@ -259,7 +281,8 @@ impl<'a> Rest<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Checkpoint, Identity, listed};
+    use super::{Checkpoint, Identity, listed, told};
+    use clebsch::card::{Field, Kind};
 
     fn identity(h: &str) -> Identity {
         let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
@@ -279,6 +302,43 @@ mod tests {
             rows: 7,
             sum: 0xdead_beef,
         }
+    }
+
+    /// Places and momenta of so many sites, side by side as on the card of a line, and a number of the whole.
+    fn fields(sites: usize) -> (Vec<Field>, Vec<Vec<f64>>) {
+        let field = |name: &str| {
+            let name: &'static str = Box::leak(name.to_owned().into_boxed_str());
+            Kind::Scalar.field(name, [1, 1], "").spelt(name)
+        };
+        let at_site = |site: usize| ["X", "momentum_X"].map(|of| field(&format!("{of}_{site}")));
+        let fields = (0..sites).flat_map(at_site).chain([field("c0")]);
+        let fields: Vec<Field> = fields.collect();
+        let values = (0..fields.len()).map(|i| vec![i as f64]).collect();
+        (fields, values)
+    }
+
+    #[test]
+    fn values_at_many_sites_are_told_together_and_those_at_few_one_by_one() {
+        let (few, values) = fields(3);
+        let all = told("initial", &few, &values);
+        assert_eq!(all.len(), 7);
+        assert_eq!(
+            all[3],
+            ("initial.momentum_X_1".to_owned(), "[3.0]".to_owned())
+        );
+        let (many, values) = fields(200);
+        let all = told("initial", &many, &values);
+        let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["initial.c0", "initial.X", "initial.momentum_X"]);
+        // Each of them counts, and where it stands.
+        for (site, other) in [(57, 0.5), (399, -1.0), (400, 2.0)] {
+            let mut changed = values.clone();
+            changed[site] = vec![other];
+            assert_ne!(told("initial", &many, &changed), all);
+        }
+        let mut changed = values.clone();
+        changed.swap(2, 4);
+        assert_ne!(told("initial", &many, &changed), all);
     }
 
     #[test]

@@ -32,6 +32,7 @@ mod step_limit;
 mod suggestion;
 mod sweep;
 mod verdict;
+mod waiting;
 mod width;
 
 use clap::ArgMatches;

@@ -115,7 +115,7 @@ fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>,
 /// The sample case of a model with labels.
 fn sample_on_lattice(text: &str, stated: &Stated, card: &Card) -> Result<Case, Failure> {
     let out = labels::written_out("sample", text, stated, card)?;
-    let located = case_file::read_written_out("sample", &out.text, &out.lines, card)?;
+    let located = case_file::read_written_out("sample", &out, card)?;
     Ok(located.case)
 }
 

@@ -203,7 +203,7 @@ impl Plan {
             .unwrap_or_else(|| wrong.field.to_owned());
         match &self.origin {
             None => format!("case `{}`: {key}", shown(&self.case.name)),
-            Some((file, lines)) => match lines.get(&key) {
+            Some((file, lines)) => match case_file::line_of(lines, &key) {
                 Some(line) => format!("{}:{line}: {key}", shown(file)),
                 None => format!("{}: {key}", shown(file)),
             },
@@ -239,7 +239,7 @@ fn read(file: &str, cards: &[Card]) -> Result<(Located, Option<Choice>), Failure
             None => case_file::read(file, &text, card).map(|located| (located, None)),
             Some(stated) => {
                 let out = labels::written_out(file, &text, &stated, card)?;
-                case_file::read_written_out(file, &out.text, &out.lines, card)
+                case_file::read_written_out(file, &out, card)
                     .map(|located| (located, Some(out.choice)))
             }
         };

@@ -17,6 +17,7 @@ use crate::plots::axis;
 use crate::record::{LARGEST, Recorder};
 use crate::step_limit::StepLimit;
 use crate::verdict::{Verdict, judge, table};
+use crate::waiting::Waiting;
 use crate::width::paragraph;
 use clap::ArgMatches;
 use clebsch::card::Card;
@@ -53,7 +54,10 @@ pub fn run(
     let case = beside::case(gallery, model, case)?;
     let case = case.as_deref();
     let entry = asked::model(gallery, model, case, &mut streams.err)?;
-    let plan = Plan::new(&entry, case, matches)?;
+    let plan = {
+        let _told = Waiting::told("reading the case".to_owned(), streams.progress);
+        Plan::new(&entry, case, matches)?
+    };
     let card = &entry.card_of(&plan.case);
     let target = matches.get_one::<PathBuf>("out");
     let as_json = matches.get_flag("json");
@@ -88,8 +92,14 @@ pub fn run(
     let mut warn = |warning: &str| {
         let _ = writeln!(streams.err, "clebsch: warning: {warning}");
     };
+    let started = {
+        let numbers: usize = plan.case.initial.iter().map(Vec::len).sum();
+        let what = format!("starting from {numbers} numbers: the first step is tried");
+        let _told = Waiting::told(what, streams.progress);
+        plan.open(card)
+    };
     // Where the first step is refused, that it is too long is why, mostly.
-    let mut trajectory = plan.open(card).inspect_err(|_| {
+    let mut trajectory = started.inspect_err(|_| {
         too_long.iter().for_each(|warning| warn(warning));
     })?;
     let kinetic = trajectory.kinetic_warning().map(|w| w.to_string());

@@ -163,7 +163,7 @@ impl Outcome {
     }
 }
 
-/// Longest formula in a table: longer ones stand in the derivation.
+/// Longest formula in a table: others are printed in the derivation only.
 const LONGEST: usize = 240;
 
 /// A formula for a table, as far as it is read there.

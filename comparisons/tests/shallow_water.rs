@@ -102,6 +102,7 @@ fn waves_of_small_amplitude_have_the_frequency_of_the_regularised_equations() {
         let factor = match smoothing {
             Smoothing::Split => (1.0 + a) * (1.0 + b),
             Smoothing::Isotropic => 1.0 + a + b,
+            Smoothing::Twice => (1.0 + a + b).powi(2),
         };
         let square = waves[0].powi(2) + waves[1].powi(2);
         let frequency = (2.0 * square / factor).sqrt();

@@ -23,6 +23,8 @@ mod laws;
 mod models;
 #[path = "lines/rossby.rs"]
 mod rossby;
+#[path = "lines/shear.rs"]
+mod shear;
 #[path = "lines/turns.rs"]
 mod turns;
 #[path = "lines/walls.rs"]

@@ -8,6 +8,7 @@ use super::space::Space;
 use super::start::places;
 use super::value::number;
 use crate::failure::Failure;
+use clebsch::card::Field;
 use clebsch::line::LineError;
 use clebsch::mesh::{Domain, Voronoi};
 use clebsch::nalgebra::SVector;
@@ -95,6 +96,22 @@ impl Fluid {
             reader.motion(q, initial, source)?;
         }
         Ok(Some(reader.fluid))
+    }
+
+    /// The numbers of a field of the card, and the line that they came from, where they need no reading: finite ones of a number
+    /// or a vector.
+    pub(super) fn numbers(
+        &self,
+        field: &Field,
+        key: Option<(&str, usize)>,
+    ) -> Option<(&[f64], usize)> {
+        let (key, site) = key?;
+        let column = self.columns.get(key)?;
+        let plain = field.cols == 1 && field.rows == column.size;
+        let own = column
+            .numbers
+            .get(site * column.size..(site + 1) * column.size)?;
+        (plain && own.iter().all(|x| x.is_finite())).then_some((own, column.line))
     }
 
     /// The value of a field of the card, and the line that it came from.

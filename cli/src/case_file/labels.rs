@@ -3,6 +3,7 @@
 //! like any other, and the line that each of its lines came from.
 
 use super::attitudes;
+use super::beside::Beside;
 use super::copies::Copies;
 use super::fluid::Fluid;
 use super::inertia::{self, Taken};
@@ -202,10 +203,12 @@ pub(super) fn table<'a, 'i>(
     }
 }
 
-/// A case with a key for every copy, and the line of the file that each of its lines came from.
+/// A case with a key for every copy, and the line of the file that each of its lines came from. Values of the particles and nodes of
+/// a fluid, of which there may be millions, stand beside the text.
 pub(crate) struct WrittenOut {
     pub text: String,
     pub lines: Vec<usize>,
+    pub beside: Beside,
     /// How many sites there are, and how the line ends.
     pub choice: Choice,
 }
@@ -241,6 +244,7 @@ pub(crate) fn written_out(
     let mut out = WrittenOut {
         text: String::new(),
         lines: Vec::new(),
+        beside: Beside::default(),
         choice: choice.clone(),
     };
     let raw = |span: &Range<usize>| text.get(span.clone()).unwrap_or_default().to_owned();
@@ -372,7 +376,7 @@ impl Writer<'_> {
     fn fields(
         &self,
         out: &mut WrittenOut,
-        name: &str,
+        name: &'static str,
         fields: &[Field],
         values: Table<'_, '_>,
         others: Table<'_, '_>,
@@ -381,9 +385,20 @@ impl Writer<'_> {
         let taken = Taken::of(fields);
         let read = self.fluid.into_iter().flat_map(Fluid::used);
         let mut used: HashSet<String> = read.map(str::to_owned).collect();
-        for field in fields {
+        let mut told: Vec<String> = Vec::new();
+        for (index, field) in fields.iter().enumerate() {
             let base = base(self.copies, field);
             let own = base.as_ref().map(|b| (b.key.as_str(), b.site));
+            if let Some((numbers, line)) = self.fluid.and_then(|f| f.numbers(field, own)) {
+                out.beside.keep(name, index, numbers);
+                if let Some((key, _)) = own
+                    && !told.iter().any(|own| own == key)
+                {
+                    told.push(key.to_owned());
+                    out.beside.stands(name, key, line);
+                }
+                continue;
+            }
             if let Some((text, line)) = self.fluid.and_then(|f| f.text(field.ascii, own)) {
                 out.push(&format!("{} = {text}", field.ascii), line);
                 continue;

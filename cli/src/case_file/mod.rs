@@ -3,6 +3,7 @@
 //! and of models with labels `[labels]` and `[ends]`.
 
 mod attitudes;
+mod beside;
 mod copies;
 mod fluid;
 pub(crate) mod functions;
@@ -18,6 +19,7 @@ mod start;
 mod value;
 mod write;
 
+pub(crate) use beside::line_of;
 pub(crate) use lattice::write_lattice;
 pub use location::Located;
 pub use read::read;

@@ -1,7 +1,9 @@
 //! Reads a case from a TOML file, for the model whose card is given.
 //! Takes the text; gives the case with the lines of its keys, or the first thing wrong with it.
 
+use super::beside::Beside;
 use super::inertia::{self, Given, Taken};
+use super::labels::WrittenOut;
 use super::location::{File, Located};
 use super::value::{expected, number, numbers};
 use crate::arguments::whole;
@@ -35,7 +37,7 @@ type Lines = BTreeMap<String, usize>;
 /// Usage: no TOML, another model, an unknown, missing, mistyped or misshapen value. The message
 /// names file, line and key.
 pub fn read(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
-    located(&File::new(name, text), card)
+    located(&File::new(name, text), &Beside::default(), card)
 }
 
 /// The same of a case that was written out from a file, whose lines are told.
@@ -44,14 +46,14 @@ pub fn read(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
 /// As [`read`].
 pub(crate) fn read_written_out(
     name: &str,
-    text: &str,
-    lines: &[usize],
+    out: &WrittenOut,
     card: &Card,
 ) -> Result<Located, Failure> {
-    located(&File::written_out(name, text, lines), card)
+    let file = File::written_out(name, &out.text, &out.lines);
+    located(&file, &out.beside, card)
 }
 
-fn located(file: &File<'_>, card: &Card) -> Result<Located, Failure> {
+fn located(file: &File<'_>, beside: &Beside, card: &Card) -> Result<Located, Failure> {
     let name = file.name;
     let document = file.document()?;
     let top = document.get_ref();
@@ -82,7 +84,7 @@ fn located(file: &File<'_>, card: &Card) -> Result<Located, Failure> {
             ),
         ));
     }
-    let mut lines = Lines::new();
+    let mut lines = beside.lines();
     for (key, value) in top {
         lines.insert(key.get_ref().to_string(), file.line(&value.span()));
     }
@@ -91,8 +93,14 @@ fn located(file: &File<'_>, card: &Card) -> Result<Located, Failure> {
         doc: optional_string(file, top, "doc")?.unwrap_or_default(),
         h: step_size(file, required(file, top, "h", "the step size")?)?,
         steps: steps(file, required(file, top, "steps", "the number of steps")?)?,
-        parameters: fields(file, top, "parameters", card.parameters, &mut lines)?,
-        initial: fields(file, top, "initial", card.initial, &mut lines)?,
+        parameters: fields(
+            file,
+            top,
+            beside,
+            ("parameters", card.parameters),
+            &mut lines,
+        )?,
+        initial: fields(file, top, beside, ("initial", card.initial), &mut lines)?,
         bounds: bounds(file, top, card)?,
     };
     Ok(Located {
@@ -231,8 +239,8 @@ fn table<'a, 'i>(
 fn fields(
     file: &File<'_>,
     top: &DeTable<'_>,
-    name: &str,
-    fields: &[Field],
+    beside: &Beside,
+    (name, fields): (&'static str, &[Field]),
     lines: &mut Lines,
 ) -> Result<Vec<Vec<f64>>, Failure> {
     let Some((table, span)) = table(file, top, name)? else {
@@ -250,11 +258,17 @@ fn fields(
         .iter()
         .filter_map(|field| inertia::key(field, &taken))
         .collect();
-    let known = fields.iter().map(|field| field.ascii);
+    let in_text = fields.iter().enumerate();
+    let in_text = in_text.filter(|(index, _)| beside.get(name, *index).is_none());
+    let known = in_text.map(|(_, field)| field.ascii);
     let known: Vec<&str> = known.chain(inertias.iter().map(String::as_str)).collect();
     known_keys(file, table, &known, &format!("in [{name}]"), Some(fields))?;
     let mut values = Vec::with_capacity(fields.len());
-    for field in fields {
+    for (index, field) in fields.iter().enumerate() {
+        if let Some(numbers) = beside.get(name, index) {
+            values.push(numbers.to_vec());
+            continue;
+        }
         let key = format!("{name}.{}", field.ascii);
         let (value, found) = match inertia::given(table, field, &taken) {
             Given::Own(value) => (value, numbers(field, value.get_ref())),

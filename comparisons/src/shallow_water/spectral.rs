@@ -1,7 +1,7 @@
 //! Regularised shallow water by Fourier components: `h_t + div(h u) = 0`, `u_t + (ζ + f) k x u = -grad(c0² S h + |u|²/2)`,
 //! where S is the inverse of a Helmholtz operator, in a periodic box or in a channel. A channel is half of a periodic box
 //! in which depth is even about the walls and the normal velocity odd. Products are free of aliases (two thirds of the
-//! components are kept); the steps are those of the classical Runge-Kutta method.
+//! components are kept, data that have others are truncated); the steps are those of the classical Runge-Kutta method.
 
 use super::fourier::{Complex, Fourier};
 use core::f64::consts::TAU;
@@ -13,6 +13,8 @@ pub enum Smoothing {
     Split,
     /// `1 / (1 + α²(k² + l²))`.
     Isotropic,
+    /// `1 / (1 + α²(k² + l²))²`.
+    Twice,
 }
 
 /// Depth and velocity at the nodes of the grid, mirrored ones among them.
@@ -71,6 +73,7 @@ impl Spectral {
                 factors.push(match smoothing {
                     Smoothing::Split => 1.0 / ((1.0 + a) * (1.0 + b)),
                     Smoothing::Isotropic => 1.0 / (1.0 + a + b),
+                    Smoothing::Twice => (1.0 + a + b).powi(-2),
                 });
             }
         }
@@ -123,6 +126,28 @@ impl Spectral {
         all
     }
 
+    /// Drops the components that products are free of, as data have to that are not smooth.
+    pub fn truncate(&mut self, fields: &mut Fields) {
+        let kept = self.kept.clone();
+        for values in [&mut fields.h, &mut fields.u, &mut fields.v] {
+            let all = self.components(values.iter().copied());
+            let of = |k: usize| if kept[k] { all[k] } else { [0.0; 2] };
+            let part = self.both(of, |_| [0.0; 2]);
+            values.iter_mut().zip(part).for_each(|(x, p)| *x = p[0]);
+        }
+    }
+
+    /// The largest frequency of waves of small amplitude on unit depth at rest: `sqrt(f² + c² |k|² S)`.
+    pub fn fastest_wave(&self) -> f64 {
+        let all = self.waves.iter().zip(&self.smoothing).zip(&self.kept);
+        let square = |((k, s), kept): ((&[f64; 2], &f64), &bool)| match kept {
+            true => self.speed_squared * (k[0] * k[0] + k[1] * k[1]) * s,
+            false => 0.0,
+        };
+        let largest = all.map(square).max_by(f64::total_cmp).unwrap_or(0.0);
+        (self.coriolis * self.coriolis + largest).sqrt()
+    }
+
     /// The smoothed depth at the nodes of the box, those on both walls among them, the second direction contiguous.
     pub fn smoothed(&mut self, fields: &Fields) -> Vec<f64> {
         let h = self.components(fields.h.iter().copied());
@@ -172,10 +197,6 @@ impl Spectral {
         let head: Vec<Complex> = (0..h.len())
             .map(|k| [0, 1].map(|c| speed * smoothing[k] * h[k][c] + kinetic[k][c]))
             .collect();
-        let gradient = self.both(
-            |k| filtered(k, slope(&head, k, 0)),
-            |k| filtered(k, slope(&head, k, 1)),
-        );
         let rest = self.both(
             |k| {
                 let (a, b) = (slope(&flux, k, 0), slope(&across, k, 1));
@@ -186,16 +207,27 @@ impl Spectral {
                 filtered(k, [a[0] - b[0], a[1] - b[1]])
             },
         );
-        let turning = |i: usize| rest[i][1] + self.coriolis;
-        let count = rest.len();
+        // Products with the vorticity have components that are dropped, too.
+        let coriolis = self.coriolis;
+        let turning = |i: usize| rest[i][1] + coriolis;
+        let turned = [&of.v, &of.u].map(|x| {
+            let each = x.iter().enumerate().map(|(i, x)| turning(i) * x);
+            self.components(each)
+        });
+        let all = self.both(
+            |k| {
+                let (a, b) = (turned[0][k], slope(&head, k, 0));
+                filtered(k, [a[0] - b[0], a[1] - b[1]])
+            },
+            |k| {
+                let (a, b) = (turned[1][k], slope(&head, k, 1));
+                filtered(k, [-a[0] - b[0], -a[1] - b[1]])
+            },
+        );
         Fields {
             h: rest.iter().map(|x| x[0]).collect(),
-            u: (0..count)
-                .map(|i| turning(i) * of.v[i] - gradient[i][0])
-                .collect(),
-            v: (0..count)
-                .map(|i| -turning(i) * of.u[i] - gradient[i][1])
-                .collect(),
+            u: all.iter().map(|x| x[0]).collect(),
+            v: all.iter().map(|x| x[1]).collect(),
         }
     }
 

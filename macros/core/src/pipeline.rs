@@ -30,7 +30,7 @@ pub fn parse_source(source: &str) -> Result<Model, Errors> {
     syntax::parse(invocation(syntax::tokens(source)?)?)
 }
 
-/// Derives a model, one with labels on its shortest lattice that is told by the longer ones.
+/// Derives a model; one with labels on the shortest lattice that represents all longer lattices.
 pub fn derive_model(model: &Model) -> Result<Derivation, Errors> {
     if lattice::has_labels(model) {
         let line = Lattice::read(model)?;

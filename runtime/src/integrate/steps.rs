@@ -46,7 +46,7 @@ impl<S: Stepper<Scalar = f64>> Steps<S> {
 }
 
 impl<S: Stepper> Steps<S> {
-    /// Whether each is a step of the derivation as it stands.
+    /// Whether each is a single step of the derivation, neither composed nor compensated.
     #[must_use]
     pub fn are_plain(&self) -> bool {
         matches!(self, Self::Plain(_))

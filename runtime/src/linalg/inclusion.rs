@@ -1,4 +1,4 @@
-//! Vectors inside longer ones: the constant matrices that put them there and take them out.
+//! Zero-padding inclusions of vectors and the projections that undo them: constant matrices.
 
 use crate::Real;
 use nalgebra::SMatrix;

@@ -6,6 +6,7 @@ mod depth;
 mod forces;
 mod printed;
 mod reflection;
+mod released;
 mod smoothers;
 mod symmetries;
 mod verlet;

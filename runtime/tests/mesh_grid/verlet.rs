@@ -97,13 +97,18 @@ where
         }
     }
 
+    /// The smoothed depth at the places of the last evaluation of the potential.
+    pub fn smoothed(&self) -> &[f64] {
+        &self.smoothed
+    }
+
     /// At the places of the last evaluation of the potential.
-    fn energy(&self, u: &[A]) -> f64 {
+    pub fn energy(&self, u: &[A]) -> f64 {
         let all = self.weights.iter().zip(&self.depth).zip(&self.smoothed);
         self.kinetic(u) + self.speed / 2.0 * sum(all.map(|((w, h), s)| w * h * s))
     }
 
-    fn kinetic(&self, u: &[A]) -> f64 {
+    pub fn kinetic(&self, u: &[A]) -> f64 {
         let all = self.mass.iter().zip(u);
         sum(all.map(|(m, u)| m / 2.0 * u.parts().iter().map(|u| u * u).sum::<f64>()))
     }

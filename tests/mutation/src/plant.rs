@@ -27,7 +27,7 @@ pub struct Mutant {
     pub line: usize,
     /// The expression and its second form.
     pub site: Site,
-    /// The expression as it stands.
+    /// The unchanged expression.
     pub original: String,
 }
 

@@ -18,7 +18,7 @@ use clebsch::record::Rows as _;
 use clebsch::record::vtk::{ImageData, Member, PolyData, write_collection};
 use std::io::{self, Write};
 
-/// The folder, as it stands among the files that a run can write.
+/// The folder, by its name among the files that a run can write.
 pub(crate) const FOLDER: &str = "vtk/";
 
 /// The endings of what is in it.

@@ -14,7 +14,7 @@ use clebsch::Real;
 use clebsch::linalg::Dense;
 use std::collections::BTreeMap;
 
-/// Most operations of a body: a longer one is executed as it is.
+/// Most operations of a body: beyond these it is executed without a trace.
 const MOST: usize = 1 << 14;
 
 /// A value that is followed: what it is at the first site, and where it stands at each.

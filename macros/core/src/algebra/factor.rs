@@ -47,13 +47,13 @@ pub enum Factor {
         /// Whether it is a row.
         transposed: bool,
     },
-    /// The matrix that puts a vector into a longer one.
+    /// The zero-padding inclusion of a vector space into one of higher dimension.
     Inclusion {
-        /// Its shape as it stands when not transposed: more rows than columns.
+        /// Its shape when not transposed: more rows than columns.
         shape: Shape,
         /// The first of the rows that it fills, counted from 0.
         at: u8,
-        /// Whether it takes the vector out instead.
+        /// Whether it is the projection instead.
         transposed: bool,
     },
     /// The skew matrix of a vector word.
@@ -80,7 +80,7 @@ pub enum Factor {
 pub type Word = Vec<Factor>;
 
 impl Algebra<'_> {
-    /// Shape of a factor as it stands.
+    /// Shape of a factor, transposed where the factor is.
     pub(super) fn shape_of(&self, f: &Factor) -> Shape {
         let (shape, transposed) = match f {
             Factor::Letter {
@@ -262,7 +262,7 @@ impl Algebra<'_> {
 
 /// What the reduction of a model asks of words.
 impl Algebra<'_> {
-    /// The shape of a factor as it stands.
+    /// The shape of a factor, transposed where the factor is.
     pub(crate) fn factor_shape(&self, f: &Factor) -> Shape {
         self.shape_of(f)
     }

@@ -51,7 +51,7 @@ pub fn in_parts(
     (doc, page.names.symbols)
 }
 
-/// Whether something in it is of rigid motions or of vectors inside longer ones.
+/// Whether something in it is of rigid motions or a zero-padding inclusion.
 fn has_parts(e: &Expr) -> bool {
     matches!(e.node(), Node::Inclusion(..) | Node::Map(Map::Twist, _))
         || e.children().into_iter().any(has_parts)

@@ -150,7 +150,7 @@ pub enum Node {
     Zero(Shape),
     /// The unit vector along an axis (counted from 0).
     Unit(Dim, u8),
-    /// The matrix of the given shape that puts a vector into a longer one, from this row on.
+    /// The zero-padding inclusion of the given shape: the identity from this row on, zero elsewhere.
     Inclusion(Shape, u8),
     /// A sum of terms of one shape.
     Sum(Vec<Expr>),

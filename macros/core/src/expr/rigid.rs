@@ -1,5 +1,5 @@
 //! Rigid motions as homogeneous matrices `[R x; 0 1]` of one row more than the space has dimensions:
-//! their blocks, the elements of their Lie algebra, and vectors inside longer ones. Blocks of products
+//! their blocks, the elements of their Lie algebra, and zero-padding inclusions. Blocks of products
 //! are written by those of the factors, so that what is shown and emitted is of the space itself.
 
 use super::build::make;

@@ -13,7 +13,7 @@ use crate::expr::symbol::{Role, Symbols};
 pub enum Undone {
     /// `Id + Q`, of a rotation with this Rodrigues vector; where `minus`, of its inverse.
     Cayley {
-        /// `Id + Q` as it stands.
+        /// `Id + Q` itself.
         whole: Expr,
         /// The vector.
         turn: Expr,

@@ -89,7 +89,7 @@ fn listed(names: &[String]) -> String {
 
 impl Choice {
     /// The shortest lattice on which the middle site and each end have all the neighbours that their
-    /// equations hold: what is found there holds for every longer one. A ring has an odd number of
+    /// equations hold: what is found there holds for every longer line. A ring has an odd number of
     /// sites, so that its even and odd ones are not two lattices.
     pub fn representative(lattice: &Lattice, reach: usize) -> Choice {
         let count = |l: &Label| match l.set {

@@ -75,7 +75,7 @@ pub(super) trait Typed {
     /// Values of parameters and of the step.
     fn parameters(&self) -> Vec<Given>;
 
-    /// Values of what is advected, at this time level.
+    /// Values of advected quantities, at this time level.
     fn advected(&self, _shift: i8, _x: &[f64]) -> Vec<Given> {
         Vec::new()
     }

@@ -1,4 +1,4 @@
-//! Vectors inside longer ones, in parts. A vector of the Lie algebra of rigid motions is its angular and its
+//! Zero-padding inclusions, by their blocks. A vector of the Lie algebra of rigid motions is its angular and its
 //! linear part, `(a, b)`, of which `ang` and `lin` take one; of homogeneous coordinates and matrices `x[1:3]`
 //! and `A[1:3, 4]` take entries, on a page below the line, and `[v; 0]` and `[A, 0; 0, 0]` are made of blocks.
 

@@ -1,0 +1,84 @@
+//! Steady shear of regularised shallow water from random places: a flow whose depth the exact equations never change. How much of
+//! the kinetic energy stays along the initial profile, how near particles come, what the energy does.
+
+use clebsch::mesh::{Domain, Voronoi, helmholtz_depth, placement};
+use clebsch::nalgebra::Vector2;
+use clebsch::scalar::largest;
+use clebsch_models::fluids::shallow_water_2d_regularised::*;
+use std::f64::consts::TAU;
+
+/// What is left after five units of time, in which waves of long length run through the domain five times.
+struct Left {
+    /// The square of the projection of the velocity on the initial profile, of that at the start.
+    kept: f64,
+    /// The smallest distance of two particles at any time, in units of the mean one.
+    nearest: f64,
+    /// The largest change of the energy, of the kinetic energy at the start.
+    energy: f64,
+}
+
+/// `0.1 sin(2πy)` along x, by this number of particles along either side of the unit square.
+fn sheared(side: usize, seed: u64) -> Left {
+    let (count, spacing) = (side * side, 1.0 / side as f64);
+    let domain = Domain::torus([1.0, 1.0]);
+    let x = placement::scattered(&domain, count, 100, seed).expect("places");
+    let mut mesh = Voronoi::<f64>::new(&domain, count).expect("a torus");
+    mesh.update(&x).expect("a mesh");
+    let alpha = 2.0 * spacing;
+    let m = helmholtz_depth::masses(&mut mesh, &x, alpha, &vec![1.0; count]).expect("masses");
+    let profile = |x: &Vector2<f64>| 0.1 * (TAU * x[1]).sin();
+    let momentum = x.iter().zip(&m);
+    let momentum = momentum.map(|(x, m)| Vector2::new(profile(x) * m, 0.0));
+    let initial = ShallowWater2DRegularisedInitial {
+        X: x.clone(),
+        momentum_X: momentum.collect(),
+    };
+    let parameters = ShallowWater2DRegularisedParameters {
+        m,
+        g: 1.0,
+        f: 0.0,
+        alpha,
+        rc: 0.7 * spacing,
+        kappa: 0.1,
+    };
+    let sites = ShallowWater2DRegularisedSites {
+        N: count,
+        L: [1.0, 1.0],
+        scalar: Default::default(),
+    };
+    let model = ShallowWater2DRegularised::new(parameters, sites).expect("a torus");
+    let dt = 0.2 * spacing;
+    let (mut state, mut work) = model.start(initial, dt).expect("starts");
+    let along = |s: &ShallowWater2DRegularisedState| -> f64 {
+        let each = s.X().iter().zip(s.momentum_X());
+        each.map(|(x, p)| profile(x) * p[0]).sum()
+    };
+    let (first, energy) = (along(&state), model.energy(&state));
+    let (kinetic, _) = model.energies(&state);
+    let (mut nearest, mut changed) = (f64::INFINITY, 0.0);
+    for step in 0..(5.0 / dt).round() as usize {
+        model.step(&mut state, &mut work).expect("steps");
+        changed = largest([changed, model.energy(&state) - energy]);
+        if step % 10 == 0 {
+            mesh.update(state.X()).expect("a mesh");
+            nearest = nearest.min(mesh.nearest().value / spacing);
+        }
+    }
+    Left {
+        kept: (along(&state) / first).powi(2),
+        nearest,
+        energy: changed / kinetic,
+    }
+}
+
+#[test]
+fn steady_shear_stays_ordered_and_particles_apart() {
+    // The motion of particles is chaotic after two units of time: of five seeds 0.86 to 0.90 is left at 24, 0.94 to 0.95 at 48.
+    // Here 0.90, 0.88 and 0.945; particles come as near as 0.55, and the energy changes by 1.5e-5 at most.
+    for (side, seed, kept) in [(24, 1, 0.85), (24, 2, 0.85), (48, 1, 0.92)] {
+        let left = sheared(side, seed);
+        assert!(left.kept > kept, "{side}, seed {seed}: {}", left.kept);
+        assert!(left.nearest > 0.45, "{side}, seed {seed}: {}", left.nearest);
+        assert!(left.energy < 1e-4, "{side}, seed {seed}: {:e}", left.energy);
+    }
+}
