@@ -251,10 +251,9 @@ impl<T: Real> BodyInQuadraticField<T> {
         let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
         let Ω = here.Λ.body_velocity(&after.Λ).matrix();
         let t1 = h.powi(-1);
-        let t2 = -((K * Γ).cross(&Γ) * (T::from_f64(0.5) * h));
         let parts: [SVector<T, 3>; 1] = [
-            axial_of_difference(&(J * Ω_before)) * t1 + t2
-                + axial_of_difference(&(J * Ω.transpose())) * t1 + t2,
+            axial_of_difference(&(J * Ω_before)) * t1 - (K * Γ).cross(&Γ) * h
+                + axial_of_difference(&(J * Ω.transpose())) * t1,
         ];
         parts[0]
     }
@@ -295,9 +294,12 @@ impl<T: Real> BodyInQuadraticField<T> {
         for axis in 0..3 {
             let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
             let t1 = vee(&ξ);
-            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-            let parts: [SVector<T, 3>; 1] = [axial_of_difference(&(t2 + t2 + t3 + t3))];
+            let parts: [SVector<T, 3>; 1] = [
+                axial_of_difference(
+                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
+                        - hat(&(J * t1 * T::from_f64(0.5)))),
+                ),
+            ];
             inertia.set_column(axis, &parts[0]);
         }
         inertia
@@ -385,10 +387,12 @@ impl BodyInQuadraticField<f64> {
             let Γ_reference = state.Γ;
             let Γ = Λ.tr_mul(&Γ_reference);
             let t1 = Γ.dot(&Γ).sqrt();
-            let t2 = T::from_f64(0.5) * (h * h).sqrt() * (K * K).trace().sqrt() * t1
-                * t1;
             enlarged.momentum = SpatialMomentum(
-                not_less(enlarged.momentum.0, (0, 3), t2 + t2),
+                not_less(
+                    enlarged.momentum.0,
+                    (0, 3),
+                    (h * h).sqrt() * (K * K).trace().sqrt() * t1 * t1,
+                ),
             );
         }
         let state = &enlarged;

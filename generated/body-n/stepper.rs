@@ -209,14 +209,12 @@ impl<const N: usize, T: Real> BodyN<N, T> {
         let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         let t1 = h.powi(-1);
         let t2 = C.tr_mul(&Ω_matrix) * t1;
-        let t3 = (t1 * t1).sqrt();
-        let t4 = (C.tr_mul(&C)).trace().sqrt();
-        let t5 = (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt();
         [
             Residual::between(
                 &(after.momentum.to_body(&after.Λ).0),
                 &(t2 - t2.transpose()),
-                t3 * t4 * t5 + t3 * t5 * t4,
+                T::from_f64(2.0) * (t1 * t1).sqrt() * (C.tr_mul(&C)).trace().sqrt()
+                    * (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt(),
             ),
         ]
     }
@@ -252,17 +250,21 @@ impl<const N: usize, T: Real> BodyN<N, T> {
     /// `tr(μ_k⁴)`: Casimir: constant on coadjoint orbits.
     pub fn trace_momentum4(&self, state: &BodyNState<N, T>) -> T {
         let μ = state.body_momentum().0;
-        (μ * (μ * (μ * μ))).trace()
+        let t1 = μ * μ;
+        (t1 * t1).trace()
     }
     /// `tr(μ_k⁶)`: Casimir: constant on coadjoint orbits.
     pub fn trace_momentum6(&self, state: &BodyNState<N, T>) -> T {
         let μ = state.body_momentum().0;
-        (μ * (μ * (μ * (μ * (μ * μ))))).trace()
+        let t1 = μ * μ;
+        (t1 * (t1 * t1)).trace()
     }
     /// `tr(μ_k⁸)`: Casimir: constant on coadjoint orbits.
     pub fn trace_momentum8(&self, state: &BodyNState<N, T>) -> T {
         let μ = state.body_momentum().0;
-        (μ * (μ * (μ * (μ * (μ * (μ * (μ * μ))))))).trace()
+        let t1 = μ * μ;
+        let t2 = t1 * t1;
+        (t2 * t2).trace()
     }
     /// The discrete energy of the edge between two consecutive states, `tr(C)/h² - tr(C Ω_kᵀ)/h²`: bounded, since the stepper is symplectic.
     pub fn discrete_energy(
@@ -301,20 +303,19 @@ impl<const N: usize> BodyN<N, f64> {
         type T = f64;
         let Λ = state.Λ.matrix();
         let μ = state.body_momentum().0;
-        let t1 = (-(μ * μ).trace()).sqrt();
+        let t1 = Λ * μ;
+        let t2 = t1 * Λ.transpose();
+        let t3 = (-(μ * μ).trace()).sqrt();
         let out = put(
             out,
-            ::core::iter::repeat_n(
-                (-(Λ * (μ * Λ.tr_mul(&(Λ * (μ * Λ.transpose()))))).trace()).sqrt(),
-                (N * (N - 1) / 2),
-            ),
+            ::core::iter::repeat_n((-(t2 * t2).trace()).sqrt(), (N * (N - 1) / 2)),
         );
-        let out = put(out, ::core::iter::repeat_n(t1 * t1, 1usize));
-        let out = put(out, ::core::iter::repeat_n(t1 * t1 * t1 * t1, 1usize));
-        let out = put(out, ::core::iter::repeat_n(t1 * t1 * t1 * t1 * t1 * t1, 1usize));
+        let out = put(out, ::core::iter::repeat_n(t3 * t3, 1usize));
+        let out = put(out, ::core::iter::repeat_n(t3 * t3 * t3 * t3, 1usize));
+        let out = put(out, ::core::iter::repeat_n(t3 * t3 * t3 * t3 * t3 * t3, 1usize));
         let out = put(
             out,
-            ::core::iter::repeat_n(t1 * t1 * t1 * t1 * t1 * t1 * t1 * t1, 1usize),
+            ::core::iter::repeat_n(t3 * t3 * t3 * t3 * t3 * t3 * t3 * t3, 1usize),
         );
     }
     /// The model as data.

@@ -273,7 +273,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
                     - t3 * (t1 * c)),
                 T::from_f64(4.0) * t4 * t5 * t6 * t7 + T::from_f64(2.0) * t4 * t8 * t7
                     + t4 * t8 * t3.dot(&t3).sqrt() + T::from_f64(4.0) * t4 * t5 * t6
-                    + T::from_f64(2.0) * t4 * t8 + t4 * t8,
+                    + T::from_f64(3.0) * t4 * t8,
             ),
         ]
     }
@@ -286,8 +286,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
         let mut inertia = SMatrix::<T, 3, 3>::zeros();
         for axis in 0..3 {
             let ξ: SVector<T, 3> = unit::<T, 3>(axis);
-            let t1 = I * ξ * T::from_f64(0.5);
-            let parts: [SVector<T, 3>; 1] = [t1 + t1];
+            let parts: [SVector<T, 3>; 1] = [I * ξ];
             inertia
                 .set_column(
                     axis,

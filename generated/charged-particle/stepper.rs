@@ -176,10 +176,10 @@ impl<T: Real> ChargedParticle<T> {
         let ΔX_before = before.X.spatial_velocity(&here.X).matrix();
         let ΔX = here.X.spatial_velocity(&after.X).matrix();
         let t1 = h.powi(-1);
-        let t2 = E * (T::from_f64(0.5) * h * q);
         let parts: [SVector<T, 3>; 1] = [
-            ΔX_before * (t1 * m) + t2 + B.cross(&X_before) * (T::from_f64(0.5) * q)
-                - ΔX * (t1 * m) + t2 - B.cross(&X) * (T::from_f64(0.5) * q)
+            ΔX_before * (t1 * m) + E * (h * q)
+                + B.cross(&X_before) * (T::from_f64(0.5) * q) - ΔX * (t1 * m)
+                - B.cross(&X) * (T::from_f64(0.5) * q)
                 - B.cross(&ΔX) * (T::from_f64(0.5) * q),
         ];
         {
@@ -226,8 +226,7 @@ impl<T: Real> ChargedParticle<T> {
         let mut inertia = SMatrix::<T, 3, 3>::zeros();
         for axis in 0..(3 * 1) {
             let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-            let t1 = ξ * (T::from_f64(0.5) * m);
-            let parts: [SVector<T, 3>; 1] = [t1 + t1];
+            let parts: [SVector<T, 3>; 1] = [ξ * m];
             inertia
                 .set_column(
                     axis,

@@ -608,21 +608,19 @@ impl<T: Real> CoupledBodies<T> {
             let t1 = d1.dot(&(R * d2));
             let t2 = vee(&ξ2);
             let t3 = vee(&ξ1);
-            let t4 = hat(&(t3 * (T::from_f64(0.5) * J1.trace()))) * T::from_f64(0.5);
-            let t5 = -(hat(&(J1 * t3 * T::from_f64(0.5))) * T::from_f64(0.5));
-            let t6 = hat(&(t2 * (T::from_f64(0.5) * J2.trace()))) * T::from_f64(0.5);
-            let t7 = -(hat(&(J2 * t2 * T::from_f64(0.5))) * T::from_f64(0.5));
             let parts: [SVector<T, 3>; 2] = [
                 axial_of_difference(
                     &(hat(&(R * d2 * (eps * d1.dot(&(R * t2))))) * T::from_f64(0.5)
-                        - hat(&(R * t2 * (eps * t1))) * T::from_f64(0.5) + t4 + t4 + t5
-                        + t5),
+                        - hat(&(R * t2 * (eps * t1))) * T::from_f64(0.5)
+                        + hat(&(t3 * (T::from_f64(0.5) * J1.trace())))
+                        - hat(&(J1 * t3 * T::from_f64(0.5)))),
                 ),
                 axial_of_difference(
                     &(hat(&(R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))))
                         * T::from_f64(0.5)
-                        - hat(&(R.tr_mul(&t3) * (eps * t1))) * T::from_f64(0.5) + t6 + t6
-                        + t7 + t7),
+                        - hat(&(R.tr_mul(&t3) * (eps * t1))) * T::from_f64(0.5)
+                        + hat(&(t2 * (T::from_f64(0.5) * J2.trace())))
+                        - hat(&(J2 * t2 * T::from_f64(0.5)))),
                 ),
             ];
             inertia
@@ -634,21 +632,19 @@ impl<T: Real> CoupledBodies<T> {
             let t1 = d1.dot(&(R * d2));
             let t2 = vee(&ξ2);
             let t3 = vee(&ξ1);
-            let t4 = hat(&(t3 * (T::from_f64(0.5) * J1.trace()))) * T::from_f64(0.5);
-            let t5 = -(hat(&(J1 * t3 * T::from_f64(0.5))) * T::from_f64(0.5));
-            let t6 = hat(&(t2 * (T::from_f64(0.5) * J2.trace()))) * T::from_f64(0.5);
-            let t7 = -(hat(&(J2 * t2 * T::from_f64(0.5))) * T::from_f64(0.5));
             let parts: [SVector<T, 3>; 2] = [
                 axial_of_difference(
                     &(hat(&(R * d2 * (eps * d1.dot(&(R * t2))))) * T::from_f64(0.5)
-                        - hat(&(R * t2 * (eps * t1))) * T::from_f64(0.5) + t4 + t4 + t5
-                        + t5),
+                        - hat(&(R * t2 * (eps * t1))) * T::from_f64(0.5)
+                        + hat(&(t3 * (T::from_f64(0.5) * J1.trace())))
+                        - hat(&(J1 * t3 * T::from_f64(0.5)))),
                 ),
                 axial_of_difference(
                     &(hat(&(R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))))
                         * T::from_f64(0.5)
-                        - hat(&(R.tr_mul(&t3) * (eps * t1))) * T::from_f64(0.5) + t6 + t6
-                        + t7 + t7),
+                        - hat(&(R.tr_mul(&t3) * (eps * t1))) * T::from_f64(0.5)
+                        + hat(&(t2 * (T::from_f64(0.5) * J2.trace())))
+                        - hat(&(J2 * t2 * T::from_f64(0.5)))),
                 ),
             ];
             inertia

@@ -303,16 +303,16 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let C = Q.tr_mul(&(C0 * Q));
         let G_before = before.Q.body_velocity(&here.Q).matrix();
         let G = here.Q.body_velocity(&after.Q).matrix();
-        let t1 = h.powi(-1);
-        let t2 = -(C * (h * a));
-        let t3 = C * C * (h * b);
-        let t4 = -(C * (h * b * C.trace()));
-        let t5 = -(SMatrix::<T, N, N>::identity() * (h * c * determinant(&(C))));
-        let t6 = SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d);
+        let t1 = G_before.tr_mul(&C_before);
+        let t2 = h.powi(-1);
         let parts: [SMatrix<T, N, N>; 1] = [
-            G_before.tr_mul(&(C_before * (G_before * I0))) * t1
-                - G_before.tr_mul(&(C_before * I0)) * t1 + t2 + t3 + t4 + t5 + t6
-                + C * I0 * t1 - C * (G * I0) * t1 + t2 + t3 + t4 + t5 + t6,
+            t1 * (G_before * I0) * t2 - t1 * I0 * t2 - C * (T::from_f64(2.0) * h * a)
+                + C * C * (T::from_f64(2.0) * h * b)
+                - C * (T::from_f64(2.0) * h * b * C.trace())
+                - SMatrix::<T, N, N>::identity()
+                    * (T::from_f64(2.0) * h * c * determinant(&(C)))
+                + SMatrix::<T, N, N>::identity() * (h * d) + C * I0 * t2
+                - C * (G * I0) * t2,
         ];
         {
             let mut all = SVector::<T, 16>::zeros();
@@ -339,27 +339,27 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let C = Q.tr_mul(&(C0 * Q));
         let Q_next = after.Q.matrix();
         let C_next = Q_next.tr_mul(&(C0 * Q_next));
-        let t1 = h.powi(-1);
-        let t2 = determinant(&(C_next));
-        let t3 = (t1 * t1).sqrt();
-        let t4 = (G_matrix.tr_mul(&G_matrix)).trace().sqrt();
-        let t5 = (C * C).trace().sqrt();
-        let t6 = (I0 * I0).trace().sqrt();
-        let t7 = (h * h).sqrt();
-        let t8 = (C_next * C_next).trace().sqrt();
-        let t9 = (b * b).sqrt();
+        let t1 = G_matrix.tr_mul(&C);
+        let t2 = C_next * C_next;
+        let t3 = h.powi(-1);
+        let t4 = determinant(&(C_next));
+        let t5 = (t3 * t3).sqrt();
+        let t6 = (G_matrix.tr_mul(&G_matrix)).trace().sqrt();
+        let t7 = (C * C).trace().sqrt();
+        let t8 = (I0 * I0).trace().sqrt();
+        let t9 = (h * h).sqrt();
+        let t10 = t2.trace().sqrt();
         [
             Residual::between(
                 &(after.momentum.to_body(&after.Q).0),
-                &(G_matrix.tr_mul(&(C * (G_matrix * I0))) * t1
-                    - G_matrix.tr_mul(&(C * I0)) * t1 - C_next * (h * a)
-                    + C_next * C_next * (h * b) - C_next * (h * b * C_next.trace())
-                    - SMatrix::<T, N, N>::identity() * (h * c * t2)
+                &(t1 * (G_matrix * I0) * t3 - t1 * I0 * t3 - C_next * (h * a)
+                    + t2 * (h * b) - C_next * (h * b * C_next.trace())
+                    - SMatrix::<T, N, N>::identity() * (h * c * t4)
                     + SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d)),
-                t3 * t4 * t5 * t6 + t3 * t4 * t5 * t4 * t6 + t7 * (a * a).sqrt() * t8
-                    + t7 * t9 * t8 * t8 + T::from_f64(2.0) * t7 * t9 * t8 * t8
-                    + t7 * (c * c).sqrt() * (t2 * t2).sqrt()
-                    + T::from_f64(0.5) * t7 * (d * d).sqrt(),
+                t5 * t6 * t7 * t8 + t5 * t6 * t7 * t6 * t8 + t9 * (a * a).sqrt() * t10
+                    + T::from_f64(3.0) * t9 * (b * b).sqrt() * t10 * t10
+                    + t9 * (c * c).sqrt() * (t4 * t4).sqrt()
+                    + T::from_f64(0.5) * t9 * (d * d).sqrt(),
             ),
         ]
     }
@@ -371,8 +371,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let mut inertia = SMatrix::<T, 16, 16>::zeros();
         for axis in 0..(N * N) {
             let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
-            let t1 = C * (ξ * I0) * T::from_f64(0.5);
-            let parts: [SMatrix<T, N, N>; 1] = [t1 + t1];
+            let parts: [SMatrix<T, N, N>; 1] = [C * (ξ * I0)];
             inertia
                 .set_column(
                     axis,
@@ -445,8 +444,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let Q = state.Q.matrix();
         let μ = state.body_momentum().0;
         skew_part(
-            &(inverse_or_nan(&(C0))
-                * (inverse_or_nan(&(Q.transpose())) * (μ * Q.transpose()))),
+            &(inverse_or_nan(&(C0)) * inverse_or_nan(&(Q)).tr_mul(&(μ * Q.transpose()))),
         )
     }
     /// The discrete energy of the edge between two consecutive states, `2 tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h)² + ½ a tr(C_k) + ¼ b tr(C_k)² - ¼ b tr(C_k²) + ½ c det(C_k) - ¼ d log(det(C_k)) + ½ a tr(C_{k+1}) + ¼ b tr(C_{k+1})² - ¼ b tr(C_{k+1}²) + ½ c det(C_{k+1}) - ¼ d log(det(C_{k+1}))`: bounded, since the stepper is symplectic.
@@ -520,15 +518,14 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
             let C = Q.tr_mul(&(C0 * Q));
             let t1 = (h * h).sqrt();
             let t2 = (C * C).trace().sqrt();
-            let t3 = (b * b).sqrt();
-            let t4 = determinant(&(C));
+            let t3 = determinant(&(C));
             enlarged.momentum = SpatialMomentumMatrix(
                 not_less(
                     enlarged.momentum.0,
                     (0, N),
-                    t1 * (a * a).sqrt() * t2 + t1 * t3 * t2 * t2
-                        + T::from_f64(2.0) * t1 * t3 * t2 * t2
-                        + t1 * (c * c).sqrt() * (t4 * t4).sqrt()
+                    t1 * (a * a).sqrt() * t2
+                        + T::from_f64(3.0) * t1 * (b * b).sqrt() * t2 * t2
+                        + t1 * (c * c).sqrt() * (t3 * t3).sqrt()
                         + T::from_f64(0.5) * t1 * (d * d).sqrt(),
                 ),
             );
@@ -539,22 +536,23 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
         let Q = state.Q.matrix();
         let C = Q.tr_mul(&(C0 * Q));
         let μ = state.body_momentum().0;
-        let t1 = inverse_or_nan(&(C));
-        let t2 = (μ.tr_mul(&μ)).trace().sqrt() * (C * C).trace().sqrt()
-            * (t1 * t1).trace().sqrt();
-        let t3 = inverse_or_nan(&(Q.transpose()));
-        let t4 = inverse_or_nan(&(C0));
+        let t1 = Q * μ.transpose();
+        let t2 = inverse_or_nan(&(C));
+        let t3 = (μ.tr_mul(&μ)).trace().sqrt() * (C * C).trace().sqrt()
+            * (t2 * t2).trace().sqrt();
+        let t4 = inverse_or_nan(&(Q));
+        let t5 = inverse_or_nan(&(C0));
         let out = put(
             out,
             ::core::iter::repeat_n(sum_of_sizes(self.energies(state)), 1usize),
         );
-        let out = put(out, ::core::iter::repeat_n(t2 * t2, 1usize));
-        let out = put(out, ::core::iter::repeat_n(t2.powi(4), 1usize));
+        let out = put(out, ::core::iter::repeat_n(t3 * t3, 1usize));
+        let out = put(out, ::core::iter::repeat_n(t3.powi(4), 1usize));
         let out = put(
             out,
             ::core::iter::repeat_n(
-                (Q * μ.tr_mul(&t3.tr_mul(&(t3 * (μ * Q.transpose()))))).trace().sqrt()
-                    * (t4 * t4).trace().sqrt(),
+                (t1 * (t4 * t4.tr_mul(&t1.transpose()))).trace().sqrt()
+                    * (t5 * t5).trace().sqrt(),
                 N * N,
             ),
         );

@@ -300,16 +300,16 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let S = Q * (I0 * Q.transpose());
         let g_before = before.Q.spatial_velocity(&here.Q).matrix();
         let g = here.Q.spatial_velocity(&after.Q).matrix();
-        let t1 = h.powi(-1);
-        let t2 = -(S * (h * a));
-        let t3 = S * S * (h * b);
-        let t4 = -(S * (h * b * S.trace()));
-        let t5 = -(SMatrix::<T, N, N>::identity() * (h * c * determinant(&(S))));
-        let t6 = SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d);
+        let t1 = g_before * S_before;
+        let t2 = h.powi(-1);
         let parts: [SMatrix<T, N, N>; 1] = [
-            C0 * (g_before * (S_before * g_before.transpose())) * t1
-                - C0 * (S_before * g_before.transpose()) * t1 + t2 + t3 + t4 + t5 + t6
-                - C0 * (g * S) * t1 + C0 * S * t1 + t2 + t3 + t4 + t5 + t6,
+            C0 * (t1 * g_before.transpose()) * t2 - C0 * t1.transpose() * t2
+                - S * (T::from_f64(2.0) * h * a) + S * S * (T::from_f64(2.0) * h * b)
+                - S * (T::from_f64(2.0) * h * b * S.trace())
+                - SMatrix::<T, N, N>::identity()
+                    * (T::from_f64(2.0) * h * c * determinant(&(S)))
+                + SMatrix::<T, N, N>::identity() * (h * d) - C0 * (g * S) * t2
+                + C0 * S * t2,
         ];
         {
             let mut all = SVector::<T, 16>::zeros();
@@ -336,27 +336,27 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let S = Q * (I0 * Q.transpose());
         let Q_next = after.Q.matrix();
         let S_next = Q_next * (I0 * Q_next.transpose());
-        let t1 = h.powi(-1);
-        let t2 = determinant(&(S_next));
-        let t3 = (t1 * t1).sqrt();
-        let t4 = (C0 * C0).trace().sqrt();
-        let t5 = (g_matrix.tr_mul(&g_matrix)).trace().sqrt();
-        let t6 = (S * S).trace().sqrt();
-        let t7 = (h * h).sqrt();
-        let t8 = (S_next * S_next).trace().sqrt();
-        let t9 = (b * b).sqrt();
+        let t1 = g_matrix * S;
+        let t2 = S_next * S_next;
+        let t3 = h.powi(-1);
+        let t4 = determinant(&(S_next));
+        let t5 = (t3 * t3).sqrt();
+        let t6 = (C0 * C0).trace().sqrt();
+        let t7 = (g_matrix.tr_mul(&g_matrix)).trace().sqrt();
+        let t8 = (S * S).trace().sqrt();
+        let t9 = (h * h).sqrt();
+        let t10 = t2.trace().sqrt();
         [
             Residual::between(
                 &(after.momentum.0),
-                &(C0 * (g_matrix * (S * g_matrix.transpose())) * t1
-                    - C0 * (S * g_matrix.transpose()) * t1 - S_next * (h * a)
-                    + S_next * S_next * (h * b) - S_next * (h * b * S_next.trace())
-                    - SMatrix::<T, N, N>::identity() * (h * c * t2)
+                &(C0 * (t1 * g_matrix.transpose()) * t3 - C0 * t1.transpose() * t3
+                    - S_next * (h * a) + t2 * (h * b) - S_next * (h * b * S_next.trace())
+                    - SMatrix::<T, N, N>::identity() * (h * c * t4)
                     + SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d)),
-                t3 * t4 * t5 * t6 * t5 + t3 * t4 * t6 * t5 + t7 * (a * a).sqrt() * t8
-                    + t7 * t9 * t8 * t8 + T::from_f64(2.0) * t7 * t9 * t8 * t8
-                    + t7 * (c * c).sqrt() * (t2 * t2).sqrt()
-                    + T::from_f64(0.5) * t7 * (d * d).sqrt(),
+                t5 * t6 * t7 * t8 * t7 + t5 * t6 * t8 * t7 + t9 * (a * a).sqrt() * t10
+                    + T::from_f64(3.0) * t9 * (b * b).sqrt() * t10 * t10
+                    + t9 * (c * c).sqrt() * (t4 * t4).sqrt()
+                    + T::from_f64(0.5) * t9 * (d * d).sqrt(),
             ),
         ]
     }
@@ -368,8 +368,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let mut inertia = SMatrix::<T, 16, 16>::zeros();
         for axis in 0..(N * N) {
             let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
-            let t1 = C0 * (ξ * S) * T::from_f64(0.5);
-            let parts: [SMatrix<T, N, N>; 1] = [t1 + t1];
+            let parts: [SMatrix<T, N, N>; 1] = [C0 * (ξ * S)];
             inertia
                 .set_column(
                     axis,
@@ -516,15 +515,14 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
             let S = Q * (I0 * Q.transpose());
             let t1 = (h * h).sqrt();
             let t2 = (S * S).trace().sqrt();
-            let t3 = (b * b).sqrt();
-            let t4 = determinant(&(S));
+            let t3 = determinant(&(S));
             enlarged.momentum = SpatialMomentumMatrix(
                 not_less(
                     enlarged.momentum.0,
                     (0, N),
-                    t1 * (a * a).sqrt() * t2 + t1 * t3 * t2 * t2
-                        + T::from_f64(2.0) * t1 * t3 * t2 * t2
-                        + t1 * (c * c).sqrt() * (t4 * t4).sqrt()
+                    t1 * (a * a).sqrt() * t2
+                        + T::from_f64(3.0) * t1 * (b * b).sqrt() * t2 * t2
+                        + t1 * (c * c).sqrt() * (t3 * t3).sqrt()
                         + T::from_f64(0.5) * t1 * (d * d).sqrt(),
                 ),
             );
@@ -535,22 +533,23 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
         let Q = state.Q.matrix();
         let S = Q * (I0 * Q.transpose());
         let m = state.spatial_momentum().0;
-        let t1 = inverse_or_nan(&(S));
-        let t2 = (m.tr_mul(&m)).trace().sqrt() * (S * S).trace().sqrt()
-            * (t1 * t1).trace().sqrt();
-        let t3 = inverse_or_nan(&(Q));
-        let t4 = inverse_or_nan(&(I0));
+        let t1 = m.tr_mul(&Q);
+        let t2 = inverse_or_nan(&(S));
+        let t3 = (m.tr_mul(&m)).trace().sqrt() * (S * S).trace().sqrt()
+            * (t2 * t2).trace().sqrt();
+        let t4 = inverse_or_nan(&(Q));
+        let t5 = inverse_or_nan(&(I0));
         let out = put(
             out,
             ::core::iter::repeat_n(sum_of_sizes(self.energies(state)), 1usize),
         );
-        let out = put(out, ::core::iter::repeat_n(t2 * t2, 1usize));
-        let out = put(out, ::core::iter::repeat_n(t2.powi(4), 1usize));
+        let out = put(out, ::core::iter::repeat_n(t3 * t3, 1usize));
+        let out = put(out, ::core::iter::repeat_n(t3.powi(4), 1usize));
         let out = put(
             out,
             ::core::iter::repeat_n(
-                (t3 * m.tr_mul(&(Q * Q.tr_mul(&(m * t3.transpose()))))).trace().sqrt()
-                    * (t4 * t4).trace().sqrt(),
+                (t4 * (t1 * t1.tr_mul(&t4.transpose()))).trace().sqrt()
+                    * (t5 * t5).trace().sqrt(),
                 N * N,
             ),
         );

@@ -237,9 +237,12 @@ impl<T: Real> FreeBodySpatial<T> {
         for axis in 0..3 {
             let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
             let t1 = vee(&ξ);
-            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-            let parts: [SVector<T, 3>; 1] = [axial_of_difference(&(t2 + t2 + t3 + t3))];
+            let parts: [SVector<T, 3>; 1] = [
+                axial_of_difference(
+                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
+                        - hat(&(J * t1 * T::from_f64(0.5)))),
+                ),
+            ];
             inertia.set_column(axis, &parts[0]);
         }
         inertia

@@ -288,10 +288,9 @@ impl<T: Real> HeavyTopSpatial<T> {
         let ω_before = before.Λ.spatial_velocity(&here.Λ).matrix();
         let ω = here.Λ.spatial_velocity(&after.Λ).matrix();
         let t1 = h.powi(-1);
-        let t2 = z.cross(&χ) * (T::from_f64(0.5) * h * w);
         let parts: [SVector<T, 3>; 1] = [
-            axial_of_difference(&(ω_before * J_before)) * t1 + t2
-                - axial_of_difference(&(ω * J)) * t1 + t2,
+            axial_of_difference(&(ω_before * J_before)) * t1 + z.cross(&χ) * (h * w)
+                - axial_of_difference(&(ω * J)) * t1,
         ];
         parts[0]
     }
@@ -337,9 +336,12 @@ impl<T: Real> HeavyTopSpatial<T> {
         for axis in 0..3 {
             let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
             let t1 = vee(&ξ);
-            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-            let parts: [SVector<T, 3>; 1] = [axial_of_difference(&(t2 + t2 + t3 + t3))];
+            let parts: [SVector<T, 3>; 1] = [
+                axial_of_difference(
+                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
+                        - hat(&(J * t1 * T::from_f64(0.5)))),
+                ),
+            ];
             inertia.set_column(axis, &parts[0]);
         }
         inertia

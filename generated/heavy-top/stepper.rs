@@ -233,10 +233,9 @@ impl<T: Real> HeavyTop<T> {
         let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
         let Ω = here.Λ.body_velocity(&after.Λ).matrix();
         let t1 = h.powi(-1);
-        let t2 = -(gU.cross(&Γ) * (T::from_f64(0.5) * h));
         let parts: [SVector<T, 3>; 1] = [
-            axial_of_difference(&(J * Ω_before)) * t1 + t2
-                + axial_of_difference(&(J * Ω.transpose())) * t1 + t2,
+            axial_of_difference(&(J * Ω_before)) * t1 - gU.cross(&Γ) * h
+                + axial_of_difference(&(J * Ω.transpose())) * t1,
         ];
         parts[0]
     }
@@ -275,9 +274,12 @@ impl<T: Real> HeavyTop<T> {
         for axis in 0..3 {
             let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
             let t1 = vee(&ξ);
-            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-            let parts: [SVector<T, 3>; 1] = [axial_of_difference(&(t2 + t2 + t3 + t3))];
+            let parts: [SVector<T, 3>; 1] = [
+                axial_of_difference(
+                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
+                        - hat(&(J * t1 * T::from_f64(0.5)))),
+                ),
+            ];
             inertia.set_column(axis, &parts[0]);
         }
         inertia
@@ -356,10 +358,12 @@ impl HeavyTop<f64> {
             let HeavyTopParameters { gU, z, .. } = self.parameters;
             let Λ = state.Λ.matrix();
             let Γ = Λ.tr_mul(&z);
-            let t1 = T::from_f64(0.5) * (h * h).sqrt() * gU.dot(&gU).sqrt()
-                * Γ.dot(&Γ).sqrt();
             enlarged.momentum = SpatialMomentum(
-                not_less(enlarged.momentum.0, (0, 3), t1 + t1),
+                not_less(
+                    enlarged.momentum.0,
+                    (0, 3),
+                    (h * h).sqrt() * gU.dot(&gU).sqrt() * Γ.dot(&Γ).sqrt(),
+                ),
             );
         }
         let state = &enlarged;

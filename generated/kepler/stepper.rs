@@ -176,9 +176,8 @@ impl<T: Real> Kepler<T> {
         let ΔX = here.X.spatial_velocity(&after.X).matrix();
         let t1 = h.powi(-1);
         let t2 = X.dot(&X);
-        let t3 = -(X * (T::from_f64(0.5) * h * m * k / (t2 * t2.sqrt())));
         let parts: [SVector<T, 3>; 1] = [
-            ΔX_before * (t1 * m) + t3 - ΔX * (t1 * m) + t3,
+            ΔX_before * (t1 * m) - X * (h * m * k / (t2 * t2.sqrt())) - ΔX * (t1 * m),
         ];
         {
             let mut all = SVector::<T, 3>::zeros();
@@ -227,8 +226,7 @@ impl<T: Real> Kepler<T> {
         let mut inertia = SMatrix::<T, 3, 3>::zeros();
         for axis in 0..(3 * 1) {
             let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-            let t1 = ξ * (T::from_f64(0.5) * m);
-            let parts: [SVector<T, 3>; 1] = [t1 + t1];
+            let parts: [SVector<T, 3>; 1] = [ξ * m];
             inertia
                 .set_column(
                     axis,
@@ -326,10 +324,13 @@ impl Kepler<f64> {
             let t1 = X.dot(&X);
             let t2 = t1.powi(-1);
             let t3 = t1.powr(-1, 2);
-            let t4 = T::from_f64(0.5) * (h * h).sqrt() * (m * m).sqrt() * (k * k).sqrt()
-                * (t2 * t2).sqrt() * (t3 * t3).sqrt() * t1.sqrt();
             enlarged.momentum = FieldMomentum(
-                not_less(enlarged.momentum.0, (0, 3), t4 + t4),
+                not_less(
+                    enlarged.momentum.0,
+                    (0, 3),
+                    (h * h).sqrt() * (m * m).sqrt() * (k * k).sqrt() * (t2 * t2).sqrt()
+                        * (t3 * t3).sqrt() * t1.sqrt(),
+                ),
             );
         }
         let state = &enlarged;

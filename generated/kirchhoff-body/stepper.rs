@@ -739,9 +739,9 @@ impl<T: Real> KirchhoffBody<T> {
                             * (T::from_f64(0.5) * h)),
                     T::from_f64(0.25) * t7 * t8 * t9 * t10 * t9 * t10
                         + T::from_f64(0.25) * t7 * t8 * t10 * t9 * t10
-                        + T::from_f64(0.5) * t7 * t11 * t9 * t9 * t10
+                        + T::from_f64(1.5) * t7 * t11 * t9 * t9 * t10
                         + T::from_f64(2.0) * t7 * (J * J).trace().sqrt() * t9
-                        + t7 * t9 * t11 * t9 * t10 + t7 * t9 * t11 * t10 + t12,
+                        + t7 * t9 * t11 * t10 + t12,
                 )
                 .with_arm(
                     length(
@@ -768,11 +768,9 @@ impl<T: Real> KirchhoffBody<T> {
                     + t3 * D.tr_mul(&t6) * (T::from_f64(0.5) * t1)
                     - rows_from::<T, 4, 3, 1>(&P_next, 0)
                         * (T::from_f64(0.5) * h * b[3])),
-                T::from_f64(0.25) * t7 * t8 * t9 * t10
-                    + T::from_f64(0.25) * t7 * t8 * t10
+                T::from_f64(0.5) * t7 * t8 * t9 * t10 + T::from_f64(0.25) * t7 * t8 * t10
                     + T::from_f64(0.5) * t7 * t11 * t9
                     + T::from_f64(0.25) * t7 * t9 * t8 * t9 * t10
-                    + T::from_f64(0.25) * t7 * t9 * t8 * t10
                     + T::from_f64(0.5) * t7 * t9 * t11 * t9 + t12,
             ),
         ]
@@ -783,21 +781,17 @@ impl<T: Real> KirchhoffBody<T> {
         let mut inertia = SMatrix::<T, 6, 6>::zeros();
         for axis in 0..6 {
             let ξ: SVector<T, 6> = unit::<T, 6>(axis);
-            let t1 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ, 0), 0)
-                * (T::from_f64(0.5) * J.trace());
-            let t2 = -(into_rows::<T, 6, 3, 1>(&(J * rows_from::<T, 6, 3, 1>(&ξ, 0)), 0)
-                * T::from_f64(0.5));
-            let t3 = into_rows::<T, 6, 3, 1>(&(M * rows_from::<T, 6, 3, 1>(&ξ, 3)), 3)
-                * T::from_f64(0.5);
             let parts: [SVector<T, 6>; 1] = [
-                t1 + t1 + t2 + t2
+                into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ, 0), 0) * J.trace()
+                    - into_rows::<T, 6, 3, 1>(&(J * rows_from::<T, 6, 3, 1>(&ξ, 0)), 0)
                     + into_rows::<T, 6, 3, 1>(&(D * rows_from::<T, 6, 3, 1>(&ξ, 3)), 0)
                     + into_rows::<
                         T,
                         6,
                         3,
                         1,
-                    >(&D.tr_mul(&rows_from::<T, 6, 3, 1>(&ξ, 0)), 3) + t3 + t3,
+                    >(&D.tr_mul(&rows_from::<T, 6, 3, 1>(&ξ, 0)), 3)
+                    + into_rows::<T, 6, 3, 1>(&(M * rows_from::<T, 6, 3, 1>(&ξ, 3)), 3),
             ];
             inertia
                 .set_column(
@@ -950,14 +944,12 @@ impl KirchhoffBody<f64> {
             let KirchhoffBodyParameters { b, Z, .. } = self.parameters;
             let G = state.G.matrix();
             let P = G.tr_mul(&Z);
-            let t1 = T::from_f64(0.5) * (h * h).sqrt() * b.dot(&b).sqrt()
-                * P.dot(&P).sqrt();
-            let t2 = t1 + t1;
+            let t1 = (h * h).sqrt() * b.dot(&b).sqrt() * P.dot(&P).sqrt();
             enlarged.momentum = CarriedImpulse(
-                not_less(enlarged.momentum.0, (0, 3), t2),
+                not_less(enlarged.momentum.0, (0, 3), t1),
             );
             enlarged.momentum = CarriedImpulse(
-                not_less(enlarged.momentum.0, (3, 3), t2),
+                not_less(enlarged.momentum.0, (3, 3), t1),
             );
         }
         let state = &enlarged;

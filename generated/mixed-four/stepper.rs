@@ -1108,44 +1108,37 @@ impl<T: Real> MixedFour<T> {
         let ΔX_before = before.X.spatial_velocity(&here.X).matrix();
         let ΔX = here.X.spatial_velocity(&after.X).matrix();
         let t1 = h.powi(-1);
-        let t2 = p.cross(&(R.tr_mul(&X))) * (T::from_f64(0.5) * h * k);
-        let t3 = p.cross(&(relative_R_q * e_));
-        let t4 = -(t3 * (T::from_f64(0.5) * h * k));
-        let t5 = motion_rotation(&W_before);
-        let t6 = motion_rotation(&G);
-        let t7 = t6.transpose();
-        let t8 = motion_translation(&G);
-        let t9 = s.cross(&(t7 * (t8 - X))) * (T::from_f64(0.5) * h * k);
-        let t10 = t7 * (t8 + t6 * s - X) * (T::from_f64(0.5) * h * k);
-        let t11 = relative_R_q.tr_mul(&t3) * (T::from_f64(0.5) * h * k);
-        let t12 = h.powi(-3);
-        let t13 = g * (T::from_f64(0.5) * h * m);
-        let t14 = R * p * (T::from_f64(0.5) * h * k);
-        let t15 = -(X * (h * k));
-        let t16 = t6 * s * (T::from_f64(0.5) * h * k);
-        let t17 = t8 * (T::from_f64(0.5) * h * k);
+        let t2 = p.cross(&(relative_R_q * e_));
+        let t3 = motion_rotation(&W_before);
+        let t4 = motion_rotation(&G);
+        let t5 = t4.transpose();
+        let t6 = motion_translation(&G);
+        let t7 = s.cross(&(t5 * (t6 - X))) * (T::from_f64(0.5) * h * k);
+        let t8 = t5 * (t6 + t4 * s - X) * (T::from_f64(0.5) * h * k);
+        let t9 = h.powi(-3);
         let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-            axial_of_difference(&(J * V_before)) * t1 + t2 + t4
-                + axial_of_difference(&(J * V.transpose())) * t1 + t2 + t4,
-            into_rows::<T, 6, 3, 1>(&(axial_of_difference(&(A * t5)) * t1 - t9), 0)
+            axial_of_difference(&(J * V_before)) * t1
+                + p.cross(&(R.tr_mul(&X))) * (h * k) - t2 * (h * k)
+                + axial_of_difference(&(J * V.transpose())) * t1,
+            into_rows::<T, 6, 3, 1>(&(axial_of_difference(&(A * t3)) * t1 - t7), 0)
                 + into_rows::<
                     T,
                     6,
                     3,
                     1,
-                >(&(t5.tr_mul(&motion_translation(&W_before)) * (t1 * M) - t10), 3)
+                >(&(t3.tr_mul(&motion_translation(&W_before)) * (t1 * M) - t8), 3)
                 - into_rows::<
                     T,
                     6,
                     3,
                     1,
                 >(
-                    &(t9
+                    &(t7
                         - axial_of_difference(&(A * motion_rotation(&W).transpose()))
                             * t1),
                     0,
                 )
-                - into_rows::<T, 6, 3, 1>(&(motion_translation(&W) * (t1 * M) + t10), 3),
+                - into_rows::<T, 6, 3, 1>(&(motion_translation(&W) * (t1 * M) + t8), 3),
             quaternion_imaginary(
                 &(Y_before
                     .tr_mul(
@@ -1153,17 +1146,17 @@ impl<T: Real> MixedFour<T> {
                             &(diagonal_times(&I, &quaternion_imaginary(&Y_before))),
                         ),
                     )),
-            ) * (T::from_f64(2.0) * t1) + t11
+            ) * (T::from_f64(2.0) * t1) + relative_R_q.tr_mul(&t2) * (h * k)
                 - quaternion_imaginary(
                     &(Y
                         * pure_quaternion(
                             &(diagonal_times(&I, &quaternion_imaginary(&Y))),
                         )),
-                ) * (T::from_f64(2.0) * t1) + t11,
-            ΔX_before * (T::from_f64(4.0) * t12 * b * ΔX_before.dot(&ΔX_before))
-                + ΔX_before * (t1 * m) + t13 + t14 + t15 + t16 + t17
-                - ΔX * (T::from_f64(4.0) * t12 * b * ΔX.dot(&ΔX)) - ΔX * (t1 * m)
-                + t13 + t14 + t15 + t16 + t17,
+                ) * (T::from_f64(2.0) * t1),
+            ΔX_before * (T::from_f64(4.0) * t9 * b * ΔX_before.dot(&ΔX_before))
+                + ΔX_before * (t1 * m) + g * (h * m) + R * p * (h * k)
+                - X * (T::from_f64(2.0) * h * k) + t4 * s * (h * k) + t6 * (h * k)
+                - ΔX * (T::from_f64(4.0) * t9 * b * ΔX.dot(&ΔX)) - ΔX * (t1 * m),
         );
         {
             let mut all = SVector::<T, 15>::zeros();
@@ -1291,25 +1284,22 @@ impl<T: Real> MixedFour<T> {
             let ξ3: SVector<T, 3> = SMatrix::zeros();
             let ξ4: SVector<T, 3> = SMatrix::zeros();
             let t1 = vee(&ξ1);
-            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-            let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
-                * (T::from_f64(0.5) * M);
-            let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                * (T::from_f64(0.5) * A.trace());
-            let t6 = -(into_rows::<
-                T,
-                6,
-                3,
-                1,
-            >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
-            let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
-            let t8 = ξ4 * (T::from_f64(0.5) * m);
             let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-                axial_of_difference(&(t2 + t2 + t3 + t3)),
-                t4 + t4 + t5 + t5 + t6 + t6,
-                t7 + t7,
-                t8 + t8,
+                axial_of_difference(
+                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
+                        - hat(&(J * t1 * T::from_f64(0.5)))),
+                ),
+                into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3) * M
+                    + into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
+                        * A.trace()
+                    - into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0),
+                diagonal_times(&I, &ξ3),
+                ξ4 * m,
             );
             inertia
                 .set_column(
@@ -1332,25 +1322,22 @@ impl<T: Real> MixedFour<T> {
             let ξ3: SVector<T, 3> = SMatrix::zeros();
             let ξ4: SVector<T, 3> = SMatrix::zeros();
             let t1 = vee(&ξ1);
-            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-            let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
-                * (T::from_f64(0.5) * M);
-            let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                * (T::from_f64(0.5) * A.trace());
-            let t6 = -(into_rows::<
-                T,
-                6,
-                3,
-                1,
-            >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
-            let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
-            let t8 = ξ4 * (T::from_f64(0.5) * m);
             let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-                axial_of_difference(&(t2 + t2 + t3 + t3)),
-                t4 + t4 + t5 + t5 + t6 + t6,
-                t7 + t7,
-                t8 + t8,
+                axial_of_difference(
+                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
+                        - hat(&(J * t1 * T::from_f64(0.5)))),
+                ),
+                into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3) * M
+                    + into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
+                        * A.trace()
+                    - into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0),
+                diagonal_times(&I, &ξ3),
+                ξ4 * m,
             );
             inertia
                 .set_column(
@@ -1373,25 +1360,22 @@ impl<T: Real> MixedFour<T> {
             let ξ3: SVector<T, 3> = unit::<T, 3>(axis);
             let ξ4: SVector<T, 3> = SMatrix::zeros();
             let t1 = vee(&ξ1);
-            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-            let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
-                * (T::from_f64(0.5) * M);
-            let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                * (T::from_f64(0.5) * A.trace());
-            let t6 = -(into_rows::<
-                T,
-                6,
-                3,
-                1,
-            >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
-            let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
-            let t8 = ξ4 * (T::from_f64(0.5) * m);
             let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-                axial_of_difference(&(t2 + t2 + t3 + t3)),
-                t4 + t4 + t5 + t5 + t6 + t6,
-                t7 + t7,
-                t8 + t8,
+                axial_of_difference(
+                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
+                        - hat(&(J * t1 * T::from_f64(0.5)))),
+                ),
+                into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3) * M
+                    + into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
+                        * A.trace()
+                    - into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0),
+                diagonal_times(&I, &ξ3),
+                ξ4 * m,
             );
             inertia
                 .set_column(
@@ -1414,25 +1398,22 @@ impl<T: Real> MixedFour<T> {
             let ξ3: SVector<T, 3> = SMatrix::zeros();
             let ξ4: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
             let t1 = vee(&ξ1);
-            let t2 = hat(&(t1 * (T::from_f64(0.5) * J.trace()))) * T::from_f64(0.5);
-            let t3 = -(hat(&(J * t1 * T::from_f64(0.5))) * T::from_f64(0.5));
-            let t4 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3)
-                * (T::from_f64(0.5) * M);
-            let t5 = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                * (T::from_f64(0.5) * A.trace());
-            let t6 = -(into_rows::<
-                T,
-                6,
-                3,
-                1,
-            >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0) * T::from_f64(0.5));
-            let t7 = diagonal_times(&I, &ξ3) * T::from_f64(0.5);
-            let t8 = ξ4 * (T::from_f64(0.5) * m);
             let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-                axial_of_difference(&(t2 + t2 + t3 + t3)),
-                t4 + t4 + t5 + t5 + t6 + t6,
-                t7 + t7,
-                t8 + t8,
+                axial_of_difference(
+                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
+                        - hat(&(J * t1 * T::from_f64(0.5)))),
+                ),
+                into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3) * M
+                    + into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
+                        * A.trace()
+                    - into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0),
+                diagonal_times(&I, &ξ3),
+                ξ4 * m,
             );
             inertia
                 .set_column(
@@ -1579,45 +1560,47 @@ impl MixedFour<f64> {
             let t3 = p.dot(&p).sqrt();
             let t4 = (R.tr_mul(&R)).trace().sqrt();
             let t5 = X.dot(&X).sqrt();
-            let t6 = T::from_f64(0.5) * t1 * t2 * t3 * t4 * t5;
-            let t7 = (relative_R_q.tr_mul(&relative_R_q)).trace().sqrt();
-            let t8 = e_.dot(&e_).sqrt();
-            let t9 = T::from_f64(0.5) * t1 * t2 * t3 * t7 * t8;
-            let t10 = s.dot(&s).sqrt();
-            let t11 = motion_rotation(&G);
-            let t12 = (t11.tr_mul(&t11)).trace().sqrt();
-            let t13 = motion_translation(&G);
-            let t14 = t13 + t11 * s - X;
-            let t15 = t14.dot(&t14).sqrt();
-            let t16 = T::from_f64(0.5) * t1 * t2 * t10 * t12 * t15;
-            let t17 = t13.dot(&t13).sqrt();
-            let t18 = t17 + t12 * t10 + t5;
-            let t19 = T::from_f64(0.5) * t1 * t2 * t10 * t12 * t18;
-            let t20 = T::from_f64(0.5) * t1 * t2 * t12 * t15;
-            let t21 = T::from_f64(0.5) * t1 * t2 * t12 * t18;
-            let t22 = T::from_f64(0.5) * t1 * t2 * t7 * t3 * t7 * t8;
-            let t23 = T::from_f64(0.5) * t1 * (m * m).sqrt() * g.dot(&g).sqrt();
-            let t24 = T::from_f64(0.5) * t1 * t2 * t4 * t3;
-            let t25 = t1 * t2 * t5;
-            let t26 = T::from_f64(0.5) * t1 * t2 * t12 * t10;
-            let t27 = T::from_f64(0.5) * t1 * t2 * t17;
+            let t6 = (relative_R_q.tr_mul(&relative_R_q)).trace().sqrt();
+            let t7 = e_.dot(&e_).sqrt();
+            let t8 = s.dot(&s).sqrt();
+            let t9 = motion_rotation(&G);
+            let t10 = (t9.tr_mul(&t9)).trace().sqrt();
+            let t11 = motion_translation(&G);
+            let t12 = t11 + t9 * s - X;
+            let t13 = t12.dot(&t12).sqrt();
+            let t14 = t11.dot(&t11).sqrt();
+            let t15 = t14 + t10 * t8 + t5;
             enlarged.momentum_R = SpatialMomentum(
-                not_less(enlarged.momentum_R.0, (0, 3), t6 + t9 + t6 + t9),
+                not_less(
+                    enlarged.momentum_R.0,
+                    (0, 3),
+                    t1 * t2 * t3 * t4 * t5 + t1 * t2 * t3 * t6 * t7,
+                ),
             );
             enlarged.momentum_G = CarriedImpulse(
-                not_less(enlarged.momentum_G.0, (0, 3), t16 + t19 + t16 + t19),
+                not_less(
+                    enlarged.momentum_G.0,
+                    (0, 3),
+                    t1 * t2 * t8 * t10 * t13 + t1 * t2 * t8 * t10 * t15,
+                ),
             );
             enlarged.momentum_G = CarriedImpulse(
-                not_less(enlarged.momentum_G.0, (3, 3), t20 + t21 + t20 + t21),
+                not_less(
+                    enlarged.momentum_G.0,
+                    (3, 3),
+                    t1 * t2 * t10 * t13 + t1 * t2 * t10 * t15,
+                ),
             );
             enlarged.momentum_q = SpatialMomentum(
-                not_less(enlarged.momentum_q.0, (0, 3), t22 + t22),
+                not_less(enlarged.momentum_q.0, (0, 3), t1 * t2 * t6 * t3 * t6 * t7),
             );
             enlarged.momentum_X = FieldMomentum(
                 not_less(
                     enlarged.momentum_X.0,
                     (0, 3),
-                    t23 + t24 + t25 + t26 + t27 + t23 + t24 + t25 + t26 + t27,
+                    t1 * (m * m).sqrt() * g.dot(&g).sqrt() + t1 * t2 * t4 * t3
+                        + T::from_f64(2.0) * t1 * t2 * t5 + t1 * t2 * t10 * t8
+                        + t1 * t2 * t14,
                 ),
             );
         }

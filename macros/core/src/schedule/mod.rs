@@ -2,7 +2,9 @@
 //! temporaries, computed once, in an order in which each uses only those before it.
 
 mod chain;
+mod collected;
 mod known;
+mod pairs;
 mod program;
 mod rest;
 mod transposed;

@@ -23,18 +23,34 @@ pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
         .iter()
         .map(|r| super::rest::displaced(symbols, &expr::without_adjugates(symbols, r)))
         .collect();
+    let results = super::collected::collected(symbols, &results);
     let results = super::transposed::aligned(symbols, &results);
+    super::pairs::paired(symbols, &results, prefix)
+}
+
+/// Of results that are written in the names of `before`, which are computed in this order.
+pub(super) fn scheduled(
+    symbols: &Symbols,
+    before: &[(SymbolId, Expr)],
+    results: &[Expr],
+    prefix: &str,
+) -> Program {
     let mut uses: HashMap<Expr, usize> = HashMap::new();
-    for r in &results {
-        count(symbols, r, &mut uses);
+    for e in before.iter().map(|(_, e)| e).chain(results) {
+        count(symbols, e, &mut uses);
     }
     let mut build = Build {
         symbols: symbols.clone(),
         uses,
         done: HashMap::new(),
         temporaries: Vec::new(),
+        named: before.len(),
         prefix,
     };
+    for (id, e) in before {
+        let value = build.rewrite(e);
+        build.temporaries.push((*id, value));
+    }
     let results = results.iter().map(|r| build.rewrite(r)).collect();
     Program {
         symbols: build.symbols,
@@ -96,6 +112,8 @@ struct Build<'a> {
     uses: HashMap<Expr, usize>,
     done: HashMap<Expr, Expr>,
     temporaries: Vec<(SymbolId, Expr)>,
+    /// How many names have been given.
+    named: usize,
     prefix: &'a str,
 }
 
@@ -119,9 +137,10 @@ impl Build<'_> {
         };
         let shared = self.uses.get(e).is_some_and(|n| *n > 1) && is_work(e);
         let out = if shared || is_stage(e) {
-            let name =
-                self.symbols
-                    .fresh_name(&format!("{}{}", self.prefix, self.temporaries.len() + 1));
+            self.named += 1;
+            let name = self
+                .symbols
+                .fresh_name(&format!("{}{}", self.prefix, self.named));
             let structure = crate::expr::shape::Structure::General;
             let id = self.symbols.add(&name, e.shape(), structure, Role::Derived);
             self.temporaries.push((id, inner));

@@ -44,9 +44,14 @@ impl Met<'_> {
                 })
             }
         };
-        let out = match multiplies(&inner) {
-            true => self.known(inner),
-            false => inner,
+        let out = match (inner.node(), multiplies(&inner)) {
+            // That of a transpose is the transpose of that which is used elsewhere.
+            (Node::Inverse(a), _) => match a.node() {
+                Node::Transpose(b) => expr::transposed(expr::inverse(self.symbols, b.clone())),
+                _ => inner,
+            },
+            (_, true) => self.known(inner),
+            (_, false) => inner,
         };
         self.done.insert(e.clone(), out.clone());
         out
