@@ -127,12 +127,11 @@ impl<T: Real> Kepler<T> {
         };
         let (X_moved, X_rest) = state.X.moved(&(ΔX), &state.place_rest);
         let X_next = X_moved.matrix();
-        let t1 = X.dot(&X);
         let t2 = X_next.dot(&X_next);
         let (momentum_next, momentum_rest) = added(
             &state.momentum.0,
             &state.momentum_rest,
-            &((-(X * (T::from_f64(0.5) * h * m * k / (t1 * t1.sqrt()))))
+            &((-(X * (T::from_f64(0.5) * h * m * k / (b1 * b1.sqrt()))))
                 - X_next * (T::from_f64(0.5) * h * m * k / (t2 * t2.sqrt()))),
         );
         if !(all_finite(&momentum_next)) {

@@ -446,7 +446,6 @@ impl<T: Real> MixedFour<T> {
         let q_next = q_moved.matrix();
         let X_next = X_moved.matrix();
         let relative_R_q_next = R_next.tr_mul(&quaternion_rotation(&q_next));
-        let t1 = relative_R_q * e_;
         let t2 = relative_R_q_next * e_;
         let t3 = motion_rotation(&G);
         let t4 = t3.transpose();
@@ -457,7 +456,7 @@ impl<T: Real> MixedFour<T> {
         let t9 = motion_translation(&G_next);
         let t10 = t9 - X_next + t7 * s;
         let momentum_R_next = state.momentum_R.0
-            + R * (p.cross(&(R.tr_mul(&X) - t1)) * (T::from_f64(0.5) * h * k))
+            + R * (p.cross(&(R.tr_mul(&X) - b1)) * (T::from_f64(0.5) * h * k))
             + R_next
                 * (p.cross(&(R_next.tr_mul(&X_next) - t2)) * (T::from_f64(0.5) * h * k));
         let (momentum_G_next, momentum_G_rest) = added(
@@ -484,7 +483,7 @@ impl<T: Real> MixedFour<T> {
             + state
                 .q
                 .covector_to_space(
-                    &(relative_R_q.tr_mul(&p.cross(&t1)) * (T::from_f64(0.5) * h * k)),
+                    &(relative_R_q.tr_mul(&p.cross(&b1)) * (T::from_f64(0.5) * h * k)),
                 )
             + q_moved
                 .covector_to_space(

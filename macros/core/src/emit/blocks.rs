@@ -461,7 +461,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
         }
     }
     let solved = |i: usize| found[i].clone();
-    let rest = finish(d, names, &mut after, &solved, &by_change, remembered);
+    let rest = finish(d, names, &mut after, &solved, &by_change, &p, remembered);
     let step_function = step_signature(
         d,
         quote! {

@@ -340,6 +340,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
         &mut bindings,
         &|_| quote!(#omega),
         &[],
+        &schedule::Program::none(&d.letters.symbols),
         TokenStream::new(),
     );
     let work = item(d, "Workspace");

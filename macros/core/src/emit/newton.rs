@@ -490,7 +490,15 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
     let matrices = all.matrices(&solved, &mut after);
     let remembered = quote!(work.search.remember(state.#node - 1, &#found););
     let solved_at = |i: usize| all.part(quote!(#solved), i);
-    let rest = finish(d, names, &mut after, &solved_at, &[], remembered);
+    let rest = finish(
+        d,
+        names,
+        &mut after,
+        &solved_at,
+        &[],
+        &schedule::Program::none(&d.letters.symbols),
+        remembered,
+    );
     let step = variable(&d.letters.symbols, d.spec.step);
     let step = step_signature(
         d,

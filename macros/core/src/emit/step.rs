@@ -154,13 +154,15 @@ pub(super) fn node_momentum(d: &Derivation, i: usize, side: Side) -> TokenStream
 }
 
 /// The tail of every step: new elements, next node's quantities, momenta, the finite test. What was solved
-/// for is the change of a configuration where it has a form in `by_change`.
+/// for is the change of a configuration where it has a form in `by_change`; what is `known` at the node where
+/// the step starts has been computed.
 pub(super) fn finish(
     d: &Derivation,
     names: &Names,
     bindings: &mut Bindings,
     solved: &dyn Fn(usize) -> TokenStream,
     by_change: &[Option<Displaced>],
+    known: &schedule::Program,
     remembered: TokenStream,
 ) -> TokenStream {
     let s = &d.letters.symbols;
@@ -256,7 +258,7 @@ pub(super) fn finish(
         Shift::NEXT,
         bindings,
     ));
-    let p = schedule::program(s, &factored, "t");
+    let p = schedule::program_after(known, &factored, "t");
     let (lets, values) = program(&p, bindings);
     out.extend(lets);
     let acting = values.into_iter().zip(in_space);

@@ -12,6 +12,6 @@ mod work;
 
 pub use chain::{Bracketed, associate};
 pub use known::Known;
-pub use program::{Program, program};
+pub use program::{Program, program, program_after};
 pub use rest::{at_rest, by_imaginary, displaced, divides_twice, is_difference};
 pub use work::work;

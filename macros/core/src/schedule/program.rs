@@ -2,7 +2,7 @@
 //! temporaries. What is emitted and what is interpreted is the same program.
 
 use crate::expr::symbol::{Role, SymbolId, Symbols};
-use crate::expr::{self, Expr, Node};
+use crate::expr::{self, Expr, Letter, Node, Shift};
 use std::collections::HashMap;
 
 /// Temporaries in order of computation, then results.
@@ -16,6 +16,17 @@ pub struct Program {
     pub results: Vec<Expr>,
 }
 
+impl Program {
+    /// Nothing.
+    pub fn none(symbols: &Symbols) -> Program {
+        Program {
+            symbols: symbols.clone(),
+            temporaries: Vec::new(),
+            results: Vec::new(),
+        }
+    }
+}
+
 /// Schedules several results together. `prefix` starts the names of temporaries.
 pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
     // What is computed has a value where determinants vanish, and its digits where nothing moves.
@@ -26,6 +37,43 @@ pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
     let results = super::collected::collected(symbols, &results);
     let results = super::transposed::aligned(symbols, &results);
     super::pairs::paired(symbols, &results, prefix)
+}
+
+/// Schedules results where what an earlier program has computed is known: it is not computed once more.
+pub fn program_after(earlier: &Program, results: &[Expr], prefix: &str) -> Program {
+    let symbols = &earlier.symbols;
+    let mut program = program(symbols, results, prefix);
+    let mut whole: Vec<(Letter, Expr)> = Vec::new();
+    let mut expanded = |symbols: &Symbols, id: SymbolId, e: &Expr| {
+        let value = expr::substitute(symbols, e, &whole);
+        whole.push((at(id), value.clone()));
+        value
+    };
+    let mut known: HashMap<Expr, SymbolId> = HashMap::new();
+    for (id, e) in &earlier.temporaries {
+        known.insert(expanded(symbols, *id, e), *id);
+    }
+    let mut again: Vec<(Letter, Expr)> = Vec::new();
+    let mut fresh = Vec::new();
+    for (id, e) in &program.temporaries {
+        match known.get(&expanded(&program.symbols, *id, e)) {
+            Some(first) => again.push((at(*id), expr::here(symbols, *first))),
+            None => fresh.push((*id, e.clone())),
+        }
+    }
+    if !again.is_empty() {
+        let told = |e: &Expr| expr::substitute(&program.symbols, e, &again);
+        program.results = program.results.iter().map(told).collect();
+        program.temporaries = fresh.iter().map(|(id, e)| (*id, told(e))).collect();
+    }
+    program
+}
+
+fn at(symbol: SymbolId) -> Letter {
+    Letter {
+        symbol,
+        shift: Shift::HERE,
+    }
 }
 
 /// Of results that are written in the names of `before`, which are computed in this order.
@@ -150,5 +198,39 @@ impl Build<'_> {
         };
         self.done.insert(e.clone(), out.clone());
         out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::shape::{Dim, Shape, Structure};
+
+    #[test]
+    fn what_is_known_is_not_computed_again() {
+        let mut symbols = Symbols::default();
+        let three = Shape::square(Dim::Fixed(3));
+        let mut letter = |name: &str| {
+            let id = symbols.add(name, three, Structure::General, Role::Derived);
+            expr::here(&symbols, id)
+        };
+        let (a, b) = (letter("A"), letter("B"));
+        let product = expr::mul(a.clone(), b.clone());
+        let force = expr::sum(
+            [expr::mul(product.clone(), product.clone()), product.clone()],
+            three,
+        );
+        let first = program(&symbols, std::slice::from_ref(&force), "b");
+        assert_eq!(first.temporaries.len(), 1);
+        let other = expr::sum([expr::mul(product.clone(), a), product.clone(), b], three);
+        let second = program_after(&first, std::slice::from_ref(&other), "t");
+        // A B has its name from the first; alone it has one of its own.
+        assert!(second.temporaries.is_empty());
+        assert_eq!(program(&symbols, &[other], "t").temporaries.len(), 1);
+        let [(known, _)] = first.temporaries.as_slice() else {
+            panic!("one name")
+        };
+        let letters = expr::letters(&second.results[0]);
+        assert!(letters.iter().any(|l| l.symbol == *known));
     }
 }
