@@ -716,13 +716,14 @@ impl<T: Real> KirchhoffBody<T> {
         let t4 = motion_translation(&V_matrix);
         let t5 = t3 * t4;
         let t6 = vee(&t2);
-        let t7 = (t1 * t1).sqrt();
-        let t8 = (M * M).trace().sqrt();
-        let t9 = (t3 * t2).trace().sqrt();
-        let t10 = t4.dot(&t4).sqrt();
-        let t11 = (D.tr_mul(&D)).trace().sqrt();
-        let t12 = T::from_f64(0.5) * (h * h).sqrt() * b.dot(&b).sqrt()
-            * P_next.dot(&P_next).sqrt();
+        let t7 = b[3];
+        let t8 = (t1 * t1).sqrt();
+        let t9 = (M * M).trace().sqrt();
+        let t10 = (t3 * t2).trace().sqrt();
+        let t11 = t4.dot(&t4).sqrt();
+        let t12 = (D.tr_mul(&D)).trace().sqrt();
+        let t13 = (h * h).sqrt();
+        let t14 = P_next.dot(&P_next).sqrt();
         [
             Residual::between(
                     &(rows_from::<T, 6, 3, 1>(&after.momentum.to_body(&after.G).0, 0)),
@@ -737,11 +738,12 @@ impl<T: Real> KirchhoffBody<T> {
                         - (rows_from::<T, 4, 3, 1>(&b, 0))
                             .cross(&(rows_from::<T, 4, 3, 1>(&P_next, 0)))
                             * (T::from_f64(0.5) * h)),
-                    T::from_f64(0.25) * t7 * t8 * t9 * t10 * t9 * t10
-                        + T::from_f64(0.25) * t7 * t8 * t10 * t9 * t10
-                        + T::from_f64(1.5) * t7 * t11 * t9 * t9 * t10
-                        + T::from_f64(2.0) * t7 * (J * J).trace().sqrt() * t9
-                        + t7 * t9 * t11 * t10 + t12,
+                    T::from_f64(0.25) * t8 * t9 * t10 * t11 * t10 * t11
+                        + T::from_f64(0.25) * t8 * t9 * t11 * t10 * t11
+                        + T::from_f64(1.5) * t8 * t12 * t10 * t10 * t11
+                        + T::from_f64(2.0) * t8 * (J * J).trace().sqrt() * t10
+                        + t8 * t10 * t12 * t11
+                        + T::from_f64(0.5) * t13 * b.dot(&b).sqrt() * t14,
                 )
                 .with_arm(
                     length(
@@ -766,12 +768,13 @@ impl<T: Real> KirchhoffBody<T> {
                     + t3 * (M * (t3 * t4)) * (T::from_f64(0.25) * t1)
                     + t3 * (M * t4) * (T::from_f64(0.25) * t1)
                     + t3 * D.tr_mul(&t6) * (T::from_f64(0.5) * t1)
-                    - rows_from::<T, 4, 3, 1>(&P_next, 0)
-                        * (T::from_f64(0.5) * h * b[3])),
-                T::from_f64(0.5) * t7 * t8 * t9 * t10 + T::from_f64(0.25) * t7 * t8 * t10
-                    + T::from_f64(0.5) * t7 * t11 * t9
-                    + T::from_f64(0.25) * t7 * t9 * t8 * t9 * t10
-                    + T::from_f64(0.5) * t7 * t9 * t11 * t9 + t12,
+                    - rows_from::<T, 4, 3, 1>(&P_next, 0) * (T::from_f64(0.5) * h * t7)),
+                T::from_f64(0.5) * t8 * t9 * t10 * t11
+                    + T::from_f64(0.25) * t8 * t9 * t11
+                    + T::from_f64(0.5) * t8 * t12 * t10
+                    + T::from_f64(0.25) * t8 * t10 * t9 * t10 * t11
+                    + T::from_f64(0.5) * t8 * t10 * t12 * t10
+                    + T::from_f64(0.5) * t13 * (t7 * t7).sqrt() * t14,
             ),
         ]
     }
@@ -944,12 +947,14 @@ impl KirchhoffBody<f64> {
             let KirchhoffBodyParameters { b, Z, .. } = self.parameters;
             let G = state.G.matrix();
             let P = G.tr_mul(&Z);
-            let t1 = (h * h).sqrt() * b.dot(&b).sqrt() * P.dot(&P).sqrt();
+            let t1 = (h * h).sqrt();
+            let t2 = P.dot(&P).sqrt();
+            let t3 = b[3];
             enlarged.momentum = CarriedImpulse(
-                not_less(enlarged.momentum.0, (0, 3), t1),
+                not_less(enlarged.momentum.0, (0, 3), t1 * b.dot(&b).sqrt() * t2),
             );
             enlarged.momentum = CarriedImpulse(
-                not_less(enlarged.momentum.0, (3, 3), t1),
+                not_less(enlarged.momentum.0, (3, 3), t1 * (t3 * t3).sqrt() * t2),
             );
         }
         let state = &enlarged;

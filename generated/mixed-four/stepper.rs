@@ -1202,74 +1202,77 @@ impl<T: Real> MixedFour<T> {
         let t4 = motion_rotation(&G_next);
         let t5 = t4.transpose();
         let t6 = motion_translation(&G_next);
-        let t7 = t3.transpose();
-        let t8 = motion_translation(&W_matrix);
-        let t9 = quaternion_imaginary(&Y_matrix);
-        let t10 = h.powi(-3);
-        let t11 = ΔX_matrix.dot(&ΔX_matrix);
-        let t12 = (t1 * t1).sqrt();
-        let t13 = (h * h).sqrt();
-        let t14 = (k * k).sqrt();
-        let t15 = p.dot(&p).sqrt();
-        let t16 = (R_next.tr_mul(&R_next)).trace().sqrt();
-        let t17 = X_next.dot(&X_next).sqrt();
-        let t18 = (relative_R_q_next.tr_mul(&relative_R_q_next)).trace().sqrt();
-        let t19 = e_.dot(&e_).sqrt();
-        let t20 = (t7 * t3).trace().sqrt();
-        let t21 = s.dot(&s).sqrt();
-        let t22 = (t5 * t4).trace().sqrt();
-        let t23 = t6.dot(&t6).sqrt();
-        let t24 = (Y_matrix.tr_mul(&Y_matrix)).trace().sqrt();
-        let t25 = (diagonal_times(&I, &I)).trace().sqrt();
-        let t26 = t11.sqrt();
-        let t27 = (m * m).sqrt();
+        let t7 = t6 - X_next;
+        let t8 = t3.transpose();
+        let t9 = motion_translation(&W_matrix);
+        let t10 = t6 + t4 * s - X_next;
+        let t11 = quaternion_imaginary(&Y_matrix);
+        let t12 = h.powi(-3);
+        let t13 = ΔX_matrix.dot(&ΔX_matrix);
+        let t14 = (t1 * t1).sqrt();
+        let t15 = (h * h).sqrt();
+        let t16 = (k * k).sqrt();
+        let t17 = p.dot(&p).sqrt();
+        let t18 = (R_next.tr_mul(&R_next)).trace().sqrt();
+        let t19 = X_next.dot(&X_next).sqrt();
+        let t20 = (relative_R_q_next.tr_mul(&relative_R_q_next)).trace().sqrt();
+        let t21 = e_.dot(&e_).sqrt();
+        let t22 = (t8 * t3).trace().sqrt();
+        let t23 = s.dot(&s).sqrt();
+        let t24 = (t5 * t4).trace().sqrt();
+        let t25 = t6.dot(&t6).sqrt();
+        let t26 = (Y_matrix.tr_mul(&Y_matrix)).trace().sqrt();
+        let t27 = (diagonal_times(&I, &I)).trace().sqrt();
+        let t28 = t13.sqrt();
+        let t29 = (m * m).sqrt();
         [
             Residual::between(
                 &(after.momentum_R.to_body(&after.R).0),
                 &(axial_of_difference(&(J * V_matrix)) * t1
                     + p.cross(&(R_next.tr_mul(&X_next))) * (T::from_f64(0.5) * h * k)
                     - t2 * (T::from_f64(0.5) * h * k)),
-                T::from_f64(2.0) * t12 * (J * J).trace().sqrt()
+                T::from_f64(2.0) * t14 * (J * J).trace().sqrt()
                     * (V_matrix.tr_mul(&V_matrix)).trace().sqrt()
-                    + T::from_f64(0.5) * t13 * t14 * t15 * t16 * t17
-                    + T::from_f64(0.5) * t13 * t14 * t15 * t18 * t19,
+                    + T::from_f64(0.5) * t15 * t16 * t17 * t18 * t19
+                    + T::from_f64(0.5) * t15 * t16 * t17 * t20 * t21,
             ),
             Residual::between(
                 &(rows_from::<T, 6, 3, 1>(&after.momentum_G.to_body(&after.G).0, 0)),
                 &(axial_of_difference(&(A * t3)) * t1
-                    - s.cross(&(t5 * (t6 - X_next))) * (T::from_f64(0.5) * h * k)),
-                T::from_f64(2.0) * t12 * (A * A).trace().sqrt() * t20
-                    + T::from_f64(0.5) * t13 * t14 * t21 * t22 * (t23 + t17),
+                    - s.cross(&(t5 * t7)) * (T::from_f64(0.5) * h * k)),
+                T::from_f64(2.0) * t14 * (A * A).trace().sqrt() * t22
+                    + T::from_f64(0.5) * t15 * t16 * t23 * t24 * t7.dot(&t7).sqrt()
+                    + T::from_f64(0.5) * t15 * t16 * t23 * t24 * (t25 + t19),
             ),
             Residual::between(
                 &(rows_from::<T, 6, 3, 1>(&after.momentum_G.to_body(&after.G).0, 3)),
-                &(t7 * t8 * (t1 * M)
-                    - t5 * (t6 + t4 * s - X_next) * (T::from_f64(0.5) * h * k)),
-                t12 * (M * M).sqrt() * t20 * t8.dot(&t8).sqrt()
-                    + T::from_f64(0.5) * t13 * t14 * t22 * (t23 + t22 * t21 + t17),
+                &(t8 * t9 * (t1 * M) - t5 * t10 * (T::from_f64(0.5) * h * k)),
+                t14 * (M * M).sqrt() * t22 * t9.dot(&t9).sqrt()
+                    + T::from_f64(0.5) * t15 * t16 * t24 * t10.dot(&t10).sqrt()
+                    + T::from_f64(0.5) * t15 * t16 * t24 * (t25 + t24 * t23 + t19),
             ),
             Residual::between(
                 &(after.momentum_q.to_body(&after.q).0),
                 &(quaternion_imaginary(
-                    &(Y_matrix.tr_mul(&pure_quaternion(&(diagonal_times(&I, &t9))))),
+                    &(Y_matrix.tr_mul(&pure_quaternion(&(diagonal_times(&I, &t11))))),
                 ) * (T::from_f64(2.0) * t1)
                     + relative_R_q_next.tr_mul(&t2) * (T::from_f64(0.5) * h * k)),
-                T::from_f64(4.0) * t12 * t24 * t25 * t9.dot(&t9).sqrt()
-                    + T::from_f64(0.5) * t13 * t14 * t18 * t15 * t18 * t19
-                    + T::from_f64(4.0) * t12 * t24 * t25,
+                T::from_f64(4.0) * t14 * t26 * t27 * t11.dot(&t11).sqrt()
+                    + T::from_f64(0.5) * t15 * t16 * t20 * t17 * t20 * t21
+                    + T::from_f64(4.0) * t14 * t26 * t27,
             ),
             Residual::between(
                 &(after.momentum_X.0),
-                &(ΔX_matrix * (T::from_f64(4.0) * t10 * b * t11) + ΔX_matrix * (t1 * m)
+                &(ΔX_matrix * (T::from_f64(4.0) * t12 * b * t13) + ΔX_matrix * (t1 * m)
                     + g * (T::from_f64(0.5) * h * m)
                     + R_next * p * (T::from_f64(0.5) * h * k) - X_next * (h * k)
                     + t4 * s * (T::from_f64(0.5) * h * k)
                     + t6 * (T::from_f64(0.5) * h * k)),
-                T::from_f64(4.0) * (t10 * t10).sqrt() * (b * b).sqrt() * t26 * t26 * t26
-                    + t12 * t27 * t26 + T::from_f64(0.5) * t13 * t27 * g.dot(&g).sqrt()
-                    + T::from_f64(0.5) * t13 * t14 * t16 * t15 + t13 * t14 * t17
-                    + T::from_f64(0.5) * t13 * t14 * t22 * t21
-                    + T::from_f64(0.5) * t13 * t14 * t23,
+                T::from_f64(4.0) * (t12 * t12).sqrt() * (b * b).sqrt() * t28 * t28 * t28
+                    + t14 * t29 * t28 + T::from_f64(0.5) * t15 * t29 * g.dot(&g).sqrt()
+                    + T::from_f64(0.5) * t15 * t16 * t18 * t17 + t15 * t16 * t19
+                    + T::from_f64(0.5) * t15 * t16 * t24 * t23
+                    + T::from_f64(0.5) * t15 * t16 * t25,
             ),
         ]
     }

@@ -262,3 +262,32 @@ fn sizes_of_differences_do_not_grow_with_the_places() {
     // Impulses of 1e-3, whose rounding by places of 1e3 is of this size once more.
     assert!(far < 3e2 * near, "{near} {far}");
 }
+
+/// A cart and its bob far away: the length is that of a difference, of components or along an axis.
+#[test]
+fn the_length_between_a_number_and_a_vector_is_tested_far_away() {
+    let cart = |constraint: &str| {
+        format!(
+            "model Cart {{ param M, m, g, L: Real; field x: Real; field y: Vec<3>; hold n: {constraint} = L^2;
+             lagrangian = M*(next(x) - x)^2/(2*h) + m*dot(next(y) - y, next(y) - y)/(2*h) - h*m*g*y[3]; }}"
+        )
+    };
+    let parameters = vec![vec![1.0]; 4];
+    for constraint in ["(y[1] - x)^2 + y[2]^2 + y[3]^2", "dot(y - x*E1, y - x*E1)"] {
+        let card = clebsch_interpret::card(&cart(constraint)).expect("is read");
+        let opened = |place: f64, length: f64| {
+            let initial = [
+                vec![place],
+                vec![0.1],
+                vec![place + length, 0.0, 0.0],
+                vec![0.1, 0.0, 0.0],
+            ];
+            (card.open)(&parameters, &initial, clebsch::card::Settings::step(0.01)).is_ok()
+        };
+        for place in [0.0, 1e6] {
+            assert!(opened(place, 1.0), "{constraint} at {place}");
+            // By a hundredth: what is admitted, ten digits of 1e7, is a tenth of that.
+            assert!(!opened(place, 1.01), "{constraint} at {place}");
+        }
+    }
+}

@@ -22,7 +22,7 @@ const SHORT: f64 = 1e-3;
 const FAR: f64 = 0.1;
 
 /// By which parts of the step.
-const SHORTER: [f64; 2] = [1e-2, 1e-4];
+const SHORTER: [f64; 5] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10];
 
 /// Growth in a step of which is warned: that of a body on its head takes many steps.
 const GROWTH: f64 = 0.3;

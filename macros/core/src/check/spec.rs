@@ -3,7 +3,7 @@
 
 use crate::diagnostic::Place;
 use crate::expr::shape::Shape;
-use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::syntax::ast::{Comparison, NodeRule};
 
@@ -263,14 +263,23 @@ impl Spec {
         found.map_or(&[], |(_, lines)| lines)
     }
 
-    /// The advected quantities that know the time: the step stands in how they go on, or another one that knows it does.
+    /// The advected quantities that know the time: the step stands in how they go on, or another one that knows it does, or they
+    /// go on by themselves, whatever moves.
     pub fn clocks(&self) -> Vec<SymbolId> {
         let mut found: Vec<SymbolId> = Vec::new();
         loop {
             let knows = |a: &&Advected| {
                 let letters = expr::letters(&a.update);
                 let tells = |l: &Letter| l.symbol == self.step || found.contains(&l.symbol);
-                !found.contains(&a.quantity) && letters.iter().any(tells)
+                let role = |l: &Letter| self.symbols.get(l.symbol).role;
+                let moved = |l: &Letter| {
+                    let moves = matches!(role(l), Role::Velocity | Role::Element | Role::Advected);
+                    moves && l.symbol != a.quantity
+                };
+                let by_itself = || {
+                    a.update != expr::here(&self.symbols, a.quantity) && !letters.iter().any(moved)
+                };
+                !found.contains(&a.quantity) && (letters.iter().any(tells) || by_itself())
             };
             match self.advected.iter().find(knows) {
                 Some(next) => found.push(next.quantity),

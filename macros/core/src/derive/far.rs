@@ -150,7 +150,12 @@ impl Far<'_> {
 
     /// The power of the value, zero where it stays when all places are moved alike.
     fn size(&self, e: &Expr, largest: f64) -> f64 {
-        let stays = largest > 0.0 && e.size() <= LARGEST && self.stays(e);
+        // Places with weights stay where they are moved together, not each of a shape alike.
+        let weighted = match e.node() {
+            Node::Sum(terms) => places::are_weighted(self.symbols, e, terms),
+            _ => false,
+        };
+        let stays = largest > 0.0 && e.size() <= LARGEST && (weighted || self.stays(e));
         if stays { 0.0 } else { largest }
     }
 
@@ -283,6 +288,23 @@ mod tests {
         ] {
             let found = roundings(&derived(&body));
             assert!(found.iter().all(|power| *power == 0.0), "{found:?} {body}");
+        }
+        // With weights, along axes and by components: a product with a weight is itself rounded as the distance.
+        for body in [
+            format!(
+                "field x: Real; field X: Vec<2>; let w = X - x*E1; \
+                 lagrangian = m*(next(x) - x)^2/(2*h) + {x} - h*k*(dot(w, w) - m^2)^2;"
+            ),
+            format!(
+                "field x: Real; field X: Vec<2>; \
+                 lagrangian = m*(next(x) - x)^2/(2*h) + {x} - h*k*(X[1] - x)^4;"
+            ),
+            "param r: Real; field X, Y: Real; lagrangian = m*(next(X) - X)^2/(2*h) \
+             + m*(next(Y) - Y)^2/(2*h) - h*k*(X - r*Y)^4;"
+                .to_owned(),
+        ] {
+            let found = roundings(&derived(&body));
+            assert!(found.iter().all(|power| *power <= 1.0), "{found:?} {body}");
         }
         // A force about the origin is rounded as its distance.
         let about = format!("field X: Vec<3>; lagrangian = {x} - h*k*dot(X, X)^2;");

@@ -64,9 +64,49 @@ pub(crate) fn by_configuration(spec: &Spec, e: &Expr) -> Expr {
     expr::substitute(&spec.symbols, e, &defined.collect::<Vec<_>>())
 }
 
+/// What a clock in the action is ahead after a step of `h` and one of `-h`, of the first that does not return.
+fn clock_left(spec: &Spec, action: &Action, algebra: &Algebra) -> Option<Expr> {
+    let s = &spec.symbols;
+    let clocks = spec.clocks();
+    let mut used: Vec<_> = expr::letters(&action.total)
+        .iter()
+        .map(|l| l.symbol)
+        .collect();
+    // And those that these go on by.
+    let own = |id| spec.advected.iter().find(move |a| a.quantity == id);
+    let mut next = 0;
+    while let Some(id) = used.get(next).copied() {
+        next += 1;
+        for l in own(id)
+            .map(|a| expr::letters(&a.update))
+            .unwrap_or_default()
+        {
+            if !used.contains(&l.symbol) {
+                used.push(l.symbol);
+            }
+        }
+    }
+    let wanted = clocks.iter().filter(|c| used.contains(c));
+    let mut left = wanted.filter_map(|id| {
+        let advected = own(*id)?;
+        let step = at(spec.step, Shift::HERE);
+        let mut back: Vec<(Letter, Expr)> = vec![(step, expr::neg(expr::here(s, spec.step)))];
+        for other in clocks.iter().filter_map(|c| own(*c)) {
+            back.push((at(other.quantity, Shift::HERE), other.update.clone()));
+        }
+        let there_and_back = expr::substitute(s, &advected.update, &back);
+        let rest = expr::sub(there_and_back, expr::here(s, *id));
+        (!algebra.is_zero(&rest)).then_some(rest)
+    });
+    left.next()
+}
+
 /// Whether `ℓ(q0, q1, h) = -ℓ(q1, q0, -h)` up to constants, `assumed` being what vanishes.
 pub fn reversal(spec: &Spec, action: &Action, assumed: &[Expr], algebra: &Algebra) -> Reversal {
     let s = &spec.symbols;
+    if let Some(rest) = clock_left(spec, action, algebra) {
+        return Reversal::Broken((rest.size() <= LARGEST).then_some(rest));
+    }
     let sum = sum(spec, action);
     let constant = |e: &Expr| {
         expr::letters(e)

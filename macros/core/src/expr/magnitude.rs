@@ -24,6 +24,20 @@ pub(crate) fn magnitude(s: &Symbols, e: &Expr) -> Expr {
 /// a quaternion is as uncertain as the quaternion is, a translation or an increment as the places
 /// between which it goes. `paths` gives the size of those for each velocity in SE(3) or of a field.
 pub(crate) fn magnitude_between(s: &Symbols, e: &Expr, paths: &[(Letter, Expr)]) -> Expr {
+    in_differences(
+        s,
+        e,
+        |e| between(s, e, paths),
+        |named| {
+            let own = named.definitions.iter();
+            let own = own.map(|(l, d)| (*l, magnitude(s, d)));
+            let all: Vec<(Letter, Expr)> = own.chain(paths.iter().cloned()).collect();
+            between(&named.symbols, &named.whole, &all)
+        },
+    )
+}
+
+fn between(s: &Symbols, e: &Expr, paths: &[(Letter, Expr)]) -> Expr {
     let terms = Terms {
         symbols: s,
         paths: Some(paths),
@@ -35,24 +49,37 @@ pub(crate) fn magnitude_between(s: &Symbols, e: &Expr, paths: &[(Letter, Expr)])
 /// How large the terms of an expression at a node are, differences of places by their own lengths, with what the rounding of
 /// the places themselves changes, to first order and in units of rounding.
 pub(crate) fn magnitude_by_differences(s: &Symbols, e: &Expr) -> Expr {
-    in_differences(s, e, |named| {
+    let plain = |e: &Expr| magnitude(s, e);
+    in_differences(s, e, plain, |named| {
         let definitions = named.definitions.iter();
         let paths: Vec<(Letter, Expr)> = definitions.map(|(l, d)| (*l, magnitude(s, d))).collect();
-        magnitude_between(&named.symbols, &named.whole, &paths)
+        between(&named.symbols, &named.whole, &paths)
     })
 }
 
 /// The same without the rounding of places.
 pub(crate) fn lengths_of_differences(s: &Symbols, e: &Expr) -> Expr {
-    in_differences(s, e, |named| magnitude(&named.symbols, &named.whole))
+    let plain = |e: &Expr| magnitude(s, e);
+    in_differences(s, e, plain, |named| magnitude(&named.symbols, &named.whole))
 }
 
 /// A size that is taken with letters for differences of places; the plain one where there are none.
-fn in_differences(s: &Symbols, e: &Expr, size: impl Fn(&places::Named) -> Expr) -> Expr {
+fn in_differences(
+    s: &Symbols,
+    e: &Expr,
+    plain: impl Fn(&Expr) -> Expr,
+    size: impl Fn(&places::Named) -> Expr,
+) -> Expr {
     match places::named(s, e) {
         Some(named) => substitute(&named.symbols, &size(&named), &named.definitions),
-        None => magnitude(s, e),
+        None => plain(e),
     }
+}
+
+/// Whether the scalar product of these is a component of a letter.
+fn is_component(a: &Expr, b: &Expr) -> bool {
+    let is = |a: &Expr, b: &Expr| matches!((a.node(), b.node()), (Node::Letter(_), Node::Unit(..)));
+    is(a, b) || is(b, a)
 }
 
 /// Whether the expression is a product of elements of SU(2).
@@ -115,6 +142,11 @@ impl Terms<'_> {
                 let all = list.iter().map(of);
                 all.reduce(times).unwrap_or_else(|| exact(integer(1)))
             }
+            // A component of what is stored is as large as it is, not as the others are.
+            Node::Dot(a, b) if is_component(a, b) => Size {
+                value: length(self.symbols, e),
+                stored: add(of(a).stored, of(b).stored),
+            },
             Node::Dot(a, b) | Node::Cross(a, b) => times(of(a), of(b)),
             Node::Neg(a) | Node::Transpose(a) | Node::Part(_, a) | Node::Vee(a) => of(a),
             Node::Hat(a) | Node::Trace(a) | Node::Map(Map::Pure | Map::Twist, a) => {

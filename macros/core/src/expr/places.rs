@@ -1,9 +1,9 @@
 //! Differences of places: sums in which what places far from the origin have in common cancels,
-//! `X - Y` of two fields. Opened and multiplied out they would be rounded to that distance.
+//! `X - Y` of two fields or `y - x*E1` of a vector and a number. Opened and multiplied out they would be rounded to that distance.
 //! Takes expressions; says which are such, and gives them names.
 
 use super::collect::parts;
-use super::shape::Structure;
+use super::shape::{Dim, Shape, Structure};
 use super::symbol::{Role, Symbols};
 use super::*;
 
@@ -19,7 +19,85 @@ pub(crate) fn is_between(symbols: &Symbols, e: &Expr) -> bool {
     let places = bare.iter().filter(|(_, kind)| *kind == Bare::Place);
     let own = places.clone().map(|(times, _)| *times);
     // Constants may be forces: they count where places alone do not cancel.
-    places.count() > 0 && (is_zero(own) || is_zero(all))
+    places.count() > 0 && (is_zero(own) || is_zero(all)) || are_weighted(symbols, e, terms)
+}
+
+/// Whether places with constant weights, `y - x*E1` of a vector and a number or `x - r*φ` of two numbers, can be moved together so
+/// that their sum stays, as a sum of coordinates along axes cannot be; beside them constants alone.
+pub(crate) fn are_weighted(symbols: &Symbols, e: &Expr, terms: &[Expr]) -> bool {
+    let mut known: Vec<(Expr, bool)> = Vec::new();
+    let mut coordinates = 0;
+    for t in terms {
+        match weighted(symbols, t) {
+            Some((place, has_weight)) => {
+                let Some(own) = entries(place.shape()) else {
+                    return false;
+                };
+                if !known.iter().any(|(other, _)| *other == place) {
+                    coordinates += own;
+                }
+                known.push((place, has_weight));
+            }
+            None if is_constant(symbols, t) => {}
+            None => return false,
+        }
+    }
+    let is_free = entries(e.shape()).is_some_and(|own| coordinates > own);
+    let several = known.iter().any(|(place, _)| *place != known[0].0);
+    several && is_free && known.iter().any(|(_, has_weight)| *has_weight)
+}
+
+fn entries(shape: Shape) -> Option<u32> {
+    match (shape.rows, shape.cols) {
+        (Dim::Fixed(n), Dim::Fixed(m)) => Some(u32::from(n) * u32::from(m)),
+        _ => None,
+    }
+}
+
+fn is_constant(symbols: &Symbols, e: &Expr) -> bool {
+    let letters = super::letters(e);
+    letters
+        .iter()
+        .all(|l| symbols.get(l.symbol).role == Role::Parameter)
+}
+
+/// The place of a term that is linear in it and constant otherwise, and whether something but a number multiplies it.
+fn weighted(symbols: &Symbols, term: &Expr) -> Option<(Expr, bool)> {
+    let found = parts(term);
+    let numbers = found.numbers.iter().map(|(f, q)| (f, *q));
+    let matrices = found.matrices.iter().map(|f| (f, Rational::ONE));
+    let mut place = None;
+    let mut has_weight = false;
+    for (factor, q) in numbers.chain(matrices) {
+        if is_constant(symbols, factor) {
+            has_weight = true;
+            continue;
+        }
+        let own = match factor.node() {
+            Node::Dot(a, b) if is_constant(symbols, a) => is_place(symbols, b).then_some((b, true)),
+            Node::Dot(a, b) if is_constant(symbols, b) => is_place(symbols, a).then_some((a, true)),
+            _ => is_place(symbols, factor).then_some((factor, false)),
+        };
+        let (own, along) = own.filter(|_| q.is_one() && place.is_none())?;
+        place = Some(own.clone());
+        has_weight |= along;
+    }
+    place.map(|place| (place, has_weight))
+}
+
+/// Whether it is a value of a field, or the place of a rigid motion.
+fn is_place(symbols: &Symbols, e: &Expr) -> bool {
+    let element = |e: &Expr, general: bool| match e.node() {
+        Node::Letter(l) => {
+            let symbol = symbols.get(l.symbol);
+            symbol.role == Role::Element && (symbol.structure == Structure::General) == general
+        }
+        _ => false,
+    };
+    match e.node() {
+        Node::Map(Map::Translation, a) => element(a, false),
+        _ => element(e, true),
+    }
 }
 
 fn is_zero(mut all: impl Iterator<Item = Rational>) -> bool {
@@ -70,6 +148,10 @@ pub(crate) fn centres(symbols: &Symbols, e: &Expr, out: &mut Vec<Letter>) {
         return;
     }
     let Node::Sum(terms) = e.node() else { return };
+    // Nor is one taken from places with weights, which cancel among themselves.
+    if are_weighted(symbols, e, terms) {
+        return;
+    }
     let bare_terms = terms.iter().filter_map(|t| bare(symbols, t));
     let places = bare_terms.filter(|(_, kind)| *kind == Bare::Place);
     // From places that cancel among themselves a length is subtracted.
@@ -93,6 +175,7 @@ pub(crate) fn first(symbols: &Symbols, e: Expr) -> Expr {
     let rank = |t: &Expr| match bare(symbols, t) {
         Some((_, Bare::Place)) => 0,
         Some((_, Bare::Constant)) => 1,
+        None if weighted(symbols, t).is_some() => 0,
         None => 2,
     };
     let mut terms = terms.clone();

@@ -172,6 +172,9 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
                     let along = What::Along(a.value.clone());
                     push(a.name.clone(), along, a.length.clone());
                 }
+                for (name, value, size) in proportional(x, &axes) {
+                    push(name, What::Along(value), size);
+                }
                 // In the plane there is one direction across an axis.
                 let told = axes.iter().filter(|a| told(a));
                 for a in told.filter(|_| shape == Shape::vector(Dim::Fixed(2))) {
@@ -184,6 +187,10 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
                 for a in &axes {
                     let along = What::Along(a.value.clone());
                     push(a.name.clone(), along, a.length.clone());
+                }
+                let shifted = sort == Sort::Linear;
+                for (name, value, size) in proportional(x, &axes).into_iter().filter(|_| shifted) {
+                    push(name, What::Along(value), size);
                 }
                 // What is left when the part along an axis is not kept.
                 for a in axes.iter().filter(|a| told(a)) {
@@ -284,9 +291,13 @@ fn axes(x: &Inputs, n: Dim) -> Vec<Axis> {
 /// Parameters that are numbers: of several fields one may move in proportion to such a one.
 fn numbers(x: &Inputs) -> Vec<Axis> {
     let s = &x.letters.symbols;
-    let fields = x.spec.configurations.iter();
-    let fields = fields.filter(|c| c.group.is_additive() && c.group.shape().is_scalar());
-    if fields.count() < 2 {
+    let fields = x
+        .spec
+        .configurations
+        .iter()
+        .filter(|c| c.group.is_additive());
+    let number = fields.clone().any(|c| c.group.shape().is_scalar());
+    if !number || fields.count() < 2 {
         return Vec::new();
     }
     let parameters = x.spec.parameters.iter().copied();
@@ -297,6 +308,27 @@ fn numbers(x: &Inputs) -> Vec<Axis> {
         length: length(x, &expr::here(s, p)),
     };
     numbers.take(AXES).map(axis).collect()
+}
+
+/// Most parameters in proportion to which a component of a vector may move.
+const PROPORTIONS: usize = 4;
+
+/// Axes of the basis in proportion to parameters, beside which a number moves: their names, values and lengths.
+fn proportional(x: &Inputs, axes: &[Axis]) -> Vec<(String, Expr, Expr)> {
+    let units = axes
+        .iter()
+        .filter(|a| matches!(a.value.node(), expr::Node::Unit(..)));
+    let numbers = numbers(x);
+    let pairs = units.flat_map(|a| numbers.iter().take(PROPORTIONS).map(move |p| (a, p)));
+    let of = |(a, p): (&Axis, &Axis)| {
+        let name = format!("{}_{}", p.name, a.name);
+        (
+            name,
+            expr::mul(p.value.clone(), a.value.clone()),
+            p.length.clone(),
+        )
+    };
+    pairs.map(of).collect()
 }
 
 /// Symmetric parameters and their inverses.

@@ -143,4 +143,22 @@ fn numbers_move_in_proportion_to_parameters() {
         ["total_momentum_r = ϖ_{2,k} + r ϖ_{1,k}"]
     );
     assert!(told(&wheel("x - r*p^2")).is_empty());
+    // A component of a vector likewise, held.
+    let string = |way: &str| {
+        format!(
+            "model String {{ param m, j, r: Real; field x: Vec<2>; field p: Real; hold n: {way} = 0; lagrangian = \
+             m*dot(next(x) - x, next(x) - x)/(2*h) + j*(next(p) - p)^2/(2*h); }}"
+        )
+    };
+    let kept = told(&string("x[1] - r*p"));
+    assert!(
+        kept.iter()
+            .any(|m| m.contains("ϖ_{2,k}") && m.contains("r E₁")),
+        "{kept:?}"
+    );
+    assert!(
+        !told(&string("x[1] - r*p^2"))
+            .iter()
+            .any(|m| m.contains("ϖ_{2,k}"))
+    );
 }
