@@ -5,6 +5,7 @@
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables)]
 
+mod bodies_of_files;
 mod counted;
 mod elastic;
 mod frames;
@@ -15,6 +16,7 @@ mod processes;
 mod steppers;
 mod systems;
 
+use bodies_of_files::{generated_hooke, generated_mooney, written_hooke, written_mooney};
 use clebsch_benches::blocks;
 use clebsch_benches::blocks::compare;
 use clebsch_oracle::physics::cases::{
@@ -129,6 +131,12 @@ fn main() {
         "ellipsoid, seen from space",
         generated_spatial,
         written_spatial,
+    );
+    table.row("elastic body, neo-Hookean", generated_hooke, written_hooke);
+    table.row(
+        "elastic body, Mooney-Rivlin",
+        generated_mooney,
+        written_mooney,
     );
     table.row("four joined by springs", generated_four, written_four);
     table.row(

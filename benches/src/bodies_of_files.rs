@@ -1,0 +1,191 @@
+//! Blocks of work of the elastic bodies whose statements are files of `models/elastic/`, compiled, beside steppers by hand: the
+//! same steps from the same start, that of the case beside the file. Takes nothing; gives closures for the clock. The
+//! stepper by hand is held to the file by `interpret/tests/elastic/against_hand.rs`, and each statement here to the stepper by hand.
+
+use crate::counted::Block;
+use crate::loops::{generated, written};
+use clebsch::nalgebra::Matrix3;
+use clebsch::{Additive, BodyMomentumMatrix, FieldMomentum, Linear};
+use clebsch_oracle::handwritten;
+use clebsch_oracle::handwritten::Unsolvable;
+use clebsch_oracle::handwritten::attitude::Matrix;
+use clebsch_oracle::handwritten::ellipsoid::{ElasticEllipsoid, Ellipsoid, Of};
+
+clebsch::model! {
+    /// Neo-Hookean body on GL(3), seen from itself.
+    model NeoHooke {
+        /// second moments of mass in the reference
+        param I0: Sym<3>;
+        /// shear modulus and first Lamé constant
+        param mu, lambda: Real;
+        /// placement, reference to space
+        group Q: GL<3> velocity G;
+        /// Cauchy-Green tensor
+        advected C: Sym<3> = Q^T*Q;
+        constraint next(Q) = Q*G;
+        constraint next(C) = G^T*C*G;
+        let W = (mu/2)*(tr(C) - log(det(C))) + (lambda/8)*log(det(C))^2;
+        lagrangian = tr(C*(G - Id)*I0*(G - Id)^T)/(2*h) - h*W;
+    }
+}
+
+clebsch::model! {
+    /// Elastic ellipsoid by its placement, the material of Mooney and Rivlin in the form of Ciarlet and Geymonat: the third
+    /// statement of the motion that `ellipsoid-convective` and `ellipsoid-spatial` state by groups.
+    model MooneyRivlin {
+        /// metric of space, and second moments of mass in the reference
+        param C0, I0: Sym<3>;
+        /// stiffness of lengths, of areas and of volumes
+        param a, b, c: Real;
+        /// resistance to collapse; without stress at the identity if d = 2 a + 4 b + 2 c
+        param d: Real;
+        /// placement, reference to space
+        field Q: Mat<3>;
+        let V = next(Q) - Q;
+        let C = Q^T*C0*Q;
+        let W = a*I1(C) + b*I2(C) + c*det(C) - (d/2)*log(det(C));
+        lagrangian = tr(C0*V*I0*V^T)/(2*h) - h*W;
+    }
+}
+
+const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// The step of all of them.
+const H: f64 = 0.02;
+
+fn matrix(rows: &Matrix) -> Matrix3<f64> {
+    Matrix3::from_fn(|r, c| rows[r][c])
+}
+
+/// Placement and momentum, stepped by a function of them.
+#[derive(Clone, Copy)]
+struct Stepped<F> {
+    at: [Matrix; 2],
+    by: F,
+}
+
+impl<F: Fn(&[Matrix; 2]) -> Result<[Matrix; 2], Unsolvable>> Stepped<F> {
+    fn step(&mut self) -> Result<(), Unsolvable> {
+        self.at = (self.by)(&self.at)?;
+        Ok(())
+    }
+}
+
+/// A generated block whose first step leads to the placement to which one by hand leads.
+macro_rules! agreeing {
+    ($model:expr, $initial:expr, $hand:expr, $place:expr) => {{
+        let (model, mut hand) = ($model.expect("parameters"), $hand);
+        let start = model.start($initial, H);
+        let (mut state, mut work) = start.expect("solvable");
+        model.step(&mut state, &mut work).expect("solvable");
+        hand.step().expect("solvable");
+        let apart = ($place(&state) - matrix(&hand.at[0])).amax();
+        assert!(apart < 1e-12, "generated and by hand differ by {apart:e}");
+        generated!(Some(model), $initial, H)
+    }};
+}
+
+const STRETCHED: [Matrix; 2] = [
+    [[1.2, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    [[0.0, -0.6, 0.0], [0.5, 0.0, 0.1], [0.0, -0.1, 0.0]],
+];
+
+fn hooke_by_hand() -> Stepped<impl Fn(&[Matrix; 2]) -> Result<[Matrix; 2], Unsolvable> + Copy> {
+    let body = handwritten::neo_hooke::NeoHooke {
+        moments: IDENTITY,
+        shear: 10.0,
+        lame: 15.0,
+    };
+    Stepped {
+        at: STRETCHED,
+        by: move |[q, p]: &[Matrix; 2]| body.step(q, p, H),
+    }
+}
+
+/// A block of the generated neo-Hookean body.
+pub fn generated_hooke() -> Block<impl FnOnce()> {
+    let model = NeoHooke::new(NeoHookeParameters {
+        I0: Matrix3::identity(),
+        mu: 10.0,
+        lambda: 15.0,
+    });
+    let [place, momentum] = STRETCHED.each_ref().map(matrix);
+    let initial = || NeoHookeInitial {
+        Q: Linear::from_matrix(&place).expect("invertible"),
+        body_momentum: BodyMomentumMatrix(momentum),
+    };
+    agreeing!(
+        model,
+        initial(),
+        hooke_by_hand(),
+        |state: &NeoHookeState<f64>| state.Q().matrix()
+    )
+}
+
+/// A block of the neo-Hookean body by hand.
+pub fn written_hooke() -> impl FnOnce() {
+    written!(hooke_by_hand())
+}
+
+const NATURAL: [Matrix; 2] = [
+    IDENTITY,
+    [[0.6, -0.15, -0.3], [0.15, 0.15, 0.15], [-0.3, 0.45, 0.0]],
+];
+
+const MOONEY_RIVLIN: [f64; 4] = [0.1, 10.0, 10.0, 60.2];
+
+/// The stepper by hand, which keeps the velocity of its placement.
+struct Mooney {
+    at: [Matrix; 1],
+    body: ElasticEllipsoid<3>,
+}
+
+impl Mooney {
+    fn step(&mut self) -> Result<(), Unsolvable> {
+        self.body.step()?;
+        self.at = [self.body.placement()];
+        Ok(())
+    }
+}
+
+fn mooney_by_hand() -> ElasticEllipsoid<3> {
+    let body = Ellipsoid {
+        metric: IDENTITY,
+        moments: IDENTITY,
+        energy: MOONEY_RIVLIN,
+        of: Of::Metric,
+    };
+    let [place, momentum] = &NATURAL;
+    // Seen from the body the momentum is the same where the placement is the identity.
+    ElasticEllipsoid::start(&body, place, momentum, H).expect("solvable")
+}
+
+/// A block of the generated body of Mooney and Rivlin, by its placement.
+pub fn generated_mooney() -> Block<impl FnOnce()> {
+    let [a, b, c, d] = MOONEY_RIVLIN;
+    let model = MooneyRivlin::new(MooneyRivlinParameters {
+        C0: Matrix3::identity(),
+        I0: Matrix3::identity(),
+        a,
+        b,
+        c,
+        d,
+    });
+    let [place, momentum] = NATURAL.each_ref().map(matrix);
+    let initial = || MooneyRivlinInitial {
+        Q: Additive::new(place),
+        momentum: FieldMomentum(momentum),
+    };
+    let hand = Mooney {
+        at: [IDENTITY],
+        body: mooney_by_hand(),
+    };
+    agreeing!(model, initial(), hand, |state: &MooneyRivlinState<f64>| {
+        state.Q().matrix()
+    })
+}
+
+/// A block of the body of Mooney and Rivlin by hand.
+pub fn written_mooney() -> impl FnOnce() {
+    written!(mooney_by_hand())
+}
