@@ -188,7 +188,7 @@ fn collected(
 }
 
 /// A value of a field, read as its type asks.
-fn one(read: Read, field: &'static Field, list: &Vec<f64>) -> Result<Value<f64>, OpenError> {
+fn one(read: Read, field: &'static Field, list: &[f64]) -> Result<Value<f64>, OpenError> {
     use clebsch::groups::{invertible_map, nearest_rotation};
     use clebsch::linalg::Dense;
     let (name, rows, cols) = (field.name, field.rows, field.cols);

@@ -358,22 +358,19 @@ impl<T: Lowered> Lower<'_, '_, T> {
             })
             .collect();
         let by_name = |field: &str| values.iter().find(|(n, _)| n == field).map(|(_, e)| *e);
-        match name.as_str() {
-            "Call" => {
-                let all = [by_name("function"), by_name("argument")];
-                let all = self.all(all.into_iter().flatten())?;
-                let [
-                    Code::Constant(Value::Function(function)),
-                    Code::Constant(Value::Text(argument)),
-                ] = all[..]
-                else {
-                    return Err(refuse(s));
-                };
-                // Errors name it for as long as they live.
-                let call = Box::leak(Box::new(domain::Call { function, argument }));
-                return Ok(Code::Constant(Value::Call(call)));
-            }
-            _ => {}
+        if name == "Call" {
+            let all = [by_name("function"), by_name("argument")];
+            let all = self.all(all.into_iter().flatten())?;
+            let [
+                Code::Constant(Value::Function(function)),
+                Code::Constant(Value::Text(argument)),
+            ] = all[..]
+            else {
+                return Err(refuse(s));
+            };
+            // Errors name it for as long as they live.
+            let call = Box::leak(Box::new(domain::Call { function, argument }));
+            return Ok(Code::Constant(Value::Call(call)));
         }
         let name = match name.as_str() {
             "Self" => self.own_type().to_owned(),

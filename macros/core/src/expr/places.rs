@@ -49,7 +49,7 @@ pub(crate) fn are_weighted(symbols: &Symbols, e: &Expr, terms: &[Expr]) -> bool 
 
 fn entries(shape: Shape) -> Option<u32> {
     match (shape.rows, shape.cols) {
-        (Dim::Fixed(n), Dim::Fixed(m)) => Some(u32::from(n) * u32::from(m)),
+        (Dim::Fixed(n), Dim::Fixed(m)) => Some(n.saturating_mul(m)),
         _ => None,
     }
 }
