@@ -6,6 +6,7 @@
 //! behind their number; rows and checksum of the samples; a checksum of all that. Numbers have eight bytes, the lowest
 //! first.
 
+use crate::case_file::quantity_of;
 use crate::plan::Plan;
 use clebsch::card::{Card, Field};
 use std::collections::BTreeMap;
@@ -96,14 +97,14 @@ impl Identity {
 /// The values of a table as they are told apart: field by field, those of one quantity at many sites together.
 fn told(table: &str, fields: &[Field], values: &[Vec<f64>]) -> Vec<(String, String)> {
     let mut sites: BTreeMap<&str, usize> = BTreeMap::new();
-    for quantity in fields.iter().filter_map(quantity) {
+    for quantity in fields.iter().filter_map(|f| quantity_of(f.ascii)) {
         *sites.entry(quantity).or_default() += 1;
     }
     sites.retain(|_, count| *count > TOLD);
     let mut all = Vec::new();
     let mut together: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for (field, value) in fields.iter().zip(values) {
-        match quantity(field).filter(|q| sites.contains_key(q)) {
+        match quantity_of(field.ascii).filter(|q| sites.contains_key(q)) {
             Some(quantity) => together.entry(quantity).or_default().extend(value),
             None => all.push((format!("{table}.{}", field.ascii), listed(value))),
         }
@@ -112,12 +113,6 @@ fn told(table: &str, fields: &[Field], values: &[Vec<f64>]) -> Vec<(String, Stri
         all.push((format!("{table}.{quantity}"), listed(&values)));
     }
     all
-}
-
-/// The quantity of which a field is the value at a site: `m` of `m_7`.
-fn quantity(field: &Field) -> Option<&'static str> {
-    let (name, site) = field.ascii.rsplit_once('_')?;
-    site.bytes().all(|b| b.is_ascii_digit()).then_some(name)
 }
 
 /// Numbers as they are told apart: those of a million particles by how many they are and a checksum.

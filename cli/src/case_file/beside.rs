@@ -42,12 +42,14 @@ impl Beside {
 
 /// The line of a value: its own, or that of its quantity at all sites (`parameters.m` of `parameters.m_7`).
 pub(crate) fn line_of(lines: &BTreeMap<String, usize>, key: &str) -> Option<usize> {
-    let whole = || {
-        let (quantity, site) = key.rsplit_once('_')?;
-        site.bytes().all(|b| b.is_ascii_digit()).then_some(quantity)
-    };
-    let found = lines.get(key).or_else(|| lines.get(whole()?));
+    let found = lines.get(key).or_else(|| lines.get(quantity_of(key)?));
     found.copied()
+}
+
+/// The quantity of which a name is that of the value at a site: `m` of `m_7`.
+pub(crate) fn quantity_of(name: &str) -> Option<&str> {
+    let (quantity, site) = name.rsplit_once('_')?;
+    site.bytes().all(|b| b.is_ascii_digit()).then_some(quantity)
 }
 
 #[cfg(test)]

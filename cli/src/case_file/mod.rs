@@ -19,7 +19,7 @@ mod start;
 mod value;
 mod write;
 
-pub(crate) use beside::line_of;
+pub(crate) use beside::{line_of, quantity_of};
 pub(crate) use lattice::write_lattice;
 pub use location::Located;
 pub use read::read;

@@ -120,19 +120,12 @@ fn bare(symbols: &Symbols, term: &Expr) -> Option<(Rational, Bare)> {
         ([], [(only, q)]) if q.is_one() => only,
         _ => return None,
     };
-    let role = |l: &Letter| symbols.get(l.symbol).role;
     let kind = match only.node() {
-        Node::Map(Map::Translation, a) => match a.node() {
-            Node::Letter(l) if role(l) == Role::Element => Bare::Place,
-            _ => return None,
-        },
+        _ if is_place(symbols, only) => Bare::Place,
         Node::Letter(l) => {
-            let general = symbols.get(l.symbol).structure == Structure::General;
-            match role(l) {
-                Role::Element if general => Bare::Place,
-                Role::Parameter if general => Bare::Constant,
-                _ => return None,
-            }
+            let symbol = symbols.get(l.symbol);
+            let constant = symbol.role == Role::Parameter && symbol.structure == Structure::General;
+            constant.then_some(Bare::Constant)?
         }
         _ => return None,
     };

@@ -35,19 +35,7 @@ impl Like<'_> {
         if let Some(known) = self.done.get(e) {
             return known.clone();
         }
-        let inner = match super::rest::is_difference(self.symbols, e) {
-            true => e.clone(),
-            false => {
-                let children: Vec<Expr> = e.children().into_iter().cloned().collect();
-                for c in &children {
-                    self.collect(c);
-                }
-                let done = &self.done;
-                expr::rebuild(self.symbols, e, &mut |c| {
-                    done.get(c).cloned().unwrap_or_else(|| c.clone())
-                })
-            }
-        };
+        let inner = super::rest::rebuilt(self.symbols, e, &mut |c| self.collect(c));
         let out = match inner.node() {
             Node::Sum(terms) => self.sum(&inner, terms),
             _ => inner,

@@ -1,4 +1,4 @@
-//! Products of two matrices that stand in several longer ones: formed once, they shorten all of these. Takes
+//! Products of two matrices that stand in several others: formed once, they shorten all of these. Takes
 //! expressions that are computed together; gives names for such pairs and what is left.
 
 use super::program::{Program, scheduled};
@@ -177,17 +177,7 @@ impl Put<'_> {
         if let Some(known) = self.done.get(e) {
             return known.clone();
         }
-        if super::rest::is_difference(self.symbols, e) {
-            return e.clone();
-        }
-        let children: Vec<Expr> = e.children().into_iter().cloned().collect();
-        for c in &children {
-            self.put(c);
-        }
-        let done = &self.done;
-        let inner = expr::rebuild(self.symbols, e, &mut |c| {
-            done.get(c).cloned().unwrap_or_else(|| c.clone())
-        });
+        let inner = super::rest::rebuilt(self.symbols, e, &mut |c| self.put(c));
         let out = match inner.node() {
             Node::Product(factors) => expr::product(self.replaced(factors)),
             _ => inner,

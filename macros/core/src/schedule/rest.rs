@@ -89,6 +89,14 @@ pub fn is_difference(symbols: &Symbols, e: &Expr) -> bool {
     opposite(a, b) || opposite(b, a)
 }
 
+/// The expression of what `go` gives of its parts; a difference from rest as it is.
+pub(super) fn rebuilt(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -> Expr {
+    match is_difference(symbols, e) {
+        true => e.clone(),
+        false => rebuild(symbols, e, go),
+    }
+}
+
 /// The same expression with differences from rest written as such, at every depth.
 pub fn displaced(symbols: &Symbols, e: &Expr) -> Expr {
     if !symbols.differences() || !moves(symbols, e) {

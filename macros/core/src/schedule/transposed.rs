@@ -31,19 +31,7 @@ impl Met<'_> {
         if let Some(known) = self.done.get(e) {
             return known.clone();
         }
-        let inner = match super::rest::is_difference(self.symbols, e) {
-            true => e.clone(),
-            false => {
-                let children: Vec<Expr> = e.children().into_iter().cloned().collect();
-                for c in &children {
-                    self.align(c);
-                }
-                let done = &self.done;
-                expr::rebuild(self.symbols, e, &mut |c| {
-                    done.get(c).cloned().unwrap_or_else(|| c.clone())
-                })
-            }
-        };
+        let inner = super::rest::rebuilt(self.symbols, e, &mut |c| self.align(c));
         let out = match (inner.node(), multiplies(&inner)) {
             // That of a transpose is the transpose of that which is used elsewhere.
             (Node::Inverse(a), _) => match a.node() {

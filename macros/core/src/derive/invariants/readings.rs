@@ -188,9 +188,10 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
                     let along = What::Along(a.value.clone());
                     push(a.name.clone(), along, a.length.clone());
                 }
-                let shifted = sort == Sort::Linear;
-                for (name, value, size) in proportional(x, &axes).into_iter().filter(|_| shifted) {
-                    push(name, What::Along(value), size);
+                if sort == Sort::Linear {
+                    for (name, value, size) in proportional(x, &axes) {
+                        push(name, What::Along(value), size);
+                    }
                 }
                 // What is left when the part along an axis is not kept.
                 for a in axes.iter().filter(|a| told(a)) {
