@@ -185,6 +185,7 @@ type Evaluated<T> = Result<Value<T>, Exit<T>>;
 const WRONG: &str = "an operation on values whose shapes do not fit, or that it does not take";
 
 /// What a missing value ends in.
+#[inline]
 pub fn unfit<T: Real, V>(value: Option<V>) -> Result<V, Exit<T>> {
     value.ok_or(Exit::Unfit(WRONG))
 }

@@ -13,6 +13,7 @@ pub(super) enum Given<T: Real> {
 }
 
 impl<T: Real> Given<T> {
+    #[inline]
     pub(super) fn of(code: &Code<T>, places: &mut Places<T>) -> Result<Self, Exit<T>> {
         match code {
             Code::Place(_) | Code::Constant(_) => Ok(Given::There),
@@ -21,6 +22,7 @@ impl<T: Real> Given<T> {
         }
     }
 
+    #[inline]
     pub(super) fn get<'a>(
         &'a self,
         code: &'a Code<T>,

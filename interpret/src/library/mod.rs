@@ -95,9 +95,15 @@ pub fn kernel<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
 
 /// The same for those that change their first argument, or call back.
 pub fn special<T: Real>(name: &str) -> Option<Special<T>> {
-    special::special(name)
+    special::kernel(name)
+        .or_else(|| special::special(name))
         .or_else(|| line::special(name))
         .or_else(|| reactions::special(name))
         .or_else(|| mesh::special(name))
         .or_else(|| band::special(name))
+}
+
+/// The same of those that residuals and tangents call.
+pub fn kernel_special<T: Real>(name: &str) -> Option<Special<T>> {
+    special::kernel(name)
 }

@@ -309,7 +309,8 @@ fn from_fn<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     Ok(Value::of(Dense { rows, cols, data }))
 }
 
-pub(super) fn special<T: Real>(name: &str) -> Option<Special<T>> {
+/// Those that residuals and tangents call.
+pub(super) fn kernel<T: Real>(name: &str) -> Option<Special<T>> {
     Some(match name {
         "as_mut_slice" => as_mut_slice,
         "put_vector" | "put_number" => put_vector,
@@ -317,14 +318,20 @@ pub(super) fn special<T: Real>(name: &str) -> Option<Special<T>> {
         "put_skew" => put_skew,
         "put" => put,
         "set_column" => set_column,
+        "map" => map,
+        "from_fn" => from_fn,
+        _ => return None,
+    })
+}
+
+pub(super) fn special<T: Real>(name: &str) -> Option<Special<T>> {
+    Some(match name {
         "follow" => follow,
         "restart_as" => restart_as,
         "remember" => remember,
         "with_searched_step" | "with_searched_steps" => with_searched_step,
         "with_trials" => with_trials,
         "map_err" => map_err,
-        "map" => map,
-        "from_fn" => from_fn,
         _ => return None,
     })
 }

@@ -5,7 +5,6 @@ use super::statement::is_place;
 use super::{Binding, Lower, Lowered, refuse};
 use crate::Refused;
 use crate::code::{Code, Known, Pattern, Routine};
-use crate::library;
 use crate::program::named;
 use crate::value::{Frame, Value};
 use std::collections::BTreeMap;
@@ -143,7 +142,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 for a in &c.args {
                     arguments.push(self.argument(a)?);
                 }
-                let special = library::special("from_fn").ok_or_else(|| refuse(c))?;
+                let special = T::special("from_fn").ok_or_else(|| refuse(c))?;
                 return Ok(Code::Special(special, arguments, Known::of("from_fn")));
             }
             ["SVector" | "SMatrix", "new"] => {
@@ -241,7 +240,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         }
         // What calls back or changes places is no function of values.
         let calls_back = arguments.iter().any(|a| matches!(a, Code::Closure(..)));
-        if let Some(special) = library::special(name)
+        if let Some(special) = T::special(name)
             && (calls_back || T::native(name, arguments.len()).is_none())
         {
             return Ok(Some(Code::Special(special, arguments, Known::of(name))));

@@ -48,7 +48,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         arguments: Vec<Code<T>>,
         e: &impl quote::ToTokens,
     ) -> Result<Code<T>, Refused> {
-        let special = crate::library::special(name).ok_or_else(|| refuse(e))?;
+        let special = T::special(name).ok_or_else(|| refuse(e))?;
         Ok(Code::Special(special, arguments, Known::of(name)))
     }
 

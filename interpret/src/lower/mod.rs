@@ -8,7 +8,7 @@ mod newton;
 mod statement;
 
 use crate::Refused;
-use crate::code::{Code, Native, Routine};
+use crate::code::{Code, Native, Routine, Special};
 use crate::program::{Program, type_name};
 use crate::value::Layout;
 use clebsch::Real;
@@ -115,6 +115,9 @@ pub trait Lowered: Real {
 
     /// The functions of the runtime that are called over it.
     fn native(name: &str, arguments: usize) -> Option<Native<Self>>;
+
+    /// Those that change their first argument, or call back.
+    fn special(name: &str) -> Option<Special<Self>>;
 }
 
 /// The lowering of one function.

@@ -3,7 +3,7 @@
 
 use super::{Binding, Lower, Lowered, Shared, refuse};
 use crate::Refused;
-use crate::code::{Code, Native, Routine};
+use crate::code::{Code, Native, Routine, Special};
 use crate::library;
 use crate::newton::{Bound, Held, Kept, Kind, Rest, Settled, Shape, Solve, Sought};
 use crate::program::type_name;
@@ -546,6 +546,10 @@ impl Lowered for f64 {
     fn native(name: &str, arguments: usize) -> Option<Native<f64>> {
         library::native(name, arguments)
     }
+
+    fn special(name: &str) -> Option<Special<f64>> {
+        library::special(name)
+    }
 }
 
 impl Lowered for Bound {
@@ -555,5 +559,9 @@ impl Lowered for Bound {
 
     fn native(name: &str, arguments: usize) -> Option<Native<Bound>> {
         library::kernel(name, arguments)
+    }
+
+    fn special(name: &str) -> Option<Special<Bound>> {
+        library::kernel_special(name)
     }
 }

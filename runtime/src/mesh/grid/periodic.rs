@@ -63,9 +63,11 @@ impl<T: Real> Periodic<T> {
             square / (T::one() + square)
         };
         let way = match is_plain::<T>() {
-            true => Way::Transformed(Box::new(Transformed::new(nodes, |waves| {
-                symbol(waves).value() / nodes as f64
-            }))),
+            true => {
+                let share = |waves: usize| symbol(waves).value() / nodes as f64;
+                let symbol = (0..=nodes / 2).map(share).collect();
+                Way::Transformed(Box::new(Transformed::new(nodes, symbol)))
+            }
             false => Way::Convolved(kernel(nodes, symbol), vec![T::zero(); nodes]),
         };
         Self {
@@ -147,7 +149,8 @@ fn convolve<T: Real>(kernel: &[T], copy: &mut [T], row: &mut [T]) {
 }
 
 impl Transformed {
-    fn new(nodes: usize, symbol: impl Fn(usize) -> f64) -> Self {
+    /// Takes `1 - S` of each component, over the number of nodes. Not generic: transforms are compiled here, once.
+    fn new(nodes: usize, symbol: Vec<f64>) -> Self {
         let mut planner = RealFftPlanner::<f64>::new();
         let to = planner.plan_fft_forward(nodes);
         let from = planner.plan_fft_inverse(nodes);
@@ -156,7 +159,7 @@ impl Transformed {
             row: to.make_input_vec(),
             components: to.make_output_vec(),
             scratch: vec![Complex::default(); scratch],
-            symbol: (0..=nodes / 2).map(symbol).collect(),
+            symbol,
             to,
             from,
         }
