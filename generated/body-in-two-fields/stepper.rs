@@ -254,11 +254,8 @@ impl<T: Real> BodyInTwoFields<T> {
         let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
         let Ω = here.Λ.body_velocity(&after.Λ).matrix();
         let t1 = h.powi(-1);
-        let parts: [SVector<T, 3>; 1] = [
-            axial_of_difference(&(J * Ω_before)) * t1 - gU.cross(&Γ) * h
-                + p.cross(&B) * h + axial_of_difference(&(J * Ω.transpose())) * t1,
-        ];
-        parts[0]
+        axial_of_difference(&(J * Ω_before)) * t1 - gU.cross(&Γ) * h + p.cross(&B) * h
+            + axial_of_difference(&(J * Ω.transpose())) * t1
     }
     /// What the step of size `h` from one state to the next leaves of its equations: the
     /// momentum that is carried to the second state, less the one that the motion between
@@ -300,13 +297,8 @@ impl<T: Real> BodyInTwoFields<T> {
         for axis in 0..3 {
             let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
             let t1 = vee(&ξ);
-            let parts: [SVector<T, 3>; 1] = [
-                axial_of_difference(
-                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
-                        - hat(&(J * t1 * T::from_f64(0.5)))),
-                ),
-            ];
-            inertia.set_column(axis, &parts[0]);
+            let along = t1 * J.trace() - J * t1;
+            inertia.set_column(axis, &along);
         }
         inertia
     }

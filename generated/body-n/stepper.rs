@@ -185,8 +185,10 @@ impl<const N: usize, T: Real> BodyN<N, T> {
         let t1 = h.powi(-1);
         let t2 = C.tr_mul(&Ω_before) * t1;
         let t3 = C * Ω.transpose() * t1;
-        let parts: [SMatrix<T, N, N>; 1] = [t2 - t2.transpose() + t3 - t3.transpose()];
         {
+            let parts: [SMatrix<T, N, N>; 1] = [
+                t2 - t2.transpose() + t3 - t3.transpose(),
+            ];
             let mut all = SVector::<T, 28>::zeros();
             let rest = all.as_mut_slice();
             let rest = put_skew(rest, &parts[0]);
@@ -224,21 +226,19 @@ impl<const N: usize, T: Real> BodyN<N, T> {
         let mut inertia = SMatrix::<T, 28, 28>::zeros();
         for axis in 0..(N * (N - 1) / 2) {
             let ξ: SMatrix<T, N, N> = skew_basis::<T, N>(axis);
-            let parts: [SMatrix<T, N, N>; 1] = [
-                C.tr_mul(&ξ) * T::from_f64(0.5) + ξ * C.transpose() * T::from_f64(0.5)
-                    + ξ * C * T::from_f64(0.5) + C * ξ * T::from_f64(0.5),
-            ];
-            inertia
-                .set_column(
-                    axis,
-                    &{
-                        let mut all = SVector::<T, 28>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_skew(rest, &parts[0]);
-                        let _ = rest;
-                        all
-                    },
-                );
+            let along = {
+                let parts: [SMatrix<T, N, N>; 1] = [
+                    C.tr_mul(&ξ) * T::from_f64(0.5)
+                        + ξ * C.transpose() * T::from_f64(0.5)
+                        + ξ * C * T::from_f64(0.5) + C * ξ * T::from_f64(0.5),
+                ];
+                let mut all = SVector::<T, 28>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_skew(rest, &parts[0]);
+                let _ = rest;
+                all
+            };
+            inertia.set_column(axis, &along);
         }
         inertia
     }

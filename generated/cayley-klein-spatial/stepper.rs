@@ -223,22 +223,13 @@ impl<T: Real> CayleyKleinSpatial<T> {
         let t2 = quaternion_imaginary(&w_before);
         let t3 = quaternion_imaginary(&w);
         let t4 = I * t3;
-        let parts: [SVector<T, 3>; 1] = [
-            quaternion_imaginary(&(w_before * pure_quaternion(&(I_before * t2))))
-                * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
-                - quaternion_imaginary(&(w_before * w_before)) * (t1 * c)
-                + t4.cross(&t3) * (T::from_f64(4.0) * t1)
-                - quaternion_imaginary(&(w.tr_mul(&pure_quaternion(&t4))))
-                    * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
-                + quaternion_imaginary(&(w * w)) * (t1 * c),
-        ];
-        {
-            let mut all = SVector::<T, 3>::zeros();
-            let rest = all.as_mut_slice();
-            let rest = put_vector(rest, &parts[0]);
-            let _ = rest;
-            all
-        }
+        quaternion_imaginary(&(w_before * pure_quaternion(&(I_before * t2))))
+            * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
+            - quaternion_imaginary(&(w_before * w_before)) * (t1 * c)
+            + t4.cross(&t3) * (T::from_f64(4.0) * t1)
+            - quaternion_imaginary(&(w.tr_mul(&pure_quaternion(&t4))))
+                * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
+            + quaternion_imaginary(&(w * w)) * (t1 * c)
     }
     /// What the step of size `h` from one state to the next leaves of its equations: the
     /// momentum that is carried to the second state, less the one that the motion between
@@ -286,32 +277,15 @@ impl<T: Real> CayleyKleinSpatial<T> {
         let mut inertia = SMatrix::<T, 3, 3>::zeros();
         for axis in 0..3 {
             let ξ: SVector<T, 3> = unit::<T, 3>(axis);
-            let parts: [SVector<T, 3>; 1] = [I * ξ];
-            inertia
-                .set_column(
-                    axis,
-                    &{
-                        let mut all = SVector::<T, 3>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_vector(rest, &parts[0]);
-                        let _ = rest;
-                        all
-                    },
-                );
+            let along = I * ξ;
+            inertia.set_column(axis, &along);
         }
         inertia
     }
     /// The kinetic and the potential energy at this node: those of the limit of small steps,
     /// at the node's momentum.
     pub fn energies(&self, state: &CayleyKleinSpatialState<T>) -> (T, T) {
-        let parts: [SVector<T, 3>; 1] = [state.spatial_momentum().0];
-        let momentum = {
-            let mut all = SVector::<T, 3>::zeros();
-            let rest = all.as_mut_slice();
-            let rest = put_vector(rest, &parts[0]);
-            let _ = rest;
-            all
-        };
+        let momentum = state.spatial_momentum().0;
         let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 0 + 3);
         (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
     }

@@ -185,23 +185,13 @@ impl<T: Real> CayleyKlein<T> {
         let t1 = h.powi(-1);
         let t2 = quaternion_imaginary(&W_before);
         let t3 = quaternion_imaginary(&W);
-        let parts: [SVector<T, 3>; 1] = [
-            quaternion_imaginary(
-                &(W_before.tr_mul(&pure_quaternion(&(diagonal_times(&I, &t2))))),
-            ) * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
-                - quaternion_imaginary(&(W_before * W_before)) * (t1 * c)
-                - quaternion_imaginary(
-                    &(W * pure_quaternion(&(diagonal_times(&I, &t3)))),
-                ) * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
-                + quaternion_imaginary(&(W * W)) * (t1 * c),
-        ];
-        {
-            let mut all = SVector::<T, 3>::zeros();
-            let rest = all.as_mut_slice();
-            let rest = put_vector(rest, &parts[0]);
-            let _ = rest;
-            all
-        }
+        quaternion_imaginary(
+            &(W_before.tr_mul(&pure_quaternion(&(diagonal_times(&I, &t2))))),
+        ) * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
+            - quaternion_imaginary(&(W_before * W_before)) * (t1 * c)
+            - quaternion_imaginary(&(W * pure_quaternion(&(diagonal_times(&I, &t3)))))
+                * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
+            + quaternion_imaginary(&(W * W)) * (t1 * c)
     }
     /// What the step of size `h` from one state to the next leaves of its equations: the
     /// momentum that is carried to the second state, less the one that the motion between
@@ -243,32 +233,15 @@ impl<T: Real> CayleyKlein<T> {
         let mut inertia = SMatrix::<T, 3, 3>::zeros();
         for axis in 0..3 {
             let ξ: SVector<T, 3> = unit::<T, 3>(axis);
-            let parts: [SVector<T, 3>; 1] = [diagonal_times(&I, &ξ)];
-            inertia
-                .set_column(
-                    axis,
-                    &{
-                        let mut all = SVector::<T, 3>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_vector(rest, &parts[0]);
-                        let _ = rest;
-                        all
-                    },
-                );
+            let along = diagonal_times(&I, &ξ);
+            inertia.set_column(axis, &along);
         }
         inertia
     }
     /// The kinetic and the potential energy at this node: those of the limit of small steps,
     /// at the node's momentum.
     pub fn energies(&self, state: &CayleyKleinState<T>) -> (T, T) {
-        let parts: [SVector<T, 3>; 1] = [state.body_momentum().0];
-        let momentum = {
-            let mut all = SVector::<T, 3>::zeros();
-            let rest = all.as_mut_slice();
-            let rest = put_vector(rest, &parts[0]);
-            let _ = rest;
-            all
-        };
+        let momentum = state.body_momentum().0;
         let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 0 + 3);
         (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
     }

@@ -176,19 +176,9 @@ impl<T: Real> ChargedParticle<T> {
         let ΔX_before = before.X.spatial_velocity(&here.X).matrix();
         let ΔX = here.X.spatial_velocity(&after.X).matrix();
         let t1 = h.powi(-1);
-        let parts: [SVector<T, 3>; 1] = [
-            ΔX_before * (t1 * m) + E * (h * q)
-                + B.cross(&X_before) * (T::from_f64(0.5) * q) - ΔX * (t1 * m)
-                - B.cross(&X) * (T::from_f64(0.5) * q)
-                - B.cross(&ΔX) * (T::from_f64(0.5) * q),
-        ];
-        {
-            let mut all = SVector::<T, 3>::zeros();
-            let rest = all.as_mut_slice();
-            let rest = put_matrix(rest, &parts[0]);
-            let _ = rest;
-            all
-        }
+        ΔX_before * (t1 * m) + E * (h * q) + B.cross(&X_before) * (T::from_f64(0.5) * q)
+            - ΔX * (t1 * m) - B.cross(&X) * (T::from_f64(0.5) * q)
+            - B.cross(&ΔX) * (T::from_f64(0.5) * q)
     }
     /// What the step of size `h` from one state to the next leaves of its equations: the
     /// momentum that is carried to the second state, less the one that the motion between
@@ -226,18 +216,8 @@ impl<T: Real> ChargedParticle<T> {
         let mut inertia = SMatrix::<T, 3, 3>::zeros();
         for axis in 0..(3 * 1) {
             let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-            let parts: [SVector<T, 3>; 1] = [ξ * m];
-            inertia
-                .set_column(
-                    axis,
-                    &{
-                        let mut all = SVector::<T, 3>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_matrix(rest, &parts[0]);
-                        let _ = rest;
-                        all
-                    },
-                );
+            let along = ξ * m;
+            inertia.set_column(axis, &along);
         }
         inertia
     }
@@ -246,16 +226,7 @@ impl<T: Real> ChargedParticle<T> {
     pub fn energies(&self, state: &ChargedParticleState<T>) -> (T, T) {
         let ChargedParticleParameters { q, B, E, .. } = self.parameters;
         let X = state.X.matrix();
-        let parts: [SVector<T, 3>; 1] = [
-            state.momentum().0 - (B * (T::from_f64(0.5) * q)).cross(&X),
-        ];
-        let momentum = {
-            let mut all = SVector::<T, 3>::zeros();
-            let rest = all.as_mut_slice();
-            let rest = put_matrix(rest, &parts[0]);
-            let _ = rest;
-            all
-        };
+        let momentum = state.momentum().0 - (B * (T::from_f64(0.5) * q)).cross(&X);
         let velocity = solve_leading_or_nan(
             &self.inertia_at(state),
             &momentum,

@@ -511,31 +511,33 @@ impl<T: Real> CoupledBodies<T> {
         let Ω2 = here.Λ2.body_velocity(&after.Λ2).matrix();
         let t1 = h.powi(-1);
         let t2 = d1.cross(&(R * d2));
-        let parts: [SVector<T, 3>; 2] = [
-            axial_of_difference(
-                &(Ω1_before
-                    .tr_mul(
-                        &((-(J1 / h))
-                            - ((R_before
-                                * ((Ω2_before - SMatrix::<T, 3, 3>::identity()) * d2))
-                                * d1.transpose() * eps) / h),
-                    )),
-            ) + axial_of_difference(&(J1 * Ω1.transpose())) * t1 - t2 * (t1 * eps)
-                + d1.cross(&(R * (Ω2 * d2))) * (t1 * eps),
-            axial_of_difference(
-                &(Ω2_before
-                    .tr_mul(
-                        &((-(J2 / h))
-                            - (R_before
-                                .tr_mul(
-                                    &((Ω1_before - SMatrix::<T, 3, 3>::identity()) * d1),
-                                ) * d2.transpose() * eps) / h),
-                    )),
-            ) + axial_of_difference(&(J2 * Ω2.transpose())) * t1
-                - R.tr_mul(&(Ω1 * d1.cross(&(Ω1.tr_mul(&(R * d2)))))) * (t1 * eps)
-                + R.tr_mul(&t2) * (t1 * eps),
-        ];
-        SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
+        {
+            let parts: [SVector<T, 3>; 2] = [
+                axial_of_difference(
+                    &(Ω1_before
+                        .tr_mul(
+                            &((-(J1 / h))
+                                - ((R_before
+                                    * ((Ω2_before - SMatrix::<T, 3, 3>::identity()) * d2))
+                                    * d1.transpose() * eps) / h),
+                        )),
+                ) + axial_of_difference(&(J1 * Ω1.transpose())) * t1 - t2 * (t1 * eps)
+                    + d1.cross(&(R * (Ω2 * d2))) * (t1 * eps),
+                axial_of_difference(
+                    &(Ω2_before
+                        .tr_mul(
+                            &((-(J2 / h))
+                                - (R_before
+                                    .tr_mul(
+                                        &((Ω1_before - SMatrix::<T, 3, 3>::identity()) * d1),
+                                    ) * d2.transpose() * eps) / h),
+                        )),
+                ) + axial_of_difference(&(J2 * Ω2.transpose())) * t1
+                    - R.tr_mul(&(Ω1 * d1.cross(&(Ω1.tr_mul(&(R * d2)))))) * (t1 * eps)
+                    + R.tr_mul(&t2) * (t1 * eps),
+            ];
+            SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
+        }
     }
     /// What the step of size `h` from one state to the next leaves of its equations: the
     /// momentum that is carried to the second state, less the one that the motion between
@@ -608,23 +610,16 @@ impl<T: Real> CoupledBodies<T> {
             let t1 = d1.dot(&(R * d2));
             let t2 = vee(&ξ2);
             let t3 = vee(&ξ1);
-            let parts: [SVector<T, 3>; 2] = [
-                axial_of_difference(
-                    &(hat(&(R * d2 * (eps * d1.dot(&(R * t2))))) * T::from_f64(0.5)
-                        - hat(&(R * t2 * (eps * t1))) * T::from_f64(0.5)
-                        + hat(&(t3 * (T::from_f64(0.5) * J1.trace())))
-                        - hat(&(J1 * t3 * T::from_f64(0.5)))),
-                ),
-                axial_of_difference(
-                    &(hat(&(R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))))
-                        * T::from_f64(0.5)
-                        - hat(&(R.tr_mul(&t3) * (eps * t1))) * T::from_f64(0.5)
-                        + hat(&(t2 * (T::from_f64(0.5) * J2.trace())))
-                        - hat(&(J2 * t2 * T::from_f64(0.5)))),
-                ),
-            ];
-            inertia
-                .set_column(axis, &SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]));
+            let along = {
+                let parts: [SVector<T, 3>; 2] = [
+                    R * d2 * (eps * d1.dot(&(R * t2))) - R * t2 * (eps * t1)
+                        + t3 * J1.trace() - J1 * t3,
+                    R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))
+                        - R.tr_mul(&t3) * (eps * t1) + t2 * J2.trace() - J2 * t2,
+                ];
+                SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
+            };
+            inertia.set_column(axis, &along);
         }
         for axis in 0..3 {
             let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
@@ -632,37 +627,29 @@ impl<T: Real> CoupledBodies<T> {
             let t1 = d1.dot(&(R * d2));
             let t2 = vee(&ξ2);
             let t3 = vee(&ξ1);
-            let parts: [SVector<T, 3>; 2] = [
-                axial_of_difference(
-                    &(hat(&(R * d2 * (eps * d1.dot(&(R * t2))))) * T::from_f64(0.5)
-                        - hat(&(R * t2 * (eps * t1))) * T::from_f64(0.5)
-                        + hat(&(t3 * (T::from_f64(0.5) * J1.trace())))
-                        - hat(&(J1 * t3 * T::from_f64(0.5)))),
-                ),
-                axial_of_difference(
-                    &(hat(&(R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))))
-                        * T::from_f64(0.5)
-                        - hat(&(R.tr_mul(&t3) * (eps * t1))) * T::from_f64(0.5)
-                        + hat(&(t2 * (T::from_f64(0.5) * J2.trace())))
-                        - hat(&(J2 * t2 * T::from_f64(0.5)))),
-                ),
-            ];
-            inertia
-                .set_column(
-                    3 + axis,
-                    &SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]),
-                );
+            let along = {
+                let parts: [SVector<T, 3>; 2] = [
+                    R * d2 * (eps * d1.dot(&(R * t2))) - R * t2 * (eps * t1)
+                        + t3 * J1.trace() - J1 * t3,
+                    R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))
+                        - R.tr_mul(&t3) * (eps * t1) + t2 * J2.trace() - J2 * t2,
+                ];
+                SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
+            };
+            inertia.set_column(3 + axis, &along);
         }
         inertia
     }
     /// The kinetic and the potential energy at this node: those of the limit of small steps,
     /// at the node's momentum.
     pub fn energies(&self, state: &CoupledBodiesState<T>) -> (T, T) {
-        let parts: [SVector<T, 3>; 2] = [
-            state.body_momentum_Λ1().0,
-            state.body_momentum_Λ2().0,
-        ];
-        let momentum = SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3]);
+        let momentum = {
+            let parts: [SVector<T, 3>; 2] = [
+                state.body_momentum_Λ1().0,
+                state.body_momentum_Λ2().0,
+            ];
+            SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
+        };
         let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 6);
         (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
     }

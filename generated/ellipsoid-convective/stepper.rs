@@ -305,16 +305,16 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let G = here.Q.body_velocity(&after.Q).matrix();
         let t1 = G_before.tr_mul(&C_before);
         let t2 = h.powi(-1);
-        let parts: [SMatrix<T, N, N>; 1] = [
-            t1 * (G_before * I0) * t2 - t1 * I0 * t2 - C * (T::from_f64(2.0) * h * a)
-                + C * C * (T::from_f64(2.0) * h * b)
-                - C * (T::from_f64(2.0) * h * b * C.trace())
-                - SMatrix::<T, N, N>::identity()
-                    * (T::from_f64(2.0) * h * c * determinant(&(C)))
-                + SMatrix::<T, N, N>::identity() * (h * d) + C * I0 * t2
-                - C * (G * I0) * t2,
-        ];
         {
+            let parts: [SMatrix<T, N, N>; 1] = [
+                t1 * (G_before * I0) * t2 - t1 * I0 * t2 - C * (T::from_f64(2.0) * h * a)
+                    + C * C * (T::from_f64(2.0) * h * b)
+                    - C * (T::from_f64(2.0) * h * b * C.trace())
+                    - SMatrix::<T, N, N>::identity()
+                        * (T::from_f64(2.0) * h * c * determinant(&(C)))
+                    + SMatrix::<T, N, N>::identity() * (h * d) + C * I0 * t2
+                    - C * (G * I0) * t2,
+            ];
             let mut all = SVector::<T, 16>::zeros();
             let rest = all.as_mut_slice();
             let rest = put_matrix(rest, &parts[0]);
@@ -371,18 +371,15 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let mut inertia = SMatrix::<T, 16, 16>::zeros();
         for axis in 0..(N * N) {
             let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
-            let parts: [SMatrix<T, N, N>; 1] = [C * (ξ * I0)];
-            inertia
-                .set_column(
-                    axis,
-                    &{
-                        let mut all = SVector::<T, 16>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_matrix(rest, &parts[0]);
-                        let _ = rest;
-                        all
-                    },
-                );
+            let along = {
+                let parts: [SMatrix<T, N, N>; 1] = [C * (ξ * I0)];
+                let mut all = SVector::<T, 16>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_matrix(rest, &parts[0]);
+                let _ = rest;
+                all
+            };
+            inertia.set_column(axis, &along);
         }
         inertia
     }
@@ -392,8 +389,8 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let EllipsoidConvectiveParameters { C0, a, b, c, d, .. } = self.parameters;
         let Q = state.Q.matrix();
         let C = Q.tr_mul(&(C0 * Q));
-        let parts: [SMatrix<T, N, N>; 1] = [state.body_momentum().0];
         let momentum = {
+            let parts: [SMatrix<T, N, N>; 1] = [state.body_momentum().0];
             let mut all = SVector::<T, 16>::zeros();
             let rest = all.as_mut_slice();
             let rest = put_matrix(rest, &parts[0]);

@@ -302,16 +302,16 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let g = here.Q.spatial_velocity(&after.Q).matrix();
         let t1 = g_before * S_before;
         let t2 = h.powi(-1);
-        let parts: [SMatrix<T, N, N>; 1] = [
-            C0 * (t1 * g_before.transpose()) * t2 - C0 * t1.transpose() * t2
-                - S * (T::from_f64(2.0) * h * a) + S * S * (T::from_f64(2.0) * h * b)
-                - S * (T::from_f64(2.0) * h * b * S.trace())
-                - SMatrix::<T, N, N>::identity()
-                    * (T::from_f64(2.0) * h * c * determinant(&(S)))
-                + SMatrix::<T, N, N>::identity() * (h * d) - C0 * (g * S) * t2
-                + C0 * S * t2,
-        ];
         {
+            let parts: [SMatrix<T, N, N>; 1] = [
+                C0 * (t1 * g_before.transpose()) * t2 - C0 * t1.transpose() * t2
+                    - S * (T::from_f64(2.0) * h * a) + S * S * (T::from_f64(2.0) * h * b)
+                    - S * (T::from_f64(2.0) * h * b * S.trace())
+                    - SMatrix::<T, N, N>::identity()
+                        * (T::from_f64(2.0) * h * c * determinant(&(S)))
+                    + SMatrix::<T, N, N>::identity() * (h * d) - C0 * (g * S) * t2
+                    + C0 * S * t2,
+            ];
             let mut all = SVector::<T, 16>::zeros();
             let rest = all.as_mut_slice();
             let rest = put_matrix(rest, &parts[0]);
@@ -368,18 +368,15 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let mut inertia = SMatrix::<T, 16, 16>::zeros();
         for axis in 0..(N * N) {
             let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
-            let parts: [SMatrix<T, N, N>; 1] = [C0 * (ξ * S)];
-            inertia
-                .set_column(
-                    axis,
-                    &{
-                        let mut all = SVector::<T, 16>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_matrix(rest, &parts[0]);
-                        let _ = rest;
-                        all
-                    },
-                );
+            let along = {
+                let parts: [SMatrix<T, N, N>; 1] = [C0 * (ξ * S)];
+                let mut all = SVector::<T, 16>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_matrix(rest, &parts[0]);
+                let _ = rest;
+                all
+            };
+            inertia.set_column(axis, &along);
         }
         inertia
     }
@@ -389,8 +386,8 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let EllipsoidSpatialParameters { I0, a, b, c, d, .. } = self.parameters;
         let Q = state.Q.matrix();
         let S = Q * (I0 * Q.transpose());
-        let parts: [SMatrix<T, N, N>; 1] = [state.spatial_momentum().0];
         let momentum = {
+            let parts: [SMatrix<T, N, N>; 1] = [state.spatial_momentum().0];
             let mut all = SVector::<T, 16>::zeros();
             let rest = all.as_mut_slice();
             let rest = put_matrix(rest, &parts[0]);

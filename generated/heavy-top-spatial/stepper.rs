@@ -288,11 +288,8 @@ impl<T: Real> HeavyTopSpatial<T> {
         let ω_before = before.Λ.spatial_velocity(&here.Λ).matrix();
         let ω = here.Λ.spatial_velocity(&after.Λ).matrix();
         let t1 = h.powi(-1);
-        let parts: [SVector<T, 3>; 1] = [
-            axial_of_difference(&(ω_before * J_before)) * t1 + z.cross(&χ) * (h * w)
-                - axial_of_difference(&(ω * J)) * t1,
-        ];
-        parts[0]
+        axial_of_difference(&(ω_before * J_before)) * t1 + z.cross(&χ) * (h * w)
+            - axial_of_difference(&(ω * J)) * t1
     }
     /// What the step of size `h` from one state to the next leaves of its equations: the
     /// momentum that is carried to the second state, less the one that the motion between
@@ -336,13 +333,8 @@ impl<T: Real> HeavyTopSpatial<T> {
         for axis in 0..3 {
             let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
             let t1 = vee(&ξ);
-            let parts: [SVector<T, 3>; 1] = [
-                axial_of_difference(
-                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
-                        - hat(&(J * t1 * T::from_f64(0.5)))),
-                ),
-            ];
-            inertia.set_column(axis, &parts[0]);
+            let along = t1 * J.trace() - J * t1;
+            inertia.set_column(axis, &along);
         }
         inertia
     }

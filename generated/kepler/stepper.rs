@@ -175,16 +175,7 @@ impl<T: Real> Kepler<T> {
         let ΔX = here.X.spatial_velocity(&after.X).matrix();
         let t1 = h.powi(-1);
         let t2 = X.dot(&X);
-        let parts: [SVector<T, 3>; 1] = [
-            ΔX_before * (t1 * m) - X * (h * m * k / (t2 * t2.sqrt())) - ΔX * (t1 * m),
-        ];
-        {
-            let mut all = SVector::<T, 3>::zeros();
-            let rest = all.as_mut_slice();
-            let rest = put_matrix(rest, &parts[0]);
-            let _ = rest;
-            all
-        }
+        ΔX_before * (t1 * m) - X * (h * m * k / (t2 * t2.sqrt())) - ΔX * (t1 * m)
     }
     /// What the step of size `h` from one state to the next leaves of its equations: the
     /// momentum that is carried to the second state, less the one that the motion between
@@ -225,18 +216,8 @@ impl<T: Real> Kepler<T> {
         let mut inertia = SMatrix::<T, 3, 3>::zeros();
         for axis in 0..(3 * 1) {
             let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-            let parts: [SVector<T, 3>; 1] = [ξ * m];
-            inertia
-                .set_column(
-                    axis,
-                    &{
-                        let mut all = SVector::<T, 3>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_matrix(rest, &parts[0]);
-                        let _ = rest;
-                        all
-                    },
-                );
+            let along = ξ * m;
+            inertia.set_column(axis, &along);
         }
         inertia
     }
@@ -245,14 +226,7 @@ impl<T: Real> Kepler<T> {
     pub fn energies(&self, state: &KeplerState<T>) -> (T, T) {
         let KeplerParameters { m, k, .. } = self.parameters;
         let X = state.X.matrix();
-        let parts: [SVector<T, 3>; 1] = [state.momentum().0];
-        let momentum = {
-            let mut all = SVector::<T, 3>::zeros();
-            let rest = all.as_mut_slice();
-            let rest = put_matrix(rest, &parts[0]);
-            let _ = rest;
-            all
-        };
+        let momentum = state.momentum().0;
         let velocity = solve_leading_or_nan(
             &self.inertia_at(state),
             &momentum,

@@ -622,75 +622,66 @@ impl<T: Real> KirchhoffBody<T> {
         let t10 = t9.transpose();
         let t11 = motion_translation(&V);
         let t12 = vee(&t9);
-        let parts: [SVector<T, 6>; 1] = [
-            into_rows::<
+        into_rows::<
+            T,
+            6,
+            3,
+            1,
+        >(
+            &((M * (t3 * t4)).cross(&t5) * (T::from_f64(0.25) * t1)
+                + (M * t4).cross(&t5) * (T::from_f64(0.25) * t1)
+                + (D.tr_mul(&t6)).cross(&t5) * (T::from_f64(0.5) * t1)
+                + axial_of_difference(&(J * t2)) * t1
+                + axial_of_difference(&(crossing(&t3, &(D * (t3 * t4)))))
+                    * (T::from_f64(0.25) * t1)
+                + axial_of_difference(&(crossing(&t3, &(D * t4))))
+                    * (T::from_f64(0.25) * t1) - t7),
+            0,
+        )
+            + into_rows::<
                 T,
                 6,
                 3,
                 1,
             >(
-                &((M * (t3 * t4)).cross(&t5) * (T::from_f64(0.25) * t1)
-                    + (M * t4).cross(&t5) * (T::from_f64(0.25) * t1)
-                    + (D.tr_mul(&t6)).cross(&t5) * (T::from_f64(0.5) * t1)
-                    + axial_of_difference(&(J * t2)) * t1
-                    + axial_of_difference(&(crossing(&t3, &(D * (t3 * t4)))))
-                        * (T::from_f64(0.25) * t1)
-                    + axial_of_difference(&(crossing(&t3, &(D * t4))))
-                        * (T::from_f64(0.25) * t1) - t7),
+                &(M * (t3 * t4) * (T::from_f64(0.25) * t1)
+                    + M * t4 * (T::from_f64(0.25) * t1)
+                    + D.tr_mul(&t6) * (T::from_f64(0.5) * t1)
+                    + t3 * (M * (t3 * t4)) * (T::from_f64(0.25) * t1)
+                    + t3 * (M * t4) * (T::from_f64(0.25) * t1)
+                    + t3 * D.tr_mul(&t6) * (T::from_f64(0.5) * t1) - t8),
+                3,
+            )
+            - into_rows::<
+                T,
+                6,
+                3,
+                1,
+            >(
+                &(axial_of_difference(&(crossing(&t9, &(D * (t10 * t11)))))
+                    * (T::from_f64(0.25) * t1)
+                    - (M * (t10 * t11)).cross(&t11) * (T::from_f64(0.25) * t1)
+                    - (M * t11).cross(&t11) * (T::from_f64(0.25) * t1)
+                    - (D.tr_mul(&t12)).cross(&t11) * (T::from_f64(0.5) * t1)
+                    - axial_of_difference(&(J * t10)) * t1
+                    + axial_of_difference(&(crossing(&t9, &(D * t11))))
+                        * (T::from_f64(0.25) * t1) + t7),
                 0,
             )
-                + into_rows::<
-                    T,
-                    6,
-                    3,
-                    1,
-                >(
-                    &(M * (t3 * t4) * (T::from_f64(0.25) * t1)
-                        + M * t4 * (T::from_f64(0.25) * t1)
-                        + D.tr_mul(&t6) * (T::from_f64(0.5) * t1)
-                        + t3 * (M * (t3 * t4)) * (T::from_f64(0.25) * t1)
-                        + t3 * (M * t4) * (T::from_f64(0.25) * t1)
-                        + t3 * D.tr_mul(&t6) * (T::from_f64(0.5) * t1) - t8),
-                    3,
-                )
-                - into_rows::<
-                    T,
-                    6,
-                    3,
-                    1,
-                >(
-                    &(axial_of_difference(&(crossing(&t9, &(D * (t10 * t11)))))
-                        * (T::from_f64(0.25) * t1)
-                        - (M * (t10 * t11)).cross(&t11) * (T::from_f64(0.25) * t1)
-                        - (M * t11).cross(&t11) * (T::from_f64(0.25) * t1)
-                        - (D.tr_mul(&t12)).cross(&t11) * (T::from_f64(0.5) * t1)
-                        - axial_of_difference(&(J * t10)) * t1
-                        + axial_of_difference(&(crossing(&t9, &(D * t11))))
-                            * (T::from_f64(0.25) * t1) + t7),
-                    0,
-                )
-                - into_rows::<
-                    T,
-                    6,
-                    3,
-                    1,
-                >(
-                    &(M * (t10 * t11) * (T::from_f64(0.25) * t1)
-                        + M * t11 * (T::from_f64(0.25) * t1)
-                        + D.tr_mul(&t12) * (T::from_f64(0.5) * t1)
-                        + t9 * (M * (t10 * t11)) * (T::from_f64(0.25) * t1)
-                        + t9 * (M * t11) * (T::from_f64(0.25) * t1)
-                        + t9 * D.tr_mul(&t12) * (T::from_f64(0.5) * t1) + t8),
-                    3,
-                ),
-        ];
-        {
-            let mut all = SVector::<T, 6>::zeros();
-            let rest = all.as_mut_slice();
-            let rest = put_vector(rest, &parts[0]);
-            let _ = rest;
-            all
-        }
+            - into_rows::<
+                T,
+                6,
+                3,
+                1,
+            >(
+                &(M * (t10 * t11) * (T::from_f64(0.25) * t1)
+                    + M * t11 * (T::from_f64(0.25) * t1)
+                    + D.tr_mul(&t12) * (T::from_f64(0.5) * t1)
+                    + t9 * (M * (t10 * t11)) * (T::from_f64(0.25) * t1)
+                    + t9 * (M * t11) * (T::from_f64(0.25) * t1)
+                    + t9 * D.tr_mul(&t12) * (T::from_f64(0.5) * t1) + t8),
+                3,
+            )
     }
     /// What the step of size `h` from one state to the next leaves of its equations: the
     /// momentum that is carried to the second state, less the one that the motion between
@@ -784,29 +775,13 @@ impl<T: Real> KirchhoffBody<T> {
         let mut inertia = SMatrix::<T, 6, 6>::zeros();
         for axis in 0..6 {
             let ξ: SVector<T, 6> = unit::<T, 6>(axis);
-            let parts: [SVector<T, 6>; 1] = [
-                into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ, 0), 0) * J.trace()
-                    - into_rows::<T, 6, 3, 1>(&(J * rows_from::<T, 6, 3, 1>(&ξ, 0)), 0)
-                    + into_rows::<T, 6, 3, 1>(&(D * rows_from::<T, 6, 3, 1>(&ξ, 3)), 0)
-                    + into_rows::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(&D.tr_mul(&rows_from::<T, 6, 3, 1>(&ξ, 0)), 3)
-                    + into_rows::<T, 6, 3, 1>(&(M * rows_from::<T, 6, 3, 1>(&ξ, 3)), 3),
-            ];
-            inertia
-                .set_column(
-                    axis,
-                    &{
-                        let mut all = SVector::<T, 6>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_vector(rest, &parts[0]);
-                        let _ = rest;
-                        all
-                    },
-                );
+            let along = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ, 0), 0)
+                * J.trace()
+                - into_rows::<T, 6, 3, 1>(&(J * rows_from::<T, 6, 3, 1>(&ξ, 0)), 0)
+                + into_rows::<T, 6, 3, 1>(&(D * rows_from::<T, 6, 3, 1>(&ξ, 3)), 0)
+                + into_rows::<T, 6, 3, 1>(&D.tr_mul(&rows_from::<T, 6, 3, 1>(&ξ, 0)), 3)
+                + into_rows::<T, 6, 3, 1>(&(M * rows_from::<T, 6, 3, 1>(&ξ, 3)), 3);
+            inertia.set_column(axis, &along);
         }
         inertia
     }
@@ -816,14 +791,7 @@ impl<T: Real> KirchhoffBody<T> {
         let KirchhoffBodyParameters { b, Z, .. } = self.parameters;
         let G = state.G.matrix();
         let P = G.tr_mul(&Z);
-        let parts: [SVector<T, 6>; 1] = [state.body_momentum().0];
-        let momentum = {
-            let mut all = SVector::<T, 6>::zeros();
-            let rest = all.as_mut_slice();
-            let rest = put_vector(rest, &parts[0]);
-            let _ = rest;
-            all
-        };
+        let momentum = state.body_momentum().0;
         let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 0 + 6);
         (momentum.dot(&velocity) * T::from_f64(0.5), b.dot(&P))
     }

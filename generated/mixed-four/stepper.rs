@@ -363,21 +363,12 @@ impl<T: Real> MixedFour<T> {
                 let ΔX = trial[0].matrix();
                 if iteration
                     .assess({
-                        let parts: [SVector<T, 3>; 1] = [
-                            (ΔX * (T::from_f64(4.0) * b * ΔX.dot(&ΔX) / h.powi(3))
-                                + ΔX * (m / h) - g * (T::from_f64(0.5) * h * m)
-                                - R * p * (T::from_f64(0.5) * h * k) + X * (h * k)
-                                - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
-                                - motion_translation(&G) * (T::from_f64(0.5) * h * k))
-                                - momenta[0],
-                        ];
-                        {
-                            let mut all = SVector::<T, 3>::zeros();
-                            let rest = all.as_mut_slice();
-                            let rest = put_matrix(rest, &parts[0]);
-                            let _ = rest;
-                            all
-                        }
+                        (ΔX * (T::from_f64(4.0) * b * ΔX.dot(&ΔX) / h.powi(3))
+                            + ΔX * (m / h) - g * (T::from_f64(0.5) * h * m)
+                            - R * p * (T::from_f64(0.5) * h * k) + X * (h * k)
+                            - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
+                            - motion_translation(&G) * (T::from_f64(0.5) * h * k))
+                            - momenta[0]
                     })
                 {
                     iteration
@@ -387,24 +378,12 @@ impl<T: Real> MixedFour<T> {
                                 for axis in 0..(3 * 1) {
                                     let η4 = array_basis::<T, 3, 1>(axis);
                                     let t1 = h.powi(-3);
-                                    let parts: [SVector<T, 3>; 1] = [
-                                        ΔX
-                                            * (T::from_f64(4.0) * t1 * b
-                                                * (η4.dot(&ΔX) + ΔX.dot(&η4)))
-                                            + η4 * (T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX))
-                                            + η4 * (m / h),
-                                    ];
-                                    matrix
-                                        .set_column(
-                                            axis,
-                                            &{
-                                                let mut all = SVector::<T, 3>::zeros();
-                                                let rest = all.as_mut_slice();
-                                                let rest = put_matrix(rest, &parts[0]);
-                                                let _ = rest;
-                                                all
-                                            },
-                                        );
+                                    let along = ΔX
+                                        * (T::from_f64(4.0) * t1 * b
+                                            * (η4.dot(&ΔX) + ΔX.dot(&η4)))
+                                        + η4 * (T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX))
+                                        + η4 * (m / h);
+                                    matrix.set_column(axis, &along);
                                 }
                                 matrix
                             },
@@ -918,19 +897,10 @@ impl<T: Real> MixedFour<T> {
         let G = given.1.0;
         let X = given.1.1.0;
         let ΔX = trial[0].matrix();
-        let parts: [SVector<T, 3>; 1] = [
-            (ΔX * (T::from_f64(4.0) * b * ΔX.dot(&ΔX) / h.powi(3)) + ΔX * (m / h)
-                - g * (T::from_f64(0.5) * h * m) - R * p * (T::from_f64(0.5) * h * k)
-                + X * (h * k) - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
-                - motion_translation(&G) * (T::from_f64(0.5) * h * k)) - momenta[0],
-        ];
-        {
-            let mut all = SVector::<T, 3>::zeros();
-            let rest = all.as_mut_slice();
-            let rest = put_matrix(rest, &parts[0]);
-            let _ = rest;
-            all
-        }
+        (ΔX * (T::from_f64(4.0) * b * ΔX.dot(&ΔX) / h.powi(3)) + ΔX * (m / h)
+            - g * (T::from_f64(0.5) * h * m) - R * p * (T::from_f64(0.5) * h * k)
+            + X * (h * k) - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
+            - motion_translation(&G) * (T::from_f64(0.5) * h * k)) - momenta[0]
     }
     /// Their tangent.
     #[cold]
@@ -947,21 +917,10 @@ impl<T: Real> MixedFour<T> {
         for axis in 0..(3 * 1) {
             let η4 = array_basis::<T, 3, 1>(axis);
             let t1 = h.powi(-3);
-            let parts: [SVector<T, 3>; 1] = [
-                ΔX * (T::from_f64(4.0) * t1 * b * (η4.dot(&ΔX) + ΔX.dot(&η4)))
-                    + η4 * (T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX)) + η4 * (m / h),
-            ];
-            matrix
-                .set_column(
-                    axis,
-                    &{
-                        let mut all = SVector::<T, 3>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_matrix(rest, &parts[0]);
-                        let _ = rest;
-                        all
-                    },
-                );
+            let along = ΔX
+                * (T::from_f64(4.0) * t1 * b * (η4.dot(&ΔX) + ΔX.dot(&η4)))
+                + η4 * (T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX)) + η4 * (m / h);
+            matrix.set_column(axis, &along);
         }
         matrix
     }
@@ -1115,49 +1074,54 @@ impl<T: Real> MixedFour<T> {
         let t7 = s.cross(&(t5 * (t6 - X))) * (T::from_f64(0.5) * h * k);
         let t8 = t5 * (t6 + t4 * s - X) * (T::from_f64(0.5) * h * k);
         let t9 = h.powi(-3);
-        let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-            axial_of_difference(&(J * V_before)) * t1
-                + p.cross(&(R.tr_mul(&X))) * (h * k) - t2 * (h * k)
-                + axial_of_difference(&(J * V.transpose())) * t1,
-            into_rows::<T, 6, 3, 1>(&(axial_of_difference(&(A * t3)) * t1 - t7), 0)
-                + into_rows::<
-                    T,
-                    6,
-                    3,
-                    1,
-                >(&(t3.tr_mul(&motion_translation(&W_before)) * (t1 * M) - t8), 3)
-                - into_rows::<
-                    T,
-                    6,
-                    3,
-                    1,
-                >(
-                    &(t7
-                        - axial_of_difference(&(A * motion_rotation(&W).transpose()))
-                            * t1),
-                    0,
-                )
-                - into_rows::<T, 6, 3, 1>(&(motion_translation(&W) * (t1 * M) + t8), 3),
-            quaternion_imaginary(
-                &(Y_before
-                    .tr_mul(
-                        &pure_quaternion(
-                            &(diagonal_times(&I, &quaternion_imaginary(&Y_before))),
-                        ),
-                    )),
-            ) * (T::from_f64(2.0) * t1) + relative_R_q.tr_mul(&t2) * (h * k)
-                - quaternion_imaginary(
-                    &(Y
-                        * pure_quaternion(
-                            &(diagonal_times(&I, &quaternion_imaginary(&Y))),
-                        )),
-                ) * (T::from_f64(2.0) * t1),
-            ΔX_before * (T::from_f64(4.0) * t9 * b * ΔX_before.dot(&ΔX_before))
-                + ΔX_before * (t1 * m) + g * (h * m) + R * p * (h * k)
-                - X * (T::from_f64(2.0) * h * k) + t4 * s * (h * k) + t6 * (h * k)
-                - ΔX * (T::from_f64(4.0) * t9 * b * ΔX.dot(&ΔX)) - ΔX * (t1 * m),
-        );
         {
+            let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
+                axial_of_difference(&(J * V_before)) * t1
+                    + p.cross(&(R.tr_mul(&X))) * (h * k) - t2 * (h * k)
+                    + axial_of_difference(&(J * V.transpose())) * t1,
+                into_rows::<T, 6, 3, 1>(&(axial_of_difference(&(A * t3)) * t1 - t7), 0)
+                    + into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(&(t3.tr_mul(&motion_translation(&W_before)) * (t1 * M) - t8), 3)
+                    - into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(
+                        &(t7
+                            - axial_of_difference(&(A * motion_rotation(&W).transpose()))
+                                * t1),
+                        0,
+                    )
+                    - into_rows::<
+                        T,
+                        6,
+                        3,
+                        1,
+                    >(&(motion_translation(&W) * (t1 * M) + t8), 3),
+                quaternion_imaginary(
+                    &(Y_before
+                        .tr_mul(
+                            &pure_quaternion(
+                                &(diagonal_times(&I, &quaternion_imaginary(&Y_before))),
+                            ),
+                        )),
+                ) * (T::from_f64(2.0) * t1) + relative_R_q.tr_mul(&t2) * (h * k)
+                    - quaternion_imaginary(
+                        &(Y
+                            * pure_quaternion(
+                                &(diagonal_times(&I, &quaternion_imaginary(&Y))),
+                            )),
+                    ) * (T::from_f64(2.0) * t1),
+                ΔX_before * (T::from_f64(4.0) * t9 * b * ΔX_before.dot(&ΔX_before))
+                    + ΔX_before * (t1 * m) + g * (h * m) + R * p * (h * k)
+                    - X * (T::from_f64(2.0) * h * k) + t4 * s * (h * k) + t6 * (h * k)
+                    - ΔX * (T::from_f64(4.0) * t9 * b * ΔX.dot(&ΔX)) - ΔX * (t1 * m),
+            );
             let mut all = SVector::<T, 15>::zeros();
             let rest = all.as_mut_slice();
             let rest = put_vector(rest, &parts.0);
@@ -1286,37 +1250,36 @@ impl<T: Real> MixedFour<T> {
             let ξ3: SVector<T, 3> = SMatrix::zeros();
             let ξ4: SVector<T, 3> = SMatrix::zeros();
             let t1 = vee(&ξ1);
-            let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-                axial_of_difference(
-                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
-                        - hat(&(J * t1 * T::from_f64(0.5)))),
-                ),
-                into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3) * M
-                    + into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                        * A.trace()
-                    - into_rows::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0),
-                diagonal_times(&I, &ξ3),
-                ξ4 * m,
-            );
-            inertia
-                .set_column(
-                    axis,
-                    &{
-                        let mut all = SVector::<T, 15>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_vector(rest, &parts.0);
-                        let rest = put_vector(rest, &parts.1);
-                        let rest = put_vector(rest, &parts.2);
-                        let rest = put_matrix(rest, &parts.3);
-                        let _ = rest;
-                        all
-                    },
+            let along = {
+                let parts: (
+                    SVector<T, 3>,
+                    SVector<T, 6>,
+                    SVector<T, 3>,
+                    SVector<T, 3>,
+                ) = (
+                    t1 * J.trace() - J * t1,
+                    into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3) * M
+                        + into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
+                            * A.trace()
+                        - into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0),
+                    diagonal_times(&I, &ξ3),
+                    ξ4 * m,
                 );
+                let mut all = SVector::<T, 15>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_vector(rest, &parts.0);
+                let rest = put_vector(rest, &parts.1);
+                let rest = put_vector(rest, &parts.2);
+                let rest = put_matrix(rest, &parts.3);
+                let _ = rest;
+                all
+            };
+            inertia.set_column(axis, &along);
         }
         for axis in 0..6 {
             let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
@@ -1324,37 +1287,36 @@ impl<T: Real> MixedFour<T> {
             let ξ3: SVector<T, 3> = SMatrix::zeros();
             let ξ4: SVector<T, 3> = SMatrix::zeros();
             let t1 = vee(&ξ1);
-            let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-                axial_of_difference(
-                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
-                        - hat(&(J * t1 * T::from_f64(0.5)))),
-                ),
-                into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3) * M
-                    + into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                        * A.trace()
-                    - into_rows::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0),
-                diagonal_times(&I, &ξ3),
-                ξ4 * m,
-            );
-            inertia
-                .set_column(
-                    0 + 3 + axis,
-                    &{
-                        let mut all = SVector::<T, 15>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_vector(rest, &parts.0);
-                        let rest = put_vector(rest, &parts.1);
-                        let rest = put_vector(rest, &parts.2);
-                        let rest = put_matrix(rest, &parts.3);
-                        let _ = rest;
-                        all
-                    },
+            let along = {
+                let parts: (
+                    SVector<T, 3>,
+                    SVector<T, 6>,
+                    SVector<T, 3>,
+                    SVector<T, 3>,
+                ) = (
+                    t1 * J.trace() - J * t1,
+                    into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3) * M
+                        + into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
+                            * A.trace()
+                        - into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0),
+                    diagonal_times(&I, &ξ3),
+                    ξ4 * m,
                 );
+                let mut all = SVector::<T, 15>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_vector(rest, &parts.0);
+                let rest = put_vector(rest, &parts.1);
+                let rest = put_vector(rest, &parts.2);
+                let rest = put_matrix(rest, &parts.3);
+                let _ = rest;
+                all
+            };
+            inertia.set_column(0 + 3 + axis, &along);
         }
         for axis in 0..3 {
             let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
@@ -1362,37 +1324,36 @@ impl<T: Real> MixedFour<T> {
             let ξ3: SVector<T, 3> = unit::<T, 3>(axis);
             let ξ4: SVector<T, 3> = SMatrix::zeros();
             let t1 = vee(&ξ1);
-            let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-                axial_of_difference(
-                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
-                        - hat(&(J * t1 * T::from_f64(0.5)))),
-                ),
-                into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3) * M
-                    + into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                        * A.trace()
-                    - into_rows::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0),
-                diagonal_times(&I, &ξ3),
-                ξ4 * m,
-            );
-            inertia
-                .set_column(
-                    0 + 3 + 6 + axis,
-                    &{
-                        let mut all = SVector::<T, 15>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_vector(rest, &parts.0);
-                        let rest = put_vector(rest, &parts.1);
-                        let rest = put_vector(rest, &parts.2);
-                        let rest = put_matrix(rest, &parts.3);
-                        let _ = rest;
-                        all
-                    },
+            let along = {
+                let parts: (
+                    SVector<T, 3>,
+                    SVector<T, 6>,
+                    SVector<T, 3>,
+                    SVector<T, 3>,
+                ) = (
+                    t1 * J.trace() - J * t1,
+                    into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3) * M
+                        + into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
+                            * A.trace()
+                        - into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0),
+                    diagonal_times(&I, &ξ3),
+                    ξ4 * m,
                 );
+                let mut all = SVector::<T, 15>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_vector(rest, &parts.0);
+                let rest = put_vector(rest, &parts.1);
+                let rest = put_vector(rest, &parts.2);
+                let rest = put_matrix(rest, &parts.3);
+                let _ = rest;
+                all
+            };
+            inertia.set_column(0 + 3 + 6 + axis, &along);
         }
         for axis in 0..(3 * 1) {
             let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
@@ -1400,37 +1361,36 @@ impl<T: Real> MixedFour<T> {
             let ξ3: SVector<T, 3> = SMatrix::zeros();
             let ξ4: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
             let t1 = vee(&ξ1);
-            let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-                axial_of_difference(
-                    &(hat(&(t1 * (T::from_f64(0.5) * J.trace())))
-                        - hat(&(J * t1 * T::from_f64(0.5)))),
-                ),
-                into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3) * M
-                    + into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
-                        * A.trace()
-                    - into_rows::<
-                        T,
-                        6,
-                        3,
-                        1,
-                    >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0),
-                diagonal_times(&I, &ξ3),
-                ξ4 * m,
-            );
-            inertia
-                .set_column(
-                    0 + 3 + 6 + 3 + axis,
-                    &{
-                        let mut all = SVector::<T, 15>::zeros();
-                        let rest = all.as_mut_slice();
-                        let rest = put_vector(rest, &parts.0);
-                        let rest = put_vector(rest, &parts.1);
-                        let rest = put_vector(rest, &parts.2);
-                        let rest = put_matrix(rest, &parts.3);
-                        let _ = rest;
-                        all
-                    },
+            let along = {
+                let parts: (
+                    SVector<T, 3>,
+                    SVector<T, 6>,
+                    SVector<T, 3>,
+                    SVector<T, 3>,
+                ) = (
+                    t1 * J.trace() - J * t1,
+                    into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 3), 3) * M
+                        + into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ2, 0), 0)
+                            * A.trace()
+                        - into_rows::<
+                            T,
+                            6,
+                            3,
+                            1,
+                        >(&(A * rows_from::<T, 6, 3, 1>(&ξ2, 0)), 0),
+                    diagonal_times(&I, &ξ3),
+                    ξ4 * m,
                 );
+                let mut all = SVector::<T, 15>::zeros();
+                let rest = all.as_mut_slice();
+                let rest = put_vector(rest, &parts.0);
+                let rest = put_vector(rest, &parts.1);
+                let rest = put_vector(rest, &parts.2);
+                let rest = put_matrix(rest, &parts.3);
+                let _ = rest;
+                all
+            };
+            inertia.set_column(0 + 3 + 6 + 3 + axis, &along);
         }
         inertia
     }

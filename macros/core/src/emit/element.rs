@@ -450,21 +450,28 @@ pub fn covectors(d: &Derivation) -> TokenStream {
     Bundle::of(d).ty(&parts)
 }
 
-/// The coordinates of all covectors of a bundle, one configuration after another.
-pub fn stack(d: &Derivation, parts: TokenStream) -> TokenStream {
-    let count = d.spec.configurations.len();
-    let dimension = total(d);
-    if only_rotations(d) {
-        return match count {
-            1 => quote!(#parts[0]),
-            _ => {
-                quote!(SVector::<T, #dimension>::from_fn(|i, _| #parts[i / 3][i % 3]))
-            }
-        };
-    }
+/// The coordinates of all covectors of a bundle, one configuration after another: each is given by its value.
+pub fn stacked(d: &Derivation, values: &[TokenStream]) -> TokenStream {
     let bundle = Bundle::of(d);
-    let puts = (0..count).map(|i| {
-        let part = bundle.part(parts.clone(), i);
+    let (dimension, covectors, value) = (total(d), covectors(d), bundle.value(values));
+    if let [only] = values {
+        match of(d, 0) {
+            Family::Rotation | Family::Quaternion | Family::Coordinates(_) => return only.clone(),
+            Family::Field(shape) if shape.is_scalar() => return quote!(SVector::<T, 1>::new(#only)),
+            Family::Field(shape) if shape.is_vector() && matches!(shape.rows, Dim::Fixed(_)) => {
+                return only.clone();
+            }
+            _ => {}
+        }
+    }
+    if only_rotations(d) {
+        return quote!({
+            let parts: #covectors = #value;
+            SVector::<T, #dimension>::from_fn(|i, _| parts[i / 3][i % 3])
+        });
+    }
+    let puts = (0..values.len()).map(|i| {
+        let part = bundle.part(quote!(parts), i);
         let put = match of(d, i) {
             Family::Rotation | Family::Quaternion | Family::Coordinates(_) => quote!(put_vector),
             Family::Orthogonal(_) => quote!(put_skew),
@@ -474,6 +481,7 @@ pub fn stack(d: &Derivation, parts: TokenStream) -> TokenStream {
         quote!(let rest = #put(rest, &#part);)
     });
     quote!({
+        let parts: #covectors = #value;
         let mut all = SVector::<T, #dimension>::zeros();
         let rest = all.as_mut_slice();
         #(#puts)*

@@ -1,7 +1,7 @@
 //! The physical energy of a node: the kinetic energy of the limit of small steps, inverted for the
 //! momentum, and the potential. Takes the limit; gives `energies` and `energy`.
 
-use super::element::{self, Bundle, stack};
+use super::element::{self, stacked};
 use super::expression::{Bindings, Writer, program};
 use super::items::{letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, variable};
@@ -155,7 +155,7 @@ pub(super) fn gradients(d: &Derivation, e: &Expr) -> Vec<Expr> {
     let list = d.spec.configurations.iter().zip(&d.letters.variation);
     list.map(|(c, xi)| {
         let y = expr::gradient(s, e, at(*xi, Shift::HERE));
-        c.group.of_gradient(s, y)
+        expr::term_by_term(&c.group.of_gradient(s, y))
     })
     .collect()
 }
@@ -198,27 +198,17 @@ fn momentum(
             *value = quote!(#value - #shift);
         }
     }
-    if let ([only], true) = (own.as_slice(), element::only_rotations(d)) {
-        return quote!(let momentum = #only;);
-    }
-    let covectors = element::covectors(d);
-    let own = Bundle::of(d).value(&own);
-    let stacked = stack(d, quote!(parts));
-    quote! {
-        let parts: #covectors = #own;
-        let momentum = #stacked;
-    }
+    let stacked = stacked(d, &own);
+    quote!(let momentum = #stacked;)
 }
 
 /// The inertia column by column, as the local `inertia`: the momentum of each unit velocity is the gradient
 /// of the kinetic energy, which costs less than the form on all pairs.
 pub(super) fn inertia(d: &Derivation, bindings: &Bindings, kinetic: &[Expr]) -> TokenStream {
     let s = &d.letters.symbols;
-    let covectors = element::covectors(d);
     let p = schedule::program(s, kinetic, "t");
     let (lets, values) = program(&p, bindings);
-    let values = Bundle::of(d).value(&values);
-    let stacked = stack(d, quote!(parts));
+    let stacked = stacked(d, &values);
     let columns = (0..d.spec.configurations.len()).map(|j| {
         let directions = d.letters.variation.iter().enumerate().map(|(i, xi)| {
             let name = variable(s, *xi);
@@ -242,8 +232,8 @@ pub(super) fn inertia(d: &Derivation, bindings: &Bindings, kinetic: &[Expr]) -> 
             for axis in 0..#count {
                 #(#directions)*
                 #lets
-                let parts: #covectors = #values;
-                inertia.set_column(#column, &#stacked);
+                let along = #stacked;
+                inertia.set_column(#column, &along);
             }
         }
     });

@@ -2,7 +2,7 @@
 //! Takes the derived momenta of the outgoing edge; gives the code of both. By vectors and
 //! blocks of three where the groups are those of space, by coordinates and columns elsewhere.
 
-use super::element::{self, Bundle, stack};
+use super::element::{self, Bundle, stacked};
 use super::expression::{Bindings, program, ty};
 use super::items::letters_of;
 use super::names::{Names, variable};
@@ -452,13 +452,8 @@ impl Equations<'_> {
             .zip(&momenta)
             .map(|(value, own)| quote!((#value) - #own))
             .collect();
-        let parts = bundle.value(&parts);
-        let stacked = stack(d, quote!(parts));
-        let residual = quote! {
-            #lets
-            let parts: #covectors = #parts;
-            #stacked
-        };
+        let stacked_parts = stacked(d, &parts);
+        let residual = quote!(#lets #stacked_parts);
         let mut derived = Vec::new();
         // The derivative along Ω η for every basis element of every velocity.
         let mut columns = TokenStream::new();
@@ -486,13 +481,13 @@ impl Equations<'_> {
                 element::coordinates(d, j),
                 element::basis(d, j, quote!(axis)),
             );
-            let values = bundle.value(&values);
+            let column_value = stacked(d, &values);
             columns.extend(quote! {
                 for axis in 0..#directions {
                     let #eta = #basis;
                     #lets
-                    let parts: #covectors = #values;
-                    matrix.set_column(#column, &#stacked);
+                    let along = #column_value;
+                    matrix.set_column(#column, &along);
                 }
             });
         }

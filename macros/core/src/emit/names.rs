@@ -168,9 +168,10 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name besides [`TYPES`], and what they name themselves: a
 /// local of the model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 122] = [
+const INSIDE: [&str; 123] = [
     "all",
     "all_finite",
+    "along",
     "assembled",
     "axial_of_difference",
     "axis",

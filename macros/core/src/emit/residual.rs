@@ -2,7 +2,7 @@
 //! configurations, which need not solve them. It is what oracles compare with the variation of
 //! the action.
 
-use super::element::{self, stack};
+use super::element::{self, stacked};
 use super::expression::{Bindings, program, ty};
 use super::items::{kept, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, item, own, tagged, variable};
@@ -123,8 +123,7 @@ pub fn balance(d: &Derivation, names: &Names) -> [TokenStream; 2] {
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
     let (lets, values) = program(&p, &bindings);
     let dimension = element::total(d);
-    let (covectors, value) = (element::covectors(d), element::Bundle::of(d).value(&values));
-    let stacked = stack(d, quote!(parts));
+    let stacked = stacked(d, &values);
     let step = variable(s, d.spec.step);
     let g = Generics::of(d);
     let (declared, used) = (g.declared(), g.used());
@@ -148,7 +147,6 @@ pub fn balance(d: &Derivation, names: &Names) -> [TokenStream; 2] {
                 #locals
                 #velocities
                 #lets
-                let parts: #covectors = #value;
                 #stacked
             }
     };

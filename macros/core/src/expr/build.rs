@@ -507,8 +507,45 @@ pub fn vee(a: Expr) -> Expr {
         Node::Zero(_) | Node::Identity(_) => zero(shape),
         Node::Neg(x) => neg(vee(x.clone())),
         Node::Hat(v) => v.clone(),
+        Node::Product(factors) => match multiple_of_hat(factors) {
+            Some(v) => v,
+            None => make(Node::Vee(a), shape),
+        },
+        Node::Sum(terms) => {
+            let found: Option<Vec<Expr>> = terms.iter().map(vector_of_hat).collect();
+            match found {
+                Some(vectors) => sum(vectors, shape),
+                None => make(Node::Vee(a), shape),
+            }
+        }
         _ => make(Node::Vee(a), shape),
     }
+}
+
+/// The vector of which this is the hat, times numbers.
+fn vector_of_hat(e: &Expr) -> Option<Expr> {
+    match e.node() {
+        Node::Hat(v) => Some(v.clone()),
+        Node::Neg(x) => vector_of_hat(x).map(neg),
+        Node::Product(factors) => multiple_of_hat(factors),
+        _ => None,
+    }
+}
+
+/// The same of a product of numbers and one hat.
+fn multiple_of_hat(factors: &[Expr]) -> Option<Expr> {
+    let matrices = factors.iter().filter(|f| !f.shape().is_scalar()).count();
+    if matrices != 1 {
+        return None;
+    }
+    let vector = |f: &Expr| match f.shape().is_scalar() {
+        true => Some(f.clone()),
+        false => vector_of_hat(f),
+    };
+    let factors: Option<Vec<Expr>> = factors.iter().map(vector).collect();
+    let mut factors = factors?.into_iter();
+    let first = factors.next()?;
+    Some(factors.fold(first, mul))
 }
 
 /// A linear part of a square matrix.

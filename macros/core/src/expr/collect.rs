@@ -40,6 +40,22 @@ fn sum_of(terms: &[Expr], shape: Shape) -> Expr {
     sum(terms.collect::<Vec<_>>(), shape)
 }
 
+/// A number times a sum as the sum of the terms, each with the number: `2 (a/2 - b/2)` reads `a - b`.
+pub fn term_by_term(e: &Expr) -> Expr {
+    let (number, core) = coefficient(e);
+    let Node::Sum(terms) = core.node() else {
+        return e.clone();
+    };
+    let own = terms.iter().map(|term| {
+        let (own, core) = coefficient(term);
+        number.times(own).map(|both| scaled(both, core))
+    });
+    match own.collect::<Option<Vec<Expr>>>() {
+        Some(terms) => sum(terms, e.shape()),
+        None => e.clone(),
+    }
+}
+
 /// The same sum with a term that is added in front, where there is one: `-J A + A J` reads
 /// `A J - J A`.
 pub fn positive_first(e: &Expr) -> Expr {

@@ -36,7 +36,7 @@ use std::sync::Arc;
 use symbol::SymbolId;
 
 pub use build::*;
-pub use collect::{coefficient, collect, positive_first};
+pub use collect::{coefficient, collect, positive_first, term_by_term};
 pub use constant::Constant;
 pub use determinant::{adjugate, adjugate_polynomial, det, without_adjugates};
 pub use diagonal::{diagonal, diagonal_of};
