@@ -110,10 +110,14 @@ impl LongestStep {
             ));
         }
         if h > self.resolving() {
+            let a_step = match (h * self.growth).exp() {
+                few if few < 1e3 => format!("{few:.2}"),
+                many if many.is_finite() => format!("{many:.1e}"),
+                _ => format!("exp({:.3e})", h * self.growth),
+            };
             let grow = format!(
-                "small motions about the start, at rest, grow with the rate {:.3e}, by a factor of {:.2} a step",
-                self.growth,
-                (h * self.growth).exp()
+                "small motions about the start, at rest, grow with the rate {:.3e}, by a factor of {a_step} a step",
+                self.growth
             );
             // A body on its head and a rod that is pulled along its length are unstable by right; between neighbours
             // what grows so fast is mostly a wrong sign.
