@@ -189,3 +189,63 @@ pub fn generated_mooney() -> Block<impl FnOnce()> {
 pub fn written_mooney() -> impl FnOnce() {
     written!(mooney_by_hand())
 }
+
+clebsch::model! {
+    /// Incompressible self-gravitating ellipsoid of a homogeneous fluid, of Dirichlet and Riemann: the flow is linear in the
+    /// place, and the determinant of the placement is held.
+    model FluidEllipsoid {
+        /// second moments of mass in the reference, M/5 Id for a unit ball
+        param I0: Sym<3>;
+        /// mass, in units of a constant of gravitation of one
+        param M: Real;
+        /// Carlson's integral R_F of a matrix, by its trace, second invariant and determinant
+        given RF(Real, Real, Real): Real = clebsch::functions::carlson_rf_of_invariants;
+        /// placement, reference to space
+        field Q: Mat<3>;
+        hold λ: det(Q) = 1;
+        let V = next(Q) - Q;
+        let B = Q*Q^T;
+        lagrangian = tr(V*I0*V^T)/(2*h) + h*(3/5)*M^2*RF(I1(B), I2(B), det(B));
+    }
+}
+
+/// An ellipsoid of axes 1.25, 1 and 0.8 with a momentum that turns and shears it.
+const FLUID: [Matrix; 2] = [
+    [[1.25, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.8]],
+    [[0.05, -0.12, 0.0], [0.16, 0.02, 0.03], [0.0, 0.02, -0.048]],
+];
+
+fn fluid_by_hand() -> Stepped<impl Fn(&[Matrix; 2]) -> Result<[Matrix; 2], Unsolvable> + Copy> {
+    let body = handwritten::fluid_ellipsoid::FluidEllipsoid {
+        moments: IDENTITY.map(|row| row.map(|x| 0.2 * x)),
+        mass: 1.0,
+    };
+    Stepped {
+        at: FLUID,
+        by: move |[q, p]: &[Matrix; 2]| body.step(q, p, H).map(|(q, p, _)| [q, p]),
+    }
+}
+
+/// A block of the generated fluid ellipsoid.
+pub fn generated_fluid() -> Block<impl FnOnce()> {
+    let model = FluidEllipsoid::new(FluidEllipsoidParameters {
+        I0: Matrix3::identity() * 0.2,
+        M: 1.0,
+    });
+    let [place, momentum] = FLUID.each_ref().map(matrix);
+    let initial = || FluidEllipsoidInitial {
+        Q: Additive::new(place),
+        momentum: FieldMomentum(momentum),
+    };
+    agreeing!(
+        model,
+        initial(),
+        fluid_by_hand(),
+        |state: &FluidEllipsoidState<f64>| state.Q().matrix()
+    )
+}
+
+/// A block of the fluid ellipsoid by hand.
+pub fn written_fluid() -> impl FnOnce() {
+    written!(fluid_by_hand())
+}

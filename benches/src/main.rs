@@ -16,7 +16,10 @@ mod processes;
 mod steppers;
 mod systems;
 
-use bodies_of_files::{generated_hooke, generated_mooney, written_hooke, written_mooney};
+use bodies_of_files::{
+    generated_fluid, generated_hooke, generated_mooney, written_fluid, written_hooke,
+    written_mooney,
+};
 use clebsch_benches::blocks;
 use clebsch_benches::blocks::compare;
 use clebsch_oracle::physics::cases::{
@@ -137,6 +140,11 @@ fn main() {
         "elastic body, Mooney-Rivlin",
         generated_mooney,
         written_mooney,
+    );
+    table.row(
+        "elastic body, fluid ellipsoid",
+        generated_fluid,
+        written_fluid,
     );
     table.row("four joined by springs", generated_four, written_four);
     table.row(

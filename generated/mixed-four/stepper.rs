@@ -343,6 +343,12 @@ impl<T: Real> MixedFour<T> {
         };
         let found_4: newton::Solved<[Additive<3, 1, T>; 1]> = {
             let momenta: [SVector<T, 3>; 1] = [state.momentum_X.0];
+            let k1 = T::from_f64(4.0) * b / h.powi(3);
+            let k2 = m / h;
+            let k3 = X * (h * k) - g * (T::from_f64(0.5) * h * m)
+                - R * p * (T::from_f64(0.5) * h * k)
+                - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
+                - motion_translation(&G) * (T::from_f64(0.5) * h * k);
             let convex = { (m).least() > 0.0 && (b).least() >= 0.0 };
             let mut iteration = work.search_4.begin(state.node, []);
             loop {
@@ -363,26 +369,18 @@ impl<T: Real> MixedFour<T> {
                 let ΔX = trial[0].matrix();
                 if iteration
                     .assess({
-                        (ΔX * (T::from_f64(4.0) * b * ΔX.dot(&ΔX) / h.powi(3))
-                            + ΔX * (m / h) - g * (T::from_f64(0.5) * h * m)
-                            - R * p * (T::from_f64(0.5) * h * k) + X * (h * k)
-                            - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
-                            - motion_translation(&G) * (T::from_f64(0.5) * h * k))
-                            - momenta[0]
+                        (ΔX * (k1 * ΔX.dot(&ΔX)) + ΔX * k2 + k3) - momenta[0]
                     })
                 {
                     iteration
                         .set_tangent(
                             &{
+                                let c1 = k1 * ΔX.dot(&ΔX);
                                 let mut matrix = SMatrix::<T, 3, 3>::zeros();
                                 for axis in 0..(3 * 1) {
                                     let η4 = array_basis::<T, 3, 1>(axis);
-                                    let t1 = h.powi(-3);
-                                    let along = ΔX
-                                        * (T::from_f64(4.0) * t1 * b
-                                            * (η4.dot(&ΔX) + ΔX.dot(&η4)))
-                                        + η4 * (T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX))
-                                        + η4 * (m / h);
+                                    let along = ΔX * (k1 * (η4.dot(&ΔX) + ΔX.dot(&η4)))
+                                        + η4 * c1 + η4 * k2;
                                     matrix.set_column(axis, &along);
                                 }
                                 matrix
@@ -913,13 +911,15 @@ impl<T: Real> MixedFour<T> {
         ΔX: SVector<T, 3>,
     ) -> SMatrix<T, 3, 3> {
         let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
+        let m1 = h.powi(-3);
+        let c1 = T::from_f64(4.0) * m1 * b;
+        let c2 = T::from_f64(4.0) * m1 * b * ΔX.dot(&ΔX);
+        let c3 = m / h;
         let mut matrix = SMatrix::<T, 3, 3>::zeros();
         for axis in 0..(3 * 1) {
             let η4 = array_basis::<T, 3, 1>(axis);
-            let t1 = h.powi(-3);
-            let along = ΔX
-                * (T::from_f64(4.0) * t1 * b * (η4.dot(&ΔX) + ΔX.dot(&η4)))
-                + η4 * (T::from_f64(4.0) * t1 * b * ΔX.dot(&ΔX)) + η4 * (m / h);
+            let along = ΔX * (c1 * (η4.dot(&ΔX) + ΔX.dot(&η4))) + η4 * c2
+                + η4 * c3;
             matrix.set_column(axis, &along);
         }
         matrix

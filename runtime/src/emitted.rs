@@ -18,8 +18,8 @@ pub use crate::integrate::{
 pub use crate::integrate::{Residual, not_less};
 pub use crate::kinetic::KineticWarning;
 pub use crate::linalg::{
-    axial_of_difference, columns_from, crossed, crossing, determinant, even_count, hat, inclusion,
-    into_columns, into_rows, less_identity, motion_rotation, motion_translation,
+    adjugate, axial_of_difference, columns_from, crossed, crossing, determinant, even_count, hat,
+    inclusion, into_columns, into_rows, less_identity, motion_rotation, motion_translation,
     pencil_coefficients, pure_quaternion, quaternion_imaginary, quaternion_real,
     quaternion_rotation, rows_from, skew_coordinates, solve, trace_complement, twist, vee,
 };
@@ -33,7 +33,8 @@ pub use crate::solvers::left_factor::{
 pub use crate::solvers::moser_veselov::{Edge, Free, MoserVeselovError, Order, Poinsot, forced};
 pub use crate::solvers::newton;
 pub use crate::solvers::two_sided::{
-    displaced, divided, left_sided, right_sided, two_sided, two_sided_increment,
+    displaced, divided, increment_before, increment_behind, increment_between, left_sided,
+    right_sided, two_sided, two_sided_increment,
 };
 pub use crate::solvers::unit_quaternions::{QuaternionBody, QuaternionError};
 pub use crate::validate;
@@ -45,7 +46,7 @@ pub use num_traits::{One as _, Zero as _};
 #[inline]
 #[must_use]
 pub fn inverse_or_nan<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    crate::linalg::inverse(a).unwrap_or_else(|| SMatrix::repeat(T::from_f64(f64::NAN)))
+    crate::linalg::small_inverse(a).unwrap_or_else(|| SMatrix::repeat(T::from_f64(f64::NAN)))
 }
 
 /// The solution of `a x = b`; all NaN where there is none.

@@ -275,8 +275,9 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 false => T::zero(),
             })
         }),
+        ("adjugate", 1) => square_to_square!(Dense::adjugate),
         ("inverse_or_nan", 1) => square_to_square!(|a| a
-            .inverse()
+            .small_inverse()
             .unwrap_or_else(|| Dense::unknown(a.rows, a.cols))),
         ("less_identity", 1) => square_to_square!(Dense::less_identity),
         ("determinant", 1) => |a, _| {

@@ -122,6 +122,20 @@ fn increment<T: Real>(solved: Option<Dense<T>>, factor: &'static str) -> Value<T
     }
 }
 
+/// What is made of inverses that the model keeps, or which factor has none.
+fn kept<T: Real>(
+    inverses: &[(&Dense<T>, &'static str)],
+    made: impl FnOnce() -> Dense<T>,
+) -> Value<T> {
+    let singular = inverses
+        .iter()
+        .find(|(inverse, _)| !inverse.trace().is_finite());
+    increment(
+        singular.is_none().then(made),
+        singular.map_or("", |(_, factor)| *factor),
+    )
+}
+
 /// The solution of `left X right = known`, or which factor has no inverse.
 fn between<T: Real>(a: &[&Value<T>]) -> Option<Result<Dense<T>, SingularFactor>> {
     let [left, known, right, label] = a else {
@@ -318,6 +332,20 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             Some(Value::result(
                 solved.map(|x| Value::Element(Kept::Field, x)),
             ))
+        },
+        ("increment_between", 4) => |a, _| {
+            let (l, m, r) = (a.first()?.dense()?, a.get(1)?.dense()?, a.get(2)?.dense()?);
+            let [first, second] = names(a.get(3)?)?;
+            let fits = l.cols == m.rows && m.cols == r.rows;
+            fits.then(|| kept(&[(&l, first), (&r, second)], || l.times(&m).times(&r)))
+        },
+        ("increment_behind", 3) => |a, _| {
+            let (l, m, label) = (a.first()?.dense()?, a.get(1)?.dense()?, text(a.get(2)?)?);
+            (l.cols == m.rows).then(|| kept(&[(&l, label)], || l.times(&m)))
+        },
+        ("increment_before", 3) => |a, _| {
+            let (m, r, label) = (a.first()?.dense()?, a.get(1)?.dense()?, text(a.get(2)?)?);
+            (m.cols == r.rows).then(|| kept(&[(&r, label)], || m.times(&r)))
         },
         ("displaced", 5) => |a, _| {
             let [element, left, known, right, label] = a else {

@@ -27,14 +27,14 @@ impl carlson_rf {
     /// R_F(B) of a symmetric positive definite matrix; NaN where it is not.
     #[must_use]
     pub fn value<T: Real>(&self, b: &SMatrix<T, 3, 3>) -> T {
-        integral(invariants(b)).value
+        integral(invariants(b), []).value
     }
 
     /// The gradient with respect to B times a number, a symmetric matrix.
     #[must_use]
     pub fn pull_back_1<T: Real>(&self, b: &SMatrix<T, 3, 3>, seed: &T) -> SMatrix<T, 3, 3> {
         let own = invariants(b);
-        let [first, second, third] = integral(own).along.map(|x| x * *seed);
+        let [first, second, third] = integral(own, [0, 1, 2]).along.map(|x| x * *seed);
         // The gradients of the invariants: 1, tr(B) - B, and the cofactors B² - tr(B) B + I2(B).
         let whole = first + second * own[0] + third * own[1];
         let linear = second + third * own[0];
@@ -61,25 +61,25 @@ impl carlson_rf_of_invariants {
     /// R_F of a matrix with these invariants; NaN where it is not positive definite.
     #[must_use]
     pub fn value<T: Real>(&self, first: &T, second: &T, third: &T) -> T {
-        integral([*first, *second, *third]).value
+        integral([*first, *second, *third], []).value
     }
 
     /// The derivative with respect to the trace, times a number.
     #[must_use]
     pub fn pull_back_1<T: Real>(&self, first: &T, second: &T, third: &T, seed: &T) -> T {
-        integral([*first, *second, *third]).along[0] * *seed
+        integral([*first, *second, *third], [0]).along[0] * *seed
     }
 
     /// The derivative with respect to the second invariant, times a number.
     #[must_use]
     pub fn pull_back_2<T: Real>(&self, first: &T, second: &T, third: &T, seed: &T) -> T {
-        integral([*first, *second, *third]).along[1] * *seed
+        integral([*first, *second, *third], [1]).along[0] * *seed
     }
 
     /// The derivative with respect to the determinant, times a number.
     #[must_use]
     pub fn pull_back_3<T: Real>(&self, first: &T, second: &T, third: &T, seed: &T) -> T {
-        integral([*first, *second, *third]).along[2] * *seed
+        integral([*first, *second, *third], [2]).along[0] * *seed
     }
 }
 
@@ -93,9 +93,10 @@ fn invariants<T: Real>(b: &SMatrix<T, 3, 3>) -> [T; 3] {
     ]
 }
 
-/// The integral with its derivatives with respect to the three invariants.
-fn integral<T: Real>(of: [T; 3]) -> Jet<T> {
-    let mut all: [Jet<T>; 3] = core::array::from_fn(|i| Jet::variable(of[i], i));
+/// The integral with its derivatives with respect to some of the three invariants.
+fn integral<T: Real, const N: usize>(of: [T; 3], by: [usize; N]) -> Jet<T, N> {
+    let which = |i: usize| by.iter().position(|k| *k == i);
+    let mut all: [Jet<T, N>; 3] = core::array::from_fn(|i| Jet::variable(of[i], which(i)));
     for _ in 0..MOST {
         let [mean, second, third] = deviations(all);
         // Not what is no number.
@@ -113,7 +114,7 @@ fn integral<T: Real>(of: [T; 3]) -> Jet<T> {
 }
 
 /// A third of the trace, and the second and third invariants of the deviations from it, in units of it.
-fn deviations<T: Real>([first, second, third]: [Jet<T>; 3]) -> [Jet<T>; 3] {
+fn deviations<T: Real, const N: usize>([first, second, third]: [Jet<T, N>; 3]) -> [Jet<T, N>; 3] {
     let mean = first.times(1.0 / 3.0);
     let square = mean * mean;
     let e2 = second / square - Jet::constant(T::from_f64(3.0));
@@ -121,7 +122,7 @@ fn deviations<T: Real>([first, second, third]: [Jet<T>; 3]) -> [Jet<T>; 3] {
     [mean, e2, e3]
 }
 
-fn series<T: Real>(mean: Jet<T>, e2: Jet<T>, e3: Jet<T>) -> Jet<T> {
+fn series<T: Real, const N: usize>(mean: Jet<T, N>, e2: Jet<T, N>, e3: Jet<T, N>) -> Jet<T, N> {
     let one = Jet::constant(T::one());
     let (square, product) = (e2 * e2, e2 * e3);
     let sum = one - e2.times(0.1) + e3.times(1.0 / 14.0) + square.times(1.0 / 24.0)
@@ -133,7 +134,7 @@ fn series<T: Real>(mean: Jet<T>, e2: Jet<T>, e3: Jet<T>) -> Jet<T> {
 }
 
 /// The invariants of `(B + λ)/4`, where λ is the second invariant of the root of B.
-fn duplicated<T: Real>([first, second, third]: [Jet<T>; 3]) -> [Jet<T>; 3] {
+fn duplicated<T: Real, const N: usize>([first, second, third]: [Jet<T, N>; 3]) -> [Jet<T, N>; 3] {
     let root = third.sqrt();
     let trace = trace_of_root(first, second, root);
     let l = (trace * trace - first).times(0.5);
@@ -148,7 +149,11 @@ fn duplicated<T: Real>([first, second, third]: [Jet<T>; 3]) -> [Jet<T>; 3] {
 /// The trace `u` of the root of B, the largest root of `((u² - I1)/2)² = I2 + 2 √I3 u`. It is found in plain numbers,
 /// lane by lane, and improved in the scalar at hand, the last time with derivatives: bounds of rounding then do
 /// not gather over the iterations.
-fn trace_of_root<T: Real>(first: Jet<T>, second: Jet<T>, root: Jet<T>) -> Jet<T> {
+fn trace_of_root<T: Real, const N: usize>(
+    first: Jet<T, N>,
+    second: Jet<T, N>,
+    root: Jet<T, N>,
+) -> Jet<T, N> {
     let mut u = T::zero();
     for lane in 0..T::LANES {
         let known = [first, second, root].map(|x| x.value.lane(lane));
@@ -162,7 +167,12 @@ fn trace_of_root<T: Real>(first: Jet<T>, second: Jet<T>, root: Jet<T>) -> Jet<T>
 }
 
 /// One correction of Newton's method.
-fn improved<T: Real>(u: Jet<T>, first: Jet<T>, second: Jet<T>, root: Jet<T>) -> Jet<T> {
+fn improved<T: Real, const N: usize>(
+    u: Jet<T, N>,
+    first: Jet<T, N>,
+    second: Jet<T, N>,
+    root: Jet<T, N>,
+) -> Jet<T, N> {
     let l = (u * u - first).times(0.5);
     let value = l * l - second - (root * u).times(2.0);
     u - value / (u * l - root).times(2.0)

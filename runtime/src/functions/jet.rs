@@ -1,30 +1,33 @@
-//! A number with its derivatives with respect to three others.
+//! A number with its derivatives with respect to several others.
 //! Takes numbers; gives sums, products, quotients and roots of them.
 
 use crate::Real;
 use core::ops::{Add, Div, Mul, Sub};
 
-/// A value and its three derivatives.
+/// A value and its derivatives.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Jet<T> {
+pub(super) struct Jet<T, const N: usize> {
     pub value: T,
-    pub along: [T; 3],
+    pub along: [T; N],
 }
 
-impl<T: Real> Jet<T> {
+impl<T: Real, const N: usize> Jet<T, N> {
     /// A constant.
     pub fn constant(value: T) -> Self {
         Self {
             value,
-            along: [T::zero(); 3],
+            along: [T::zero(); N],
         }
     }
 
-    /// The variable with this number.
-    pub fn variable(value: T, which: usize) -> Self {
+    /// A variable, one for each derivative or another.
+    pub fn variable(value: T, which: Option<usize>) -> Self {
         Self {
             value,
-            along: core::array::from_fn(|i| if i == which { T::one() } else { T::zero() }),
+            along: core::array::from_fn(|i| match which == Some(i) {
+                true => T::one(),
+                false => T::zero(),
+            }),
         }
     }
 
@@ -65,12 +68,12 @@ impl<T: Real> Jet<T> {
         let (a, b) = (self.along, other.along);
         Self {
             value,
-            along: [each(a[0], b[0]), each(a[1], b[1]), each(a[2], b[2])],
+            along: core::array::from_fn(|i| each(a[i], b[i])),
         }
     }
 }
 
-impl<T: Real> Add for Jet<T> {
+impl<T: Real, const N: usize> Add for Jet<T, N> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -78,7 +81,7 @@ impl<T: Real> Add for Jet<T> {
     }
 }
 
-impl<T: Real> Sub for Jet<T> {
+impl<T: Real, const N: usize> Sub for Jet<T, N> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -86,7 +89,7 @@ impl<T: Real> Sub for Jet<T> {
     }
 }
 
-impl<T: Real> Mul for Jet<T> {
+impl<T: Real, const N: usize> Mul for Jet<T, N> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
@@ -94,7 +97,7 @@ impl<T: Real> Mul for Jet<T> {
     }
 }
 
-impl<T: Real> Div for Jet<T> {
+impl<T: Real, const N: usize> Div for Jet<T, N> {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {

@@ -10,20 +10,19 @@ use nalgebra::SMatrix;
 /// cofactor is wrong by roundings of `|A|^(N-1)`, so that no more than this many are lost.
 const WELL: f64 = 50.0;
 
-/// The inverse by cofactors; none where the matrix is not well-conditioned in every lane.
+/// The adjugate of a matrix of two or three rows, `det(A) A^-1` of one that has an inverse: its transposed cofactors,
+/// each rounded as its own two products. Not a number for other sizes.
 #[inline(always)]
-pub(super) fn by_cofactors<T: Real, const N: usize>(
-    a: &SMatrix<T, N, N>,
-) -> Option<SMatrix<T, N, N>> {
+#[must_use]
+pub fn adjugate<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     let at = |i: usize, j: usize| a.data.0[j][i];
     let mut adjugate = SMatrix::<T, N, N>::zeros();
-    let det = match N {
+    match N {
         2 => {
             adjugate.data.0[0][0] = at(1, 1);
             adjugate.data.0[1][0] = -at(0, 1);
             adjugate.data.0[0][1] = -at(1, 0);
             adjugate.data.0[1][1] = at(0, 0);
-            at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0)
         }
         3 => {
             for i in 0..3 {
@@ -33,10 +32,26 @@ pub(super) fn by_cofactors<T: Real, const N: usize>(
                     adjugate.data.0[i][j] = at(p, r) * at(q, s) - at(p, s) * at(q, r);
                 }
             }
-            let first = |j: usize| at(0, j) * adjugate.data.0[0][j];
-            first(0) + first(1) + first(2)
         }
-        _ => return None,
+        _ => return SMatrix::repeat(T::from_f64(f64::NAN)),
+    }
+    adjugate
+}
+
+/// The inverse by cofactors; none where the matrix is not well-conditioned in every lane.
+#[inline(always)]
+pub(super) fn by_cofactors<T: Real, const N: usize>(
+    a: &SMatrix<T, N, N>,
+) -> Option<SMatrix<T, N, N>> {
+    if N != 2 && N != 3 {
+        return None;
+    }
+    let at = |i: usize, j: usize| a.data.0[j][i];
+    let adjugate = adjugate(a);
+    let first = |j: usize| at(0, j) * adjugate.data.0[0][j];
+    let det = match N {
+        2 => at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0),
+        _ => first(0) + first(1) + first(2),
     };
     let size = a.iter().fold(T::zero(), |sum, x| sum + *x * *x);
     let most = match N {
@@ -71,7 +86,8 @@ pub fn small_solve<T: Real, const N: usize, const C: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::{by_cofactors, small_inverse};
+    use super::{adjugate, by_cofactors, small_inverse};
+    use crate::linalg::determinant;
     use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix};
 
     fn left<const N: usize>(a: &SMatrix<f64, N, N>) -> f64 {
@@ -88,6 +104,22 @@ mod tests {
             assert!(left(&(three * scale)) < 1e-15 * 16.0);
         }
         assert!(left(&Matrix4::from_diagonal_element(3.0)) < 1e-15);
+    }
+
+    #[test]
+    fn adjugates_are_the_determinant_times_the_inverse() {
+        let two = Matrix2::new(2.0, 0.3, -0.4, 1.5);
+        let three = Matrix3::new(1.2, 0.3, -0.2, 0.1, 0.9, 0.4, -0.5, 0.2, 1.1);
+        let off = adjugate(&two) * two - Matrix2::identity() * determinant(&two);
+        assert!(off.norm() < 1e-15);
+        let off = adjugate(&three) * three - Matrix3::identity() * determinant(&three);
+        assert!(off.norm() < 1e-15);
+        // Of rank two it is that of the kernel, of rank one nothing.
+        let flat = Matrix3::new(1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 0.0, 1.0, 1.0);
+        let own = adjugate(&flat);
+        assert!(own.norm() > 1.0 && (flat * own).norm() == 0.0);
+        assert!(adjugate(&Matrix3::repeat(2.0)).norm() == 0.0);
+        assert!(adjugate(&Matrix4::<f64>::identity()).norm().is_nan());
     }
 
     #[test]

@@ -300,6 +300,15 @@ impl<T: Real> Dense<T> {
         }
     }
 
+    /// The adjugate of two or three rows: as [`adjugate`](super::adjugate).
+    pub fn adjugate(&self) -> Self {
+        match self.rows {
+            2 => Self::of(&super::adjugate(&self.fixed::<2, 2>())),
+            3 => Self::of(&super::adjugate(&self.fixed::<3, 3>())),
+            n => Self::unknown(n, n),
+        }
+    }
+
     /// The inverse, or `None` for a matrix without a usable pivot.
     pub fn inverse(&self) -> Option<Self> {
         self.solved(&Self::identity(self.rows, self.rows))

@@ -18,7 +18,7 @@ mod rest;
 mod singular_values;
 mod skew;
 
-pub use cofactors::{small_inverse, small_solve};
+pub use cofactors::{adjugate, small_inverse, small_solve};
 pub use dense::Dense;
 pub use eigenvalues::symmetric_eigenvalues;
 pub use elimination::{

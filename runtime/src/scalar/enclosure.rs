@@ -287,6 +287,18 @@ impl<L: Affine> Bounded<L> {
         self.moved() + self.still
     }
 
+    /// Whether it is zero and nothing else.
+    #[inline(always)]
+    fn is_nothing(&self) -> bool {
+        self.middle == 0.0 && self.radius() == 0.0
+    }
+
+    /// Whether it has bounds.
+    #[inline(always)]
+    fn is_bounded(&self) -> bool {
+        (self.middle.abs() + self.radius()).is_finite()
+    }
+
     /// The bounds.
     #[inline(always)]
     fn ends(&self) -> [f64; 2] {
@@ -371,6 +383,13 @@ impl<L: Affine> Mul for Bounded<L> {
     type Output = Self;
     #[inline]
     fn mul(self, other: Self) -> Self {
+        // Entries of basis matrices and of identities.
+        if self.is_nothing() && other.is_bounded() {
+            return self;
+        }
+        if other.is_nothing() && self.is_bounded() {
+            return other;
+        }
         let (a, b) = (self.middle, other.middle);
         let linear = self.linear.weighted(b, other.linear, a);
         let [still, rest] = spread_of_product(

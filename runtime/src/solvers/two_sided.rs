@@ -83,6 +83,54 @@ pub fn two_sided_increment<T: Real, const R: usize, const C: usize>(
     Ok(Additive::new(whole.transpose()))
 }
 
+/// The solution of `left ΔX right = known`, given the inverses of both factors, with entries that are not finite
+/// where there is none; `names` are those of the factors.
+///
+/// # Errors
+/// [`SingularFactor`] where a factor has no inverse.
+#[inline]
+pub fn increment_between<T: Real, const R: usize, const C: usize>(
+    left_inverse: &SMatrix<T, R, R>,
+    known: &SMatrix<T, R, C>,
+    right_inverse: &SMatrix<T, C, C>,
+    names: &[&'static str; 2],
+) -> Result<Additive<R, C, T>, SingularFactor> {
+    let half = increment_behind(left_inverse, known, names[0])?;
+    increment_before(&half.matrix(), right_inverse, names[1])
+}
+
+/// The solution of `left ΔX = known`, given the inverse of the factor, as for [`increment_between`].
+///
+/// # Errors
+/// [`SingularFactor`] where the factor has no inverse.
+#[inline]
+pub fn increment_behind<T: Real, const R: usize, const C: usize>(
+    left_inverse: &SMatrix<T, R, R>,
+    known: &SMatrix<T, R, C>,
+    factor: &'static str,
+) -> Result<Additive<R, C, T>, SingularFactor> {
+    match left_inverse.trace().is_finite() {
+        true => Ok(Additive::new(left_inverse * known)),
+        false => Err(SingularFactor { factor }),
+    }
+}
+
+/// The solution of `ΔX right = known`, given the inverse of the factor, as for [`increment_between`].
+///
+/// # Errors
+/// [`SingularFactor`] where the factor has no inverse.
+#[inline]
+pub fn increment_before<T: Real, const R: usize, const C: usize>(
+    known: &SMatrix<T, R, C>,
+    right_inverse: &SMatrix<T, C, C>,
+    factor: &'static str,
+) -> Result<Additive<R, C, T>, SingularFactor> {
+    match right_inverse.trace().is_finite() {
+        true => Ok(Additive::new(known * right_inverse)),
+        false => Err(SingularFactor { factor }),
+    }
+}
+
 /// The solution of `left ΔX = known`.
 ///
 /// # Errors

@@ -12,6 +12,7 @@ mod forced;
 mod free;
 mod groups;
 mod integrate;
+mod kept_force;
 mod left_factor;
 mod linear_group;
 mod newton;

@@ -4,14 +4,19 @@
 
 use super::alone::{alone, scaled_momentum};
 use super::carried::seen_from_space;
+use super::constant_factors::Constant;
+pub(super) use super::constant_factors::linear_solution;
 use super::element::{self, Family, family};
 use super::expression::{Bindings, program};
+use super::force_at_node::at_nodes;
 use super::items::{letters_of, parameter_locals, text, with_transports};
 use super::left_factor::default_solver;
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::newton::{Together, onwards};
 use super::sizes::Generics;
-use super::step::{at, finish, here, node_momentum, step_signature};
+use super::step::{AtTheStart, at, finish, here, node_momentum, step_signature};
+use super::workspace::filled;
+pub(super) use super::workspace::{trial, work, work_init};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::blocks::Block;
@@ -31,7 +36,7 @@ fn numbered(d: &Derivation) -> impl Iterator<Item = (usize, &Block)> {
 }
 
 /// Numbers of the blocks that Newton's method solves.
-fn by_newton(d: &Derivation) -> impl Iterator<Item = (usize, &Block)> {
+pub(super) fn by_newton(d: &Derivation) -> impl Iterator<Item = (usize, &Block)> {
     numbered(d).filter(|(_, b)| b.is_newton())
 }
 
@@ -71,6 +76,15 @@ fn linear<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a Explicit)> 
     }
 }
 
+/// The form of the balance of a field that is solved by itself.
+pub(super) fn linear_field(d: &Derivation, i: usize) -> Option<&Explicit> {
+    let of_field = matches!(family(&d.spec.configurations[i]), Family::Field(_));
+    let all = numbered(d).filter_map(|(_, b)| linear(d, b));
+    all.filter(|_| of_field)
+        .find(|(j, _)| *j == i)
+        .map(|(_, form)| form)
+}
+
 /// The forms of all configurations in their changes, where they have one.
 fn all_displaced(d: &Derivation) -> Vec<Option<Displaced>> {
     let is_linear = |i: usize| numbered(d).any(|(_, b)| linear(d, b).is_some_and(|(j, _)| i == j));
@@ -82,6 +96,12 @@ fn all_displaced(d: &Derivation) -> Vec<Option<Displaced>> {
 /// The names of the inverses that a model keeps for block `n`.
 fn inverses(n: usize) -> [Ident; 2] {
     ["left", "right"].map(|side| format_ident!("inverse_{n}_{side}"))
+}
+
+/// The factors of a linear balance of a field.
+fn constant<'a>(d: &'a Derivation, b: &'a Block) -> Option<Constant<'a>> {
+    let (i, form) = linear(d, b)?;
+    Constant::of(d, i, form)
 }
 
 /// What the model keeps of constant factors that meet the change of a configuration.
@@ -103,10 +123,13 @@ pub(super) fn kept_inverses(d: &Derivation) -> Vec<Inverse> {
     let beforehand = each_newton(d, names, |_, t| super::newton::inverses(t));
     let forms = all_displaced(d);
     let of_block = |(n, b): (usize, &Block)| {
-        let form = changed(d, b, &forms)?;
-        let factors = [form.left.clone(), form.right.clone()];
+        let factors = match changed(d, b, &forms) {
+            Some(form) => [&form.left, &form.right].map(|of| Some(of.clone())),
+            None => constant(d, b)?.factors,
+        };
         let named = inverses(n).into_iter().zip(factors);
-        Some(named.map(|(name, of)| Inverse { name, of }))
+        let kept = named.filter_map(|(name, of)| Some(Inverse { name, of: of? }));
+        Some(kept.collect::<Vec<_>>())
     };
     let own = numbered(d).filter_map(of_block).flatten();
     own.chain(beforehand.into_iter().flatten()).collect()
@@ -161,7 +184,7 @@ pub(super) fn factors(d: &Derivation) -> Vec<Factor<'_>> {
     kept.collect()
 }
 
-fn search(n: usize) -> Ident {
+pub(super) fn search(n: usize) -> Ident {
     format_ident!("search_{n}")
 }
 
@@ -183,7 +206,7 @@ fn together<'a>(
 }
 
 /// Calls `f` with each block of Newton's method as a model of its own.
-fn each_newton<R>(
+pub(super) fn each_newton<R>(
     d: &Derivation,
     names: &Names,
     mut f: impl FnMut(usize, &Together) -> R,
@@ -194,55 +217,6 @@ fn each_newton<R>(
             f(n, &together(d, names, n, b, &block))
         })
         .collect()
-}
-
-/// The fields of the workspace and its documentation.
-pub(super) fn work(d: &Derivation, names: &Names) -> (TokenStream, &'static str) {
-    let method = default_solver(d).map(|_| quote!(method: Method,));
-    let searches = each_newton(d, names, |n, t| {
-        let (field, ty) = (search(n), t.search_type());
-        quote!(#field: #ty,)
-    });
-    let doc = match (method.is_some(), searches.is_empty()) {
-        (true, true) => " The step and the solver's name.",
-        (false, _) => " The step and the last velocities, from which the next solves start.",
-        (true, false) => {
-            " The step, the solver's name, and the last velocities, from which the next solves start."
-        }
-    };
-    (quote!(#method #(#searches)*), doc)
-}
-
-/// The values of those fields, every search made by `made`, the solver's name in a local.
-fn filled(d: &Derivation, made: impl Fn(usize) -> TokenStream) -> TokenStream {
-    let method = default_solver(d).map(|_| quote!(method,));
-    let searches = by_newton(d).map(|(n, _)| {
-        let (field, value) = (search(n), made(n));
-        quote!(#field: #value,)
-    });
-    quote!(#method #(#searches)*)
-}
-
-/// The values of those fields at the start.
-pub(super) fn work_init(d: &Derivation) -> TokenStream {
-    filled(d, |_| quote!(newton::Search::from_rest()))
-}
-
-/// The workspace of a trial step `h` of a model that Newton's method or several blocks solve, with the
-/// model's solver: each search by the constructor named.
-pub(super) fn trial(d: &Derivation, constructor: &str) -> TokenStream {
-    let work = item(d, "Workspace");
-    let constructor = format_ident!("{constructor}");
-    let made = quote!(newton::Search::#constructor());
-    if matches!(d.solve.method, Method::Newton) {
-        return quote!(#work { h, search: #made });
-    }
-    let method = default_solver(d).map(|_| quote!(let method = self.method;));
-    let fields = filled(d, |_| made.clone());
-    match method {
-        Some(method) => quote!({ #method #work { h, #fields } }),
-        None => quote!(#work { h, #fields }),
-    }
 }
 
 /// The types of what tangents ask of a node, and `step`.
@@ -259,11 +233,17 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     let mut needed: Vec<Letter> = onwards(d, &by_change);
     let seen = by_change.iter().flatten().filter_map(|f| f.seen.as_ref());
     needed.extend(letters_of(seen));
+    let forces = at_nodes(d);
+    let force_on = |i: usize| forces.iter().find(|f| f.configuration == i);
     for b in &d.solve.blocks {
         if let Some((i, form)) = linear(d, b) {
-            match &by_change[i] {
-                Some(form) => known.push(form.rest.clone()),
-                None => known.extend([&form.rest, &form.left, &form.right].map(Expr::clone)),
+            let moved = by_change[i].as_ref().map(|form| &form.rest);
+            match force_on(i) {
+                Some(force) => needed.extend(force.needed()),
+                None => known.push(moved.unwrap_or(&form.rest).clone()),
+            }
+            if by_change[i].is_none() && constant(d, b).is_none() {
+                known.extend([&form.left, &form.right].map(Expr::clone));
             }
         }
         if let Some((i, q)) = quaternionic(d, b) {
@@ -337,17 +317,27 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             continue;
         }
         if let Some((i, form)) = linear(d, b) {
-            let rest = values.next().filter(|_| !form.rest.is_zero());
-            let (left, right) = (values.next(), values.next());
+            let rest = match force_on(i) {
+                Some(force) => {
+                    let local = force.local(d, names, 0);
+                    solves.extend(force.here(d, names, &bindings));
+                    Some(quote!(#local))
+                }
+                None => values.next().filter(|_| !form.rest.is_zero()),
+            };
             let omega = variable(s, d.spec.configurations[i].velocity);
             let (at_node, minus) = (
                 node_momentum(d, i, d.spec.configurations[i].side),
                 rest.map(|rest| quote!(- (#rest))),
             );
             let known = quote!((#at_node #minus));
-            let factors = left.zip(right);
-            let solved =
-                factors.map(|(left, right)| linear_solution(d, i, form, left, known, right));
+            let solved = match constant(d, b) {
+                Some(kept) => Some(kept.solution(d, i, inverses(n), known)),
+                None => {
+                    let factors = values.next().zip(values.next());
+                    factors.map(|(left, right)| linear_solution(d, i, form, left, known, right))
+                }
+            };
             solves.extend(quote! {
                 let #omega = match #solved {
                     Ok(solved) => solved,
@@ -426,9 +416,9 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
         let tried = quote!(#work { h, #fields });
         let code = together.code(&bindings, &field, &tried);
         let [solution, solved] = ["found", "solved"].map(|base| together.name(base));
-        let (elements, solve) = (together.elements(), code.solve);
+        let (elements, known, solve) = (together.elements(), code.known, code.solve);
         solves.extend(quote! {
-            let #solution: newton::Solved<#elements> = { #solve };
+            let #solution: newton::Solved<#elements> = { #known #solve };
             let #solved = #solution.element;
         });
         solves.extend(together.matrices(&solved, &mut after));
@@ -461,7 +451,12 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
         }
     }
     let solved = |i: usize| found[i].clone();
-    let rest = finish(d, names, &mut after, &solved, &by_change, &p, remembered);
+    let known = AtTheStart {
+        by_change: &by_change,
+        forces: &forces,
+        computed: &p,
+    };
+    let rest = finish(d, names, &mut after, &solved, &known, remembered);
     let step_function = step_signature(
         d,
         quote! {
@@ -549,46 +544,6 @@ fn refusal(
                 made.ok().map(|()| 0.0)
             });
             StepCause::from(e).at_node(state.#node)
-        }
-    }
-}
-
-/// The solution of a linear balance, with the values of its factors. Those of a field may be numbers.
-pub(super) fn linear_solution(
-    d: &Derivation,
-    i: usize,
-    form: &Explicit,
-    left: TokenStream,
-    known: TokenStream,
-    right: TokenStream,
-) -> TokenStream {
-    let c = &d.spec.configurations[i];
-    let names = [text(d, &form.left), text(d, &form.right)];
-    let Family::Field(shape) = family(c) else {
-        return quote!(two_sided(&(#left), &#known, &(#right), &[#(#names),*]));
-    };
-    let s = &d.letters.symbols;
-    let dims = [shape.rows, shape.cols].map(|n| super::sizes::size(s, n));
-    let known = element::array(c, known);
-    let [first, second] = &names;
-    // A number in front of everything divides.
-    let is_number = |e: &Expr| e.shape().is_scalar();
-    let one = |e: &Expr| *e == expr::integer(1);
-    match (is_number(&form.left), is_number(&form.right)) {
-        (true, true) => quote!(divided(&#known, #left, #first)),
-        (false, true) if one(&form.right) => quote!(left_sided(&(#left), &#known, #first)),
-        (true, false) if one(&form.left) => quote!(right_sided(&#known, &(#right), #second)),
-        (left_number, right_number) => {
-            let [rows, cols] = &dims;
-            let whole = |number: bool, value: TokenStream, n: &TokenStream| match number {
-                true => quote!(SMatrix::<T, #n, #n>::from_diagonal_element(#value)),
-                false => value,
-            };
-            let (left, right) = (
-                whole(left_number, left, rows),
-                whole(right_number, right, cols),
-            );
-            quote!(two_sided_increment(&(#left), &#known, &(#right), &[#(#names),*]))
         }
     }
 }

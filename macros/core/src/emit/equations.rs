@@ -6,6 +6,7 @@ use super::element::{self, Bundle, stacked};
 use super::expression::{Bindings, program, ty};
 use super::items::letters_of;
 use super::names::{Names, variable};
+use super::stated::{Stated, stated};
 use super::step::at;
 use crate::check::spec::Side;
 use crate::derive::eliminated::Eliminated;
@@ -56,6 +57,8 @@ pub(super) struct Written {
     pub momenta_over: TokenStream,
     /// How the rest of a trial is found, where the residual and the tangent are of a part of it.
     pub part: Option<Part>,
+    /// What has been computed at the node before, for what comes after the solution.
+    pub computed: Option<(schedule::Program, Bindings)>,
 }
 
 /// A trial whose translations are solved for.
@@ -305,24 +308,13 @@ impl Equations<'_> {
             }
         }
         at_node.values.retain(|(_, value)| kept(value).is_none());
-        let (names, values): (Vec<_>, Vec<Expr>) = at_node.values.into_iter().unzip();
         let s = &at_node.symbols;
-        let p = schedule::program(s, &values, "s");
-        let (lets, values) = program(&p, self.bindings);
-        known.extend(lets);
-        let mut bindings = self.bindings.clone();
-        for ((name, result), value) in names.into_iter().zip(&p.results).zip(values) {
-            match result.node() {
-                // Another name for what has one already.
-                Node::Letter(l) => {
-                    bindings.bind(at(name, Shift::HERE), variable(&p.symbols, l.symbol))
-                }
-                _ => {
-                    let name = variable(s, name);
-                    known.extend(quote!(let #name = #value;));
-                }
-            }
-        }
+        let Stated {
+            statements,
+            bindings,
+            ..
+        } = stated(s, at_node.values, "s", self.bindings);
+        known.extend(statements);
         let p = schedule::program(s, &list, "t");
         let (lets, values) = program(&p, &bindings);
         let residual = residual_of(&values, &left, lets);
@@ -360,6 +352,7 @@ impl Equations<'_> {
                 momenta: quote!([SVector<T, 3>; #count]),
                 momenta_over: quote!(#mu.map(|part| part.over(change))),
                 part,
+                computed: None,
             },
         ))
     }
@@ -419,6 +412,31 @@ impl Equations<'_> {
         each.collect()
     }
 
+    /// The columns of the tangent along the velocity of configuration `j`, given the values along its direction.
+    fn columns(&self, j: usize, lets: TokenStream, values: &[TokenStream]) -> TokenStream {
+        let d = self.d;
+        let eta = variable(&d.letters.symbols, d.letters.direction[j]);
+        let column = if j == 0 {
+            quote!(axis)
+        } else {
+            let offset = element::offset(d, j);
+            quote!(#offset + axis)
+        };
+        let (directions, basis) = (
+            element::coordinates(d, j),
+            element::basis(d, j, quote!(axis)),
+        );
+        let stacked = stacked(d, values);
+        quote! {
+            for axis in 0..#directions {
+                let #eta = #basis;
+                #lets
+                let along = #stacked;
+                matrix.set_column(#column, &along);
+            }
+        }
+    }
+
     /// Coordinates one after the other; the tangent by the derivative along each of them.
     fn in_columns(&self, list: &[Expr], node: &[TokenStream]) -> (TokenStream, Written) {
         let (d, trial, mu) = (self.d, self.trial, self.momenta);
@@ -445,63 +463,72 @@ impl Equations<'_> {
         let momenta: Vec<TokenStream> = (0..bodies).map(|i| bundle.part(quote!(#mu), i)).collect();
         let list: Vec<Expr> = list.iter().map(|e| schedule::displaced(s, e)).collect();
         let list = list.as_slice();
-        let p = schedule::program(s, list, "t");
-        let (lets, values) = program(&p, self.bindings);
-        let parts: Vec<TokenStream> = values
-            .iter()
-            .zip(&momenta)
-            .map(|(value, own)| quote!((#value) - #own))
-            .collect();
-        let stacked_parts = stacked(d, &parts);
-        let residual = quote!(#lets #stacked_parts);
-        let mut derived = Vec::new();
-        // The derivative along Ω η for every basis element of every velocity.
-        let mut columns = TokenStream::new();
-        for j in 0..bodies {
-            let c = &d.spec.configurations[j];
-            let eta = d.letters.direction[j];
-            let along = lie::element(s, c.group, eta);
-            let change = c.group.moved(Side::Body, expr::here(s, c.velocity), along);
-            let along = [(at(c.velocity, Shift::HERE), change)];
-            let derivatives: Vec<Expr> = list
+        let residual_of = |s: &Symbols, list: &[Expr], bindings: &Bindings| {
+            let p = schedule::program(s, list, "t");
+            let (lets, values) = program(&p, bindings);
+            let parts: Vec<TokenStream> = values
                 .iter()
-                .map(|m| expr::directional(s, m, &along))
+                .zip(&momenta)
+                .map(|(value, own)| quote!((#value) - #own))
                 .collect();
-            derived.extend(derivatives.iter().cloned());
-            let p = schedule::program(s, &derivatives, "t");
-            let (lets, values) = program(&p, self.bindings);
-            let eta = variable(s, eta);
-            let column = if j == 0 {
-                quote!(axis)
-            } else {
-                let offset = element::offset(d, j);
-                quote!(#offset + axis)
-            };
-            let (directions, basis) = (
-                element::coordinates(d, j),
-                element::basis(d, j, quote!(axis)),
-            );
-            let column_value = stacked(d, &values);
-            columns.extend(quote! {
-                for axis in 0..#directions {
-                    let #eta = #basis;
-                    #lets
-                    let along = #column_value;
-                    matrix.set_column(#column, &along);
-                }
-            });
-        }
-        let tangent = quote! {
-            let mut matrix = SMatrix::<T, #dimension, #dimension>::zeros();
-            #columns
-            matrix
+            let stacked = stacked(d, &parts);
+            quote!(#lets #stacked)
         };
+        // The derivative along Ω η for every basis element of every velocity.
+        let derived: Vec<Vec<Expr>> = (0..bodies)
+            .map(|j| {
+                let c = &d.spec.configurations[j];
+                let along = lie::element(s, c.group, d.letters.direction[j]);
+                let change = c.group.moved(Side::Body, expr::here(s, c.velocity), along);
+                let along = [(at(c.velocity, Shift::HERE), change)];
+                list.iter()
+                    .map(|m| expr::directional(s, m, &along))
+                    .collect()
+            })
+            .collect();
+        let tangent_of = |s: &Symbols, derived: &[Vec<Expr>], bindings: &Bindings| {
+            let columns = derived.iter().enumerate().map(|(j, derivatives)| {
+                let p = schedule::program(s, derivatives, "t");
+                let (lets, values) = program(&p, bindings);
+                self.columns(j, lets, &values)
+            });
+            let columns: TokenStream = columns.collect();
+            quote! {
+                let mut matrix = SMatrix::<T, #dimension, #dimension>::zeros();
+                #columns
+                matrix
+            }
+        };
+        // In the loop what stands at the node has been computed before, what stands at the trial once for all columns.
+        let is_velocity = |l: Letter| d.spec.configurations.iter().any(|c| c.velocity == l.symbol);
+        let along = |l: Letter| d.letters.direction.contains(&l.symbol);
+        let varies = |l: Letter| is_velocity(l) || along(l);
+        let mut at_node = schedule::Known::new(s, &varies, "k");
+        let apart: Vec<Expr> = list.iter().map(|e| at_node.apart(e)).collect();
+        let derived_apart = columns_apart(&mut at_node, &derived);
+        let (symbols, values) = (at_node.symbols, at_node.values);
+        let mut at_trial = schedule::Known::new(&symbols, &along, "c");
+        let of_columns = columns_apart(&mut at_trial, &derived_apart);
+        let before = stated(&symbols, values, "s", self.bindings);
+        let statements = before.statements;
+        let known = quote!(#known #statements);
+        let residual = residual_of(&symbols, &apart, &before.bindings);
+        let once = stated(&at_trial.symbols, at_trial.values, "m", &before.bindings);
+        let columns = tangent_of(&at_trial.symbols, &of_columns, &once.bindings);
+        let once = once.statements;
+        let tangent = quote!(#once #columns);
+        let mut at_trial = schedule::Known::new(s, &along, "c");
+        let of_columns = columns_apart(&mut at_trial, &derived);
+        let once = stated(&at_trial.symbols, at_trial.values, "m", self.bindings);
+        let columns = tangent_of(&at_trial.symbols, &of_columns, &once.bindings);
+        let once = once.statements;
+        let alone_tangent = quote!(#once #columns);
         let over: Vec<TokenStream> = momenta.iter().map(|m| quote!(#m.over(change))).collect();
         let alone = Alone {
-            residual: residual.clone(),
-            tangent: tangent.clone(),
+            residual: residual_of(s, list, self.bindings),
+            tangent: alone_tangent,
             given: at_the_node(s, list),
-            values: at_the_node(s, &derived),
+            values: at_the_node(s, &derived.concat()),
         };
         (
             known,
@@ -516,9 +543,19 @@ impl Equations<'_> {
                 momenta: covectors,
                 momenta_over: bundle.value(&over),
                 part: None,
+                computed: Some((before.computed, before.bindings)),
             },
         )
     }
+}
+
+/// The equations of every column with what is known under names.
+fn columns_apart(known: &mut schedule::Known, columns: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
+    let mut all = Vec::with_capacity(columns.len());
+    for column in columns {
+        all.push(column.iter().map(|e| known.apart(e)).collect());
+    }
+    all
 }
 
 /// What stands for something at the node: elements and advected quantities.

@@ -195,8 +195,8 @@ impl Writer<'_> {
                 quote!(determinant(&(#a)))
             }
             Node::Adjugate(a) => {
-                let polynomial = self.write(&expr::adjugate_polynomial(a));
-                quote!((#polynomial))
+                let a = self.write(a);
+                quote!(adjugate(&(#a)))
             }
             Node::Dot(a, b) => match b.node() {
                 Node::Unit(_, axis) => {

@@ -7,7 +7,7 @@ use super::expression::{Bindings, Writer, program, ty as quantity};
 use super::items::{advanced, letters_of, parameter_locals, text, with_transports};
 use super::names::{Names, item, own, tagged, variable};
 use super::sizes::{Generics, size};
-use super::step::{at, finish, here, node_momentum, step_signature};
+use super::step::{AtTheStart, at, finish, here, node_momentum, step_signature};
 use crate::derive::Derivation;
 use crate::derive::blocks::Block;
 use crate::derive::carry::Carry;
@@ -339,8 +339,11 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
         names,
         &mut bindings,
         &|_| quote!(#omega),
-        &[],
-        &schedule::Program::none(&d.letters.symbols),
+        &AtTheStart {
+            by_change: &[],
+            forces: &[],
+            computed: &schedule::Program::none(&d.letters.symbols),
+        },
         TokenStream::new(),
     );
     let work = item(d, "Workspace");

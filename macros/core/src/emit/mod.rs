@@ -7,12 +7,14 @@ mod between;
 mod blocks;
 mod card;
 mod carried;
+mod constant_factors;
 mod discrete_energy;
 mod domain;
 mod element;
 mod energy;
 mod equations;
 mod expression;
+mod force_at_node;
 mod forced;
 mod formula;
 mod functional;
@@ -34,10 +36,12 @@ mod residual_of_step;
 mod sizes;
 mod start;
 mod state;
+mod stated;
 mod step;
 mod stepper;
 #[cfg(test)]
 mod tests;
+mod workspace;
 
 pub(crate) use notes::notes;
 

@@ -10,7 +10,7 @@ use super::items::{advanced, letters_of, parameter_locals, with_transports};
 use super::names::{Names, item, own, tagged, variable};
 use super::principal::Principal;
 use super::sizes::Generics;
-use super::step::{at, finish, here, node_momentum, step_signature};
+use super::step::{AtTheStart, at, finish, here, node_momentum, step_signature};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::convex::convexity;
@@ -40,6 +40,10 @@ pub(super) struct Together<'a> {
 pub(super) struct Loop {
     /// The type of what the tangent asks of a node.
     pub node_type: TokenStream,
+    /// The statements of what is known at the node.
+    pub known: TokenStream,
+    /// The same as a program, and where it is found, for what comes after the solution.
+    pub computed: Option<(schedule::Program, Bindings)>,
     /// An expression: the solution found, or an error returned.
     pub solve: TokenStream,
     /// The functions of the stepper that this calls.
@@ -277,7 +281,6 @@ impl Together<'_> {
             false => quote!(#newton.set_tangent(&{ #tangent_body });),
         };
         let solve = quote! {
-            #known
             #decided
             let mut #newton = work.#search.begin(state.#node, #values);
             loop {
@@ -353,6 +356,8 @@ impl Together<'_> {
         };
         Loop {
             node_type: principal_root.node_type(&values_type),
+            known,
+            computed: equations.computed.clone(),
             solve,
             functions,
         }
@@ -481,12 +486,24 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
     let search = format_ident!("search");
     let Loop {
         node_type,
+        known,
+        computed,
         solve,
         functions,
     } = all.code(&bindings, &search, &quote!(#work { h, search }));
     let [found, solved, node] = ["found", "solved", "node"].map(|base| names.local(base));
     let elements = all.elements();
-    let mut after = bindings.clone();
+    // What comes after the solution asks for it too.
+    let (known, solve) = match computed.is_some() {
+        true => (known, solve),
+        false => (TokenStream::new(), quote!(#known #solve)),
+    };
+    let (computed, mut after) = computed.unwrap_or_else(|| {
+        (
+            schedule::Program::none(&d.letters.symbols),
+            bindings.clone(),
+        )
+    });
     let matrices = all.matrices(&solved, &mut after);
     let remembered = quote!(work.search.remember(state.#node - 1, &#found););
     let solved_at = |i: usize| all.part(quote!(#solved), i);
@@ -495,8 +512,11 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
         names,
         &mut after,
         &solved_at,
-        &[],
-        &schedule::Program::none(&d.letters.symbols),
+        &AtTheStart {
+            by_change: &[],
+            forces: &[],
+            computed: &computed,
+        },
         remembered,
     );
     let step = variable(&d.letters.symbols, d.spec.step);
@@ -506,6 +526,7 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
             let #step = work.h;
             #parameters
             #locals
+            #known
             let #found: newton::Solved<#elements> = {
                 #solve
             };

@@ -4,6 +4,7 @@
 use super::carried::{Acting, carried, gained, seen_from_space};
 use super::element::{self, Family, family};
 use super::expression::{Bindings, program};
+use super::force_at_node::AtNode;
 use super::items::{self, kept, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
@@ -153,25 +154,34 @@ pub(super) fn node_momentum(d: &Derivation, i: usize, side: Side) -> TokenStream
     }
 }
 
-/// The tail of every step: new elements, next node's quantities, momenta, the finite test. What was solved
-/// for is the change of a configuration where it has a form in `by_change`; what is `known` at the node where
-/// the step starts has been computed.
+/// What has been computed at the node where a step starts.
+pub(super) struct AtTheStart<'a> {
+    /// The forms in their changes of the configurations of which the change was solved for.
+    pub by_change: &'a [Option<Displaced>],
+    /// What acts on fields at one node as at the next, kept from step to step.
+    pub forces: &'a [AtNode],
+    /// Everything else that has a name.
+    pub computed: &'a schedule::Program,
+}
+
+/// The tail of every step: new elements, next node's quantities, momenta, the finite test.
 pub(super) fn finish(
     d: &Derivation,
     names: &Names,
     bindings: &mut Bindings,
     solved: &dyn Fn(usize) -> TokenStream,
-    by_change: &[Option<Displaced>],
-    known: &schedule::Program,
+    known: &AtTheStart,
     remembered: TokenStream,
 ) -> TokenStream {
     let s = &d.letters.symbols;
-    let forms = by_change;
+    let forms = known.by_change;
+    let force_on = |i: usize| known.forces.iter().find(|f| f.configuration == i);
     let by_change = |i: usize| forms.get(i).and_then(Option::as_ref);
     // What acts, and where it may be seen from space.
     let parts = d.carries.iter().enumerate();
     let parts = parts.flat_map(|(i, carry)| match (by_change(i), carry) {
         (Some(form), _) => vec![(None, &form.added)],
+        (None, Carry::Kept(_)) if force_on(i).is_some() => Vec::new(),
         (None, Carry::Kept(added)) => vec![(None, added)],
         (None, Carry::Through { leave, arrive, .. }) => vec![
             (Some((i, Shift::HERE)), leave),
@@ -180,6 +190,10 @@ pub(super) fn finish(
     });
     let (places, wanted): (Vec<_>, Vec<Expr>) = parts.map(|(at, e)| (at, e.clone())).unzip();
     let mut needed = letters_of(&wanted);
+    for force in known.forces {
+        let there = |l: Letter| at(l.symbol, Shift::NEXT);
+        needed.extend(force.needed().into_iter().map(there));
+    }
     let seen = forms.iter().flatten().filter_map(|form| form.seen.as_ref());
     let seen: Vec<Expr> = seen.map(|e| expr::shift_time(s, e, 1)).collect();
     needed.extend(letters_of(&seen));
@@ -258,15 +272,26 @@ pub(super) fn finish(
         Shift::NEXT,
         bindings,
     ));
-    let p = schedule::program_after(known, &factored, "t");
+    let p = schedule::program_after(known.computed, &factored, "t");
     let (lets, values) = program(&p, bindings);
     out.extend(lets);
     let acting = values.into_iter().zip(in_space);
     let mut acting = acting.map(|(value, in_space)| Acting { value, in_space });
+    let mut kept_forces = TokenStream::new();
     for i in 0..d.spec.configurations.len() {
-        let carried = match by_change(i) {
-            Some(form) => gained(d, names, i, form, &mut acting),
-            None => carried(d, names, i, &mut acting),
+        let carried = match (by_change(i), force_on(i)) {
+            (Some(form), _) => gained(d, names, i, form, &mut acting),
+            (None, None) => carried(d, names, i, &mut acting),
+            (None, Some(force)) => {
+                let [here, next] = [0, 1].map(|time| force.local(d, names, time));
+                out.extend(force.next(d, names, bindings));
+                kept_forces.extend(force.remembered(d, names, bindings));
+                let both = Acting {
+                    value: quote!(-(#here + #next)),
+                    in_space: false,
+                };
+                carried(d, names, i, &mut [both].into_iter())
+            }
         };
         let value = carried.value;
         out.extend(carried.found);
@@ -284,6 +309,7 @@ pub(super) fn finish(
         #out
         #finite
         #assignments
+        #kept_forces
         #held
         state.#node += 1;
         #remembered

@@ -17,6 +17,27 @@ pub fn det(a: Expr) -> Expr {
     }
 }
 
+/// The determinants of the factors of a product of square matrices, whose product is its determinant: that of
+/// `Q^T C Q` is told by those of `Q` and `C`, and so are its derivatives, without inverses that cancel.
+pub(super) fn factors_of_det(a: &Expr) -> Option<&[Expr]> {
+    match a.node() {
+        Node::Product(factors)
+            if factors
+                .iter()
+                .all(|f| f.shape().is_square() && !f.shape().is_scalar()) =>
+        {
+            Some(factors)
+        }
+        _ => None,
+    }
+}
+
+/// The determinant of a product of square matrices as the product of theirs.
+pub(super) fn det_by_factors(a: &Expr) -> Option<Expr> {
+    let factors = factors_of_det(a)?;
+    Some(super::build::product(factors.iter().cloned().map(det)))
+}
+
 /// Largest argument whose adjugate is computed as a polynomial.
 const LARGEST_ADJUGATE: u32 = 8;
 
@@ -36,7 +57,7 @@ pub fn adjugate(symbols: &Symbols, a: &Expr) -> Expr {
 }
 
 /// The adjugate of a matrix of two or three rows as a polynomial (Cayley-Hamilton): what is
-/// computed and differentiated.
+/// differentiated.
 pub fn adjugate_polynomial(a: &Expr) -> Expr {
     let n = a.shape().rows;
     let t = trace(a.clone());
@@ -58,10 +79,11 @@ pub fn adjugate_polynomial(a: &Expr) -> Expr {
     )
 }
 
-/// The same expression with every adjugate written as its polynomial.
-pub fn without_adjugates(symbols: &Symbols, e: &Expr) -> Expr {
+/// The same expression with determinants of products as products of determinants.
+pub fn with_plain_determinants(symbols: &Symbols, e: &Expr) -> Expr {
+    let e = super::rebuild(symbols, e, &mut |x| with_plain_determinants(symbols, x));
     match e.node() {
-        Node::Adjugate(a) => adjugate_polynomial(&without_adjugates(symbols, a)),
-        _ => super::rebuild(symbols, e, &mut |x| without_adjugates(symbols, x)),
+        Node::Det(a) => det_by_factors(a).unwrap_or(e),
+        _ => e,
     }
 }

@@ -99,6 +99,7 @@ impl Walk<'_> {
                 neg(product([e.clone(), da, e.clone()]))
             }
             Node::Trace(a) => trace(d(a)),
+            Node::Det(a) if let Some(factors) = determinant::det_by_factors(a) => d(&factors),
             Node::Det(a) => {
                 let da = d(a);
                 if da.is_zero() {
@@ -116,11 +117,12 @@ impl Walk<'_> {
                 let Node::Det(inner) = a.node() else {
                     return integer(0);
                 };
-                let da = d(inner);
-                if da.is_zero() {
-                    return integer(0);
-                }
-                trace(mul(inverse(symbols, inner.clone()), da))
+                let whole = std::slice::from_ref(inner);
+                let factors = determinant::factors_of_det(inner).unwrap_or(whole);
+                let changes = factors.iter().map(|x| (x, d(x)));
+                let changes = changes.filter(|(_, dx)| !dx.is_zero());
+                let changes = changes.map(|(x, dx)| trace(mul(inverse(symbols, x.clone()), dx)));
+                sum(changes.collect::<Vec<_>>(), Shape::SCALAR)
             }
             Node::Call(function, a) => {
                 let da = d(a);

@@ -73,6 +73,7 @@ fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec
             go(a, neg(product([back.clone(), seed, back])));
         }
         Node::Trace(a) => go(a, mul(seed, identity(a.shape().rows))),
+        Node::Det(a) if let Some(factors) = determinant::det_by_factors(a) => go(&factors, seed),
         Node::Det(a) => {
             let cofactor = transpose(symbols, adjugate(symbols, a));
             go(a, mul(seed, cofactor));
@@ -97,8 +98,11 @@ fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec
         // d log det A = tr(A^-1 dA): the determinant cancels.
         Node::Call(Function::Log, a) if matches!(a.node(), Node::Det(_)) => {
             if let Node::Det(inner) = a.node() {
-                let back = transpose(symbols, inverse(symbols, inner.clone()));
-                go(inner, mul(seed, back));
+                let whole = std::slice::from_ref(inner);
+                for x in determinant::factors_of_det(inner).unwrap_or(whole) {
+                    let back = transpose(symbols, inverse(symbols, x.clone()));
+                    go(x, mul(seed.clone(), back));
+                }
             }
         }
         Node::Call(function, a) => go(a, function.chain(e, a, seed)),

@@ -38,7 +38,7 @@ use symbol::SymbolId;
 pub use build::*;
 pub use collect::{coefficient, collect, positive_first, term_by_term};
 pub use constant::Constant;
-pub use determinant::{adjugate, adjugate_polynomial, det, without_adjugates};
+pub use determinant::{adjugate, adjugate_polynomial, det, with_plain_determinants};
 pub use diagonal::{diagonal, diagonal_of};
 pub use directional::directional;
 pub use factored::{axial_of_outer, factored};

@@ -115,3 +115,57 @@ fn the_gradient_of_a_logarithm_of_a_determinant_is_the_transposed_inverse() {
     assert!(algebra.equal(&gradient, &wanted));
     assert!(!algebra.equal(&gradient, &inverse(&s, a)));
 }
+
+/// What stands under a determinant that is a product is told by its factors: nothing is inverted that cancels.
+#[test]
+fn derivatives_of_the_determinant_of_a_product_are_those_of_its_factors() {
+    let mut s = Symbols::default();
+    let shape = Shape::square(THREE);
+    let mut add = |name: &str, role| s.add(name, shape, Structure::General, role);
+    let (q, c, v) = (
+        add("Q", Role::Element),
+        add("C", Role::Parameter),
+        add("V", Role::Variation),
+    );
+    let letter = super::Letter {
+        symbol: q,
+        shift: super::Shift::HERE,
+    };
+    let [q, c, v] = [q, c, v].map(|id| here(&s, id));
+    let form = super::product([transpose(&s, q.clone()), c.clone(), q.clone()]);
+    let algebra = crate::algebra::Algebra::new(&s);
+    let gradient = |e: &Expr| super::gradient(&s, e, letter);
+    let det = super::det;
+    // d log det(Q^T C Q) = 2 Q^-T.
+    let of_log = gradient(&call(Function::Log, det(form.clone())));
+    let across = transpose(&s, inverse(&s, q.clone()));
+    assert!(algebra.equal(&of_log, &scale(Rational::integer(2), across.clone())));
+    assert!(!super::contains_role(&s, &of_log, Role::Parameter));
+    // d det(Q^T C Q) = 2 det(C) det(Q)^2 Q^-T, of which the cofactors have a value everywhere.
+    let of_det = gradient(&det(form.clone()));
+    let twice = super::product([det(c), det(q.clone()), det(q.clone()), across]);
+    assert!(algebra.equal(&of_det, &scale(Rational::integer(2), twice)));
+    let inverts = |e: &Expr| {
+        let mut all = vec![e.clone()];
+        while let Some(e) = all.pop() {
+            if matches!(e.node(), super::Node::Inverse(_)) {
+                return true;
+            }
+            all.extend(e.children().into_iter().cloned());
+        }
+        false
+    };
+    assert!(!inverts(&of_det));
+    // Along a direction the same, and as the polynomial has it.
+    let along = [(letter, v.clone())];
+    let change = super::directional(&s, &det(form.clone()), &along);
+    let paired = |g: Expr| super::trace(mul(transpose(&s, g), v.clone()));
+    assert!(algebra.equal(&change, &paired(of_det)));
+    let log = call(Function::Log, det(form.clone()));
+    let change = super::directional(&s, &log, &along);
+    assert!(algebra.equal(&change, &paired(of_log)));
+    // What is computed has no determinant of a product.
+    let plain = super::with_plain_determinants(&s, &det(form.clone()));
+    assert_ne!(plain, det(form.clone()));
+    assert!(algebra.equal(&plain, &det(form)));
+}

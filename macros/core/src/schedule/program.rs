@@ -29,10 +29,10 @@ impl Program {
 
 /// Schedules several results together. `prefix` starts the names of temporaries.
 pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
-    // What is computed has a value where determinants vanish, and its digits where nothing moves.
+    // What is computed has its digits where nothing moves, and determinants of products are those of their factors.
     let results: Vec<Expr> = results
         .iter()
-        .map(|r| super::rest::displaced(symbols, &expr::without_adjugates(symbols, r)))
+        .map(|r| super::rest::displaced(symbols, &expr::with_plain_determinants(symbols, r)))
         .collect();
     let results = super::collected::collected(symbols, &results);
     let results = super::transposed::aligned(symbols, &results);

@@ -46,6 +46,10 @@ fn systems<const N: usize>() {
     assert_eq!(da.determinant(), linalg::determinant(&a));
     assert_eq!(da.inverse(), of(linalg::inverse(&a)));
     assert_eq!(da.small_inverse(), of(linalg::small_inverse(&a)));
+    // Of other sizes it is no number, which equals nothing.
+    let (adjugate, own) = (da.adjugate(), Dense::of(&linalg::adjugate(&a)));
+    let same = adjugate == own;
+    assert_eq!(same, N == 2 || N == 3);
     let many = linalg::solve_many(&a, &b).map(|x| Dense::of(&x));
     assert_eq!(da.solved(&db), many);
     let small = linalg::small_solve(&a, &b).map(|x| Dense::of(&x));
