@@ -112,7 +112,7 @@ macro_rules! compared {
                 "{} at {step}", stringify!($total)
             );)*
         }
-        let seen: Vec<&str> = read.observers().collect();
+        let seen: Vec<String> = read.observers().collect();
         assert_eq!(seen.len(), 2 + [$($name),*].len(), "{seen:?}");
         let share = 1e9 / (STEPS as f64 * data["m"].len() as f64);
         eprintln!("{}: {:.0} ns a step and particle compiled, {:.0} read", read.name(), built * share, interpreted * share);

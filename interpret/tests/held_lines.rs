@@ -65,8 +65,8 @@ fn a_wrong_sign_of_what_is_held_is_seen() {
             line.step().expect("steps");
         }
         let differs = model.observers().any(|name| {
-            let read = line.observe(name).expect("is observed");
-            bits(&read) != bits(&built.seen(name))
+            let read = line.observe(&name).expect("is observed");
+            bits(&read) != bits(&built.seen(&name))
         });
         assert!(differs, "{term}");
     }

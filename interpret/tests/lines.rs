@@ -128,8 +128,8 @@ fn a_term_that_is_left_out_is_seen() {
             line.step().expect("steps");
         }
         let differs = model.observers().any(|name| {
-            let read = line.observe(name).expect("is observed");
-            bits(&read) != bits(&built.seen(name))
+            let read = line.observe(&name).expect("is observed");
+            bits(&read) != bits(&built.seen(&name))
         });
         assert!(differs, "{term}");
     }
@@ -194,7 +194,7 @@ fn the_card_of_a_long_line_says_what_that_of_its_bodies_says() {
     // The same observables and invariants, those of given sites left out.
     for (source, _, cases) in compiled::all() {
         let model = LineModel::read(source).expect("is read");
-        let observed = |f: &Field| model.observers().any(|o| ascii(o) == split(f).0);
+        let observed = |f: &Field| model.observers().any(|o| ascii(&o) == split(f).0);
         for case in cases.iter().filter(|c| c.n == 12) {
             let card = |n: usize| {
                 let chosen = choice(source, n, case.ends);

@@ -52,8 +52,8 @@ fn a_term_that_is_left_out_is_seen() {
             line.step().expect("steps");
         }
         let differs = model.observers().any(|name| {
-            let read = line.observe(name).expect("is observed");
-            bits(&read) != bits(&built.seen(name))
+            let read = line.observe(&name).expect("is observed");
+            bits(&read) != bits(&built.seen(&name))
         });
         assert!(differs, "{term}");
     }

@@ -198,6 +198,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("body_velocity", 2) => |a, _| velocity(a.first()?, a.get(1)?),
         ("spatial_velocity", 2) => |a, _| spatial_velocity(a.first()?, a.get(1)?),
         ("inverse", 1) => |a, _| inverse(a.first()?),
+        ("Additive::new", 1) => |a, _| Some(Value::Element(Kept::Field, a.first()?.dense()?)),
         ("changed", 2) => |a, _| match a {
             [Value::Element(Kept::Linear, q), change] => {
                 let change = change.dense()?;

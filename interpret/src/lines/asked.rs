@@ -1,7 +1,7 @@
 //! What a line is asked at its node: energies, conserved totals and the sizes of their terms, and what is observed at sites.
 //! Takes the routines of the model; gives numbers.
 
-use super::{LineTrajectory, columns, numbers, put, run};
+use super::{LineTrajectory, columns, coordinates, numbers, put, run};
 use crate::code::Routine;
 use crate::opened::at;
 use crate::value::Value;
@@ -70,6 +70,17 @@ impl LineTrajectory {
 
     /// What is observed at all sites, one site after the other, matrices row after row.
     pub fn observe(&mut self, name: &str) -> Option<Vec<f64>> {
+        let model = self.model.clone();
+        for c in &model.coordinates {
+            if let Some(told) = coordinates::told(c, name, |own| self.seen(own)) {
+                return Some(told);
+            }
+        }
+        self.seen(name)
+    }
+
+    /// The same of what the program shows.
+    fn seen(&mut self, name: &str) -> Option<Vec<f64>> {
         let model = self.model.clone();
         let values = format!("values_{name}");
         let own = model.observers.iter().find(|(own, _)| own == name);

@@ -2,6 +2,7 @@
 //! repeated for all sites. Takes a model with labels and a choice; gives what the command reads and starts.
 
 use super::LineModel;
+use super::coordinates::{self, Of};
 use crate::cards::named;
 use crate::constants::Constants;
 use crate::opened::Text;
@@ -10,7 +11,7 @@ use clebsch::card::{Card, Field, Invariant, Kind, Open};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Choice, Kind as QuantityKind, Lattice, Unfolded};
-use clebsch_core::line::totals_on;
+use clebsch_core::line::{Coordinates, totals_on};
 use clebsch_core::syntax::ast::Model;
 use clebsch_core::{document, pipeline};
 use std::collections::BTreeMap;
@@ -72,7 +73,15 @@ impl Carded {
         source: &str,
         open: Open,
     ) -> Result<(Self, Vec<Warning>), Refused> {
-        let (statement, lattice) = stated;
+        let (statement, as_stated) = stated;
+        let restated = match model.coordinates.as_slice() {
+            [] => None,
+            _ => clebsch_core::line::restated(statement, as_stated),
+        };
+        let lattice = restated.as_ref().map(Lattice::read).transpose();
+        let lattice = lattice.map_err(Refused::Model)?;
+        let statement = restated.as_ref().unwrap_or(statement);
+        let lattice = lattice.as_ref().unwrap_or(as_stated);
         let representative =
             pipeline::representative(statement, lattice).map_err(Refused::Model)?;
         let counts = representative.counts.iter().zip(&choice.counts);
@@ -103,8 +112,10 @@ impl Carded {
             short: &short,
             whole: choice,
         };
-        let known = |p: &Place| model.observers().any(|o| ascii(o) == p.key);
-        let mut parameters = expander.expanded(card.parameters);
+        let known = |p: &Place| model.observers().any(|o| ascii(&o) == p.key);
+        let in_groups = |fields, initial| in_groups(&model.coordinates, fields, initial);
+        // What an end holds is a parameter.
+        let mut parameters = in_groups(expander.expanded(card.parameters), true);
         let space: Vec<_> = model
             .space()
             .map(|(name, count)| of_space(name, count))
@@ -112,8 +123,8 @@ impl Carded {
         parameters.retain(|(field, _)| space.iter().all(|(own, _)| own.ascii != field.ascii));
         parameters.extend(space);
         let (parameters, at_parameters) = split(parameters);
-        let (initial, at_initial) = split(expander.expanded(card.initial));
-        let mut observed = expander.expanded(card.observables);
+        let (initial, at_initial) = split(in_groups(expander.expanded(card.initial), true));
+        let mut observed = in_groups(expander.expanded(card.observables), false);
         let mut left_out: Vec<String> = Vec::new();
         observed.retain(|(_, p)| {
             let known = known(p);
@@ -183,6 +194,9 @@ impl Carded {
                 kept.iter().map(|i| i.name).filter(|n| of_holds(n)),
             );
         }
+        for c in &model.coordinates {
+            summary.push_str(&format!("\ncoordinates          {}", c.words()));
+        }
         summary.push_str(&told(&left_out));
         let card = Card {
             source: text(source),
@@ -201,7 +215,7 @@ impl Carded {
             invariants: Box::leak(kept.into_boxed_slice()),
             ..card
         };
-        let quantities = lattice.quantities.iter();
+        let quantities = lattice.quantities.iter().chain(&as_stated.quantities);
         let sites = quantities.map(|q| (q.name.text.clone(), choice.sites_of(lattice, q)));
         let carded = Carded {
             model,
@@ -270,6 +284,33 @@ fn told(left_out: &[String]) -> String {
         told.push_str(&left_out.join(", "));
     }
     told
+}
+
+/// Fields of what a line keeps in coordinates as users give and see them.
+fn in_groups(
+    all: &[Coordinates],
+    fields: Vec<(Field, Place)>,
+    initial: bool,
+) -> Vec<(Field, Place)> {
+    let each = fields.into_iter().flat_map(|(field, place)| {
+        let found = all
+            .iter()
+            .find_map(|c| Some((c, coordinates::of(c, &place.key)?)));
+        let (Some((c, of)), Some(site)) = (found, place.site) else {
+            return vec![(field, place)];
+        };
+        let own = match of {
+            Of::Rest => Vec::new(),
+            Of::Element => coordinates::fields(c, site, false, initial),
+            Of::Momentum => coordinates::fields(c, site, true, initial),
+        };
+        let placed = own.into_iter().map(|(field, key)| {
+            let site = Some(site);
+            (field, Place { key, site })
+        });
+        placed.collect()
+    });
+    each.collect()
 }
 
 type Fields = (&'static [Field], Vec<Place>);

@@ -3,6 +3,7 @@
 
 mod asked;
 mod card;
+mod coordinates;
 mod given;
 mod running;
 
@@ -22,7 +23,7 @@ use clebsch::line::LineError;
 use clebsch::saved::{Saved, Words};
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::Choice;
-use clebsch_core::line as core_line;
+use clebsch_core::line::{self as core_line, Coordinates};
 use clebsch_core::{emit, pipeline};
 use core::fmt;
 use given::{Ends, Given};
@@ -108,6 +109,8 @@ pub struct LineModel {
     densities: Vec<(String, String)>,
     node: u32,
     places: usize,
+    /// What the program keeps in coordinates.
+    coordinates: Vec<Coordinates>,
 }
 
 /// Why [`LineModel::read`] gives none: the model is wrong, its form is another, or it needs a build.
@@ -284,6 +287,7 @@ impl LineModel {
             densities: densities.collect(),
             node,
             places: places.unwrap_or(at::FIRST),
+            coordinates: line.coordinates.clone(),
         }))
     }
 
@@ -321,11 +325,14 @@ impl LineModel {
 
     /// The names of what is observed at sites, as [`LineTrajectory::observe`] takes them: what moves and its
     /// momenta, then the values of functionals of all sites.
-    pub fn observers(&self) -> impl Iterator<Item = &str> {
+    pub fn observers(&self) -> impl Iterator<Item = String> + '_ {
         let functionals = self.functionals.iter();
         let values = functionals.map(|(name, _)| name.strip_prefix("values_").unwrap_or(name));
-        let own = self.observers.iter().map(|(name, _)| name.as_str());
-        own.chain(values)
+        let own = self.observers.iter().map(|(name, _)| name.clone());
+        let all = &self.coordinates;
+        let own = own.filter(|name| all.iter().all(|c| coordinates::of(c, name).is_none()));
+        let in_groups = all.iter().flat_map(coordinates::shown);
+        own.chain(in_groups).chain(values.map(str::to_owned))
     }
 
     /// What else is given of a model whose particles live in a domain, by name, with how many numbers it is: the
@@ -399,6 +406,17 @@ impl LineModel {
         h: f64,
         numbers: &Numbers<'_>,
     ) -> Result<LineTrajectory, Unstarted> {
+        for c in &self.coordinates {
+            coordinates::admit(c, numbers)?;
+        }
+        let numbers: &Numbers<'_> = &|name| {
+            let mut all = self.coordinates.iter();
+            let own = all.find(|c| coordinates::of(c, name).is_some());
+            match own {
+                Some(c) => coordinates::given(c, name, numbers),
+                None => numbers(name),
+            }
+        };
         let mut places = vec![Value::Unit; self.places];
         let model = self.built(choice, numbers, &mut places)?;
         put(&mut places, at::MODEL, model);
@@ -408,7 +426,8 @@ impl LineModel {
             self.initial.value(numbers, &|_| None)?,
         );
         put(&mut places, at::STEP, Value::Real(h));
-        let both = run(&self.start, &mut places).map_err(Failure::line)?;
+        let both = run(&self.start, &mut places);
+        let both = both.map_err(|e| coordinates::named(&self.coordinates, e.line()))?;
         put(&mut places, at::GIVEN, Value::Unit);
         let Value::List(both) = both else {
             return Err(Unstarted::Line(unread().line()));
@@ -493,7 +512,7 @@ impl LineTrajectory {
         let model = self.model.clone();
         run(&model.step, &mut self.places)
             .map(|_| ())
-            .map_err(Failure::line)
+            .map_err(|e| coordinates::named(&model.coordinates, e.line()))
     }
 }
 

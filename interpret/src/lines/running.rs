@@ -204,7 +204,7 @@ impl Carded {
 
     /// Of each observable the number of its observer, and the site.
     fn order(&self) -> Vec<(usize, usize)> {
-        let names: Vec<String> = self.model.observers().map(ascii).collect();
+        let names: Vec<String> = self.model.observers().map(|o| ascii(&o)).collect();
         let place = |p: &Place| {
             let observer = names.iter().position(|n| *n == p.key);
             (observer.unwrap_or(usize::MAX), p.site.unwrap_or(0))
@@ -268,7 +268,7 @@ impl Trajectory for Running {
         let mut line = self.line.borrow_mut();
         let names = self.carded.model.observers();
         let all: Vec<Vec<f64>> = names
-            .map(|name| line.observe(name).unwrap_or_default())
+            .map(|name| line.observe(&name).unwrap_or_default())
             .collect();
         let mut out = out.iter_mut();
         for ((observer, site), field) in self.order.iter().zip(self.carded.card.observables) {

@@ -38,8 +38,8 @@ pub fn bits(list: &[f64]) -> Vec<u64> {
 pub fn same(line: &mut LineTrajectory, built: &dyn Compiled, model: &LineModel, what: &str) {
     assert_eq!(line.node(), built.node(), "{what}");
     for name in model.observers() {
-        let read = line.observe(name).expect("is observed");
-        let own = built.seen(name);
+        let read = line.observe(&name).expect("is observed");
+        let own = built.seen(&name);
         assert!(!own.is_empty(), "{what}: {name}");
         assert_eq!(bits(&read), bits(&own), "{what}: {name}");
     }
@@ -96,7 +96,7 @@ pub fn beside(
         let Some(name) = model.observers().find(|o| ascii(o) == key) else {
             continue;
         };
-        let list = line.observe(name).expect("is observed");
+        let list = line.observe(&name).expect("is observed");
         // What belongs to the whole line has no site.
         let at = site.unwrap_or(0) * field.count();
         let pair = own.iter().zip(&list[at..at + field.count()]);
@@ -213,7 +213,7 @@ pub fn go_on(lines: impl Iterator<Item = Line>) {
             again.step().expect("steps");
         }
         for name in model.observers() {
-            let (one, other) = (whole.observe(name), again.observe(name));
+            let (one, other) = (whole.observe(&name), again.observe(&name));
             let (one, other) = (one.expect("is there"), other.expect("is there"));
             assert_eq!(bits(&one), bits(&other), "{}: {name}", model.name());
         }

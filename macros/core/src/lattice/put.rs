@@ -3,11 +3,11 @@
 //! stands still.
 
 use super::choice::Choice;
-use super::declared::{Lattice, Sites};
+use super::declared::{Lattice, Quantity, Sites};
 use super::names::copy_name;
 use crate::algebra::Rational;
 use crate::diagnostic::Diagnostic;
-use crate::syntax::ast::{Expression, Kind};
+use crate::syntax::ast::{Expression, Kind, Kindred, Name, Size};
 use std::collections::BTreeMap;
 
 /// What stands in the place of a copy that does not move.
@@ -125,7 +125,7 @@ impl Put<'_> {
         };
         let copy = copy_name(n, site);
         let value = match self.pinned.get(&copy) {
-            Some(Still::Identity) => named("Id".to_owned(), e),
+            Some(Still::Identity) => still(q, e),
             Some(Still::Defined(by_given)) => by_given.clone(),
             Some(Still::Given) | None => named(copy, e),
         };
@@ -203,6 +203,30 @@ impl Put<'_> {
 
     fn moves(&self, e: &Expression, names: &std::collections::BTreeSet<String>) -> bool {
         any_name(e, &|n| names.contains(n))
+    }
+}
+
+/// The velocity of what stands still; of a rigid motion with its size, which `pos` does not tell.
+fn still(q: &Quantity, e: &Expression) -> Expression {
+    let identity = named("Id".to_owned(), e);
+    let [Size::Number(n, _)] = q.shape.sizes.as_slice() else {
+        return identity;
+    };
+    if q.shape.name.text != "SE" {
+        return identity;
+    }
+    let shape = Kindred {
+        name: Name {
+            text: "Mat".to_owned(),
+            place: e.place,
+            typeset: None,
+        },
+        sizes: vec![Size::Number(n + 1, e.place)],
+        place: e.place,
+    };
+    Expression {
+        kind: Kind::Shaped(Box::new(identity), shape),
+        place: e.place,
     }
 }
 

@@ -337,7 +337,7 @@ fn how(
             ),
             _ => format!(
                 "`{name}` is in {group}: loops over sites take fields, rotations of SO<3> and unit quaternions of SU<2> seen \
-                 from the body"
+                 from the body, and GL<n>, SO<2>, SE<2> and SE<3> in coordinates of these"
             ),
         }))
     };
@@ -446,6 +446,13 @@ pub(super) fn momentum(
     for j in block {
         let c = &d.spec.configurations[*j];
         let Some(own) = velocity::columns(s, &momentum, c) else {
+            if c.group.is_additive() {
+                return Err(Refused::Form(format!(
+                    "the momentum of the matrix `{}` is not one product `L*(next(X) - X)*R` with known factors: loops over sites take \
+                     matrices whose kinetic energy is `tr(A*(next(X) - X)*B*(next(X) - X)^T)/(2*h)`",
+                    s.get(c.element).name
+                )));
+            }
             return Err(Refused::Form(format!(
                 "the velocity of `{}` is found together with that of `{}`: loops over sites take fields and rotations of \
                  SO<3> seen from the body so",

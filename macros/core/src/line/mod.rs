@@ -3,6 +3,7 @@
 //! proves that these are all of its equations. Takes a model with labels; gives the parts that a
 //! stepper with loops over sites is made of, or why it has to be written out.
 
+mod coordinates;
 mod held;
 mod inertia;
 mod lone;
@@ -17,6 +18,7 @@ mod tie;
 mod total;
 mod velocity;
 
+pub use coordinates::{By, Coordinates, restated};
 pub use held::{Held, Matrix, Reach, Unit};
 pub use inertia::{Inertia, of_site as inertia_of_site};
 pub use lone::{How, Lone, Mover};
@@ -36,8 +38,10 @@ use crate::syntax::ast::{Model, NodeRule, Statement};
 
 /// A model with labels for every number of sites.
 pub struct Line {
-    /// The model as stated.
+    /// The model as stated; what is kept in coordinates is stated in these.
     pub model: Model,
+    /// Configurations of groups that are kept in coordinates.
+    pub coordinates: Vec<Coordinates>,
     /// Its labels.
     pub lattice: Lattice,
     /// The lattice that is written out: letters of [`Pull`] are those of its copies.
@@ -98,6 +102,18 @@ impl Line {
     pub fn of(model: &Model) -> Result<Line, Refused> {
         let lattice = Lattice::read(model)?;
         stands_alone(model, &lattice)?;
+        if let Some((restated, coordinates)) = coordinates::in_coordinates(model, &lattice)? {
+            let lattice = Lattice::read(&restated)?;
+            return Ok(Line {
+                coordinates,
+                ..Line::of_stated(&restated, lattice)?
+            });
+        }
+        Line::of_stated(model, lattice)
+    }
+
+    /// The program of a model in fields and rotations.
+    fn of_stated(model: &Model, lattice: Lattice) -> Result<Line, Refused> {
         let choice = pipeline::representative(model, &lattice)?;
         let representative = written(model, &lattice, choice)?;
         without_clocks(&representative)?;
@@ -130,6 +146,7 @@ impl Line {
         let shares = representative.shares();
         let line = Line {
             model: model.clone(),
+            coordinates: Vec::new(),
             lattice,
             representative,
             lone,
@@ -160,17 +177,24 @@ impl Line {
             let words = format!("an end acts on `{}`, and no neighbour does", alone.on);
             return Err(Refused::Form(words));
         }
-        let held = self.lattice.ends.iter().flatten().flat_map(|a| &a.given);
-        let held: Vec<&str> = held.map(|n| n.text.as_str()).collect();
-        for (lone, mover) in held.iter().filter_map(|name| self.mover(name)) {
-            let block = lone.blocks.iter().find(|b| b.contains(&mover.index));
-            let members = block.map_or(1, Vec::len);
-            if mover.how.added().is_some() && members > 1 {
-                let words = format!(
-                    "an end holds `{}`, whose velocity is found together with others",
-                    mover.name
-                );
-                return Err(Refused::Form(words));
+        for alternative in self.lattice.ends.iter().flatten() {
+            let is_held = |name: &str| alternative.given.iter().any(|n| n.text == name);
+            let held = alternative.given.iter();
+            for (lone, mover) in held.filter_map(|name| self.mover(&name.text)) {
+                let block = lone.blocks.iter().find(|b| b.contains(&mover.index));
+                let mut others = lone.movers.iter().filter(|m| {
+                    let beside = block.is_some_and(|b| b.contains(&m.index));
+                    beside && !is_held(&m.name)
+                });
+                if mover.how.added().is_some()
+                    && let Some(other) = others.next()
+                {
+                    let words = format!(
+                        "an end holds `{}`, whose velocity is found together with that of `{}`, which it does not hold",
+                        mover.name, other.name
+                    );
+                    return Err(Refused::Form(words));
+                }
             }
         }
         Ok(())

@@ -322,6 +322,10 @@ fn terms(part: &Written, e: &Expr) -> Vec<Expr> {
     match e.node() {
         Node::Sum(list) => list.iter().flat_map(go).collect(),
         Node::Neg(a) => go(a).into_iter().map(expr::neg).collect(),
+        // Of a matrix what is linear in it.
+        Node::Part(which, a) => go(a).into_iter().map(|a| expr::part(*which, a)).collect(),
+        Node::Trace(a) => go(a).into_iter().map(expr::trace).collect(),
+        Node::Vee(a) => go(a).into_iter().map(expr::vee).collect(),
         Node::Dot(a, b) => both(a, b, &expr::dot),
         Node::Cross(a, b) => both(a, b, &expr::cross),
         Node::Product(factors) => {

@@ -123,7 +123,7 @@ impl Statement {
     }
 
     /// Every expression in it, to be changed.
-    pub(super) fn expressions_mut(&mut self) -> Vec<&mut Expression> {
+    pub(crate) fn expressions_mut(&mut self) -> Vec<&mut Expression> {
         match self {
             Statement::Assume { left, right, .. } | Statement::Hold { left, right, .. } => {
                 vec![left, right]

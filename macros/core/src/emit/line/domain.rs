@@ -8,7 +8,7 @@ use crate::derive::{Derivation, Outline};
 use crate::emit::domain::{Tested, tested};
 use crate::emit::expression::Bindings;
 use crate::expr::Expr;
-use crate::line::{EndTerm, Line, Lone};
+use crate::line::{By, EndTerm, Line, Lone};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -159,8 +159,32 @@ pub(super) fn domain(l: &Lines) -> (TokenStream, TokenStream) {
             }
         }});
     }
+    for c in &l.line.coordinates {
+        if let By::Entries(_) = c.by {
+            calls.extend(invertible(l, &c.name));
+        }
+    }
     let kernels = (!kernels.is_empty()).then(|| quote!(impl<T: Real> #name<T> { #kernels }));
     (kernels.unwrap_or_default(), calls)
+}
+
+/// The test that a linear map is invertible all along a step.
+fn invertible(l: &Lines, name: &str) -> TokenStream {
+    let (field, count) = (format_ident!("{name}"), l.count_of(name));
+    quote! {{
+        let inside = |i: usize| -> Result<(), domain::Contact> {
+            domain::field_invertible(
+                #name,
+                &Additive::new(state.places.#field[i]),
+                &Additive::new(work.places.#field[i]),
+                h,
+            )
+        };
+        if let Err((site, contact)) = line::try_each(0, #count, inside) {
+            let at = line::Place { quantity: #name, site };
+            return Err(self.refused(state, h, at, StepCause::Contact(contact)));
+        }
+    }}
 }
 
 /// Tests of parameters that stand in functions with a domain, those of sites apart.

@@ -1,0 +1,358 @@
+//! Elements of groups and their momenta as users give and see them, beside the coordinates in which a line keeps them.
+//! Takes numbers of all sites, one site after the other, matrices row after row; gives those of the other.
+
+use super::{Numbers, Unstarted};
+use crate::text;
+use clebsch::card::{Field, Kind, OpenError};
+use clebsch::groups::invertible_map;
+use clebsch::linalg::Dense;
+use clebsch::line::{LineError, Place};
+use clebsch::of_numbers::OfNumbers;
+use clebsch::{Orthogonal, ParameterError, PlaneMotion, RigidMotion, StartError};
+use clebsch_core::expr::symbol::ascii;
+use clebsch_core::line::{By, Coordinates};
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+
+/// What a name of the program is of an element.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Of {
+    /// What the element is shown for.
+    Element,
+    /// What its momentum is shown for.
+    Momentum,
+    /// What is shown with these.
+    Rest,
+}
+
+/// Rows of the matrix of an element, and the shape of a momentum.
+fn sizes(c: &Coordinates) -> (usize, [usize; 2]) {
+    match &c.by {
+        By::Entries(n) => (*n, [*n, *n]),
+        By::Angle(_) => (2, [2, 2]),
+        By::AngleAndPlace(..) => (3, [3, 1]),
+        By::TurnAndPlace(..) => (4, [6, 1]),
+    }
+}
+
+/// The momentum that is given at the start.
+fn given_momentum(c: &Coordinates) -> String {
+    let frame = c.side.of("body", "spatial");
+    format!("{frame}_momentum_{}", c.name)
+}
+
+/// The names under which an element and its momenta are shown.
+pub(super) fn shown(c: &Coordinates) -> [String; 3] {
+    let of = |what: &str| format!("{what}{}", c.name);
+    ["", "body_momentum_", "spatial_momentum_"].map(of)
+}
+
+/// What a name of the program is, as it is or in ASCII.
+pub(super) fn of(c: &Coordinates, name: &str) -> Option<Of> {
+    let is = |prefix: &str, own: &str| {
+        let whole = format!("{prefix}{own}");
+        name == whole || name == ascii(&whole)
+    };
+    let (first, place) = match &c.by {
+        By::Entries(_) => (&c.name, None),
+        By::Angle(angle) => (angle, None),
+        By::AngleAndPlace(first, place) | By::TurnAndPlace(first, place) => (first, Some(place)),
+    };
+    let of_turn = matches!(c.by, By::TurnAndPlace(..));
+    let momentum = if of_turn {
+        "body_momentum_"
+    } else {
+        "momentum_"
+    };
+    if is("", first) {
+        return Some(Of::Element);
+    }
+    if is(momentum, first) {
+        return Some(Of::Momentum);
+    }
+    let beside = place.is_some_and(|p| is("", p) || is("momentum_", p));
+    (beside || of_turn && is("spatial_momentum_", first)).then_some(Of::Rest)
+}
+
+/// The fields of a card of an element and of its momenta.
+pub(super) fn fields(
+    c: &Coordinates,
+    site: usize,
+    momenta: bool,
+    initial: bool,
+) -> Vec<(Field, String)> {
+    let (rows, [high, wide]) = sizes(c);
+    let kind = match &c.by {
+        By::Entries(_) => Kind::Matrix,
+        By::Angle(_) => Kind::Rotation,
+        By::AngleAndPlace(..) | By::TurnAndPlace(..) => Kind::RigidMotion,
+    };
+    let [element, body, spatial] = shown(c);
+    let own = match momenta {
+        false => vec![(kind, element, [rows, rows], c.doc.as_str())],
+        true => vec![
+            (
+                Kind::BodyMomentum,
+                body,
+                [high, wide],
+                "momentum, body frame",
+            ),
+            (
+                Kind::SpatialMomentum,
+                spatial,
+                [high, wide],
+                "momentum, space frame",
+            ),
+        ],
+    };
+    let asked = given_momentum(c);
+    own.into_iter()
+        .filter(|(_, name, ..)| !momenta || !initial || *name == asked)
+        .map(|(kind, name, shape, doc)| {
+            let field = kind.field(text(&format!("{name}_{site}")), shape, text(doc));
+            let key = ascii(&name);
+            (field.spelt(text(&format!("{key}_{site}"))), key)
+        })
+        .collect()
+}
+
+/// Whether every element that is given is one.
+pub(super) fn admit(c: &Coordinates, numbers: &Numbers<'_>) -> Result<(), Unstarted> {
+    let quantity = text(&c.name);
+    let missing = || Unstarted::Missing(c.name.clone());
+    let list = numbers(&c.name).ok_or_else(missing)?;
+    let (rows, _) = sizes(c);
+    for (site, one) in list.chunks(rows * rows).enumerate() {
+        let read = match &c.by {
+            By::Entries(_) => invertible_map(&square(one, rows))
+                .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(quantity)))),
+            By::Angle(_) => Orthogonal::<2>::of_numbers(quantity, one).map(|_| ()),
+            By::AngleAndPlace(..) => PlaneMotion::of_numbers(quantity, one).map(|_| ()),
+            By::TurnAndPlace(..) => RigidMotion::of_numbers(quantity, one).map(|_| ()),
+        };
+        match read {
+            Ok(()) => {}
+            Err(OpenError::Start(StartError::Initial(error)) | OpenError::Parameter(error)) => {
+                let at = Place { quantity, site };
+                return Err(LineError::Site { at, error }.into());
+            }
+            Err(_) => {
+                return Err(Unstarted::Components {
+                    quantity: c.name.clone(),
+                    components: rows * rows,
+                    found: list.len(),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn square(list: &[f64], rows: usize) -> Dense<f64> {
+    let entry = |i: usize, j: usize| list.get(i * rows + j).copied().unwrap_or(f64::NAN);
+    Dense::from_fn(rows, rows, entry)
+}
+
+/// Rows of a matrix one after the other.
+fn by_rows(a: &Dense<f64>) -> Vec<f64> {
+    a.transpose().data
+}
+
+/// The rotation and the place of a homogeneous matrix of space.
+fn of_space(one: &[f64]) -> Option<(Matrix3<f64>, Vector3<f64>)> {
+    let [a, b, c, x, d, e, f, y, g, h, i, z, ..] = *one else {
+        return None;
+    };
+    Some((
+        Matrix3::new(a, b, c, d, e, f, g, h, i),
+        Vector3::new(x, y, z),
+    ))
+}
+
+/// The same of the plane.
+fn of_plane(one: &[f64]) -> Option<(Matrix2<f64>, Vector2<f64>)> {
+    let [a, b, x, c, d, y, ..] = *one else {
+        return None;
+    };
+    Some((Matrix2::new(a, b, c, d), Vector2::new(x, y)))
+}
+
+/// What the program asks for, by what is given.
+pub(super) fn given(c: &Coordinates, name: &str, numbers: &Numbers<'_>) -> Option<Vec<f64>> {
+    let asked = of(c, name)?;
+    let (rows, [high, wide]) = sizes(c);
+    let body = c.side.is_body();
+    let elements = numbers(&c.name)?;
+    if asked == Of::Element && matches!(c.by, By::Entries(_)) {
+        return Some(elements);
+    }
+    let is_of_place = asked == Of::Rest;
+    let of_momentum = name.starts_with("momentum_") || name.starts_with("body_momentum_");
+    let momenta = match of_momentum {
+        true => numbers(&given_momentum(c))?,
+        false => vec![0.0; elements.len() / (rows * rows) * high * wide],
+    };
+    let each = elements
+        .chunks_exact(rows * rows)
+        .zip(momenta.chunks_exact(high * wide));
+    let mut out = Vec::new();
+    for (g, m) in each {
+        match &c.by {
+            By::Entries(n) => {
+                let back = square(g, *n).inverse()?.transpose();
+                let m = square(m, *n);
+                let own = if body { back.times(&m) } else { m.times(&back) };
+                out.extend(by_rows(&own));
+            }
+            By::Angle(_) => out.push(if of_momentum { m[2] } else { g[2].atan2(g[0]) }),
+            By::AngleAndPlace(..) => {
+                let (turn, x) = of_plane(g)?;
+                let (about, linear) = (m[0], Vector2::new(m[1], m[2]));
+                let p = if body { turn * linear } else { linear };
+                match (of_momentum, is_of_place) {
+                    (false, false) => out.push(g[3].atan2(g[0])),
+                    (false, true) => out.extend([x[0], x[1]]),
+                    (true, false) if body => out.push(about),
+                    (true, false) => out.push(about - (x[0] * p[1] - x[1] * p[0])),
+                    (true, true) => out.extend([p[0], p[1]]),
+                }
+            }
+            By::TurnAndPlace(..) => {
+                let (turn, x) = of_space(g)?;
+                let (about, linear) = (
+                    Vector3::new(m[0], m[1], m[2]),
+                    Vector3::new(m[3], m[4], m[5]),
+                );
+                let p = if body { turn * linear } else { linear };
+                match (of_momentum, is_of_place) {
+                    (false, false) => out.extend_from_slice(turn.transpose().as_slice()),
+                    (false, true) => out.extend_from_slice(x.as_slice()),
+                    (true, false) if body => out.extend_from_slice(about.as_slice()),
+                    (true, false) => {
+                        out.extend_from_slice(turn.tr_mul(&(about - x.cross(&p))).as_slice());
+                    }
+                    (true, true) => out.extend_from_slice(p.as_slice()),
+                }
+            }
+        }
+    }
+    Some(out)
+}
+
+/// An error that names elements and momenta as users know them.
+pub(super) fn named(all: &[Coordinates], e: LineError) -> LineError {
+    let known = |quantity: &'static str| {
+        let mut found = all.iter().filter(|c| of(c, quantity).is_some());
+        match found.next() {
+            Some(c) if quantity.contains("momentum_") => text(&given_momentum(c)),
+            Some(c) => text(&c.name),
+            None => quantity,
+        }
+    };
+    let there = |at: Place| Place {
+        quantity: known(at.quantity),
+        ..at
+    };
+    match e {
+        LineError::Site { at, error } => LineError::Site {
+            at: there(at),
+            error: ParameterError {
+                field: known(error.field),
+                ..error
+            },
+        },
+        LineError::Step {
+            node,
+            at,
+            cause,
+            works,
+        } => LineError::Step {
+            node,
+            at: there(at),
+            cause,
+            works,
+        },
+        other => other,
+    }
+}
+
+/// What is shown of elements and momenta, by what the program shows.
+pub(super) fn told(
+    c: &Coordinates,
+    name: &str,
+    mut seen: impl FnMut(&str) -> Option<Vec<f64>>,
+) -> Option<Vec<f64>> {
+    let [element, body, spatial] = shown(c);
+    let in_body = name == body;
+    if name != element && !in_body && name != spatial {
+        return None;
+    }
+    let is_element = name == element;
+    let mut out = Vec::new();
+    match &c.by {
+        By::Entries(n) => {
+            let places = seen(&c.name)?;
+            if is_element {
+                return Some(places);
+            }
+            let momenta = seen(&format!("momentum_{}", c.name))?;
+            let size = n * n;
+            for (q, p) in places.chunks_exact(size).zip(momenta.chunks_exact(size)) {
+                let (q, p) = (square(q, *n).transpose(), square(p, *n));
+                out.extend(by_rows(&if in_body { q.times(&p) } else { p.times(&q) }));
+            }
+        }
+        By::Angle(angle) => {
+            let list = match is_element {
+                true => seen(angle)?,
+                false => seen(&format!("momentum_{angle}"))?,
+            };
+            for x in list {
+                let (cos, sin) = (x.cos(), x.sin());
+                out.extend(match is_element {
+                    true => [cos, -sin, sin, cos],
+                    false => [0.0, -x, x, 0.0],
+                });
+            }
+        }
+        By::AngleAndPlace(angle, place) => {
+            let (angles, places) = (seen(angle)?, seen(place)?);
+            let about = seen(&format!("momentum_{angle}"))?;
+            let linear = seen(&format!("momentum_{place}"))?;
+            let each = angles.iter().zip(places.chunks_exact(2));
+            for ((a, x), (m, p)) in each.zip(about.iter().zip(linear.chunks_exact(2))) {
+                let (cos, sin) = (a.cos(), a.sin());
+                out.extend(match (is_element, in_body) {
+                    (true, _) => vec![cos, -sin, x[0], sin, cos, x[1], 0.0, 0.0, 1.0],
+                    (_, true) => vec![*m, cos * p[0] + sin * p[1], cos * p[1] - sin * p[0]],
+                    _ => vec![m + (x[0] * p[1] - x[1] * p[0]), p[0], p[1]],
+                });
+            }
+        }
+        By::TurnAndPlace(turn, place) => {
+            let (turns, places) = (seen(turn)?, seen(place)?);
+            let about = seen(&format!("body_momentum_{turn}"))?;
+            let linear = seen(&format!("momentum_{place}"))?;
+            let each = turns.chunks_exact(9).zip(places.chunks_exact(3));
+            let momenta = about.chunks_exact(3).zip(linear.chunks_exact(3));
+            for ((r, x), (m, p)) in each.zip(momenta) {
+                if is_element {
+                    for (row, x) in r.chunks_exact(3).zip(x) {
+                        out.extend_from_slice(row);
+                        out.push(*x);
+                    }
+                    out.extend([0.0, 0.0, 0.0, 1.0]);
+                    continue;
+                }
+                let turn = Matrix3::from_row_slice(r);
+                let [x, m, p] = [x, m, p].map(Vector3::from_column_slice);
+                let (about, linear) = match in_body {
+                    true => (m, turn.tr_mul(&p)),
+                    false => (turn * m + x.cross(&p), p),
+                };
+                out.extend_from_slice(about.as_slice());
+                out.extend_from_slice(linear.as_slice());
+            }
+        }
+    }
+    Some(out)
+}

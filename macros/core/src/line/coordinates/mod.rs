@@ -1,0 +1,181 @@
+//! Linear maps, rotations of the plane and rigid motions along a line in coordinates: a linear map by its entries, a
+//! rotation of the plane by its angle, a rigid motion by its rotation and its place. Takes a model with labels as stated;
+//! gives the same action in fields and rotations, which loops over sites take.
+
+mod motions;
+mod restated;
+#[cfg(test)]
+mod tests;
+
+use super::{Refused, written};
+use crate::check::spec::Side;
+use crate::lattice::Lattice;
+use crate::pipeline;
+use crate::syntax::ast::{Kind, Kindred, Model, Size, Statement};
+
+/// A configuration of a group that is kept in coordinates.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Coordinates {
+    /// Its name.
+    pub name: String,
+    /// On which side its velocity stands, and its momentum is given.
+    pub side: Side,
+    /// What stands for it.
+    pub by: By,
+    /// What the model says of it.
+    pub doc: String,
+}
+
+/// What stands for an element.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum By {
+    /// Of `GL<n>` its entries, a field of matrices of so many rows and of the same name.
+    Entries(usize),
+    /// Of `SO<2>` its angle, a field of numbers of this name.
+    Angle(String),
+    /// Of `SE<2>` its angle and its place, fields of these names.
+    AngleAndPlace(String, String),
+    /// Of `SE<3>` its rotation and its place, a configuration of `SO<3>` and a field of these names.
+    TurnAndPlace(String, String),
+}
+
+impl Coordinates {
+    /// The names of what stands for it.
+    pub fn names(&self) -> Vec<&str> {
+        match &self.by {
+            By::Entries(_) => vec![&self.name],
+            By::Angle(angle) => vec![angle],
+            By::AngleAndPlace(first, place) | By::TurnAndPlace(first, place) => {
+                vec![first, place]
+            }
+        }
+    }
+
+    /// What stands for it, in words.
+    pub fn words(&self) -> String {
+        let name = &self.name;
+        match &self.by {
+            By::Entries(_) => format!("{name} by its entries"),
+            By::Angle(angle) => format!("{name} by its angle {angle}"),
+            By::AngleAndPlace(angle, place) => {
+                format!("{name} by its angle {angle} and its place {place}")
+            }
+            By::TurnAndPlace(turn, place) => {
+                format!("{name} by its rotation {turn} and its place {place}")
+            }
+        }
+    }
+}
+
+/// A configuration that is stated in a group and kept in coordinates.
+struct Stated {
+    of: Coordinates,
+    velocity: String,
+    /// Of a rotation the name of its velocity.
+    turning: String,
+}
+
+/// The same model in coordinates, and of what; none where nothing along a line asks for them.
+///
+/// # Errors
+/// Mistakes of the model as stated; a form that has no such coordinates.
+pub(super) fn in_coordinates(
+    model: &Model,
+    lattice: &Lattice,
+) -> Result<Option<(Model, Vec<Coordinates>)>, Refused> {
+    let all = stated(model, lattice);
+    if all.is_empty() {
+        return Ok(None);
+    }
+    // What is wrong with the model is said of it as it is stated.
+    written(model, lattice, pipeline::representative(model, lattice)?)?;
+    let restated = restated::restated(model, &all)?;
+    Ok(Some((restated, all.into_iter().map(|x| x.of).collect())))
+}
+
+/// A model that has been found to be right, in coordinates; as it is where nothing asks for them.
+pub fn restated(model: &Model, lattice: &Lattice) -> Option<Model> {
+    restated::restated(model, &stated(model, lattice)).ok()
+}
+
+/// What is kept in coordinates.
+fn stated(model: &Model, lattice: &Lattice) -> Vec<Stated> {
+    let mut out = Vec::new();
+    for (statement, docs) in model.statements.iter().zip(&model.remarks) {
+        let Statement::Group {
+            name,
+            group,
+            velocity,
+            ..
+        } = statement
+        else {
+            continue;
+        };
+        let side = side_of(model, &name.text, &velocity.text);
+        let (Some(side), Some(_)) = (side, lattice.find(&name.text)) else {
+            continue;
+        };
+        let own = |letter: &str| fresh(model, letter, &name.text);
+        let by = match (group.name.text.as_str(), size(group)) {
+            ("GL", Some(n)) => By::Entries(n),
+            ("SO", Some(2)) => By::Angle(own("θ")),
+            ("SE", Some(2)) => By::AngleAndPlace(own("θ"), own("x")),
+            ("SE", Some(3)) => By::TurnAndPlace(own("R"), own("x")),
+            _ => continue,
+        };
+        out.push(Stated {
+            of: Coordinates {
+                name: name.text.clone(),
+                side,
+                by,
+                doc: docs.join(" "),
+            },
+            velocity: velocity.text.clone(),
+            turning: own("Ω"),
+        });
+    }
+    out
+}
+
+/// The size of a group or of a shape, where it is one number.
+fn size(of: &Kindred) -> Option<usize> {
+    match of.sizes.as_slice() {
+        [Size::Number(n, _)] => usize::try_from(*n).ok(),
+        _ => None,
+    }
+}
+
+/// On which side of a configuration its velocity stands.
+fn side_of(model: &Model, element: &str, velocity: &str) -> Option<Side> {
+    model.statements.iter().find_map(|s| match s {
+        Statement::Constraint { name, value, .. } if name.text == element => {
+            let Kind::Product(two) = &value.kind else {
+                return None;
+            };
+            let [Kind::Name(a), Kind::Name(b)] =
+                two.iter().map(|e| &e.kind).collect::<Vec<_>>()[..]
+            else {
+                return None;
+            };
+            match (a == element && b == velocity, a == velocity && b == element) {
+                (true, _) => Some(Side::Body),
+                (_, true) => Some(Side::Spatial),
+                _ => None,
+            }
+        }
+        _ => None,
+    })
+}
+
+/// A name that the model does not bear, a letter with the name of what it stands for.
+fn fresh(model: &Model, letter: &str, of: &str) -> String {
+    let taken = |name: &str| {
+        let mut declared = model.statements.iter().flat_map(Statement::declared);
+        declared.any(|n| n.text == name)
+    };
+    let mut name = format!("{letter}_{of}");
+    while taken(&name) {
+        name.insert_str(0, letter);
+    }
+    name
+}
