@@ -54,7 +54,7 @@ fn a_step_is_that_of_a_workspace_made_anew() {
         // Each twice, then the other.
         let state = if k % 4 < 2 { &mut first } else { &mut second };
         let mut other = *state;
-        let mut anew = model.prepare(&other, h, Default::default()).expect("made");
+        let mut anew = model.prepare(&other, h, ()).expect("made");
         model.advance(&mut other, &mut anew).expect("steps");
         model.advance(state, &mut work).expect("steps");
         assert_eq!(*state, other, "step {k}");
