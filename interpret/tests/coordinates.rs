@@ -362,6 +362,11 @@ fn the_site_of_an_element_that_is_none_is_named() {
     );
     let turned = refused(&models::rotors(None), set("R", 4 * 12, 3.0));
     assert!(turned.contains("at site 12: `R`"), "{turned}");
+    let whole = refused(&models::rotors(None), set("body_momentum_R", 4 * 7, 5.0));
+    assert!(
+        whole.contains("at site 7: `body_momentum_R`: not skew"),
+        "{whole}"
+    );
     let moved = refused(&models::frames(None, false), set("Φ", 16 * 8 + 12, 0.5));
     assert!(moved.contains("at site 8: `Φ`"), "{moved}");
     let lost = refused(

@@ -11,6 +11,7 @@ mod exit_codes;
 mod figures;
 mod fluids;
 mod functions;
+mod groups;
 mod halved;
 mod lattices;
 mod longest_step;

@@ -19,6 +19,7 @@ pub use solvers::Factor;
 use crate::code::{Native, Special};
 use crate::value::Value;
 use clebsch::Real;
+use clebsch::linalg::Dense;
 
 /// The numbers of field names that mean something to the runtime's own types.
 pub const NAMES: [&str; 12] = [
@@ -44,6 +45,11 @@ pub fn field<T: Real>(value: &Value<T>, name: u32) -> Option<Value<T>> {
     match (NAMES.get(name as usize).copied()?, value) {
         ("rotation", Value::Motion(g)) => Some(Value::Rotation(g.rotation)),
         ("translation", Value::Motion(g)) => Some(Value::Vector(g.translation)),
+        ("translation", Value::Plane(g)) => Some(Value::of(Dense {
+            rows: 2,
+            cols: 1,
+            data: g.translation.as_slice().to_vec(),
+        })),
         ("cause", Value::Failed(e)) => Some(Value::failed((**e).clone().cause())),
         _ => None,
     }

@@ -8,6 +8,7 @@ use clebsch::groups::invertible_map;
 use clebsch::linalg::Dense;
 use clebsch::line::{LineError, Place};
 use clebsch::of_numbers::OfNumbers;
+use clebsch::validate;
 use clebsch::{Orthogonal, ParameterError, PlaneMotion, RigidMotion, StartError};
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::line::{By, Coordinates};
@@ -143,6 +144,21 @@ pub(super) fn admit(c: &Coordinates, numbers: &Numbers<'_>) -> Result<(), Unstar
                 });
             }
         }
+    }
+    momenta_of_the_plane(c, numbers)
+}
+
+/// Whether every momentum of a rotation of the plane is skew.
+fn momenta_of_the_plane(c: &Coordinates, numbers: &Numbers<'_>) -> Result<(), Unstarted> {
+    let name = given_momentum(c);
+    let (By::Angle(_), Some(list)) = (&c.by, numbers(&name)) else {
+        return Ok(());
+    };
+    let quantity = text(&name);
+    for (site, one) in list.chunks_exact(4).enumerate() {
+        let at = Place { quantity, site };
+        validate::skew(quantity, &Matrix2::from_row_slice(one))
+            .map_err(|error| LineError::Site { at, error })?;
     }
     Ok(())
 }

@@ -163,29 +163,33 @@ fn is_square(e: &Expr) -> bool {
     }
 }
 
-/// The numbers whose squares make up this one: `det(Q^T Q)` is that of `det(Q)`.
-fn squared(e: &Expr) -> Option<Vec<Expr>> {
+/// The numbers whose squares are factors of this one, and what is left of it, if there are any: of `det(Q^T C Q)` they
+/// are `det(Q)`, and `det(C)` is left.
+fn squared(e: &Expr) -> Option<(Vec<Expr>, Expr)> {
     match e.node() {
         Node::Power(a, q) => {
             let even = q.as_integer().is_some_and(|n| n % 2 == 0);
-            even.then(|| vec![a.clone()])
+            even.then(|| (vec![a.clone()], expr::integer(1)))
         }
         Node::Det(a) => {
             let Node::Product(factors) = a.node() else {
                 return None;
             };
+            if !factors.iter().all(|f| f.shape().is_square()) {
+                return None;
+            }
             let dets: Vec<Expr> = factors.iter().map(|f| expr::det(f.clone())).collect();
-            let even = |x: &Expr| dets.iter().filter(|y| *y == x).count() % 2 == 0;
-            let square = factors.iter().all(|f| f.shape().is_square());
-            (square && dets.iter().all(even)).then(|| {
-                let mut distinct: Vec<Expr> = Vec::new();
-                dets.into_iter().for_each(|x| {
-                    if !distinct.contains(&x) {
-                        distinct.push(x);
-                    }
-                });
-                distinct
-            })
+            let (mut twice, mut once) = (Vec::new(), Vec::new());
+            for x in &dets {
+                let count = dets.iter().filter(|y| *y == x).count();
+                if count > 1 && !twice.contains(x) {
+                    twice.push(x.clone());
+                }
+                if count % 2 == 1 && !once.contains(x) {
+                    once.push(x.clone());
+                }
+            }
+            (!twice.is_empty()).then(|| (twice, expr::product(once)))
         }
         _ => None,
     }
@@ -203,12 +207,12 @@ fn guard(s: &Symbols, domain: Domain, function: Named, argument: &Expr, all: &mu
     }
     // A square leaves no domain, but a step may carry what is squared past zero, where the function is infinite.
     if domain != Domain::NotNegative
-        && let Some(squared) = squared(argument)
+        && let Some((squared, left)) = squared(argument)
     {
         for f in &squared {
             guard(s, Domain::NotZero, function, f, all);
         }
-        return;
+        return guard(s, domain, function, &left, all);
     }
     let letters = expr::letters(argument);
     let has = |role| letters.iter().any(|l| s.get(l.symbol).role == role);

@@ -218,12 +218,18 @@ impl Symbols {
         found.copied().unwrap_or("")
     }
 
-    /// A name that no symbol bears yet, in print either: `base`, or `base` with a number.
+    /// A name that no symbol bears yet, in print either: `base`, or `base` with a number, which is set apart from a
+    /// number at its end: `R_1` is of one site, and `R_11` of another.
     pub fn fresh_name(&self, base: &str) -> String {
+        let apart = if base.ends_with(|c: char| c.is_ascii_digit()) {
+            "_"
+        } else {
+            ""
+        };
         let mut name = base.to_owned();
         let mut n = 1u32;
         while self.seen.contains(&seen(&name, &self.time_index)) {
-            name = format!("{base}{n}");
+            name = format!("{base}{apart}{n}");
             n += 1;
         }
         name

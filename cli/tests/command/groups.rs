@@ -1,0 +1,87 @@
+//! Models of motions of the plane, of frames and of deformable bodies, run from their texts: what is written of them and
+//! what is refused.
+
+use crate::common::{Folder, clebsch};
+
+/// The lever arm of a momentum in space is the place of the motion, of the plane too: without it no residual was a number.
+#[test]
+fn a_motion_of_the_plane_seen_from_space_has_a_residual() {
+    let folder = Folder::new("plane-from-space");
+    let model = folder.write(
+        "plate.clebsch",
+        "model Plate {
+            param Q: Sym<3>;
+            group G: SE<2> velocity V;
+            constraint next(G) = V*G;
+            lagrangian = tr((next(G) - G)*Q*(next(G) - G)^T)/(2*h);
+        }",
+    );
+    let case = clebsch(&["case", &model]);
+    let case = folder.write("plate.toml", &case.out);
+    let done = clebsch(&["run", &model, "--case", &case, "--steps", "50"]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    assert!(!done.out.contains("NaN"), "{}", done.out);
+}
+
+/// Quantities that sites carry may differ in shape where their names differ by a number alone.
+#[test]
+fn what_a_clamped_rod_of_frames_carries_is_written() {
+    let folder = Folder::new("frames-written");
+    let model = folder.write(
+        "rod.clebsch",
+        "model Rod {
+            label i in 0..N step s;
+            param J, K: Sym<3>;
+            param m: Real;
+            group P: SE<3> at nodes velocity V;
+            constraint next(P) = P*V;
+            let y = pos(next(P)) - pos(P);
+            let F = pos(P^-1*next(P, i))/s - E3;
+            lagrangian = -s*tr(J*rot(V))/h + s*m*dot(y, y)/(2*h) - (h*s/2)*dot(F, K*F);
+            end i = 0 { free; clamped { P = given; } }
+        }",
+    );
+    let case = clebsch(&["case", &model]).out;
+    let lines: Vec<String> = case
+        .lines()
+        .map(|line| match line {
+            l if l.starts_with("i = [") || l.starts_with("i = \"") => {
+                "i = [\"clamped\", \"free\"]".to_owned()
+            }
+            l if l.starts_with("i = ") => "i = 3".to_owned(),
+            l => l.to_owned(),
+        })
+        .collect();
+    let case = folder.write("rod.toml", &lines.join("\n"));
+    let out = folder.path("out");
+    let done = clebsch(&[
+        "run", &model, "--case", &case, "--steps", "10", "--out", &out,
+    ]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    let held = std::fs::read(folder.path("out/trajectory.npz")).expect("written");
+    assert!(!held.is_empty());
+}
+
+/// `det(Q^T*C*Q)` is that of `C` times a square: a step that carries `Q` through a singular one is refused, though the
+/// argument of the logarithm is positive at either end.
+#[test]
+fn a_body_is_not_turned_inside_out_by_a_step() {
+    let folder = Folder::new("inside-out");
+    let model = folder.write(
+        "soft.clebsch",
+        "model Soft {
+            param J, C: Sym<2>;
+            param a, b: Real;
+            field Q: Mat<2>;
+            lagrangian = tr((next(Q) - Q)*J*(next(Q) - Q)^T)/(2*h)
+                - h*(a*tr(Q^T*C*Q)/2 - b*log(det(Q^T*C*Q)));
+        }",
+    );
+    let case = "model = \"soft\"\nname = \"fall\"\nh = 0.05\nsteps = 100\n\n[parameters]\n\
+        J = [[1.0, 0.1], [0.1, 0.8]]\nC = [[1.0, 0.2], [0.2, 0.9]]\na = 1.0\nb = 0.001\n\n[initial]\n\
+        Q = [[1.0, 0.1], [0.0, 0.9]]\nmomentum = [[-1.0, 0.3], [0.2, -1.0]]\n";
+    let case = folder.write("soft.toml", case);
+    let done = clebsch(&["run", &model, "--case", &case]);
+    assert_ne!(done.code, 0, "{}", done.out);
+    assert!(done.err.contains("`Q` loses its inverse"), "{}", done.err);
+}
