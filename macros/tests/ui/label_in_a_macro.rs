@@ -1,14 +1,13 @@
-//! A chain of rigid motions runs from its file.
+//! A chain of bodies seen from space runs from its file.
 
 clebsch::model! {
     model Chain {
         label i in 0..N;
         param J: Sym<3>;
-        param m, c: Real;
-        group G: SE<3> at nodes velocity V;
-        constraint next(G) = G*V;
-        let d = pos(next(G, i)) - pos(G);
-        lagrangian = -tr(J*rot(V))/h + m*dot(pos(V), pos(V))/(2*h) - h*c*dot(d, d)/2;
+        param c: Real;
+        group R: SO<3> at nodes velocity w;
+        constraint next(R) = w*R;
+        lagrangian = -tr(J*R^T*next(R))/h + h*c*tr(R^T*next(R, i));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Invertible matrices, GL(n). The Lie algebra is all matrices, and covectors are matrices, paired
 //! as `tr(M^T X)`.
 
-use super::{Element, Kept, Record, Sizes, entries};
+use super::{Chart, Element, Kept, Record, Sizes, entries};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
@@ -11,6 +11,13 @@ use crate::expr::{self, Expr};
 pub struct GeneralLinear(pub Dim);
 
 impl Record for GeneralLinear {
+    fn chart(&self) -> Option<Chart> {
+        match self.0 {
+            Dim::Fixed(n) => Some(Chart::Entries(n)),
+            _ => None,
+        }
+    }
+
     fn shape(&self) -> Shape {
         Shape::square(self.0)
     }

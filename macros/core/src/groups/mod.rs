@@ -211,6 +211,19 @@ pub enum Kept {
     Field(Shape),
 }
 
+/// In which coordinates loops over sites keep elements that they do not take themselves.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Chart {
+    /// The entries of a matrix of so many rows.
+    Entries(u32),
+    /// An angle.
+    Angle,
+    /// An angle and a place in the plane.
+    AngleAndPlace,
+    /// A rotation of space and a place.
+    TurnAndPlace,
+}
+
 /// What the runtime calls a group whose Lie algebra has coordinates: its types and functions.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Names {
@@ -358,6 +371,11 @@ pub trait Record {
 
     /// How the runtime keeps its elements.
     fn kept(&self) -> Kept;
+
+    /// In which coordinates loops over sites keep an element, where they do not take it as it is.
+    fn chart(&self) -> Option<Chart> {
+        None
+    }
 
     /// The same as a group of rigid motions, if it is one.
     fn rigid(&self) -> Option<&dyn Euclidean> {

@@ -1,7 +1,7 @@
 //! Rigid motions of the plane, SE(2), as 3 x 3 homogeneous matrices. Letters of variation and covectors
 //! are vectors of three components, an angle on top of a translation.
 
-use super::{Element, Euclidean, Kept, Names, Record, Sizes, THREE};
+use super::{Chart, Element, Euclidean, Kept, Names, Record, Sizes, THREE};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
@@ -19,6 +19,10 @@ fn quarter(s: &Symbols, v: Expr) -> Expr {
 }
 
 impl Record for PlaneMotions {
+    fn chart(&self) -> Option<Chart> {
+        Some(Chart::AngleAndPlace)
+    }
+
     fn shape(&self) -> Shape {
         Shape::square(THREE)
     }

@@ -1,7 +1,7 @@
 //! Rigid motions of space, SE(3), as 4 x 4 homogeneous matrices. Letters of variation and covectors
 //! are vectors of six components, an angular part on top of a linear one.
 
-use super::{Element, Euclidean, Kept, Names, Record, SIX, Sizes, THREE};
+use super::{Chart, Element, Euclidean, Kept, Names, Record, SIX, Sizes, THREE};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
@@ -11,6 +11,10 @@ use crate::expr::{self, Expr};
 pub struct RigidMotions;
 
 impl Record for RigidMotions {
+    fn chart(&self) -> Option<Chart> {
+        Some(Chart::TurnAndPlace)
+    }
+
     fn shape(&self) -> Shape {
         Shape::square(Dim::Fixed(4))
     }

@@ -1,7 +1,7 @@
 //! Rotations, SO(n). The Lie algebra is the skew matrices; in three dimensions covectors and
 //! velocities in continuous time are vectors, axial ones, else skew matrices.
 
-use super::{Element, Kept, Record, Sizes, THREE};
+use super::{Chart, Element, Kept, Record, Sizes, THREE};
 use crate::algebra::Rational;
 use crate::derive::bracket::skew_entries;
 use crate::expr::shape::{Dim, Shape, Structure};
@@ -19,6 +19,10 @@ impl SpecialOrthogonal {
 }
 
 impl Record for SpecialOrthogonal {
+    fn chart(&self) -> Option<Chart> {
+        (self.0 == Dim::Fixed(2)).then_some(Chart::Angle)
+    }
+
     fn shape(&self) -> Shape {
         Shape::square(self.0)
     }

@@ -13,7 +13,7 @@ use crate::derive::{self, Derivation, Outline};
 use crate::diagnostic::Errors;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter};
-use crate::groups::Kept;
+use crate::groups::{self, Kept};
 use crate::lattice::{Kind as Standing, Lattice, Sites, definitions, inlined};
 use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Statement};
 
@@ -337,7 +337,8 @@ fn how(
             ),
             _ => format!(
                 "`{name}` is in {group}: loops over sites take fields, rotations of SO<3> and unit quaternions of SU<2> seen \
-                 from the body, and GL<n>, SO<2>, SE<2> and SE<3> in coordinates of these"
+                 from the body, and SO<2>, {} in coordinates of these",
+                groups::listed("and", |_, g| g.chart().is_some())
             ),
         }))
     };

@@ -9,6 +9,8 @@ mod tests;
 
 use super::{Refused, written};
 use crate::check::spec::Side;
+use crate::expr::shape::Dim;
+use crate::groups::{self, Chart};
 use crate::lattice::Lattice;
 use crate::pipeline;
 use crate::syntax::ast::{Kind, Kindred, Model, Size, Statement};
@@ -29,13 +31,13 @@ pub struct Coordinates {
 /// What stands for an element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum By {
-    /// Of `GL<n>` its entries, a field of matrices of so many rows and of the same name.
+    /// Of a linear map its entries, a field of matrices of so many rows and of the same name.
     Entries(usize),
-    /// Of `SO<2>` its angle, a field of numbers of this name.
+    /// Of a rotation of the plane its angle, a field of numbers of this name.
     Angle(String),
-    /// Of `SE<2>` its angle and its place, fields of these names.
+    /// Of a rigid motion of the plane its angle and its place, fields of these names.
     AngleAndPlace(String, String),
-    /// Of `SE<3>` its rotation and its place, a configuration of `SO<3>` and a field of these names.
+    /// Of a rigid motion of space its rotation and its place, a configuration of `SO<3>` and a field of these names.
     TurnAndPlace(String, String),
 }
 
@@ -116,12 +118,12 @@ fn stated(model: &Model, lattice: &Lattice) -> Vec<Stated> {
             continue;
         };
         let own = |letter: &str| fresh(model, letter, &name.text);
-        let by = match (group.name.text.as_str(), size(group)) {
-            ("GL", Some(n)) => By::Entries(n),
-            ("SO", Some(2)) => By::Angle(own("θ")),
-            ("SE", Some(2)) => By::AngleAndPlace(own("θ"), own("x")),
-            ("SE", Some(3)) => By::TurnAndPlace(own("R"), own("x")),
-            _ => continue,
+        let by = match chart(group) {
+            Some(Chart::Entries(n)) => By::Entries(n as usize),
+            Some(Chart::Angle) => By::Angle(own("θ")),
+            Some(Chart::AngleAndPlace) => By::AngleAndPlace(own("θ"), own("x")),
+            Some(Chart::TurnAndPlace) => By::TurnAndPlace(own("R"), own("x")),
+            None => continue,
         };
         out.push(Stated {
             of: Coordinates {
@@ -135,6 +137,12 @@ fn stated(model: &Model, lattice: &Lattice) -> Vec<Stated> {
         });
     }
     out
+}
+
+/// The coordinates of a group as it is stated.
+fn chart(of: &Kindred) -> Option<Chart> {
+    let n = u32::try_from(size(of)?).ok()?;
+    groups::named(&of.name.text, Dim::Fixed(n))?.chart()
 }
 
 /// The size of a group or of a shape, where it is one number.
