@@ -58,9 +58,6 @@ pub(crate) fn at_sites(card: &Card) -> Vec<AtSites<'_>> {
         });
         let Some(own) = own else { continue };
         match out.iter_mut().find(|q| q.key == key) {
-            // What is of another shape, or of a site that is there already, is another quantity.
-            Some(q) if q.field.count() != field.count() => {}
-            Some(q) if q.members.iter().any(|(known, _)| *known == site) => {}
             Some(q) => q.members.push((site, columns)),
             None => {
                 let label = stated.lattice.labels.get(own.label);

@@ -3,7 +3,7 @@
 
 use super::{By, Stated, size};
 use crate::algebra::Rational;
-use crate::check::spec::Side;
+use crate::diagnostic::Place;
 use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Size, Statement};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -142,25 +142,26 @@ impl<'a> Motions<'a> {
             return Some([own, place]);
         }
         let there = call(e, "next", [place.clone()]);
-        let turn = match (&x.of.by, x.of.side) {
-            (By::TurnAndPlace(..), Side::Body) => name(e, &x.turning),
-            (By::TurnAndPlace(..), Side::Spatial) => {
+        let of_body = x.of.side.is_body();
+        let turn = match &x.of.by {
+            By::TurnAndPlace(..) if of_body => name(e, &x.turning),
+            By::TurnAndPlace(..) => {
                 let turning = name(e, &x.turning);
                 product(e, [own.clone(), turning, transposed(e, own.clone())])
             }
-            (By::AngleAndPlace(angle, _), _) => {
+            By::AngleAndPlace(angle, _) => {
                 let angle = name(e, angle);
                 let after = call(e, "next", [angle.clone()]);
                 turn_by(e, sum(e, [(false, after), (true, angle)]))
             }
-            (By::Entries(_) | By::Angle(_), _) => return None,
+            By::Entries(_) | By::Angle(_) => return None,
         };
-        let moved = match x.of.side {
-            Side::Body => {
+        let moved = match of_body {
+            true => {
                 let way = sum(e, [(false, there), (true, place)]);
                 product(e, [transposed(e, own), way])
             }
-            Side::Spatial => {
+            false => {
                 let turned = product(e, [turn.clone(), place]);
                 sum(e, [(false, there), (true, turned)])
             }
@@ -372,17 +373,23 @@ fn inverse(at: &Expression, [turn, place]: Two) -> Two {
     [back, kind(at, Kind::Neg(Box::new(moved)))]
 }
 
-/// An expression of a shape of one size.
-pub(super) fn shaped(at: &Expression, e: Expression, shape: &str, n: usize) -> Expression {
-    let shape = Kindred {
+/// A shape or a group, of one size or of none.
+pub(super) fn kindred(place: Place, family: &str, n: Option<usize>) -> Kindred {
+    let size = |n| Size::Number(u64::try_from(n).unwrap_or(0), place);
+    Kindred {
         name: Name {
-            text: shape.to_owned(),
-            place: at.place,
+            text: family.to_owned(),
+            place,
             typeset: None,
         },
-        sizes: vec![Size::Number(u64::try_from(n).unwrap_or(0), at.place)],
-        place: at.place,
-    };
+        sizes: n.map(size).into_iter().collect(),
+        place,
+    }
+}
+
+/// An expression of a shape of one size.
+pub(super) fn shaped(at: &Expression, e: Expression, shape: &str, n: usize) -> Expression {
+    let shape = kindred(at.place, shape, Some(n));
     kind(at, Kind::Shaped(Box::new(e), shape))
 }
 

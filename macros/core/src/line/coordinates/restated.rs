@@ -1,12 +1,11 @@
 //! The statements of a model in coordinates: what is declared, what constrains it, what ends hold, and every expression.
 
-use super::motions::{Motions, call, kind, name, product, sum, turn_by};
+use super::motions::{Motions, call, kind, kindred, name, product, sum, turn_by};
 use super::{By, Stated};
 use crate::algebra::Rational;
-use crate::check::spec::Side;
 use crate::lattice::{any_name, definitions, inlined};
 use crate::line::Refused;
-use crate::syntax::ast::{At, Expression, Kind, Kindred, Model, Name, Size, Statement};
+use crate::syntax::ast::{At, Expression, Kind, Model, Name, Statement};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The model.
@@ -80,11 +79,8 @@ fn without_carried(model: &Model, all: &[Stated]) -> Result<Model, Refused> {
         Statement::Constraint { name, .. } => !put.contains(&name.text),
         _ => true,
     };
-    let kept: Vec<bool> = out.statements.iter().map(is_kept).collect();
-    let mut keep = kept.iter();
-    out.statements.retain(|_| keep.next().is_some_and(|k| *k));
-    let mut keep = kept.iter();
-    out.remarks.retain(|_| keep.next().is_some_and(|k| *k));
+    let both = out.statements.into_iter().zip(out.remarks);
+    (out.statements, out.remarks) = both.filter(|(s, _)| is_kept(s)).unzip();
     let is_own = |n: &str| all.iter().any(|x| x.of.name == n);
     for statement in &out.statements {
         if let Statement::Constraint { name, value, .. } = statement
@@ -160,26 +156,11 @@ fn renamed(name: &Name, text: &str) -> Name {
     }
 }
 
-fn shape(at: &Name, family: &str, n: Option<usize>) -> Kindred {
-    Kindred {
-        name: Name {
-            text: family.to_owned(),
-            place: at.place,
-            typeset: None,
-        },
-        sizes: n
-            .map(|n| Size::Number(u64::try_from(n).unwrap_or(0), at.place))
-            .into_iter()
-            .collect(),
-        place: at.place,
-    }
-}
-
 /// What is declared in the place of a group.
 fn declared(x: &Stated, own: &Name, at: Option<&At>) -> Vec<Statement> {
     let field = |text: &str, family: &str, n: Option<usize>| Statement::Field {
         names: vec![renamed(own, text)],
-        shape: shape(own, family, n),
+        shape: kindred(own.place, family, n),
         at: at.cloned(),
         offset: None,
         domain: None,
@@ -193,7 +174,7 @@ fn declared(x: &Stated, own: &Name, at: Option<&At>) -> Vec<Statement> {
         By::TurnAndPlace(turn, place) => vec![
             Statement::Group {
                 name: renamed(own, turn),
-                group: shape(own, "SO", Some(3)),
+                group: kindred(own.place, "SO", Some(3)),
                 at: at.cloned(),
                 velocity: renamed(own, &x.turning),
             },
@@ -240,9 +221,7 @@ fn velocity_of_map(x: &Stated, at: &Expression) -> Expression {
     let back = kind(at, Kind::Power(Box::new(own.clone()), Rational::MINUS_ONE));
     let after = call(at, "next", [own.clone()]);
     let way = sum(at, [(false, after), (true, own)]);
-    let moved = match x.of.side {
-        Side::Body => product(at, [back, way]),
-        Side::Spatial => product(at, [way, back]),
-    };
+    let (first, second) = x.of.side.ordered(back, way);
+    let moved = product(at, [first, second]);
     sum(at, [(false, name(at, "Id")), (false, moved)])
 }
