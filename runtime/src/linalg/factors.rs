@@ -45,18 +45,20 @@ impl<T: Real, const D: usize> Factors<T, D> {
     pub fn set(&mut self, matrix: &SMatrix<T, D, D>, size: usize) {
         self.columns = matrix.data.0;
         self.size = size;
-        self.blocks = in_blocks::<D>(size) && factor(&mut self.columns);
+        let held = (0..size.min(D)).any(|i| vanishes(self.columns[i][i]));
+        self.blocks = in_blocks::<D>(size) && !held && factor(&mut self.columns);
         if !self.blocks {
             self.columns = matrix.data.0;
         }
     }
 
-    /// An entry of the diagonal in a lane, where the matrix is kept as it is: its absolute value, else zero.
+    /// The absolute value of an entry in a lane, where the matrix is kept as it is, else zero. It is wherever
+    /// the diagonal has zeros.
     #[must_use]
-    pub fn diagonal(&self, i: usize, lane: usize) -> f64 {
+    pub fn entry(&self, i: usize, j: usize, lane: usize) -> f64 {
         match self.blocks {
             true => 0.0,
-            false => self.columns[i][i].lane(lane).abs(),
+            false => self.columns[j][i].lane(lane).abs(),
         }
     }
 
@@ -255,6 +257,13 @@ fn substitute<T: Real, const D: usize>(a: &[[T; D]; D], mut x: [T; D]) -> [T; D]
     x
 }
 
+/// Zero in every lane: the row of an equation that its own unknown does not enter, as of a held constraint. Its
+/// scale is taken from the matrix, which is kept then.
+#[inline(always)]
+fn vanishes<T: Real>(x: T) -> bool {
+    x.least() == 0.0 && x.greatest() == 0.0
+}
+
 /// The same of a matrix whose size is known when a model is read, over plain numbers.
 #[derive(Clone, Debug)]
 pub struct DenseFactors {
@@ -292,7 +301,8 @@ impl DenseFactors {
     pub fn set(&mut self, matrix: Dense<f64>) {
         let n = matrix.rows;
         self.blocks = false;
-        if self.in_blocks {
+        let held = (0..n).any(|i| vanishes(matrix.at(i, i)));
+        if self.in_blocks && !held {
             self.columns = matrix.clone();
             self.blocks = match n {
                 3 => Self::factored::<3>(&mut self.columns),
@@ -312,12 +322,12 @@ impl DenseFactors {
         done
     }
 
-    /// An entry of the diagonal, where the matrix is kept as it is: its absolute value, else zero.
+    /// The absolute value of an entry, where the matrix is kept as it is, else zero.
     #[must_use]
-    pub fn diagonal(&self, i: usize) -> f64 {
+    pub fn entry(&self, i: usize, j: usize) -> f64 {
         match self.blocks {
             true => 0.0,
-            false => self.columns.at(i, i).abs(),
+            false => self.columns.at(i, j).abs(),
         }
     }
 

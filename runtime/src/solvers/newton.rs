@@ -12,6 +12,7 @@ mod principal;
 mod reduced;
 mod region;
 mod saved;
+mod scale;
 mod stage;
 
 pub use crate::scalar::{Affine, Bounded, Enclosure, swing_of};
@@ -86,20 +87,6 @@ const LAST_ATTEMPT: u32 = 2;
 
 /// An equation whose terms are smaller than this part of others of its kind is judged by those.
 const LEAST_SHARE: f64 = 1e-30;
-
-/// Raises scales that are rounding beside the others: a momentum and the root of its own entry of the tangent have one unit for
-/// all equations, the root of an action. Below `EPSILON` of the largest so measured, what solving for all velocities together
-/// leaves of an equation is larger than what would be asked of it. Entries that are zero, or not known, measure nothing.
-pub(super) fn not_below_rounding(scales: &mut [f64], diagonal: impl Fn(usize) -> f64) {
-    let root = |i: usize| diagonal(i).sqrt();
-    let known = |i: &usize| root(*i) > 0.0 && root(*i).is_finite();
-    let most = (0..scales.len())
-        .filter(known)
-        .fold(0.0, |most: f64, i| most.max(scales[i] / root(i)));
-    for i in (0..scales.len()).filter(known) {
-        scales[i] = scales[i].max(f64::EPSILON * root(i) * most);
-    }
-}
 
 /// How many solutions the next guess is made from.
 const REMEMBERED: usize = 6;
@@ -397,10 +384,16 @@ where
                 let most = part.fold(0.0, |most: f64, k| most.max(scales[k]));
                 scales[i] = scales[i].max(LEAST_SHARE * most);
             }
-            let factors = &self.search.factors;
-            not_below_rounding(&mut scales.as_mut_slice()[..G::DIMENSION.min(D)], |i| {
-                factors.diagonal(i, lane)
-            });
+            let search = &*self.search;
+            let unit = search.unit.lane(lane).abs();
+            let mut lengths = [0.0; D];
+            self.trial.extents(&mut lengths);
+            let tangent = scale::Tangent {
+                entry: &|i, j| search.factors.entry(i, j, lane) / unit,
+                part_of: &G::part_of,
+                lengths: &lengths,
+            };
+            tangent.raise(&mut scales.as_mut_slice()[..G::DIMENSION.min(D)]);
             for (weight, scale) in self.search.weights.iter_mut().zip(&scales) {
                 let weight_in_lane = (1.0 / scale).min(f64::MAX);
                 weight.set_lane(lane, T::One::from_f64(weight_in_lane));

@@ -4,6 +4,8 @@
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables, confusable_idents)]
 
+mod hinge;
+
 use clebsch::card::Settings;
 use clebsch::functions::carlson_rf;
 use clebsch::integrate::Stepper;

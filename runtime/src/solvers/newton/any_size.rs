@@ -15,10 +15,11 @@ pub use curve::{Bounds, Chart, Enclosed, Lane, Parts};
 
 use super::node::Spread;
 use super::principal::{Care, Fold};
+use super::scale::Tangent;
 use super::{
     BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, FORESIGHT, LAST_ATTEMPT, LATE, LEAST_SHARE,
     MOST_ITERATIONS, NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, POLISHED_ROUNDINGS,
-    Progress, REMEMBERED, STAGNATED_ROUNDINGS, Solved, WORTH_KEEPING, not_below_rounding,
+    Progress, REMEMBERED, STAGNATED_ROUNDINGS, Solved, WORTH_KEEPING,
 };
 use crate::linalg::{Dense, DenseFactors};
 use crate::scalar::Real;
@@ -367,8 +368,15 @@ impl<C: Chart> AnyNewton<'_, C> {
             let most = part.fold(0.0, |most: f64, k| most.max(scales[k]));
             scales[i] = scales[i].max(LEAST_SHARE * most);
         }
-        let factors = &self.search.factors;
-        not_below_rounding(&mut scales, |i| factors.diagonal(i));
+        let (factors, unit) = (&self.search.factors, self.search.unit.abs());
+        let mut lengths = vec![0.0; parts.count()];
+        self.chart.extents(&self.trial, &mut lengths);
+        let tangent = Tangent {
+            entry: &|i, j| factors.entry(i, j) / unit,
+            part_of: &|i| parts.part_of(i),
+            lengths: &lengths,
+        };
+        tangent.raise(&mut scales);
         for (weight, scale) in self.search.weights.iter_mut().zip(&scales) {
             *weight = (1.0 / scale).min(f64::MAX);
         }

@@ -12,7 +12,11 @@ use crate::groups::Group;
 /// How much larger than the velocity at hand the regions are.
 const TIMES: [f64; 5] = [1.5, 1.8, 2.4, 4.0, 8.0];
 
-/// Looks for the largest reach of at least `wanted`.
+/// The same where the tangent is another at every node. What serves nearby is soon proved anew: the
+/// first region that will do is taken.
+pub(super) const NEARBY: [f64; 3] = [2.4, 1.8, 1.5];
+
+/// Looks for a reach of at least `wanted`: the largest where it serves at every node.
 pub(super) fn lasting<G, E, const D: usize, const K: usize>(
     equations: &Equations<G, E, D, K>,
     rest: &Stage<G, D>,
@@ -28,6 +32,21 @@ where
         let tangent = (equations.enclosed)(Spread::HERE, &region);
         Strain::over::<E, K>(rest.inverse(), &tangent, radii)
     };
+    let reach = match everywhere {
+        true => everywhere_alike::<G, D>(&strain, wanted),
+        false => nearby::<G, D>(&strain, wanted),
+    };
+    Some(Traced::Principal {
+        reach: reach?,
+        spread: Spread::TURNED,
+    })
+}
+
+/// The largest reach, where the tangent is the same at every node.
+fn everywhere_alike<G: Group<f64>, const D: usize>(
+    strain: &dyn Fn(&[f64; D]) -> Strain<D>,
+    wanted: &[f64; D],
+) -> Option<[f64; D]> {
     let mut best: Option<[f64; D]> = None;
     for times in TIMES {
         let radii = wanted.map(|x| times * x);
@@ -36,7 +55,7 @@ where
         // Regular in the whole region: also where the velocity does not come.
         let away = whole.spread(&radii).map(|_| &whole);
         let next = away.and_then(|whole| {
-            let back = everywhere.then_some(whole);
+            let back = Some(whole);
             reach(&whole.mean(&half), back, &radii, G::PARTS.min(D))
         });
         // Larger as long as the reach grows.
@@ -46,10 +65,25 @@ where
         }
         best = if worse { best } else { next };
     }
-    let reach = best.filter(|reach| fits::<G, D>(wanted, reach))?;
-    Some(Traced::Principal {
-        reach,
-        spread: Spread::TURNED,
+    best.filter(|reach| fits::<G, D>(wanted, reach))
+}
+
+/// A reach where the tangent is another at every node.
+fn nearby<G: Group<f64>, const D: usize>(
+    strain: &dyn Fn(&[f64; D]) -> Strain<D>,
+    wanted: &[f64; D],
+) -> Option<[f64; D]> {
+    NEARBY.iter().find_map(|times| {
+        let radii = wanted.map(|x| times * x);
+        let whole = strain(&radii);
+        // Regular in the whole region: also where the velocity does not come.
+        whole.spread(&radii)?;
+        let within = |mean: &Strain<D>| {
+            let reach = reach(mean, None, &radii, G::PARTS.min(D));
+            reach.filter(|reach| fits::<G, D>(wanted, reach))
+        };
+        // The mean along lines does not exceed the strain of the whole region, which is known by now.
+        within(&whole).or_else(|| within(&whole.mean(&strain(&radii.map(|r| 0.5 * r)))))
     })
 }
 

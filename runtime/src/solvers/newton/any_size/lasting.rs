@@ -6,24 +6,40 @@ use super::curve::Curve;
 use super::principal::Found;
 use super::region::Strain;
 use super::stage::{Stage, fits};
+use crate::solvers::newton::lasting::NEARBY;
 use crate::solvers::newton::node::Spread;
 
 /// How much larger than the velocity at hand the regions are.
 const TIMES: [f64; 5] = [1.5, 1.8, 2.4, 4.0, 8.0];
 
-/// Looks for the largest reach of at least `wanted`.
+/// Looks for a reach of at least `wanted`: the largest where it serves at every node.
 pub(super) fn lasting(
     curve: &dyn Curve,
     rest: &Stage,
     wanted: &[f64],
     everywhere: bool,
 ) -> Option<Found> {
-    let times_all = |x: &[f64], times: f64| -> Vec<f64> { x.iter().map(|x| times * x).collect() };
     let centre = curve.rest();
     let strain = |radii: &[f64]| {
         let tangent = curve.enclosed(Spread::HERE, centre, radii);
         Strain::over(curve.parts(), rest.inverse(), &tangent)
     };
+    let reach = match everywhere {
+        true => everywhere_alike(&strain, wanted),
+        false => nearby(&strain, wanted),
+    };
+    Some(Found::Principal {
+        reach: reach?,
+        spread: Spread::TURNED,
+    })
+}
+
+fn times_all(x: &[f64], times: f64) -> Vec<f64> {
+    x.iter().map(|x| times * x).collect()
+}
+
+/// The largest reach, where the tangent is the same at every node.
+fn everywhere_alike(strain: &dyn Fn(&[f64]) -> Strain, wanted: &[f64]) -> Option<Vec<f64>> {
     let mut best: Option<Vec<f64>> = None;
     for times in TIMES {
         let radii = times_all(wanted, times);
@@ -31,10 +47,7 @@ pub(super) fn lasting(
         let half = strain(&times_all(&radii, 0.5));
         // Regular in the whole region: also where the velocity does not come.
         let away = whole.spread(&radii).map(|_| &whole);
-        let next = away.and_then(|whole| {
-            let back = everywhere.then_some(whole);
-            reach(&whole.mean(&half), back, &radii)
-        });
+        let next = away.and_then(|whole| reach(&whole.mean(&half), Some(whole), &radii));
         // Larger as long as the reach grows.
         let worse = match (&next, &best) {
             (None, _) => true,
@@ -46,10 +59,22 @@ pub(super) fn lasting(
         }
         best = if worse { best } else { next };
     }
-    let reach = best.filter(|reach| fits(wanted, reach))?;
-    Some(Found::Principal {
-        reach,
-        spread: Spread::TURNED,
+    best.filter(|reach| fits(wanted, reach))
+}
+
+/// A reach where the tangent is another at every node.
+fn nearby(strain: &dyn Fn(&[f64]) -> Strain, wanted: &[f64]) -> Option<Vec<f64>> {
+    NEARBY.iter().find_map(|times| {
+        let radii = times_all(wanted, *times);
+        let whole = strain(&radii);
+        // Regular in the whole region: also where the velocity does not come.
+        whole.spread(&radii)?;
+        let within = |mean: &Strain| {
+            let reach = reach(mean, None, &radii);
+            reach.filter(|reach| fits(wanted, reach))
+        };
+        // The mean along lines does not exceed the strain of the whole region, which is known by now.
+        within(&whole).or_else(|| within(&whole.mean(&strain(&times_all(&radii, 0.5)))))
     })
 }
 
