@@ -469,26 +469,26 @@ fn inside(d: &Derivation, names: &Names) -> TokenStream {
     let (before, after) = (names.local("before"), names.local("after"));
     let step = variable(s, d.spec.step);
     let all = guards(d);
+    let mut kept_invertible = Vec::new();
     let linear = d.spec.configurations.iter().filter_map(|c| {
         let (name, own) = (&s.get(c.element).name, own(d, c.element));
         // A matrix whose determinant must not vanish at a node must not between two of them.
         let shape = s.get(c.element).shape;
-        let inverted = shape.is_square() && !shape.is_scalar() && {
-            let det = expr::det(expr::here(s, c.element));
-            all.iter().any(|g| g.argument == det)
+        let det = expr::det(expr::here(s, c.element));
+        let inverted =
+            shape.is_square() && !shape.is_scalar() && all.iter().any(|g| g.argument == det);
+        let test = match family(c) {
+            Family::Linear(_) => quote!(domain::invertible),
+            Family::Field(_) if inverted => quote!(domain::field_invertible),
+            _ => return None,
         };
-        match family(c) {
-            Family::Linear(_) => {
-                Some(quote!(domain::invertible(#name, &#before.#own, &#after.#own, #step)?;))
-            }
-            Family::Field(_) if inverted => {
-                Some(quote!(domain::field_invertible(#name, &#before.#own, &#after.#own, #step)?;))
-            }
-            _ => None,
-        }
+        kept_invertible.push(det);
+        Some(quote!(#test(#name, &#before.#own, &#after.#own, #step)?;))
     });
     let linear = quote!(#(#linear)*);
-    let (nodal, edge) = (of(d, Place::Node), of(d, Place::Edge));
+    let (mut nodal, edge) = (of(d, Place::Node), of(d, Place::Edge));
+    // A determinant that does not vanish on the way keeps the sign that it has at the start, where it is tested.
+    nodal.retain(|g| !kept_invertible.contains(&g.argument));
     let (nodes, arguments) = at_nodes(d, names, &nodal);
     let edges = on_edge(d, names, &edge);
     quote! {

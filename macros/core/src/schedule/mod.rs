@@ -3,6 +3,7 @@
 
 mod chain;
 mod collected;
+mod inverses;
 mod known;
 mod pairs;
 mod program;

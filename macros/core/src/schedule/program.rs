@@ -34,6 +34,7 @@ pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
         .iter()
         .map(|r| super::rest::displaced(symbols, &expr::with_plain_determinants(symbols, r)))
         .collect();
+    let results = super::inverses::by_adjugates(symbols, &results);
     let results = super::collected::collected(symbols, &results);
     let results = super::transposed::aligned(symbols, &results);
     super::pairs::paired(symbols, &results, prefix)
