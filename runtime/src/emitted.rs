@@ -10,6 +10,7 @@ pub use crate::groups::{
     CarriedImpulse, CarriedPlaneImpulse, Coadjoint, FieldMomentum, Group, Linear, Orthogonal,
     Placed, PlaneMotion, RigidMotion, Rotation, SpatialImpulse, SpatialMomentum,
     SpatialMomentumMatrix, SpatialPlaneImpulse, TurnedRotation, UnitQuaternion, added,
+    added_number,
 };
 pub use crate::integrate::{
     Model as _, Moving, Reversible, SideBySide, Stepper, Steps, advance_side_by_side, only_size,

@@ -4,6 +4,7 @@
 mod book;
 mod case_files;
 mod cases;
+mod clocks;
 mod common;
 mod comparisons;
 mod elastic;

@@ -230,6 +230,13 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             };
             Some(Value::List(vec![of(sums), of(left)]))
         },
+        ("added_number", 3) => |a, _| match a {
+            [Value::Real(value), Value::Real(rest), Value::Real(amount)] => {
+                let (sum, lost) = clebsch::emitted::added_number(*value, *rest, *amount);
+                Some(list([sum, lost]))
+            }
+            _ => None,
+        },
         ("rodrigues", 1) => |a, _| match a.first()? {
             Value::Rotation(r) => Some(Value::Vector(r.rodrigues())),
             _ => None,
@@ -281,6 +288,6 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
     })
 }
 
-fn list<T: Real>(all: [T; 4]) -> Value<T> {
+fn list<T: Real, const N: usize>(all: [T; N]) -> Value<T> {
     Value::List(all.map(Value::Real).to_vec())
 }

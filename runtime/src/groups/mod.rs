@@ -19,7 +19,7 @@ pub use coordinate::{Coordinate, Part};
 pub use linear::{Linear, NotInvertible, invertible_map};
 pub use matrix_momentum::{BodyMomentumMatrix, SpatialMomentumMatrix};
 pub use orthogonal::{Orthogonal, nearest_rotation};
-pub use placed::{AboutBody, Placed, added};
+pub use placed::{AboutBody, Placed, added, added_number};
 pub use se2::{BodyPlaneImpulse, CarriedPlaneImpulse, PlaneMotion, SpatialPlaneImpulse};
 pub use se3::{BodyImpulse, CarriedImpulse, NotARigidMotion, RigidMotion, SpatialImpulse};
 pub use so3::{BodyMomentum, NotARotation, Rotation, SpatialMomentum};

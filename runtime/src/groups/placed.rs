@@ -57,6 +57,15 @@ pub fn added<T: Real, const R: usize, const C: usize>(
     (sum, lost)
 }
 
+/// The same of a number.
+#[inline(always)]
+#[must_use]
+pub fn added_number<T: Real>(value: T, rest: T, amount: T) -> (T, T) {
+    let one = SMatrix::<T, 1, 1>::new;
+    let (sum, lost) = added(&one(value), &one(rest), &one(amount));
+    (sum[0], lost[0])
+}
+
 /// `(next + next_rest) - (place + rest)`.
 #[inline(always)]
 pub(super) fn between<T: Real, const R: usize, const C: usize>(

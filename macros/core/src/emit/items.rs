@@ -9,7 +9,7 @@ use crate::derive::Derivation;
 use crate::derive::recognise::{Method, Riccati};
 use crate::derive::transport::Transport;
 use crate::expr::shape::{Shape, Structure};
-use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::print::{Format, Style, expression};
 use crate::syntax::ast::Comparison;
@@ -246,6 +246,22 @@ pub fn advanced(d: &Derivation) -> impl Iterator<Item = &Advected> {
     pairs
         .filter(|(_, t)| matches!(t, Transport::Advanced))
         .map(|(a, _)| a)
+}
+
+/// The clocks that go on by an amount that nothing which moves enters, with the field of the state for their rest: as
+/// places they are kept in two numbers.
+pub fn ticks(d: &Derivation, names: &Names) -> Vec<(SymbolId, Expr, Ident)> {
+    let s = &d.letters.symbols;
+    let own_amount = |a: &Advected| {
+        let amount = expr::sub(a.update.clone(), expr::here(s, a.quantity));
+        let role = |l: Letter| s.get(l.symbol).role;
+        let still = |l: Letter| matches!(role(l), Role::Parameter | Role::Step);
+        let ticks = amount.shape().is_scalar() && expr::letters(&amount).into_iter().all(still);
+        ticks.then_some(amount)
+    };
+    let all = advanced(d).filter_map(|a| Some((a.quantity, own_amount(a)?)));
+    all.map(|(q, amount)| (q, amount, tagged(d, names, q, "rest")))
+        .collect()
 }
 
 /// Locals for what is known at one node: matrices of the elements and advected quantities, as far

@@ -115,6 +115,8 @@ fn state_of(d: &Derivation, names: &Names) -> TokenStream {
             quote!(#element: initial.#element, #momentum: #value #(, #rests: SMatrix::zeros())*),
         );
     }
+    let ticks = items::ticks(d, names).into_iter();
+    fields.extend(ticks.map(|(_, _, rest)| quote!(#rest: T::zero())));
     // References: the inverse element acts on the value given at node 0.
     let mut references = TokenStream::new();
     for (a, t) in d.spec.advected.iter().zip(&d.transports) {

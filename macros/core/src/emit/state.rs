@@ -78,6 +78,8 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         given.push(quote!(#[doc = #doc] pub #field: #t));
         kept_fields.push(quote!(#field: #t));
     }
+    let ticks = super::items::ticks(d, names).into_iter();
+    kept_fields.extend(ticks.map(|(_, _, rest)| quote!(#rest: T)));
     let (held, shown) = super::holds::fields(d);
     kept_fields.extend(held);
     access.extend(shown);

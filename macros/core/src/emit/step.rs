@@ -3,7 +3,7 @@
 
 use super::carried::{Acting, carried, gained, seen_from_space};
 use super::element::{self, Family, family};
-use super::expression::{Bindings, program};
+use super::expression::{Bindings, Writer, program};
 use super::force_at_node::AtNode;
 use super::items::{self, kept, letters_of, node_locals, parameter_locals, with_transports};
 use super::names::{Names, item, own, per_configuration, tagged, variable};
@@ -298,8 +298,22 @@ pub(super) fn finish(
         assignments.extend(carried.stored);
         finite.push(quote!(all_finite(&#value)));
     }
+    let ticks = items::ticks(d, names);
     for q in &advanced {
         let (field, next) = (own(d, *q), tagged(d, names, *q, "next"));
+        if let Some((_, amount, rest)) = ticks.iter().find(|(tick, ..)| tick == q) {
+            let kept = tagged(d, names, *q, "kept");
+            let writer = Writer {
+                symbols: s,
+                bindings,
+            };
+            let amount = writer.write(amount);
+            out.extend(
+                quote!(let (#kept, #rest) = added_number(state.#field, state.#rest, #amount);),
+            );
+            assignments.extend(quote!(state.#field = #kept; state.#rest = #rest;));
+            continue;
+        }
         assignments.extend(quote!(state.#field = #next;));
     }
     let node = names.local("node");

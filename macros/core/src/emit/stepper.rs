@@ -87,6 +87,8 @@ fn fields(d: &Derivation) -> [Vec<Ident>; 3] {
         initial.push(own(d, id));
         state.push(own(d, id));
     }
+    let ticks = super::items::ticks(d, &Names::new(d)).into_iter();
+    state.extend(ticks.map(|(_, _, rest)| rest));
     state.extend(super::holds::names_of_fields(d));
     [parameters, initial, state]
 }
