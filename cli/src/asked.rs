@@ -1,17 +1,18 @@
 //! What was given where a model's name is asked for: a model, or a file that belongs elsewhere.
 //! Takes the argument; gives the model, or a message with the command that was meant.
 
+use crate::Streams;
 use crate::failure::Failure;
 use crate::gallery::{Entry, Gallery};
 use crate::model_file;
 use crate::plain::shown;
+use crate::waiting::Waiting;
 use std::borrow::Cow;
-use std::io::Write;
 use std::path::Path;
 use toml::de::DeTable;
 
 /// The model that `run`, `compare` or `case` is to work on: one of the gallery, else that of a file, whose
-/// warnings are told to `err`. A `case` says how many sites a model with labels has.
+/// warnings are told. A `case` says how many sites a model with labels has.
 ///
 /// # Errors
 /// Usage: neither; a case file is told apart, and the message says what it is for.
@@ -19,7 +20,7 @@ pub(crate) fn model<'a>(
     gallery: &'a Gallery,
     name: &str,
     case: Option<&str>,
-    err: &mut dyn Write,
+    streams: &mut Streams<'_>,
 ) -> Result<Cow<'a, Entry>, Failure> {
     let unknown = match gallery.find(name) {
         Ok(entry) => return Ok(Cow::Borrowed(entry)),
@@ -28,10 +29,17 @@ pub(crate) fn model<'a>(
     if let Some(failure) = case_file(gallery, name, "here a model is named") {
         return Err(failure);
     }
-    match model_file::is_meant(name) {
-        true => model_file::read(gallery, name, case, err).map(Cow::Owned),
-        false => Err(unknown),
+    if !model_file::is_meant(name) {
+        return Err(unknown);
     }
+    let mut warnings = Vec::new();
+    let read = {
+        let _told = Waiting::told("deriving the equations".to_owned(), streams.progress);
+        model_file::read(gallery, name, case, &mut warnings)
+    };
+    // What cannot be written there stands in the derivation too.
+    let _ = streams.err.write_all(&warnings);
+    read.map(Cow::Owned)
 }
 
 /// The message for a case file in the place of a model, if `name` is one.

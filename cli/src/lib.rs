@@ -137,7 +137,7 @@ fn dispatch(
                 streams.out.write_all(plan::case_text(file)?.as_bytes())?;
                 return Ok(DONE);
             }
-            let entry = asked::model(gallery, name, None, &mut streams.err)?;
+            let entry = asked::model(gallery, name, None, streams)?;
             if let Some(stated) = case_file::labels::Stated::read(entry.card.source)
                 && let Some(choice) = stated.default_choice()
             {

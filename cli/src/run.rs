@@ -53,7 +53,7 @@ pub fn run(
     let case = matches.get_one::<String>("case").map(String::as_str);
     let case = beside::case(gallery, model, case)?;
     let case = case.as_deref();
-    let entry = asked::model(gallery, model, case, &mut streams.err)?;
+    let entry = asked::model(gallery, model, case, streams)?;
     let plan = {
         let _told = Waiting::told("reading the case".to_owned(), streams.progress);
         Plan::new(&entry, case, matches)?

@@ -60,7 +60,7 @@ pub fn compare(
     let case = matches.get_one::<String>("case").map(String::as_str);
     let case = beside::case(gallery, model, case)?;
     let case = case.as_deref();
-    let entry = asked::model(gallery, model, case, &mut streams.err)?;
+    let entry = asked::model(gallery, model, case, streams)?;
     let plan = Plan::new(&entry, case, matches)?;
     let card = &entry.card_of(&plan.case);
     let as_json = matches.get_flag("json");

@@ -88,7 +88,7 @@ pub(crate) fn sweep(
     let name = text("model").unwrap_or_default();
     let case = beside::case(gallery, name, text("case"))?;
     let case = case.as_deref();
-    let entry = asked::model(gallery, name, case, &mut streams.err)?;
+    let entry = asked::model(gallery, name, case, streams)?;
     let plan = Plan::new(&entry, case, matches)?;
     let card = &entry.card_of(&plan.case);
     let axes = matches.get_many::<String>("vary").into_iter().flatten();
