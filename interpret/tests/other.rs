@@ -137,6 +137,20 @@ clebsch::model! {
     }
 }
 
+clebsch::model! {
+    /// A turn of the plane beside a rotation of space, both seen from space: the factor of one is constant, that of
+    /// the other known at each node.
+    pub model Turns {
+        param j: Real;
+        param J: Sym<3>;
+        group S: SO<2> velocity X;
+        group R: SO<3> velocity W;
+        constraint next(S) = X*S;
+        constraint next(R) = W*R;
+        lagrangian = -j*tr(X)/h - tr(J*R^T*next(R))/h;
+    }
+}
+
 fn case(h: f64, parameters: &[&[f64]], initial: &[&[f64]]) -> Case {
     let lists = |all: &[&[f64]]| all.iter().map(|list| list.to_vec()).collect();
     Case {
@@ -305,6 +319,49 @@ fn twelve_coordinates_by_one_linear_system() {
         &[0.1, 0.0, 0.2, 0.4],
     ];
     both(&Twelve::CARD, &case(0.05, &parameters, &initial));
+}
+
+/// The turn of the plane goes on by the angle of `2 j sin(angle) = h p`, and the body as it does alone.
+#[test]
+fn turns_of_the_plane_beside_rotations_seen_from_space() {
+    let inertia = [0.5, 0.1, 0.0, 0.1, 0.7, 0.0, 0.0, 0.0, 0.9];
+    let (j, p, h) = (0.7, 0.9, 0.05);
+    let parameters: [&[f64]; 2] = [&[j], &inertia];
+    let turn = [1.0, 0.0, 0.0, 1.0];
+    let momentum = [0.3, -0.5, 0.4];
+    let initial: [&[f64]; 4] = [&turn, &[0.0, -p, p, 0.0], &ONE, &momentum];
+    let together = case(h, &parameters, &initial);
+    both(&Turns::CARD, &together);
+
+    let text = "model Alone { param J: Sym<3>; group R: SO<3> velocity W; constraint next(R) = W*R;
+        lagrangian = -tr(J*R^T*next(R))/h; }";
+    let alone = clebsch_interpret::card(text).expect("is read");
+    let own = case(h, &[&inertia], &[&ONE, &momentum]);
+    let open = |card: &Card, case: &Case| {
+        let opened = (card.open)(&case.parameters, &case.initial, Settings::step(h));
+        opened.expect("starts")
+    };
+    let (mut a, mut b) = (open(&Turns::CARD, &together), open(&alone, &own));
+    let mut seen = vec![0.0; Turns::CARD.observable_count()];
+    let mut body = vec![0.0; alone.observable_count()];
+    let angle = (h * p / (2.0 * j)).asin();
+    for k in 1..=200 {
+        a.step().expect("steps");
+        b.step().expect("steps");
+        a.observe(&mut seen);
+        b.observe(&mut body);
+        // Each step rounds a few times; the two solvers of the body round differently.
+        let tolerance = 20.0 * f64::EPSILON * f64::from(k);
+        let (sin, cos) = (f64::from(k) * angle).sin_cos();
+        for (found, wanted) in seen.iter().zip([cos, -sin, sin, cos]) {
+            assert!((found - wanted).abs() < tolerance, "{k}: {found} {wanted}");
+        }
+        let rest = seen.windows(9).any(|w| {
+            let near = |(x, y): (&f64, &f64)| (x - y).abs() < tolerance;
+            w.iter().zip(&body[..9]).all(near)
+        });
+        assert!(rest, "{k}: {seen:?} {body:?}");
+    }
 }
 
 /// A chain of points whose velocities all stand in one another's equations; quartic where `b` is a term.

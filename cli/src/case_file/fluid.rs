@@ -268,7 +268,10 @@ impl Reader<'_> {
         };
         let told = |why: String| format!("\"{text}\": {why}");
         let data = SiteData::read(text).map_err(told)?;
-        let each = (0..self.count(q)).map(|site| data.value(&|name| self.number(q, name, site)));
+        let each = (0..self.count(q)).map(|site| {
+            let value = data.value(&|name| self.number(q, name, site))?;
+            finite(value, site)
+        });
         each.collect::<Result<_, _>>().map_err(told)
     }
 
@@ -277,6 +280,7 @@ impl Reader<'_> {
             return number(value);
         };
         let value = SiteData::read(text).and_then(|d| d.value(&|name| self.number(q, name, site)));
+        let value = value.and_then(|value| finite(value, site));
         value.map_err(|why| format!("\"{text}\": {why}"))
     }
 
@@ -332,7 +336,7 @@ impl Reader<'_> {
                         && size(q) == 1
                         && table.len() == 1 + usize::from(share.is_some()) =>
                 {
-                    let depths = self.read(q, depth.get_ref());
+                    let depths = self.read(q, depth.get_ref()).and_then(positive);
                     let shares = self.shares(q, share.map(Spanned::get_ref));
                     depths.and_then(|all| {
                         let each = all.into_iter().zip(shares?);
@@ -448,6 +452,25 @@ impl Reader<'_> {
             let message = "the model does not tell the momenta of velocities: give momenta";
             Untold::Velocity(message.to_owned())
         })
+    }
+}
+
+/// A value of an expression at a site, if it is a number.
+fn finite(value: f64, site: usize) -> Result<f64, String> {
+    match value.is_finite() {
+        true => Ok(value),
+        false => Err(format!("{value} at site {site} is not a finite number")),
+    }
+}
+
+/// Depths, if all of them are some.
+fn positive(depths: Vec<f64>) -> Result<Vec<f64>, String> {
+    match depths.iter().position(|depth| *depth <= 0.0) {
+        None => Ok(depths),
+        Some(site) => Err(format!(
+            "the depth at particle {site} is {}, and a particle carries a positive share of it: place particles where the depth is positive",
+            depths[site]
+        )),
     }
 }
 

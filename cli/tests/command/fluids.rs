@@ -113,6 +113,62 @@ fn velocities_and_momenta_say_the_same() {
     assert_eq!(energy(&by_velocity), energy(&by_momentum));
 }
 
+/// A depth is positive, an expression a number; of masses given as numbers the kinetic energy is warned of.
+#[test]
+fn masses_and_velocities_that_are_none_are_told() {
+    let folder = Folder::new("fluids-masses");
+    let run = |model: &str, key: &str, given: &str| {
+        let case = text(&format!("{model}.toml"));
+        let own = |line: &str| line.starts_with(&format!("{key} = "));
+        let old = case.lines().find(|l| own(l)).expect("is given").to_owned();
+        let file = folder.write("own.toml", &case.replace(&old, &format!("{key} = {given}")));
+        let model = shipped(&format!("{model}.clebsch"));
+        clebsch(&["run", &model, "--case", &file, "--steps", "1"])
+    };
+    for (model, key, given, said) in [
+        (
+            "particle-mesh-1d",
+            "m",
+            "{ depth = \"-1\" }",
+            "parameters.m: the depth at particle 0 is -1",
+        ),
+        (
+            "shallow-water-2d",
+            "m",
+            "{ depth = \"a - 3\", share = \"cells\" }",
+            "parameters.m: the depth at particle 0 is -3",
+        ),
+        (
+            "shallow-water-2d",
+            "velocity_X",
+            "[\"x\", \"log(-1)\"]",
+            "initial.velocity_X: \"log(-1)\": NaN at site 0 is not a finite number",
+        ),
+    ] {
+        let done = run(model, key, given);
+        assert_ne!(done.code, 0, "{given}: {}", done.out);
+        assert!(done.err.contains(said), "{given}: {}", done.err);
+    }
+    for (model, count) in [("particle-mesh-1d", 256), ("shallow-water-2d", 800)] {
+        let done = run(model, "m", "-1.0");
+        let said = format!("is negative: it is negative in {count} of {count} independent");
+        assert!(done.err.contains(&said), "{model}: {}", done.err);
+        let done = run(model, "m", "0.01");
+        assert!(
+            !done.err.contains("kinetic energy"),
+            "{model}: {}",
+            done.err
+        );
+    }
+    // One of them.
+    let done = run("particle-mesh-1d", "m", "\"0.01*(a - 0.5)\"");
+    assert!(
+        done.err.contains("it is negative in 1 of 256 independent"),
+        "{}",
+        done.err
+    );
+}
+
 #[test]
 fn a_wrong_case_is_told_by_key_and_site() {
     let folder = Folder::new("fluids-wrong");
@@ -190,7 +246,7 @@ fn a_wrong_case_is_told_by_key_and_site() {
             (
                 "X = { lattice = \"brick\", jitter = 0.1, seed = 1 }",
                 "X = [\"0.01/(a - 7)\", \"a/N\"]",
-                "initial.X_7",
+                "initial.X: \"0.01/(a - 7)\": inf at site 7 is not a finite number",
             ),
             (
                 "L = [1.0, 1.0]",

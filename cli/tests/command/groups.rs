@@ -85,3 +85,34 @@ fn a_body_is_not_turned_inside_out_by_a_step() {
     assert_ne!(done.code, 0, "{}", done.out);
     assert!(done.err.contains("`Q` loses its inverse"), "{}", done.err);
 }
+
+/// The solver taken without being named serves every group of a model: beside a rotation of space with a factor known
+/// at each node there are others, for which there is no 4 x 4 matrix.
+#[test]
+fn rotations_of_other_dimensions_run_beside_bodies_seen_from_space() {
+    let folder = Folder::new("rotations-beside");
+    let own = "group S: SO<2> velocity X;";
+    let body = "group R: SO<3> velocity W;";
+    for (name, [first, second], moved) in [
+        ("plane-first", [own, body], "X*S"),
+        ("plane-last", [body, own], "X*S"),
+        ("plane-from-body", [own, body], "S*X"),
+        ("four", ["group S: SO<4> velocity X;", body], "X*S"),
+    ] {
+        let model = folder.write(
+            &format!("{name}.clebsch"),
+            &format!(
+                "model A {{ param j: Real; param J: Sym<3>; {first} {second} constraint next(R) = W*R;
+                 constraint next(S) = {moved}; lagrangian = -j*tr(X)/h - tr(J*R^T*next(R))/h; }}"
+            ),
+        );
+        for solver in ["", "davenport", "kappa", "lie-newton", "sign"] {
+            let mut arguments = vec!["run", &model, "--steps", "20"];
+            if !solver.is_empty() {
+                arguments.extend(["--solver", solver]);
+            }
+            let done = clebsch(&arguments);
+            assert_eq!(done.code, 0, "{name} {solver}: {}{}", done.out, done.err);
+        }
+    }
+}

@@ -315,6 +315,10 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             Value::Free(free) => Some(Value::Momentum(Frame::Body, free.body_momentum().0)),
             _ => None,
         },
+        ("serving", 2) => |a, _| match a {
+            [Value::Method(method), n] => Some(Value::Method(method.serving(n.count()?))),
+            _ => None,
+        },
         ("Method::of_size", 1) => |a, _| {
             Some(Value::Method(clebsch::solvers::Method::of_size(
                 a.first()?.count()?,

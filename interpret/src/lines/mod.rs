@@ -5,6 +5,7 @@ mod asked;
 mod card;
 mod coordinates;
 mod given;
+mod kinetic;
 mod running;
 
 pub(crate) use card::Carded;

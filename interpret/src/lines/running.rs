@@ -5,6 +5,7 @@ use super::{LineTrajectory, Unstarted};
 use crate::text;
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver};
 use clebsch::integrate::counted;
+use clebsch::kinetic::KineticWarning;
 use clebsch::line::LineError;
 use clebsch::saved::{Saved, Words};
 use clebsch::{ParameterError, StartError, StepCause, StepError};
@@ -113,10 +114,13 @@ impl Carded {
         };
         let started = self.model.start(&self.choice, settings.h, &numbers);
         let line = started.map_err(|e| self.refused(e))?;
+        let sites = |name: &str| self.sites.get(name).copied();
+        let kinetic = self.model.kinetic_warning(&self.choice, &numbers, sites);
         Ok(Box::new(Running {
             carded: self,
             order: self.order(),
             line: RefCell::new(line),
+            kinetic,
         }))
     }
 
@@ -221,6 +225,7 @@ struct Running {
     carded: &'static Carded,
     order: Vec<(usize, usize)>,
     line: RefCell<LineTrajectory>,
+    kinetic: Option<KineticWarning>,
 }
 
 impl Running {
@@ -280,6 +285,10 @@ impl Trajectory for Running {
                 }
             }
         }
+    }
+
+    fn kinetic_warning(&self) -> Option<KineticWarning> {
+        self.kinetic
     }
 
     fn invariants(&self, out: &mut [f64]) {

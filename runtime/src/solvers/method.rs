@@ -58,6 +58,15 @@ impl Method {
             _ => Method::LieNewton,
         }
     }
+
+    /// This one where it serves matrices of size `n`, otherwise the default of that size.
+    #[must_use]
+    pub const fn serving(self, n: usize) -> Method {
+        match (self, n) {
+            (Method::Kappa | Method::Davenport, n) if n != 3 => Method::of_size(n),
+            _ => self,
+        }
+    }
 }
 
 impl fmt::Display for Method {

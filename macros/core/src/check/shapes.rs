@@ -15,7 +15,20 @@ const LARGEST: u64 = 32;
 
 const SHAPES: [&str; 6] = ["Real", "Vec", "Sym", "Skew", "Diag", "Mat"];
 
-fn size(symbols: &Symbols, s: &Size, errors: &mut Errors) -> Option<Dim> {
+/// What to write where a size of this kind is 0 or 1.
+fn instead_of_one(kind: &str) -> &'static str {
+    match kind {
+        "SO" => {
+            "that group has one element and nothing moves: leave it out; turns of the plane are `SO<2>`, rotations of space `SO<3>`"
+        }
+        "GL" => {
+            "a factor that stays positive is the exponential of a field: `field x: Real;` and `exp(x)`; linear maps of the plane are `GL<2>`"
+        }
+        _ => "a single number is `Real`",
+    }
+}
+
+fn size(symbols: &Symbols, kind: &str, s: &Size, errors: &mut Errors) -> Option<Dim> {
     match s {
         Size::Number(n, place) => {
             if (2..=LARGEST).contains(n) {
@@ -27,7 +40,7 @@ fn size(symbols: &Symbols, s: &Size, errors: &mut Errors) -> Option<Dim> {
                     format!("a size is between 2 and {LARGEST}, not {n}"),
                 )
                 .help(match n {
-                    0 | 1 => "a single number is `Real`",
+                    0 | 1 => instead_of_one(kind),
                     _ => "take a smaller system, or split it into blocks",
                 }),
             );
@@ -73,7 +86,11 @@ fn sizes(symbols: &Symbols, k: &Kindred, count: usize, errors: &mut Errors) -> O
         );
         return None;
     }
-    k.sizes.iter().map(|s| size(symbols, s, errors)).collect()
+    let kind = k.name.text.as_str();
+    k.sizes
+        .iter()
+        .map(|s| size(symbols, kind, s, errors))
+        .collect()
 }
 
 /// The shape and structure of a parameter.

@@ -8,7 +8,7 @@ use crate::algebra::{Algebra, Factor, Poly, Rational, Source};
 use crate::check::spec::{Advected, Configuration, Group, Spec};
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::{Dim, Shape};
-use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 
 /// How everything moves when one configuration varies at node k.
@@ -125,13 +125,18 @@ fn of_advected(
     let read = sandwich(algebra, &algebra.lower(&own), marker);
     let in_blocks = || sandwich(algebra, &algebra.lower_in_blocks(&own)?, marker);
     let Some((left, right)) = read.or_else(in_blocks) else {
+        // What nothing moves does not vary, whatever it is multiplied by.
+        if is_left_alone(s, a, &own) {
+            return Ok((here, expr::zero(shape)));
+        }
         return Err(Box::new(
             Diagnostic::new(
                 a.place,
                 format!("the constraint of `{name}` cannot be inverted for `{name}`: it must multiply `{name}` once, between invertible factors"),
             )
             .help(match by_field(spec, a) {
-                Some(x) => format!("the increment of `{x}` has no inverse and cannot be a factor of `{name}`; {}", of_field(s, a, &x)),
+                _ if !is_moved(spec, a) => format!("what nothing moves goes on in proportion to itself, as `next({name}) = c*{name}`, or by what is added to it, as `next({name}) = {name} + h`"),
+                Some(x) => format!("what is made of `{x}` or its increment has no inverse and cannot be a factor of `{name}`; {}", of_field(s, a, &x)),
                 None => "actions read like `Ω^T * Γ` or `Ω^T * S * Ω`; the velocity and parameters of a group are invertible".to_owned(),
             }),
         ));
@@ -155,6 +160,30 @@ fn of_advected(
     Err(Box::new(wrong_side(
         spec, letters, algebra, a, &left_over, shape,
     )))
+}
+
+/// Whether no motion enters the constraint of a quantity, which goes on in proportion to itself: `own` is the
+/// derivative of its update by it.
+fn is_left_alone(s: &Symbols, a: &Advected, own: &Expr) -> bool {
+    let role = |l: &Letter| s.get(l.symbol).role;
+    let is_given = |l: &Letter| matches!(role(l), Role::Parameter | Role::Step);
+    let made_of = |e: &Expr, besides: &dyn Fn(&Letter) -> bool| {
+        let letters = expr::letters(e);
+        letters.iter().all(|l| besides(l) || is_given(l))
+    };
+    a.update.shape().is_scalar()
+        && made_of(&a.update, &|l| l.symbol == a.quantity)
+        && made_of(own, &|l| role(l) == Role::Variation)
+}
+
+/// Whether a configuration or its velocity stands in the constraint of a quantity.
+fn is_moved(spec: &Spec, a: &Advected) -> bool {
+    let letters = expr::letters(&a.update);
+    let mut all = spec.configurations.iter();
+    all.any(|c| {
+        let mut own = letters.iter();
+        own.any(|l| l.symbol == c.velocity || l.symbol == c.element)
+    })
 }
 
 /// Replacements that put advected quantities at node k back to node k-1.

@@ -113,6 +113,13 @@ impl<'a> Folded<'a> {
         }
     }
 
+    /// The label whose sites totals are summed over: a line, or a set that stands alone and is written out.
+    pub(super) fn summed(&self) -> Option<usize> {
+        let lattice = self.lattice;
+        let of_set = lattice.labels.len() == 1 && lattice.meshes.is_empty();
+        lattice.line.or(of_set.then_some(0))
+    }
+
     /// The label and the site of a letter; none of what an end holds or has.
     pub(super) fn site(&self, part: &Part, symbol: SymbolId) -> Option<(usize, usize)> {
         match self.end(part, symbol) {
@@ -144,7 +151,7 @@ impl<'a> Folded<'a> {
             _ => from,
         };
         let (name, typeset) = match origin(self.lattice, part, symbol) {
-            None => (own.name.clone(), own.typeset.clone()),
+            None => (beside(part, symbol), own.typeset.clone()),
             Some(at) => {
                 let index = self.index(part, at.label, at.site, from);
                 let stated = self.lattice.find(&at.name);
@@ -267,6 +274,21 @@ fn origin(lattice: &Lattice, part: &Part, symbol: SymbolId) -> Option<Origin> {
         }
     }
     None
+}
+
+/// The name of what belongs to no site: momenta and rates have the number of their configuration as stated.
+fn beside(part: &Part, symbol: SymbolId) -> String {
+    let d = &part.d;
+    let name = &d.letters.symbols.get(symbol).name;
+    let numbered = [&d.letters.rate, &d.letters.node_momentum];
+    for (i, c) in d.spec.configurations.iter().enumerate() {
+        if numbered.iter().any(|all| all.get(i) == Some(&symbol)) {
+            let letter: String = name.chars().take_while(|c| !c.is_ascii_digit()).collect();
+            let element = &d.letters.symbols.get(c.element).name;
+            return format!("{letter}{}", number(part, element));
+        }
+    }
+    name.clone()
 }
 
 /// The number of a configuration as stated, where there are several of one letter.

@@ -1,6 +1,7 @@
 //! A model with labels as a paper section: its sites, the terms of its Lagrangian with their ranges,
 //! the equations of an interior site and of every end condition, what is conserved under which.
 
+mod beside;
 mod card;
 mod ends;
 mod functionals;
@@ -100,7 +101,9 @@ fn parts(model: &Model, lattice: &Lattice) -> Result<Vec<Part>, Errors> {
         .into_iter()
         .map(|choice| {
             let mut longer = choice.clone();
-            if let Some(count) = lattice.line.and_then(|i| longer.counts.get_mut(i)) {
+            let of_set = lattice.labels.len() == 1 && lattice.meshes.is_empty();
+            let summed = lattice.line.or(of_set.then_some(0));
+            if let Some(count) = summed.and_then(|i| longer.counts.get_mut(i)) {
                 // A ring keeps an odd number of sites.
                 *count += if choice.periodic { 2 } else { 1 };
             }
@@ -472,7 +475,13 @@ fn interior(folded: &mut Folded, part: &Part, doc: &mut Document) {
         line.extend(range_words(folded.lattice, part, &s, first, last));
         line.push(".".into());
         section.paragraph(line);
-        for equation in equations(folded, part, s.shown, From::Site(s.site)) {
+        let summed = match s.label {
+            None => beside::equations(folded, part, &s),
+            Some(_) => None,
+        };
+        for equation in
+            summed.unwrap_or_else(|| equations(folded, part, s.shown, From::Site(s.site)))
+        {
             section.equation(equation);
         }
     }

@@ -138,7 +138,26 @@ fn number(n: usize) -> String {
 }
 
 fn listed(c: &Count) -> String {
+    let shown = c.found.saturating_sub(c.same);
     match c.all() == c.found {
+        all if c.same > 0 => {
+            let others = match all {
+                true => "",
+                false => {
+                    "; no others are among the scalar products, traces and determinants that were tried"
+                }
+            };
+            let same = match c.same {
+                1 => "1 is the same number for every state and is not".to_owned(),
+                n => format!("{n} are the same numbers for every state and are not"),
+            };
+            let shown = match shown {
+                0 => "none of them is".to_owned(),
+                1 => "1 of them is".to_owned(),
+                n => format!("{n} of them are"),
+            };
+            format!("{shown} listed below, {same}{others}")
+        }
         true if c.found == 0 => {
             "the quantities listed below are conserved for other reasons".to_owned()
         }
@@ -174,6 +193,11 @@ fn by_size(d: &Derivation, counts: &[Count], section: &mut Section) {
     let complete = counts.iter().all(|c| c.found == c.all());
     let largest = counts.last().and_then(|c| c.size).unwrap_or_default();
     let beyond = d.spec.dimensions.iter().any(|n| n.to > largest as u64);
+    if let Some(same) = counts.iter().map(|c| c.same).max().filter(|n| *n > 0) {
+        section.text(&format!(
+            "{same} of them are the same number for every state and are not listed."
+        ));
+    }
     section.text(match (complete, beyond) {
         (true, false) => {
             "All of them are listed below; at the smaller sizes those that are listed depend on one another."

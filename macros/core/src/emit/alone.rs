@@ -2,7 +2,9 @@
 //! Takes the configuration and the values of what acts at the node; gives expressions.
 
 use super::element::{Family, family};
+use super::left_factor::known_at_nodes;
 use super::names::{per_configuration, variable};
+use super::sizes::size;
 use super::step::node_momentum;
 use crate::derive::Derivation;
 use proc_macro2::{Ident, TokenStream};
@@ -44,6 +46,11 @@ pub(super) fn alone(
     match (factor, rotations) {
         (Some(factor), _) => quote!(rotation_at(&(#factor), &#scaled, work.method)),
         (None, true) => quote!(self.#prepared.rotation(&#scaled, work.method)),
+        // Beside rotations of space the method named may be one of theirs alone.
+        (None, false) if known_at_nodes(d) => {
+            let n = size(&d.letters.symbols, d.spec.configurations[i].group.size());
+            quote!(self.#prepared.solve(&skew_part(&#scaled), work.method.serving(#n)))
+        }
         (None, false) => quote!(self.#prepared.solve(&skew_part(&#scaled), work.method)),
     }
 }

@@ -69,7 +69,7 @@ fn default(d: &Derivation) -> TokenStream {
 }
 
 /// Whether a block has a factor that is known at each node only.
-fn known_at_nodes(d: &Derivation) -> bool {
+pub(super) fn known_at_nodes(d: &Derivation) -> bool {
     let mut blocks = d.solve.blocks.iter();
     blocks.any(|b| matches!(b.method, Method::Davenport))
 }

@@ -203,7 +203,7 @@ fn exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
     };
     if size > Rational::integer(LARGEST_EXPONENT) {
         let message = format!("exponents go from -{LARGEST_EXPONENT} to {LARGEST_EXPONENT}");
-        let remedy = "make the power a parameter, or write it by `exp` and `log`";
+        let remedy = "of a positive number write `exp(p*log(x))`, where `p` may be a parameter; of any other a product of smaller powers";
         return Err(Diagnostic::new(start.to(c.last_place()), message).help(remedy));
     }
     Ok(value)

@@ -206,3 +206,53 @@ fn names_of_functions_are_refused_where_they_are_declared() {
         }
     }
 }
+
+/// What nothing moves is multiplied by any number made of parameters and the step, of several terms too.
+#[test]
+fn a_number_goes_on_by_a_sum_of_parameters_and_the_step() {
+    let with = |constraint: &str| {
+        refused(&format!(
+            "param m, a: Real; field X: Vec<2>; advected t: Real; constraint next(t) = {constraint};
+             let d = next(X) - X; lagrangian = m*dot(d, d)/(2*h) - h*t*dot(X, X);"
+        ))
+    };
+    for constraint in ["t*(1 + h)", "t - a*t*h", "(a + h)^2*t", "t*(1 + h) + a"] {
+        let told = with(constraint);
+        assert!(told.starts_with("derives"), "{constraint}: {told}");
+    }
+    let told = with("t*(1 + X[1])");
+    assert!(told.contains("what is made of `X`"), "{told}");
+    let told = with("t^2 + t");
+    assert!(!told.contains("increment"), "{told}");
+    assert!(told.contains("`next(t) = c*t`"), "{told}");
+}
+
+/// What is offered beside an exponent that is too large derives.
+#[test]
+fn large_powers_are_offered_what_derives() {
+    let with = |potential: &str| {
+        refused(&format!(
+            "param m, p: Real; field x: Real;
+             lagrangian = m*(next(x) - x)^2/(2*h) - h*({potential});"
+        ))
+    };
+    let told = with("x^1000");
+    assert!(told.contains("`exp(p*log(x))`"), "{told}");
+    for potential in ["exp(p*log(x))", "x^250*x^250"] {
+        let told = with(potential);
+        assert!(told.starts_with("derives"), "{potential}: {told}");
+    }
+}
+
+/// Groups of one element, and those that are numbers, are no `Real`.
+#[test]
+fn groups_of_size_one_say_what_there_is_instead() {
+    for (group, said) in [
+        ("SO<1>", "that group has one element"),
+        ("GL<1>", "the exponential of a field"),
+    ] {
+        let told = refused(&format!("group R: {group} velocity W; lagrangian = 0;"));
+        assert!(told.contains(said), "{group}: {told}");
+        assert!(!told.contains("a single number"), "{group}: {told}");
+    }
+}

@@ -22,6 +22,8 @@ pub struct Count {
     pub rank: usize,
     /// How many of those that were found are independent.
     pub found: usize,
+    /// How many of those are the same number for every state, which are not listed.
+    pub same: usize,
 }
 
 impl Count {
@@ -106,6 +108,7 @@ pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[Passage]) -> 
             dimension,
             rank: size,
             found: out.list.len(),
+            same: 0,
         }],
         [one] => {
             let (from, to) = x.letters.symbols.sizes(Dim::Named(0));
@@ -135,6 +138,7 @@ fn count(x: &Inputs, equations: &[Expr], size: usize, found: &Casimirs) -> Optio
         dimension: general.matrix.len(),
         rank: rank(&general.matrix),
         found: rank(&rows?),
+        same: 0,
     })
 }
 

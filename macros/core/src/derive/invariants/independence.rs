@@ -50,6 +50,35 @@ fn is_linear(x: &Inputs, e: &Expr) -> bool {
         })
 }
 
+/// Whether a Casimir is the same number for every state and all parameters: zero, or made of several carried
+/// quantities as `tr(A B)` is where `B` is the inverse of `A`. The length of one that has always the same is kept, as a
+/// Casimir that is checked by its drift.
+pub(super) fn is_same_for_all(x: &Inputs, passages: &[Passage], v: &Invariant) -> bool {
+    let Some(value) = &v.value else {
+        return false;
+    };
+    let rows = x.spec.configurations.first().map(|c| c.group.size());
+    let size = |p: &Passage| rows.map(|n| p.before.dim(n));
+    let Some(first) = passages.first() else {
+        return false;
+    };
+    // Dimensions that have only a name differ from step to step, and the number with them.
+    let alike: Vec<Option<Matrix>> = passages
+        .iter()
+        .filter(|p| size(p) == size(first))
+        .map(|p| p.before.value(value))
+        .collect();
+    let Some(Some(own)) = alike.first() else {
+        return false;
+    };
+    let mut symbols: Vec<_> = expr::letters(value).iter().map(|l| l.symbol).collect();
+    symbols.sort();
+    symbols.dedup();
+    alike.len() > 1
+        && alike.iter().all(|value| value.as_ref() == Some(own))
+        && (own.vanishes() || symbols.len() > 1)
+}
+
 /// Differentials of the entries of an invariant on the phase space: momenta, elements, and what is
 /// carried without a definition.
 fn differentials(x: &Inputs, point: &Point, v: &Invariant) -> Option<Vec<Vec<u64>>> {

@@ -208,6 +208,15 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
             out.push(v);
         }
     }
+    // A fact about what is carried, not about the motion.
+    let mut counts = casimirs.counts;
+    out.retain(|v| {
+        let same = v.family == Family::Casimir && independence::is_same_for_all(x, &passages, v);
+        if same {
+            counts.iter_mut().for_each(|count| count.same += 1);
+        }
+        !same
+    });
     distinguish(&mut out);
     let known = Integrability {
         casimirs: match large {
@@ -219,7 +228,7 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
                 "the search took more than {} products of numbers",
                 work::products()
             )),
-            None => Known::Counted(casimirs.counts),
+            None => Known::Counted(counts),
         },
         discrete_energy: energy::discrete(x, &passages, lax.as_ref()),
         lax,

@@ -435,3 +435,36 @@ fn the_discrete_energy_has_no_term_that_is_zero() {
     assert_eq!(value.children().len(), 3, "{value:?}");
     assert!(still.is_zero(), "{still:?}");
 }
+
+/// `A` and its inverse are both carried, and `tr(A A⁻¹)` is 3 whatever moves; a matrix with an empty last row has
+/// determinant zero. The length of what is carried is listed, though a given model has one value of it.
+#[test]
+fn what_is_the_same_number_for_every_state_is_not_listed() {
+    let metrics = derive(
+        "model Metrics {
+            param k: Real; group Q: GL<3> velocity G; constraint next(Q) = Q*G;
+            lagrangian = tr((next(Q) - Q)*(next(Q) - Q)^T)/(2*h) - h*k*tr(inv(Q^T*Q));
+        }",
+    );
+    let moments = ["spatial_momentum_skew_identity", "momentum_skew_identity"];
+    assert_eq!(names(&metrics), [&["energy~"][..], &moments].concat());
+    let same = |d: &Derivation| match &d.integrability.casimirs {
+        Known::Counted(counts) => counts.iter().map(|c| (c.found, c.same)).collect(),
+        Known::NotSought(_) => Vec::new(),
+    };
+    assert_eq!(same(&metrics), [(2, 2)]);
+    let spring = derive(
+        "model Spring {
+            param J, K: Sym<3>; param m: Real; param c, d: Vec<3>;
+            group G: SE<3> velocity V; constraint next(G) = G*V;
+            let y = pos(next(G)) - pos(G); let u = pos(G) + rot(G)*c;
+            lagrangian = -tr(J*rot(V))/h + m*dot(y, y)/(2*h) - (h/2)*dot(u, K*u) + h*dot(d, rot(G)*c);
+        }",
+    );
+    let listed = names(&spring);
+    assert!(!listed.iter().any(|n| n.starts_with("det_")), "{listed:?}");
+    assert_eq!(same(&spring), [(2, 1)]);
+    // Of length 1 in every state, and the length of a reference of any other.
+    let top = found(&top("").replace("Λ^T*z", "Λ^T*E3"));
+    assert_eq!(top, ["energy~", "momentum_Gamma", "Gamma_squared"]);
+}

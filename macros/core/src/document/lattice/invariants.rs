@@ -259,9 +259,11 @@ fn of_part(folded: &mut Folded, part: &Part, kept: &[&Invariant]) -> (Vec<Known>
 /// A total as sums over sites; `None` where it is none that is known for every number of sites.
 pub(super) fn total(folded: &mut Folded, part: &Part, e: &Expr) -> Option<Formula> {
     let lattice = folded.lattice;
-    match lattice.line.is_some() && lattice.labels.len() == 1 {
-        true => sums::told(folded, part, e),
-        // Of a set one site stands for all, and is told as one.
-        false => Some(folded.derived(part, e, From::First)),
+    let of_line = lattice.line.is_some() && lattice.labels.len() == 1;
+    match sums::told(folded, part, e).filter(|_| lattice.labels.len() == 1) {
+        Some(sum) => Some(sum),
+        None if of_line => None,
+        // Of several labels one site stands for all, and is told as one.
+        None => Some(folded.derived(part, e, From::First)),
     }
 }

@@ -104,10 +104,13 @@ struct Form {
 /// Sums of terms; `None` where some are of no range.
 fn summed(folded: &mut Folded, part: &Part, terms: Vec<(Rational, Expr)>) -> Option<Vec<Formula>> {
     let forms = forms(folded, part, terms)?;
-    let line = folded.lattice.line?;
+    let line = folded.summed()?;
     let label = folded.lattice.labels.get(line)?;
     let (index, count) = (label.index.text.clone(), label.count.text.clone());
     let many = part.choice.count(line);
+    // Sites of a set have no ends: a sum goes over all of them.
+    let fewest = if label.set { many } else { FEWEST };
+    let set = label.set;
     let mut out = Vec::new();
     for form in forms {
         let magnitude = match form.times.is_negative() {
@@ -117,7 +120,7 @@ fn summed(folded: &mut Folded, part: &Part, terms: Vec<(Rational, Expr)>) -> Opt
         let term = expr::scale(magnitude, form.term);
         let whole = form.sites.windows(2).all(|w| w[0] + 1 == w[1]);
         let of = match (form.sites.as_slice(), form.sites.first(), form.sites.last()) {
-            (list, Some(a), Some(b)) if list.len() >= FEWEST && whole => {
+            (list, Some(a), Some(b)) if list.len() >= fewest && whole => {
                 let by = isize::try_from(*b).ok()? - isize::try_from(many).ok()?;
                 Formula::SumOver {
                     index: index.clone(),
@@ -126,7 +129,7 @@ fn summed(folded: &mut Folded, part: &Part, terms: Vec<(Rational, Expr)>) -> Opt
                     of: Box::new(folded.derived(part, &term, From::End(*a))),
                 }
             }
-            ([only], ..) if *only <= 1 || *only + 1 >= many => {
+            ([only], ..) if !set && (*only <= 1 || *only + 1 >= many) => {
                 let from = if 2 * only > many {
                     From::Last
                 } else {
@@ -187,7 +190,7 @@ fn forms(folded: &mut Folded, part: &Part, terms: Vec<(Rational, Expr)>) -> Opti
 /// The site a term is seen from, the first of those that it holds; on a ring the one that has the others next to it.
 /// Outer `None`: it holds sites of something that is no line.
 fn base(folded: &Folded, part: &Part, term: &Expr) -> Option<Option<usize>> {
-    let line = folded.lattice.line?;
+    let line = folded.summed()?;
     let mut sites = Vec::new();
     for l in expr::letters(term) {
         match folded.site(part, l.symbol) {

@@ -85,3 +85,47 @@ fn names_are_those_of_longer_lattices() {
         );
     }
 }
+
+/// Sites without neighbours are summed over all of them, in totals and in the equations of what stands beside them,
+/// whose momentum has the number that the derivation gives it.
+#[test]
+fn sets_without_neighbours_are_summed_over_all_their_sites() {
+    let model =
+        "model M { label a in 0..N; param m, M, k: Real; field x: Vec<3> at a; field y: Vec<3>;
+         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) + M*dot(next(y) - y, next(y) - y)/(2*h)
+            - (h/2)*k*dot(x - y, x - y); }";
+    let list = items(model);
+    for total in [
+        "- total momentum: ∑_{a=0}^{N-1} p_{1,a,k} + p_{2,k} (exact",
+        "- total momentum angular: ∑_{a=0}^{N-1} x_{a,k} × p_{1,a,k} + y_k × p_{2,k} (exact",
+    ] {
+        let found = list.iter().any(|l| l.starts_with(total));
+        assert!(found, "{total}: {list:#?}");
+    }
+    let parsed = pipeline::parse_source(model).unwrap_or_else(|e| panic!("{e}"));
+    let printed = crate::document::printed_lattice(&parsed, model, Format::Text, 1000).unwrap();
+    for equation in [
+        "p_{2,k} = M Δy_k/h - ∑_{a=0}^{N-1} ½ h k (x_{a,k} - y_k)",
+        "p_{2,k+1} = M Δy_k/h + ∑_{a=0}^{N-1} ½ h k (x_{a,k+1} - y_{k+1})",
+    ] {
+        assert!(printed.text.contains(equation), "{}", printed.text);
+    }
+    for short in ["a+1", "p_3", "p_{3"] {
+        assert!(!printed.text.contains(short), "{}", printed.text);
+    }
+    // What is shown beside a run is of as many sites as it has.
+    let lattice = Lattice::read(&parsed).unwrap();
+    for count in [1, 2, 9] {
+        let mut choice = pipeline::representative(&parsed, &lattice).unwrap();
+        choice.counts = vec![count];
+        let (unfolded, d) = pipeline::derive_lattice(&parsed, &lattice, &choice).unwrap();
+        let words = crate::document::card_words(&lattice, &choice, unfolded, &d, "none");
+        let total = words.invariants.iter().find(|v| v.name == "total_momentum");
+        let formula = total.map(|v| v.formula.as_str());
+        assert_eq!(
+            formula,
+            Some("∑_{a=0}^{N-1} p_{1,a,k} + p_{2,k}"),
+            "{count}"
+        );
+    }
+}

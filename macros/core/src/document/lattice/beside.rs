@@ -1,0 +1,38 @@
+//! What moves beside the sites of a lattice: its equations, in which all sites stand. Takes a lattice that is written
+//! out, and one with more sites; gives sums over them where both read alike.
+
+use super::{Stated, stated_configurations, sums};
+use crate::document::folded::{Folded, From, Part};
+use crate::expr::Shift;
+use crate::print::formula::Formula;
+use crate::print::{Format, Style, formula};
+
+/// The two equations of what belongs to no site, with what all sites do to it as sums over them; `None` where these
+/// read otherwise on a lattice with more sites.
+pub(super) fn equations(folded: &mut Folded, part: &Part, s: &Stated) -> Option<Vec<Formula>> {
+    let longer = part.longer.as_deref()?;
+    let mut told = |part: &Part| {
+        let all = stated_configurations(part);
+        let shown = all.iter().find(|o| o.name == s.name)?.shown;
+        let b = part.d.balances.get(shown)?;
+        let sides = [&b.outgoing, &b.incoming].map(|e| sums::told(folded, part, e));
+        sides.into_iter().collect::<Option<Vec<Formula>>>()
+    };
+    let (own, there) = (told(part)?, told(longer)?);
+    let style = Style::new(&part.d.spec.time_index);
+    let text = |list: &[Formula]| -> Vec<String> {
+        let each = list.iter();
+        each.map(|f| formula(f, &folded.symbols, &style, Format::Text))
+            .collect()
+    };
+    if text(&own) != text(&there) {
+        return None;
+    }
+    let mu = *part.d.letters.node_momentum.get(s.shown)?;
+    let sides = [Shift::HERE, Shift::NEXT].into_iter().zip(own);
+    let each = sides.map(|(shift, sum)| {
+        let momentum = folded.letter(part, mu, shift, From::Site(s.site));
+        Formula::equal(momentum, sum)
+    });
+    Some(each.collect())
+}
