@@ -358,10 +358,11 @@ impl BodyInQuadraticField<f64> {
         let out = put(out, rows(state.spatial_momentum().0));
         let out = put(out, rows(self.Γ(state)));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &BodyInQuadraticFieldState<f64>,
+        _: f64,
         _: Option<&BodyInQuadraticFieldWorkspace<f64>>,
         out: &mut [f64],
     ) {

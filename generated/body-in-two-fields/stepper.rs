@@ -369,10 +369,11 @@ impl BodyInTwoFields<f64> {
         let out = put(out, rows(self.Γ(state)));
         let out = put(out, rows(self.B(state)));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &BodyInTwoFieldsState<f64>,
+        _: f64,
         _: Option<&BodyInTwoFieldsWorkspace<f64>>,
         out: &mut [f64],
     ) {

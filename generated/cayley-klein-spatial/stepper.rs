@@ -346,10 +346,11 @@ impl CayleyKleinSpatial<f64> {
         let out = put(out, rows(state.spatial_momentum().0));
         let out = put(out, rows(self.I(state)));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &CayleyKleinSpatialState<f64>,
+        _: f64,
         _: Option<&CayleyKleinSpatialWorkspace<f64>>,
         out: &mut [f64],
     ) {

@@ -278,10 +278,11 @@ impl CayleyKlein<f64> {
         let out = put(out, rows(state.body_momentum().0));
         let out = put(out, rows(state.spatial_momentum().0));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &CayleyKleinState<f64>,
+        _: f64,
         _: Option<&CayleyKleinWorkspace<f64>>,
         out: &mut [f64],
     ) {

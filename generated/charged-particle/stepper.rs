@@ -281,10 +281,11 @@ impl ChargedParticle<f64> {
         let out = put(out, rows(state.X().matrix()));
         let out = put(out, rows(state.momentum().0));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &ChargedParticleState<f64>,
+        _: f64,
         _: Option<&ChargedParticleWorkspace<f64>>,
         out: &mut [f64],
     ) {

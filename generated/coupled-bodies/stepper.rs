@@ -720,10 +720,11 @@ impl CoupledBodies<f64> {
         let out = put(out, rows(state.spatial_momentum_Λ2().0));
         let out = put(out, rows(self.R(state)));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &CoupledBodiesState<f64>,
+        _: f64,
         _: Option<&CoupledBodiesWorkspace<f64>>,
         out: &mut [f64],
     ) {

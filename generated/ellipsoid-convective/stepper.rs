@@ -493,10 +493,11 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
         let out = put(out, rows(state.spatial_momentum().0));
         let out = put(out, rows(self.C(state)));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &EllipsoidConvectiveState<N, f64>,
+        _: f64,
         _: Option<&EllipsoidConvectiveWorkspace<N, f64>>,
         out: &mut [f64],
     ) {

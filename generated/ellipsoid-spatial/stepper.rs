@@ -490,10 +490,11 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
         let out = put(out, rows(state.spatial_momentum().0));
         let out = put(out, rows(self.S(state)));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &EllipsoidSpatialState<N, f64>,
+        _: f64,
         _: Option<&EllipsoidSpatialWorkspace<N, f64>>,
         out: &mut [f64],
     ) {

@@ -302,10 +302,11 @@ impl FreeBodySpatial<f64> {
         let out = put(out, rows(state.spatial_momentum().0));
         let out = put(out, rows(self.J(state)));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &FreeBodySpatialState<f64>,
+        _: f64,
         work: Option<&FreeBodySpatialWorkspace<f64>>,
         out: &mut [f64],
     ) {

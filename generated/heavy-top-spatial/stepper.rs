@@ -436,10 +436,11 @@ impl HeavyTopSpatial<f64> {
         let out = put(out, rows(self.J(state)));
         let out = put(out, rows(self.χ(state)));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &HeavyTopSpatialState<f64>,
+        _: f64,
         _: Option<&HeavyTopSpatialWorkspace<f64>>,
         out: &mut [f64],
     ) {

@@ -331,10 +331,11 @@ impl HeavyTop<f64> {
         let out = put(out, rows(state.spatial_momentum().0));
         let out = put(out, rows(self.Γ(state)));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &HeavyTopState<f64>,
+        _: f64,
         _: Option<&HeavyTopWorkspace<f64>>,
         out: &mut [f64],
     ) {

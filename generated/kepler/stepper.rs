@@ -277,10 +277,11 @@ impl Kepler<f64> {
         let out = put(out, rows(state.X().matrix()));
         let out = put(out, rows(state.momentum().0));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &KeplerState<f64>,
+        _: f64,
         _: Option<&KeplerWorkspace<f64>>,
         out: &mut [f64],
     ) {

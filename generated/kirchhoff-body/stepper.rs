@@ -894,10 +894,11 @@ impl KirchhoffBody<f64> {
         let out = put(out, rows(state.spatial_momentum().0));
         let out = put(out, rows(self.P(state)));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &KirchhoffBodyState<f64>,
+        _: f64,
         _: Option<&KirchhoffBodyWorkspace<f64>>,
         out: &mut [f64],
     ) {

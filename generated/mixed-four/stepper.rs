@@ -1497,10 +1497,11 @@ impl MixedFour<f64> {
         let out = put(out, rows(state.momentum_X().0));
         let out = put(out, rows(self.relative_R_q(state)));
     }
-    /// All invariants, in the order of the card.
+    /// All invariants of steps of `h`, in the order of the card.
     fn invariants(
         &self,
         state: &MixedFourState<f64>,
+        _: f64,
         _: Option<&MixedFourWorkspace<f64>>,
         out: &mut [f64],
     ) {

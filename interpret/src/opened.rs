@@ -283,7 +283,7 @@ fn functions(shared: &mut Shared<'_, f64>, name: &str) -> Result<Functions, Refu
         step: lower("step", &[MODEL, STATE, WORK])?,
         residual: lower("residual", &[MODEL, BEFORE, STATE, STEP])?,
         observe: lower("observe", &[MODEL, STATE, OUT])?,
-        invariants: lower("invariants", &[MODEL, STATE, WORK, OUT])?,
+        invariants: lower("invariants", &[MODEL, STATE, STEP, WORK, OUT])?,
         scales: lower("scales", &[MODEL, STATE, STEP, OUT])?,
         kinetic,
     })

@@ -104,7 +104,7 @@ pub fn summary(d: &Derivation) -> String {
     let show = |e: &crate::expr::Expr| show(&crate::expr::collect(s, e));
     let mut lines = Vec::new();
     if d.spec.scale.is_some() {
-        let terms = crate::derive::action::summands(&d.spec.lagrangian);
+        let terms = crate::derive::action::summands(s, &d.spec.lagrangian);
         let physical = crate::expr::sum(terms, crate::expr::shape::Shape::SCALAR);
         lines.push(format!("physical             {}", show(&physical)));
     }

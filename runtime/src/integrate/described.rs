@@ -43,8 +43,14 @@ pub trait Described: Model<Scalar = f64, State: Saved, Workspace: Saved> + Sized
     /// All observables.
     fn observe(&self, state: &Self::State, out: &mut [f64]);
 
-    /// All invariants; `work` is the workspace of plain steps.
-    fn invariants(&self, state: &Self::State, work: Option<&Self::Workspace>, out: &mut [f64]);
+    /// All invariants of steps of `h`; `work` is the workspace of plain steps.
+    fn invariants(
+        &self,
+        state: &Self::State,
+        h: f64,
+        work: Option<&Self::Workspace>,
+        out: &mut [f64],
+    );
 
     /// Their sizes at `state`, in steps of `h`, see [`Trajectory::scales`].
     fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]);
@@ -131,7 +137,7 @@ impl<M: Described> Trajectory for Running<M> {
 
     fn invariants(&self, out: &mut [f64]) {
         self.model
-            .invariants(&self.state, self.steps.workspace(), out);
+            .invariants(&self.state, self.h, self.steps.workspace(), out);
     }
 
     fn scales(&self, out: &mut [f64]) {

@@ -168,8 +168,14 @@ macro_rules! stepper {
                 Self::observe(self, state, out);
             }
 
-            fn invariants(&self, state: &Self::State, work: Option<&Self::Workspace>, out: &mut [f64]) {
-                Self::invariants(self, state, work, out);
+            fn invariants(
+                &self,
+                state: &Self::State,
+                h: f64,
+                work: Option<&Self::Workspace>,
+                out: &mut [f64],
+            ) {
+                Self::invariants(self, state, h, work, out);
             }
 
             fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {

@@ -22,7 +22,7 @@ impl Offer {
     /// That of a model with this card.
     #[must_use]
     pub fn of(card: &Card) -> Self {
-        match (card.preprocessed, card.reversible) {
+        match (card.preprocessed, card.orders.len() > 1) {
             (true, _) => Self::Modified,
             (false, true) => Self::Composed,
             (false, false) => Self::Plain,

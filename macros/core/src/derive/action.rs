@@ -34,7 +34,9 @@ pub fn action(spec: &Spec) -> Action {
         NodeRule::Outgoing => nodal.clone(),
         NodeRule::Incoming => next,
         NodeRule::Symmetric => {
-            let halves = summands(&nodal).into_iter().chain(summands(&next));
+            let halves = summands(symbols, &nodal)
+                .into_iter()
+                .chain(summands(symbols, &next));
             expr::sum(
                 halves
                     .map(|t| expr::scale(Rational::HALF, t))
@@ -54,7 +56,7 @@ pub fn action(spec: &Spec) -> Action {
 /// The terms of the edge and those at one node, moved to node k; constants are dropped.
 pub fn split(symbols: &Symbols, lagrangian: &Expr) -> (Expr, Expr) {
     let (mut edge, mut nodal) = (Vec::new(), Vec::new());
-    for term in summands(lagrangian) {
+    for term in summands(symbols, lagrangian) {
         match place(symbols, &term) {
             Place::Constant => {}
             Place::Node(level) => nodal.push(expr::shift_time(symbols, &term, -level)),
@@ -91,15 +93,20 @@ fn place(symbols: &Symbols, term: &Expr) -> Place {
     level.map_or(Place::Constant, Place::Node)
 }
 
-/// The summands of a number, with common factors and divisors of a sum multiplied in.
-pub fn summands(e: &Expr) -> Vec<Expr> {
+/// The summands of a number, with common factors and divisors of a sum multiplied in. A difference in time
+/// under a factor or over a divisor stays one term, as in `x*(next(y) - y)`: taken apart, what of it is
+/// known at one node alone would be moved to another edge, and half of the momentum with it.
+pub fn summands(symbols: &Symbols, e: &Expr) -> Vec<Expr> {
     match e.node() {
-        Node::Sum(terms) => terms.iter().flat_map(summands).collect(),
-        Node::Neg(a) => summands(a).into_iter().map(expr::neg).collect(),
-        Node::Quotient(a, b) => summands(a)
-            .into_iter()
-            .map(|t| expr::quotient(t, b.clone()))
-            .collect(),
+        Node::Sum(terms) => terms.iter().flat_map(|t| summands(symbols, t)).collect(),
+        Node::Neg(a) => {
+            let terms = summands(symbols, a).into_iter();
+            terms.map(expr::neg).collect()
+        }
+        Node::Quotient(a, b) => {
+            let terms = joined(symbols, summands(symbols, a)).into_iter();
+            terms.map(|t| expr::quotient(t, b.clone())).collect()
+        }
         Node::Product(factors) if factors.iter().all(|f| f.shape().is_scalar()) => {
             // A product of several sums stays one term: only a common factor is multiplied in.
             let mut sums = factors
@@ -109,7 +116,7 @@ pub fn summands(e: &Expr) -> Vec<Expr> {
             let (Some((i, only)), None) = (sums.next(), sums.next()) else {
                 return vec![e.clone()];
             };
-            let terms = summands(only);
+            let terms = joined(symbols, summands(symbols, only));
             if terms.len() < 2 {
                 return vec![e.clone()];
             }
@@ -123,4 +130,35 @@ pub fn summands(e: &Expr) -> Vec<Expr> {
         _ if e.is_zero() => Vec::new(),
         _ => vec![e.clone()],
     }
+}
+
+/// Terms with each that is another one a step later, the other way, added to that one: `F(next(X)) - F(X)`.
+fn joined(symbols: &Symbols, terms: Vec<Expr>) -> Vec<Expr> {
+    let mut out: Vec<Expr> = Vec::new();
+    let mut left: Vec<Option<Expr>> = terms.into_iter().map(Some).collect();
+    for i in 0..left.len() {
+        let Some(term) = left[i].take() else {
+            continue;
+        };
+        let Place::Node(level) = place(symbols, &term) else {
+            out.push(term);
+            continue;
+        };
+        // Of a difference one term stands at each end of the step.
+        let (at, by) = match level {
+            0 => (Shift::NEXT.time, Shift::NEXT.time),
+            _ => (Shift::HERE.time, -Shift::NEXT.time),
+        };
+        let opposite = expr::neg(expr::shift_time(symbols, &term, by));
+        let partner = left[i + 1..].iter_mut().find(|other| {
+            other.as_ref().is_some_and(|other| {
+                matches!(place(symbols, other), Place::Node(l) if l == at) && *other == opposite
+            })
+        });
+        out.push(match partner.and_then(Option::take) {
+            Some(other) => expr::add(term, other),
+            None => term,
+        });
+    }
+    out
 }

@@ -50,7 +50,7 @@ pub fn convexity(spec: &Spec, s: &Symbols, action: &Action) -> Option<Convexity>
     };
     let mut squares: Vec<Option<Expr>> = vec![None; places.len()];
     let mut not_negative = Vec::new();
-    for term in summands(&edge).iter().filter(|t| terms.moves(t)) {
+    for term in summands(s, &edge).iter().filter(|t| terms.moves(t)) {
         // What the fields and their velocities stand in together acts on both.
         if places.iter().any(|x| expr::contains(term, *x)) {
             return None;

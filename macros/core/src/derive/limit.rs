@@ -196,7 +196,10 @@ pub(crate) fn of_order(algebra: &Algebra, e: &Expr, step: Letter, order: Rationa
             .map(|t| order_in(&t.monomial, &h).0)
             .all(|q| q == order)
     };
-    let terms: Vec<Expr> = summands(e).into_iter().filter(is_of).collect();
+    let terms: Vec<Expr> = summands(algebra.symbols(), e)
+        .into_iter()
+        .filter(is_of)
+        .collect();
     let sum = expr::sum(terms, Shape::SCALAR);
     expr::substitute(algebra.symbols(), &sum, &[(step, expr::integer(1))])
 }

@@ -338,7 +338,7 @@ pub fn pairing(a: Formula, b: Formula, half: bool) -> Formula {
 
 /// The Lagrangian divided by the scale it was typed with, term by term.
 pub fn physical(sheet: &Sheet) -> Formula {
-    let terms = crate::derive::action::summands(&sheet.d.spec.lagrangian);
+    let terms = crate::derive::action::summands(&sheet.d.letters.symbols, &sheet.d.spec.lagrangian);
     sheet.math(&expr::sum(terms, Shape::SCALAR))
 }
 

@@ -231,7 +231,10 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 | Kind::TotalMomentum(_)
                 | Kind::Spectrum
                 | Kind::ConstraintRate(_) => {
-                    let value = quote!(self.#method(state));
+                    let value = match super::invariants::holds_step(d, v) {
+                        true => quote!(self.#method(h, state)),
+                        false => quote!(self.#method(state)),
+                    };
                     match super::invariants::form(d, v) {
                         Form::Number => quote!(let out = put(out, [#value]);),
                         Form::Entries => quote!(let out = put(out, rows(#value));),
@@ -284,13 +287,18 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         false => (sized(d), quote!(Self::sized)),
     };
     let kinetic_warning = super::kinetic::kinetic_warning(d);
-    let orders = match (preprocessed, d.reversible) {
+    let orders = match (preprocessed, super::invariants::composes(d)) {
         (true, _) => quote!(&[2, 4, 6, 8, 10]),
         (false, true) => quote!(&[2, 4, 6, 8]),
+        (false, false) if reversible => quote!(&[2]),
         (false, false) => quote!(&[1]),
     };
     let work = match values.to_string().contains("work") {
         true => quote!(work),
+        false => quote!(_),
+    };
+    let step = match (d.invariants.iter()).any(|v| super::invariants::holds_step(d, v)) {
+        true => quote!(h),
         false => quote!(_),
     };
     let enlarged = super::impulses::not_less_than_impulses(d, names);
@@ -302,8 +310,10 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 #(#observed)*
             }
 
-            /// All invariants, in the order of the card.
-            fn invariants(&self, state: &#state #plain, #work: Option<&#workspace #plain>, out: &mut [f64]) {
+            /// All invariants of steps of `h`, in the order of the card.
+            fn invariants(
+                &self, state: &#state #plain, #step: f64, #work: Option<&#workspace #plain>, out: &mut [f64],
+            ) {
                 #values
             }
 

@@ -161,6 +161,23 @@ fn momentum_rows(d: &Derivation, i: usize) -> TokenStream {
     }
 }
 
+/// Whether an invariant is a function of the step too, as that of a momentum with a power of it.
+pub fn holds_step(d: &Derivation, v: &Invariant) -> bool {
+    match (&v.kind, &v.value) {
+        (Kind::Value | Kind::ConstraintRate(_), Some(value)) => {
+            let all = with_transports(d, &letters_of([value]), 0);
+            all.contains(&at(d.spec.step, Shift::HERE))
+        }
+        _ => false,
+    }
+}
+
+/// Whether steps may be composed of others of other lengths: the action is reversible, and what is invariant is
+/// so for every length.
+pub fn composes(d: &Derivation) -> bool {
+    d.reversible && !d.invariants.iter().any(|v| holds_step(d, v))
+}
+
 /// One function for every invariant.
 pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
@@ -199,9 +216,10 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
                 let p = schedule::program(s, std::slice::from_ref(value), "t");
                 let (lets, values) = program(&p, &bindings);
                 let (value, t) = (&values[0], ty(s, value.shape()));
+                let step = holds_step(d, v).then(|| quote!(h: T,));
                 functions.extend(quote! {
                     #[doc = #doc]
-                    pub fn #method(&self, state: &#state #used) -> #t {
+                    pub fn #method(&self, #step state: &#state #used) -> #t {
                         #parameters
                         #locals
                         #mu

@@ -24,7 +24,7 @@ pub fn protocol(d: &Derivation, names: &Names) -> TokenStream {
     let of_work = super::state::remembered(d, names);
     let (form, moved) = form(d);
     let choice = super::start::Choice::of(d).word();
-    let orders = match (preprocessed(d), d.reversible) {
+    let orders = match (preprocessed(d), super::invariants::composes(d)) {
         (true, _) => quote!(modified),
         (false, true) => quote!(symmetric),
         (false, false) => quote!(none),

@@ -1,6 +1,7 @@
 //! The summands of a Lagrangian as they were typed. Numbers before a sum are multiplied into it and
 //! nothing else is expanded, so that `(next(q, i) - q)^2` stays one term of a segment. Below the top,
-//! a sum with a term of one neighbour alone, as in `next(q, i) - q`, is a difference and stays whole as well.
+//! a sum with a term of one neighbour alone, as in `next(q, i) - q`, is a difference and stays whole as well, and so do the
+//! two terms of a difference in time, `next(q) - q`.
 
 use super::declared::Lattice;
 use super::range::of_one_neighbour;
@@ -17,10 +18,22 @@ fn split(lattice: &Lattice, e: &Expression, top: bool) -> Vec<Expression> {
             if !top && terms.iter().any(|(_, t)| of_one_neighbour(lattice, t)) {
                 return vec![e.clone()];
             }
+            let together = match top {
+                true => vec![None; terms.len()],
+                false => differences(terms),
+            };
             // A bracket among the terms, or a definition, is below the top.
-            let parts = terms.iter().flat_map(|(minus, t)| {
-                let parts = split(lattice, t, false).into_iter();
-                parts.map(move |p| if *minus { negated(p) } else { p })
+            let parts = terms.iter().zip(&together).enumerate();
+            let parts = parts.flat_map(|(i, ((minus, t), partner))| match partner {
+                Some(j) if *j < i => Vec::new(),
+                Some(j) => {
+                    let both = [i, *j].into_iter().filter_map(|k| terms.get(k).cloned());
+                    vec![with(e, Kind::Sum(both.collect()))]
+                }
+                None => {
+                    let parts = split(lattice, t, false).into_iter();
+                    parts.map(|p| if *minus { negated(p) } else { p }).collect()
+                }
             });
             parts.collect()
         }
@@ -34,6 +47,52 @@ fn split(lattice: &Lattice, e: &Expression, top: bool) -> Vec<Expression> {
         Kind::Product(factors) => product(lattice, e, factors),
         _ => vec![e.clone()],
     }
+}
+
+/// Of each term the one that stands in a difference in time with it, the same a step earlier or later.
+fn differences(terms: &[(bool, Expression)]) -> Vec<Option<usize>> {
+    let mut out: Vec<Option<usize>> = vec![None; terms.len()];
+    let known: Vec<(bool, String)> = terms.iter().map(|(_, t)| in_words(t)).collect();
+    for i in 0..terms.len() {
+        for j in i + 1..terms.len() {
+            let opposite = terms[i].0 != terms[j].0 && known[i].0 != known[j].0;
+            if out[i].is_none() && out[j].is_none() && opposite && known[i].1 == known[j].1 {
+                (out[i], out[j]) = (Some(j), Some(i));
+            }
+        }
+    }
+    out
+}
+
+/// Whether something of the end of the step stands in an expression, and its words without `next`.
+fn in_words(e: &Expression) -> (bool, String) {
+    let head = match &e.kind {
+        Kind::Call(f, arguments) if f.text == "next" && arguments.len() == 1 => {
+            let inner = arguments.iter().map(in_words);
+            return (true, inner.map(|(_, words)| words).collect());
+        }
+        Kind::Number(q) => format!("{q:?}"),
+        Kind::Constant(c) => format!("{c:?}"),
+        Kind::Name(n) => n.clone(),
+        Kind::Shaped(..) => ":".to_owned(),
+        Kind::Sum(terms) => {
+            let signs = terms
+                .iter()
+                .map(|(minus, _)| if *minus { '-' } else { '+' });
+            signs.collect()
+        }
+        Kind::Product(_) => "*".to_owned(),
+        Kind::Quotient(..) => "/".to_owned(),
+        Kind::Neg(_) => "neg".to_owned(),
+        Kind::Transpose(_) => "^T".to_owned(),
+        Kind::Power(_, q) => format!("^{q:?}"),
+        Kind::Call(f, _) => f.text.clone(),
+        Kind::Component(_, at) => format!("{at:?}"),
+    };
+    let parts: Vec<(bool, String)> = e.parts().into_iter().map(in_words).collect();
+    let later = parts.iter().any(|(later, _)| *later);
+    let words: Vec<String> = parts.into_iter().map(|(_, words)| words).collect();
+    (later, format!("{head}({})", words.join(", ")))
 }
 
 /// A product with one factor that is a sum, all of them numbers.

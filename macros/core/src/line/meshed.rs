@@ -61,7 +61,7 @@ fn gathered(part: &Written, e: &Expr) -> Expr {
     let s = &part.d.letters.symbols;
     let mut rest: Vec<Expr> = Vec::new();
     let mut backs: Vec<(Applied, u8, Vec<Expr>)> = Vec::new();
-    for term in summands(e) {
+    for term in summands(s, e) {
         let Some((factor, a, which, seed)) = back(&term) else {
             rest.push(term);
             continue;

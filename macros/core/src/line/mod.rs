@@ -32,6 +32,8 @@ pub use total::{Total, totals_on};
 use crate::algebra::Rational;
 use crate::derive::Outline;
 use crate::diagnostic::Errors;
+use crate::expr::symbol::Role;
+use crate::expr::{self, Expr};
 use crate::lattice::{Choice, Lattice, Unfolded, any_name};
 use crate::pipeline;
 use crate::syntax::ast::{Model, NodeRule, Statement};
@@ -138,9 +140,13 @@ impl Line {
                 m,
             ));
         }
+        // A total is asked of a state, which does not know its step.
+        let holds_step =
+            |e: &Expr| expr::contains_role(&representative.d.letters.symbols, e, Role::Step);
         totals.retain(|t| {
             let mut densities = t.densities.iter();
-            !densities.any(|(.., e)| representative.is_turned_by_walls(&lattice, e))
+            !densities
+                .any(|(.., e)| holds_step(e) || representative.is_turned_by_walls(&lattice, e))
         });
         total::name_apart(&lattice, &mut totals);
         let shares = representative.shares();

@@ -233,13 +233,13 @@ pub(super) fn in_two(part: &Written, summand: &Summand) -> Result<[Expr; 2], Ref
 fn gathered(part: &Written, summand: &Summand) -> Result<[Expr; 2], Refused> {
     let s = &part.d.letters.symbols;
     let reduction = part.d.spec.reduction.as_ref();
-    let nodal = reduction.map(|r| action::summands(&r.nodal));
+    let nodal = reduction.map(|r| action::summands(s, &r.nodal));
     let gathers = nodal.is_some_and(|all| !all.iter().any(|t| is_singular(s, t)));
     if !gathers {
         return in_two(part, summand);
     }
     let (mut on_edge, mut at_node) = (Vec::new(), Vec::new());
-    for term in action::summands(&read(part, summand)?) {
+    for term in action::summands(s, &read(part, summand)?) {
         let (edge, nodal) = action::split(s, &term);
         match !nodal.is_zero() && is_singular(s, &term) {
             true => on_edge.push(term),

@@ -4,7 +4,7 @@ use super::ast::{Expression, Extent, Kind, Name, Statement};
 
 impl Expression {
     /// What it is made of directly, in order.
-    fn parts(&self) -> Vec<&Expression> {
+    pub(crate) fn parts(&self) -> Vec<&Expression> {
         match &self.kind {
             Kind::Number(_) | Kind::Constant(_) | Kind::Name(_) => Vec::new(),
             Kind::Sum(terms) => terms.iter().map(|(_, t)| t).collect(),

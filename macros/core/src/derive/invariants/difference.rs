@@ -40,7 +40,7 @@ pub(super) fn difference(x: &Inputs, passages: &[Passage], terms: &[Term]) -> Op
     };
     let mut parts = Vec::new();
     let mut shape = Shape::SCALAR;
-    for term in summands(&x.action.total) {
+    for term in summands(&x.letters.symbols, &x.action.total) {
         let nothing = || expr::zero(Shape::SCALAR);
         let change = combined(x, terms, |m| of(m, &term).unwrap_or_else(nothing));
         shape = change.shape();

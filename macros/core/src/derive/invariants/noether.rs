@@ -34,7 +34,10 @@ pub(super) fn components(x: &Inputs) -> Vec<Vec<usize>> {
     let touched = touched(x);
     // A reaction couples all that its constraint holds, in whatever terms that stands.
     let held = x.spec.holds.iter().map(|h| h.value.clone());
-    for term in summands(&x.action.total).into_iter().chain(held) {
+    for term in summands(&x.letters.symbols, &x.action.total)
+        .into_iter()
+        .chain(held)
+    {
         let letters = expr::letters(&term);
         let met: BTreeSet<usize> = letters
             .iter()

@@ -48,7 +48,7 @@ pub(super) fn gathered(spec: &Spec, algebra: &Algebra, ends: &[(Letter, Expr)]) 
             .filter(|l| fields.contains(&l.symbol))
             .count()
     };
-    let terms = summands(&spec.lagrangian).into_iter();
+    let terms = summands(s, &spec.lagrangian).into_iter();
     let (apart, others): (Vec<Expr>, Vec<Expr>) = terms
         .partition(|t| is_singular(s, t) && values(&by_increments(spec, algebra, ends, t)) > 0);
     if apart.len() < 2 || apart.len() > LARGEST as usize {

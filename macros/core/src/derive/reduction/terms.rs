@@ -62,12 +62,13 @@ impl<'a> Reducer<'a> {
             // Once more for what it finds.
             return self.reduced(e).unwrap_or(whole);
         }
-        let terms = summands(e)
-            .into_iter()
-            .map(|term| match self.clone().reduced(&term) {
-                Ok(_) => self.reduced(&term).unwrap_or(term),
-                Err(_) => term,
-            });
+        let terms =
+            summands(&self.symbols, e)
+                .into_iter()
+                .map(|term| match self.clone().reduced(&term) {
+                    Ok(_) => self.reduced(&term).unwrap_or(term),
+                    Err(_) => term,
+                });
         expr::sum(terms.collect::<Vec<_>>(), Shape::SCALAR)
     }
 

@@ -63,7 +63,9 @@ pub(super) fn is_constant(x: &Inputs, e: &Expr) -> bool {
 }
 
 /// Whether `e` is `F(q1, h) - F(q0, h)`, a constant among them: no derivative of it mixes its two ends,
-/// and it is constant where they meet. `false` for what is too large.
+/// it is constant where they meet, and its derivative at its end is that a step later. `false` for what is too
+/// large, and for a difference over which a clock goes on: a clock that stands still in it makes it a force,
+/// `A(t)*(next(X) - X)` that of `-dA/dt`.
 pub(super) fn is_total(x: &Inputs, e: &Expr) -> bool {
     let e = smoothed(x, &on_edge(x, e));
     let pairs = (x.spec.configurations.len() as u64).pow(2);
@@ -76,5 +78,22 @@ pub(super) fn is_total(x: &Inputs, e: &Expr) -> bool {
     });
     let still: Vec<(Letter, Expr)> = still.collect();
     let met = expr::substitute(&x.letters.symbols, &e, &still);
-    kept(x, &met) && at_the_end(x, &e).all(|d| d.size() <= LARGEST && kept(x, &d))
+    let later = a_step_later(x, &e);
+    let goes_on = |d: &Expr| {
+        let d = expr::substitute(&x.letters.symbols, d, &still);
+        let after = expr::substitute(&x.letters.symbols, &d, &later);
+        later.is_empty() || x.vanishes(&expr::sub(after, d))
+    };
+    let mut ends = at_the_end(x, &e);
+    kept(x, &met) && ends.all(|d| d.size() <= LARGEST && kept(x, &d) && goes_on(&d))
+}
+
+/// The clocks of an expression, each by its value at the node after.
+fn a_step_later(x: &Inputs, e: &Expr) -> Vec<(Letter, Expr)> {
+    let clocks = x.spec.clocks();
+    let advected = x.spec.advected.iter();
+    let held = advected
+        .filter(|a| clocks.contains(&a.quantity) && expr::contains(e, at(a.quantity, Shift::HERE)));
+    held.map(|a| (at(a.quantity, Shift::HERE), a.update.clone()))
+        .collect()
 }

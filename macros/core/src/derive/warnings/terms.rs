@@ -48,7 +48,7 @@ pub(super) fn typed(x: &Inputs) -> (Vec<Expr>, Vec<Expr>) {
         Node::Sum(list) => list.clone(),
         _ => vec![whole.clone()],
     };
-    (addends, summands(whole))
+    (addends, summands(&x.letters.symbols, whole))
 }
 
 fn warn(place: Place, message: String, help: &str) -> Warning {

@@ -79,3 +79,43 @@ fn the_rule_for_nodes_is_not_offered_for_what_holds_both_ends() {
         assert_eq!(mended, []);
     }
 }
+
+#[test]
+fn what_a_clock_multiplies_is_no_total_difference_while_it_goes_on() {
+    let clock = "param w: Real; param F: Vec<3>; field x: Vec<3>; advected t: Real; \
+                 constraint next(t) = t + h;";
+    let with = |term: &str| {
+        topics(&format!(
+            "{clock} lagrangian = dot(next(x) - x, next(x) - x)/(2*h) + {term};"
+        ))
+    };
+    for term in [
+        "sin(w*t)*dot(F, next(x) - x)",
+        "(sin(w*t) + sin(w*next(t)))/2*dot(F, next(x) - x)",
+        "cos(w*(t + h/2))*dot(F, next(x) - x)",
+        "t*(dot(next(x), next(x)) - dot(x, x))",
+        "sin(w*next(t))*dot(F, next(x)) - sin(w*t)*dot(2*F, x)",
+    ] {
+        let found = with(term);
+        assert!(!found.contains(&ConstantTerm), "{term}: {found:?}");
+    }
+    // A parameter, a clock that shows the same again, and one that is differenced with it.
+    for term in [
+        "sin(w)*dot(F, next(x) - x)",
+        "(next(t) - t)*dot(F, next(x) - x)",
+        "sin(w*next(t))*dot(F, next(x)) - sin(w*t)*dot(F, x)",
+    ] {
+        let found = with(term);
+        assert!(found.contains(&ConstantTerm), "{term}: {found:?}");
+    }
+    assert_eq!(with("cos(w*(t + h/2))*dot(F, next(x) - x)"), []);
+}
+
+#[test]
+fn a_term_linear_in_the_velocity_with_a_clock_in_the_middle_is_of_second_order() {
+    let found = topics(
+        "param q, w: Real; field x: Real; advected t: Real; constraint next(t) = t + h; lagrangian = \
+         (next(x) - x)^2/(2*h) + q*cos(w*(t + h/2))*(next(x) - x);",
+    );
+    assert_eq!(found, []);
+}
