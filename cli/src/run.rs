@@ -21,7 +21,7 @@ use crate::waiting::Waiting;
 use crate::width::paragraph;
 use clap::ArgMatches;
 use clebsch::card::Card;
-use clebsch::integrate::{self, Watch};
+use clebsch::integrate::{self, Halved, RunError, Watch};
 use clebsch::record::Record;
 use serde_json::json;
 use std::io::{self, Write};
@@ -162,9 +162,9 @@ pub fn run(
         End::Whole => None,
         // A run without a step has no results.
         End::Stopped(error) if summary.steps == 0 => {
-            return Err(Failure::Failed(error.to_string()));
+            return Err(Failure::Failed(refused(error, &plan)));
         }
-        End::Stopped(error) => Some(error.to_string()),
+        End::Stopped(error) => Some(refused(error, &plan)),
         End::Interrupted(signal) => Some(interrupted(*signal)),
     };
     let stopped = why.map(|why| Stopped {
@@ -287,6 +287,17 @@ fn resumed(staging: &Staging, card: &Card, checkpoint: &Checkpoint) -> Result<St
 fn cannot(staging: &Staging, error: &io::Error) -> Failure {
     let path = staging.folder().join(samples::NAME);
     Failure::io(&format!("cannot write {}", shown(&path)), error)
+}
+
+/// Why a step was refused. A run that halves steps has tried shorter ones, whichever is offered.
+fn refused(error: &RunError, plan: &Plan) -> String {
+    match (error, plan.halve) {
+        (RunError::Step(_), true) => format!(
+            "{error}; --halve has tried it by 2, 4, ... to {} steps of a part of its length, none of which went the whole way",
+            Halved::MOST_PARTS
+        ),
+        _ => error.to_string(),
+    }
 }
 
 /// What a signal did.

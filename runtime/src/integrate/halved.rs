@@ -32,6 +32,9 @@ pub struct Halved {
 }
 
 impl Halved {
+    /// The most steps that one step is tried by.
+    pub const MOST_PARTS: u64 = 1 << DEEPEST;
+
     /// Starts a trajectory as [`Card::open`] does; where its first step is refused with a step of a part of the length.
     ///
     /// # Errors
