@@ -68,7 +68,9 @@ impl Contact {
     #[must_use]
     pub fn is_finite(&self) -> bool {
         match self.met {
-            Met::Singular { .. } | Met::NearlySingular { .. } => false,
+            // Of an end beyond the range of numbers no share of the way is known.
+            Met::Singular { .. } => self.share.is_some_and(f64::is_finite),
+            Met::NearlySingular { .. } => false,
             Met::Outside { before, after, .. } => before.is_finite() && after.is_finite(),
         }
     }

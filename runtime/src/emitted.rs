@@ -164,8 +164,18 @@ pub fn solve_leading_or_nan<T: Real, const N: usize>(
     b: &SVector<T, N>,
     size: usize,
 ) -> SVector<T, N> {
-    crate::linalg::solve_leading(a, b, size)
-        .unwrap_or_else(|| SVector::repeat(T::from_f64(f64::NAN)))
+    let mut scale = [T::one(); N];
+    let held = crate::linalg::held_scales(&mut scale[..size.min(N)], |i, j| a[(i, j)]);
+    let solved = match held {
+        false => crate::linalg::solve_leading(a, b, size),
+        true => {
+            let scaled = SMatrix::<T, N, N>::from_fn(|i, j| a[(i, j)] * scale[i] * scale[j]);
+            let right = SVector::<T, N>::from_fn(|i, _| b[i] * scale[i]);
+            let solved = crate::linalg::solve_leading(&scaled, &right, size);
+            solved.map(|x| SVector::from_fn(|i, _| x[i] * scale[i]))
+        }
+    };
+    solved.unwrap_or_else(|| SVector::repeat(T::from_f64(f64::NAN)))
 }
 
 /// The skew matrix of the coordinate with this index: a basis of the Lie algebra of SO(n), for

@@ -62,6 +62,28 @@ fn what_a_clamped_rod_of_frames_carries_is_written() {
     assert!(!held.is_empty());
 }
 
+/// A force that is no number beyond det = 0 does not hide why.
+#[test]
+fn a_step_through_a_singular_matrix_says_so_where_the_force_there_is_no_number() {
+    let folder = Folder::new("through-singular");
+    let model = folder.write(
+        "soft.clebsch",
+        "model Soft {
+            param a: Real;
+            field Q: Mat<2>;
+            lagrangian = tr((next(Q) - Q)*(next(Q) - Q)^T)/(2*h) - h*a*log(det(Q))^2;
+        }",
+    );
+    let case = "model = \"soft\"\nh = 0.05\nsteps = 10\n\n[parameters]\na = 0.1\n\n[initial]\n\
+                Q = [[1.0, 0.0], [0.0, 1.0]]\nmomentum = [[0.0, 0.0], [0.0, -60.0]]\n";
+    let case = folder.write("soft.toml", case);
+    let done = clebsch(&["run", &model, "--case", &case]);
+    assert_eq!(done.code, 1, "{}{}", done.out, done.err);
+    for wanted in ["the motion meets det = 0", "was tried and can be made"] {
+        assert!(done.err.contains(wanted), "{}", done.err);
+    }
+}
+
 /// `det(Q^T*C*Q)` is that of `C` times a square: a step that carries `Q` through a singular one is refused, though the
 /// argument of the logarithm is positive at either end.
 #[test]

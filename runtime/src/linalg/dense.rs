@@ -3,7 +3,7 @@
 //! Takes and gives lists of entries; allocates.
 
 use super::elimination::weight;
-use super::{balance, even_degrees};
+use super::{balance, even_degrees, held_scales};
 use crate::Real;
 use nalgebra::SMatrix;
 
@@ -319,8 +319,22 @@ impl<T: Real> Dense<T> {
         self.eliminated(right, self.rows).map(|(x, _)| x)
     }
 
-    /// The solution of the leading `size` equations in as many unknowns; the others are zero.
+    /// The solution of the leading `size` equations in as many unknowns; the others are zero. Rows and columns are brought
+    /// to one size where constraints are held.
     pub fn leading_solved(&self, right: &Self, size: usize) -> Option<Self> {
+        let mut scale = vec![T::one(); self.rows];
+        let leading = scale.get_mut(..size)?;
+        if held_scales(leading, |i, j| self.at(i, j)) {
+            let scaled = Self::from_fn(self.rows, self.cols, |i, j| {
+                self.at(i, j) * scale[i] * scale[j]
+            });
+            let right = Self::from_fn(right.rows, right.cols, |i, j| right.at(i, j) * scale[i]);
+            let (x, _) = scaled.eliminated(&right, size)?;
+            return Some(Self::from_fn(x.rows, x.cols, |i, j| match i < size {
+                true => x.at(i, j) * scale[i],
+                false => T::zero(),
+            }));
+        }
         let (x, _) = self.eliminated(right, size)?;
         Some(Self::from_fn(x.rows, x.cols, |i, j| match i < size {
             true => x.at(i, j),

@@ -171,6 +171,31 @@ pub fn balance<T: Real>(x: T) -> T {
     scale
 }
 
+/// Scales of rows and columns of a symmetric matrix in which the diagonal vanishes where a constraint is held: those of
+/// [`balance`], and for a constraint a power of two that brings its row, so scaled, to the size of the others. False, and no scales,
+/// where no constraint is held. Without them light bodies would be lost beside the constraints, whose entries do not
+/// depend on masses.
+#[inline]
+pub fn held_scales<T: Real>(scale: &mut [T], entry: impl Fn(usize, usize) -> T) -> bool {
+    let vanishes = |x: T| x.least() == 0.0 && x.greatest() == 0.0;
+    let size = scale.len();
+    if !(0..size).any(|i| vanishes(entry(i, i))) {
+        return false;
+    }
+    for (i, scale) in scale.iter_mut().enumerate() {
+        *scale = balance(entry(i, i));
+    }
+    for i in (0..size).filter(|i| vanishes(entry(*i, *i))) {
+        let mut square = T::zero();
+        for j in (0..size).filter(|j| !vanishes(entry(*j, *j))) {
+            let x = entry(i, j) * scale[j];
+            square += x * x;
+        }
+        scale[i] = balance(square);
+    }
+    true
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -22,7 +22,7 @@ pub use cofactors::{adjugate, small_inverse, small_solve};
 pub use dense::Dense;
 pub use eigenvalues::symmetric_eigenvalues;
 pub use elimination::{
-    balance, determinant, inverse, inverse_leading, solve, solve_leading, solve_many,
+    balance, determinant, held_scales, inverse, inverse_leading, solve, solve_leading, solve_many,
 };
 pub use factors::{DenseFactors, Factors};
 pub use frame::principal_frame;

@@ -256,7 +256,7 @@ pub fn ticks(d: &Derivation, names: &Names) -> Vec<(SymbolId, Expr, Ident)> {
         let amount = expr::sub(a.update.clone(), expr::here(s, a.quantity));
         let role = |l: Letter| s.get(l.symbol).role;
         let still = |l: Letter| matches!(role(l), Role::Parameter | Role::Step);
-        let ticks = amount.shape().is_scalar() && expr::letters(&amount).into_iter().all(still);
+        let ticks = !amount.is_zero() && expr::letters(&amount).into_iter().all(still);
         ticks.then_some(amount)
     };
     let all = advanced(d).filter_map(|a| Some((a.quantity, own_amount(a)?)));

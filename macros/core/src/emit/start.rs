@@ -116,7 +116,10 @@ fn state_of(d: &Derivation, names: &Names) -> TokenStream {
         );
     }
     let ticks = items::ticks(d, names).into_iter();
-    fields.extend(ticks.map(|(_, _, rest)| quote!(#rest: T::zero())));
+    fields.extend(ticks.map(|(_, amount, rest)| {
+        let zero = element::zero(d, amount.shape());
+        quote!(#rest: #zero)
+    }));
     // References: the inverse element acts on the value given at node 0.
     let mut references = TokenStream::new();
     for (a, t) in d.spec.advected.iter().zip(&d.transports) {

@@ -79,7 +79,10 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
         kept_fields.push(quote!(#field: #t));
     }
     let ticks = super::items::ticks(d, names).into_iter();
-    kept_fields.extend(ticks.map(|(_, _, rest)| quote!(#rest: T)));
+    kept_fields.extend(ticks.map(|(_, amount, rest)| {
+        let t = ty(s, amount.shape());
+        quote!(#rest: #t)
+    }));
     let (held, shown) = super::holds::fields(d);
     kept_fields.extend(held);
     access.extend(shown);

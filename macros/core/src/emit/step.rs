@@ -307,10 +307,12 @@ pub(super) fn finish(
                 symbols: s,
                 bindings,
             };
-            let amount = writer.write(amount);
-            out.extend(
-                quote!(let (#kept, #rest) = added_number(state.#field, state.#rest, #amount);),
-            );
+            let value = writer.write(amount);
+            let sum = match amount.shape().is_scalar() {
+                true => quote!(added_number(state.#field, state.#rest, #value)),
+                false => quote!(added(&state.#field, &state.#rest, &(#value))),
+            };
+            out.extend(quote!(let (#kept, #rest) = #sum;));
             assignments.extend(quote!(state.#field = #kept; state.#rest = #rest;));
             continue;
         }
