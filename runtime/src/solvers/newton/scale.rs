@@ -2,6 +2,9 @@
 //! beside its scale, and no smaller than what rounding of the velocities leaves of it.
 //! Takes the tangent factored last, as absolute values, and scales; raises them.
 
+/// The root of the rounding.
+const SHARE: f64 = 1.5e-8;
+
 /// What the equations do with the velocities.
 pub(super) struct Tangent<'a> {
     /// The absolute value of the entry of an equation and a coordinate, zero where it is not known.
@@ -33,36 +36,37 @@ impl Tangent<'_> {
         }
     }
 
-    /// An equation that its own unknown does not enter, as a held constraint, is no better than the velocities: those of a part
-    /// are rounded together, to the length of the part and to what the rounding of its momenta leaves of them. Its own terms
-    /// say less: where a rotation keeps an axis of the basis, entries that vanish are terms of nothing but rounding.
+    /// Of an equation that its own unknown does not enter, as of a held constraint, rounding of the velocities leaves something: those
+    /// of a part are rounded together, to the length of the part or to what the rounding of its momenta makes of them. Its own
+    /// terms may say less: where a rotation keeps an axis of the basis, entries that vanish are terms of nothing but
+    /// rounding. Each correction is rounded as a whole, so that the square of the rounding can be reached, and half of those digits
+    /// are asked for.
     fn constraints(&self, scales: &mut [f64]) {
         let size = scales.len();
-        let held: Vec<usize> = (0..size).filter(|i| (self.entry)(*i, *i) == 0.0).collect();
-        if held.is_empty() {
-            return;
-        }
-        let mut velocities = self.lengths.to_vec();
-        for (j, scale) in scales.iter().enumerate() {
-            let moved = scale / (self.entry)(j, j);
-            if let Some(velocity) = velocities.get_mut((self.part_of)(j)) {
-                // Also refuses what is not known.
-                if moved > *velocity && moved.is_finite() || velocity.is_nan() {
-                    *velocity = moved;
+        for i in (0..size).filter(|i| (self.entry)(*i, *i) == 0.0) {
+            let mut least = 0.0;
+            for j in 0..size {
+                let entry = (self.entry)(i, j);
+                if entry > 0.0 {
+                    let moved = entry * self.velocity((self.part_of)(j), scales);
+                    // What is not known raises nothing.
+                    least = if moved > least && moved.is_finite() {
+                        moved
+                    } else {
+                        least
+                    };
                 }
             }
+            scales[i] = scales[i].max(SHARE * least);
         }
-        for i in held {
-            let least = (0..size).fold(0.0, |most: f64, j| {
-                let velocity = velocities.get((self.part_of)(j)).copied().unwrap_or(0.0);
-                let moved = (self.entry)(i, j) * velocity;
-                if moved > most && moved.is_finite() {
-                    moved
-                } else {
-                    most
-                }
-            });
-            scales[i] = scales[i].max(least);
-        }
+    }
+
+    /// The length of a part of the velocity, or what its momenta make of it where that is more.
+    fn velocity(&self, part: usize, scales: &[f64]) -> f64 {
+        let length = self.lengths.get(part).copied().unwrap_or(0.0);
+        let own = (0..scales.len()).filter(|j| (self.part_of)(*j) == part);
+        own.map(|j| scales[j] / (self.entry)(j, j))
+            .filter(|x| x.is_finite())
+            .fold(length, f64::max)
     }
 }
