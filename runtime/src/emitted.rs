@@ -168,12 +168,7 @@ pub fn solve_leading_or_nan<T: Real, const N: usize>(
     let held = crate::linalg::held_scales(&mut scale[..size.min(N)], |i, j| a[(i, j)]);
     let solved = match held {
         false => crate::linalg::solve_leading(a, b, size),
-        true => {
-            let scaled = SMatrix::<T, N, N>::from_fn(|i, j| a[(i, j)] * scale[i] * scale[j]);
-            let right = SVector::<T, N>::from_fn(|i, _| b[i] * scale[i]);
-            let solved = crate::linalg::solve_leading(&scaled, &right, size);
-            solved.map(|x| SVector::from_fn(|i, _| x[i] * scale[i]))
-        }
+        true => crate::linalg::solve_scaled(|i, j| a[(i, j)], b, &scale, size),
     };
     solved.unwrap_or_else(|| SVector::repeat(T::from_f64(f64::NAN)))
 }

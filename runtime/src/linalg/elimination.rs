@@ -171,13 +171,32 @@ pub fn balance<T: Real>(x: T) -> T {
     scale
 }
 
+/// Zero in every lane: the row of an equation that its own unknown does not enter, as of a held constraint.
+#[inline(always)]
+pub(super) fn vanishes<T: Real>(x: T) -> bool {
+    x.least() == 0.0 && x.greatest() == 0.0
+}
+
+/// The solution of the leading `size` equations, rows and columns multiplied by scales first.
+#[inline]
+pub fn solve_scaled<T: Real, const N: usize>(
+    entry: impl Fn(usize, usize) -> T,
+    b: &SVector<T, N>,
+    scale: &[T; N],
+    size: usize,
+) -> Option<SVector<T, N>> {
+    let scaled = SMatrix::<T, N, N>::from_fn(|i, j| entry(i, j) * scale[i] * scale[j]);
+    let right = SVector::<T, N>::from_fn(|i, _| b[i] * scale[i]);
+    let x = solve_leading(&scaled, &right, size)?;
+    Some(SVector::from_fn(|i, _| x[i] * scale[i]))
+}
+
 /// Scales of rows and columns of a symmetric matrix in which the diagonal vanishes where a constraint is held: those of
 /// [`balance`], and for a constraint a power of two that brings its row, so scaled, to the size of the others. False, and no scales,
 /// where no constraint is held. Without them light bodies would be lost beside the constraints, whose entries do not
 /// depend on masses.
 #[inline]
 pub fn held_scales<T: Real>(scale: &mut [T], entry: impl Fn(usize, usize) -> T) -> bool {
-    let vanishes = |x: T| x.least() == 0.0 && x.greatest() == 0.0;
     let size = scale.len();
     if !(0..size).any(|i| vanishes(entry(i, i))) {
         return false;

@@ -2,7 +2,8 @@
 //! Takes a square matrix; gives solutions. Blocks of three without exchange of rows where they go
 //! in, elimination with pivots where they do not.
 
-use super::{Dense, balance, inverse_leading, solve_leading};
+use super::elimination::vanishes;
+use super::{Dense, balance, inverse_leading, solve_scaled};
 use crate::Real;
 use crate::saved::{Saved, Words};
 use nalgebra::{SMatrix, SVector};
@@ -45,8 +46,8 @@ impl<T: Real, const D: usize> Factors<T, D> {
     pub fn set(&mut self, matrix: &SMatrix<T, D, D>, size: usize) {
         self.columns = matrix.data.0;
         self.size = size;
-        let held = (0..size.min(D)).any(|i| vanishes(self.columns[i][i]));
-        self.blocks = in_blocks::<D>(size) && !held && factor(&mut self.columns);
+        let held = || (0..size.min(D)).any(|i| vanishes(matrix[(i, i)]));
+        self.blocks = in_blocks::<D>(size) && !held() && factor(&mut self.columns);
         if !self.blocks {
             self.columns = matrix.data.0;
         }
@@ -172,10 +173,7 @@ fn with_pivots<T: Real, const D: usize>(
     size: usize,
 ) -> Option<SVector<T, D>> {
     let scale: [T; D] = core::array::from_fn(|i| balance(columns[i][i]));
-    let scaled = SMatrix::<T, D, D>::from_fn(|i, j| columns[j][i] * scale[i] * scale[j]);
-    let right = SVector::<T, D>::from_fn(|i, _| b[i] * scale[i]);
-    let x = solve_leading(&scaled, &right, size)?;
-    Some(SVector::from_fn(|i, _| x[i] * scale[i]))
+    solve_scaled(|i, j| columns[j][i], b, &scale, size)
 }
 
 /// Whether blocks of three go in: bodies in space have three coordinates, rigid motions six.
@@ -257,13 +255,6 @@ fn substitute<T: Real, const D: usize>(a: &[[T; D]; D], mut x: [T; D]) -> [T; D]
     x
 }
 
-/// Zero in every lane: the row of an equation that its own unknown does not enter, as of a held constraint. Its
-/// scale is taken from the matrix, which is kept then.
-#[inline(always)]
-fn vanishes<T: Real>(x: T) -> bool {
-    x.least() == 0.0 && x.greatest() == 0.0
-}
-
 /// The same of a matrix whose size is known when a model is read, over plain numbers.
 #[derive(Clone, Debug)]
 pub struct DenseFactors {
@@ -301,8 +292,8 @@ impl DenseFactors {
     pub fn set(&mut self, matrix: Dense<f64>) {
         let n = matrix.rows;
         self.blocks = false;
-        let held = (0..n).any(|i| vanishes(matrix.at(i, i)));
-        if self.in_blocks && !held {
+        let held = || (0..n).any(|i| vanishes(matrix.at(i, i)));
+        if self.in_blocks && !held() {
             self.columns = matrix.clone();
             self.blocks = match n {
                 3 => Self::factored::<3>(&mut self.columns),
@@ -386,6 +377,7 @@ impl DenseFactors {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linalg::solve_leading;
 
     fn of<const D: usize>(a: &SMatrix<f64, D, D>, size: usize) -> Factors<f64, D> {
         let mut factors = Factors::none();

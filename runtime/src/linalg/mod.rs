@@ -23,6 +23,7 @@ pub use dense::Dense;
 pub use eigenvalues::symmetric_eigenvalues;
 pub use elimination::{
     balance, determinant, held_scales, inverse, inverse_leading, solve, solve_leading, solve_many,
+    solve_scaled,
 };
 pub use factors::{DenseFactors, Factors};
 pub use frame::principal_frame;

@@ -469,8 +469,7 @@ fn inside(d: &Derivation, names: &Names) -> TokenStream {
     let (before, after) = (names.local("before"), names.local("after"));
     let step = variable(s, d.spec.step);
     let all = guards(d);
-    let mut kept_invertible = Vec::new();
-    let linear = d.spec.configurations.iter().filter_map(|c| {
+    let invertible = d.spec.configurations.iter().filter_map(|c| {
         let (name, own) = (&s.get(c.element).name, own(d, c.element));
         // A matrix whose determinant must not vanish at a node must not between two of them.
         let shape = s.get(c.element).shape;
@@ -482,13 +481,16 @@ fn inside(d: &Derivation, names: &Names) -> TokenStream {
             Family::Field(_) if inverted => quote!(domain::field_invertible),
             _ => return None,
         };
-        kept_invertible.push(det);
-        Some(quote!(#test(#name, &#before.#own, &#after.#own, #step)?;))
+        Some((
+            det,
+            quote!(#test(#name, &#before.#own, &#after.#own, #step)?;),
+        ))
     });
+    let (dets, linear): (Vec<Expr>, Vec<TokenStream>) = invertible.unzip();
     let linear = quote!(#(#linear)*);
     let (mut nodal, edge) = (of(d, Place::Node), of(d, Place::Edge));
     // A determinant that does not vanish on the way keeps the sign that it has at the start, where it is tested.
-    nodal.retain(|g| !kept_invertible.contains(&g.argument));
+    nodal.retain(|g| !dets.contains(&g.argument));
     let (nodes, arguments) = at_nodes(d, names, &nodal);
     let edges = on_edge(d, names, &edge);
     quote! {

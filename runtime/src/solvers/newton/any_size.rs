@@ -4,6 +4,7 @@
 //! bit.
 //! Takes a chart of the group, residuals and tangents; gives a converged element or an error.
 
+mod certificate;
 mod curve;
 mod lasting;
 mod principal;
@@ -14,7 +15,7 @@ mod stage;
 pub use curve::{Bounds, Chart, Enclosed, Lane, Parts};
 
 use super::node::Spread;
-use super::principal::{Care, Fold};
+use super::principal::Fold;
 use super::scale::Tangent;
 use super::{
     BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, FORESIGHT, LAST_ATTEMPT, LATE, LEAST_SHARE,
@@ -23,7 +24,8 @@ use super::{
 };
 use crate::linalg::{Dense, DenseFactors};
 use crate::scalar::Real;
-use crate::solvers::newton::certificate::{COMMON, DRIFT, LARGER, LASTS, PATIENCE, Purpose};
+use crate::solvers::newton::certificate::Purpose;
+use certificate::Certificate;
 use core::fmt::Debug;
 use principal::{Found, trace_lane};
 
@@ -83,120 +85,6 @@ impl NodeList {
             near &= own.is_near(other, spread);
         }
         near
-    }
-}
-
-/// Velocities that are principal roots: see [`Certificate`](super::Certificate).
-#[derive(Clone, Debug)]
-struct Certificate {
-    reach: Vec<f64>,
-    node: Option<NodeList>,
-    spread: Spread,
-    inverse: Dense<f64>,
-    factored: Option<NodeList>,
-    bounded: bool,
-    stale: bool,
-    left: u32,
-    misses: u32,
-    purpose: Purpose,
-}
-
-impl Certificate {
-    fn none(purpose: Purpose) -> Self {
-        Self {
-            reach: Vec::new(),
-            node: None,
-            spread: Spread::HERE,
-            inverse: Dense::zeros(0, 0),
-            factored: None,
-            bounded: false,
-            stale: false,
-            left: 0,
-            misses: 0,
-            purpose,
-        }
-    }
-
-    fn holds<C: Chart>(&self, chart: &C, velocity: &C::Element, values: &NodeList) -> bool {
-        let Some(node) = &self.node else {
-            return false;
-        };
-        let everywhere = !values.any();
-        chart.is_within(velocity, &self.reach)
-            && (everywhere || self.bounded && self.left > 0 && values.is_near(node, self.spread))
-    }
-
-    fn wants_tangent(&mut self, values: &NodeList) -> bool {
-        let served = |at: &NodeList| self.bounded && values.is_near(at, Spread::drifted(DRIFT));
-        self.stale =
-            values.any() && self.node.is_some() && !self.factored.as_ref().is_some_and(served);
-        self.stale
-    }
-
-    fn ask(&mut self, parts: &Parts, factors: &DenseFactors, values: &NodeList) {
-        if !values.any() {
-            return;
-        }
-        let now = factors.inverse_bounds(parts.count(), |i| parts.part_of(i));
-        self.inverse = Dense::from_fn(now.rows, now.cols, |a, b| {
-            LARGER * now.at(a, b) + COMMON * (now.at(a, a) * now.at(b, b)).sqrt()
-        });
-        self.left = 0;
-    }
-
-    fn note<C: Chart>(
-        &mut self,
-        chart: &C,
-        factors: &DenseFactors,
-        trial: &C::Element,
-        values: &NodeList,
-    ) {
-        if !values.any() || !self.stale {
-            return;
-        }
-        let parts = chart.parts();
-        let found = factors.inverse_bounds(parts.count(), |i| parts.part_of(i));
-        let mut bounded = chart.is_within(trial, &self.reach);
-        for (x, most) in found.data.iter().zip(&self.inverse.data) {
-            // NaN is not bounded.
-            bounded &= x <= most;
-        }
-        self.factored = Some(values.clone());
-        self.bounded = bounded;
-    }
-
-    fn care(&self, values: &NodeList) -> Care {
-        Care {
-            lasting: self.purpose == Purpose::Run && self.misses.is_multiple_of(PATIENCE),
-            everywhere: !values.any(),
-            proved: self.purpose != Purpose::Trial,
-        }
-    }
-
-    /// Renews it after a proof that the solution is the principal root.
-    fn close(&mut self, reach: Vec<f64>, spread: Spread, values: &NodeList) {
-        let lasts = reach.first().is_some_and(|x| *x > 0.0);
-        if !lasts {
-            self.misses = self.misses.wrapping_add(1);
-            return;
-        }
-        let spread = Spread {
-            turned: true,
-            share: f64::INFINITY,
-        }
-        .and(spread);
-        *self = Self {
-            reach,
-            node: Some(values.clone()),
-            spread,
-            inverse: self.inverse.clone(),
-            factored: Some(values.clone()),
-            bounded: true,
-            stale: self.stale,
-            left: LASTS,
-            misses: 0,
-            purpose: self.purpose,
-        };
     }
 }
 

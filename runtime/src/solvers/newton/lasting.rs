@@ -10,7 +10,7 @@ use super::stage::{Stage, fits};
 use crate::groups::Group;
 
 /// How much larger than the velocity at hand the regions are.
-const TIMES: [f64; 5] = [1.5, 1.8, 2.4, 4.0, 8.0];
+pub(super) const TIMES: [f64; 5] = [1.5, 1.8, 2.4, 4.0, 8.0];
 
 /// The same where the tangent is another at every node. What serves nearby is soon proved anew: the
 /// first region that will do is taken.

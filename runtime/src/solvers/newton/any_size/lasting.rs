@@ -6,11 +6,8 @@ use super::curve::Curve;
 use super::principal::Found;
 use super::region::Strain;
 use super::stage::{Stage, fits};
-use crate::solvers::newton::lasting::NEARBY;
+use crate::solvers::newton::lasting::{NEARBY, TIMES};
 use crate::solvers::newton::node::Spread;
-
-/// How much larger than the velocity at hand the regions are.
-const TIMES: [f64; 5] = [1.5, 1.8, 2.4, 4.0, 8.0];
 
 /// Looks for a reach of at least `wanted`: the largest where it serves at every node.
 pub(super) fn lasting(
