@@ -57,7 +57,7 @@ pub struct Contact {
     /// The step that was refused.
     pub h: f64,
     /// How often the step was halved until it was tried and worked; 0 where none was found.
-    pub halvings: u8,
+    pub halvings: u16,
     /// The lane; 0 for types without lanes.
     pub lane: u8,
 }
@@ -68,8 +68,8 @@ impl Contact {
     #[must_use]
     pub fn is_finite(&self) -> bool {
         match self.met {
-            // Of an end beyond the range of numbers no share of the way is known.
-            Met::Singular { .. } => self.share.is_some_and(f64::is_finite),
+            // Of an end beyond the range of numbers no share of the way is known, or it is below that range.
+            Met::Singular { .. } => self.share.is_some_and(|s| s.is_finite() && s > 0.0),
             Met::NearlySingular { .. } => false,
             Met::Outside { before, after, .. } => before.is_finite() && after.is_finite(),
         }
@@ -101,13 +101,16 @@ impl Contact {
     #[cold]
     #[must_use]
     pub fn with_trials<T: Real>(self, h: T, try_step: impl Fn(T) -> bool) -> Self {
-        let mut shorter = h;
+        // Steps a thousand times longer than the way to the contact are not tried.
+        let far = self.share.map_or(0.0, |share| -(1e3 * share).log2());
+        let first = if (1.0..1000.0).contains(&far) {
+            far as u16
+        } else {
+            1
+        };
         // A trial that meets the edge looks for no step of its own.
         let found = search_of(|| {
-            (1..=20).find(|_| {
-                shorter *= T::from_f64(0.5);
-                try_step(shorter)
-            })
+            (first..first + 20).find(|k| try_step(h * T::from_f64(0.5_f64.powi(i32::from(*k)))))
         });
         Self {
             halvings: found.flatten().unwrap_or(0),
