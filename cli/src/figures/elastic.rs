@@ -1,6 +1,7 @@
 //! Figures 3.1 to 3.3: the pulsating body of the thesis's section 3.2, by its placement, from a model file. Takes nothing of the
 //! gallery; gives SVG of stretches and volume, momenta along the stretches, energy and what is conserved.
 
+use super::bipolar;
 use super::sheet::{Series, Subject, change, dashed, line, magnitudes, norm, panel, sheet};
 use crate::case_file;
 use crate::failure::Failure;
@@ -10,20 +11,29 @@ use clebsch::record::Record;
 
 const TEXT: &str = include_str!("../../../models/elastic/mooney-rivlin.clebsch");
 const CASE: &str = include_str!("../../../models/elastic/mooney-rivlin/thesis-figures.toml");
-const MODEL: &str = "mooney-rivlin";
-const NAME: &str = "thesis-figures";
+pub(super) const MODEL: &str = "mooney-rivlin";
+pub(super) const NAME: &str = "thesis-figures";
 
-/// The gallery with the model of these figures.
+/// The gallery with the models of these figures.
 ///
 /// # Errors
-/// Usage: model or case are not read.
-pub(super) fn with_file(gallery: &Gallery) -> Result<Gallery, Failure> {
-    let read = clebsch_interpret::card(TEXT);
-    let card = read.map_err(|refused| Failure::Usage(format!("{MODEL}: {refused}")))?;
-    let case = case_file::read("thesis-figures.toml", CASE, &card)?.case;
+/// Usage: a model or case is not read.
+pub(super) fn with_files(gallery: &Gallery) -> Result<Gallery, Failure> {
     let mut gallery = gallery.clone();
-    let cases = vec![case];
-    gallery.entries.push(Entry { card, cases });
+    for (model, text, file, case) in [
+        (MODEL, TEXT, "thesis-figures.toml", CASE),
+        (
+            bipolar::MODEL,
+            bipolar::TEXT,
+            "pseudo-rigid.toml",
+            bipolar::CASE,
+        ),
+    ] {
+        let read = clebsch_interpret::card(text);
+        let card = read.map_err(|refused| Failure::Usage(format!("{model}: {refused}")))?;
+        let cases = vec![case_file::read(file, case, &card)?.case];
+        gallery.entries.push(Entry { card, cases });
+    }
     Ok(gallery)
 }
 
@@ -103,7 +113,7 @@ impl Course {
 }
 
 /// The stored energy of these stretches, of the numbers of the case.
-fn stored(body: &Subject<'_>, s: &Vector3<f64>) -> f64 {
+pub(super) fn stored(body: &Subject<'_>, s: &Vector3<f64>) -> f64 {
     let number = |name: &str| {
         let fields = body.card().parameters.iter().zip(&body.case.parameters);
         let found = fields.into_iter().find(|(field, _)| field.ascii == name);
@@ -128,7 +138,8 @@ fn axial(a: Matrix3<f64>) -> Vector3<f64> {
     )
 }
 
-fn matrices(body: &Subject<'_>, record: &Record, name: &str) -> Vec<Matrix3<f64>> {
+/// The values of a square matrix at every node.
+pub(super) fn matrices(body: &Subject<'_>, record: &Record, name: &str) -> Vec<Matrix3<f64>> {
     let entries = body.components(record, name);
     let count = entries.first().map_or(0, Vec::len);
     let entry = |k: usize, i: usize| {
@@ -236,7 +247,7 @@ mod tests {
     /// digits of what is reached late.
     #[test]
     fn ranges_are_those_of_the_reference_run() {
-        let gallery = with_file(&Gallery {
+        let gallery = with_files(&Gallery {
             entries: Vec::new(),
         })
         .expect("is read");

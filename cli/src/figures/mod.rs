@@ -2,6 +2,7 @@
 //! model file.
 //! Takes the gallery; gives one SVG per figure in a new folder. What each shows: docs/figures.md.
 
+mod bipolar;
 mod bodies;
 mod elastic;
 mod fibration;
@@ -29,7 +30,7 @@ struct Figure {
 }
 
 /// All figures, in the order of the thesis; the last one is not in it.
-const FIGURES: [Figure; 17] = [
+const FIGURES: [Figure; 18] = [
     Figure {
         number: "2.5",
         file: "figure-2-05.svg",
@@ -127,6 +128,12 @@ const FIGURES: [Figure; 17] = [
         draw: elastic::drift,
     },
     Figure {
+        number: "3.1-3.3",
+        file: "figure-3-bipolar.svg",
+        model: "pseudo-rigid",
+        draw: bipolar::beside,
+    },
+    Figure {
         number: "Hopf",
         file: "hopf.svg",
         model: "cayley-klein",
@@ -149,7 +156,7 @@ pub fn figures(
     };
     let staging = Staging::new(target, matches.get_flag("force"), &files)?;
     let as_json = matches.get_flag("json");
-    let gallery = &elastic::with_file(gallery)?;
+    let gallery = &elastic::with_files(gallery)?;
     let has = |figure: &Figure| {
         gallery
             .entries
@@ -176,14 +183,14 @@ pub fn figures(
     for figure in &drawn {
         writeln!(
             streams.out,
-            "{:<5} {:<15}  {}",
+            "{:<7} {:<20}  {}",
             figure.number, figure.file, figure.model
         )?;
     }
     for figure in &left {
         writeln!(
             streams.out,
-            "{:<5} left out: the gallery has no model `{}`",
+            "{:<7} left out: the gallery has no model `{}`",
             figure.number, figure.model
         )?;
     }

@@ -54,6 +54,9 @@ pub(super) fn shortest(share: f64) -> f64 {
 /// The strain aimed at over a stage: up to a fold each stage then leaves the same part of the way.
 pub(super) const AIM: f64 = 0.65;
 
+/// The same over a stage that is proved: one that fails costs as much as one that is accepted.
+pub(super) const SURE: f64 = 0.5;
+
 /// By how much one stage may be longer than the last.
 pub(super) const LONGER: f64 = 4.0;
 
@@ -159,19 +162,22 @@ where
         }
     }
     // What cannot be followed without a proof is not followed with one, a hundred times more slowly.
-    let mut found = follow(equations, stage, solution, false);
+    let mut first = 1.0;
+    let mut found = follow(equations, stage, solution, &mut first, false);
     if found.is_ok() && care.proved {
-        found = follow(equations, stage, solution, true);
+        found = follow(equations, stage, solution, &mut first, true);
     }
     // That there is no proof does not mean that there is a fold.
     found.or_else(|_| closely(equations, stage, solution))
 }
 
-/// Follows the curve stage by stage from rest, each stage proved or foreseen from its end.
+/// Follows the curve stage by stage from rest, each stage proved or foreseen from its end. `first` is how long a first
+/// stage is tried, and was in the end.
 fn follow<G, E, const D: usize, const K: usize>(
     equations: &Equations<G, E, D, K>,
     rest: Stage<G, D>,
     solution: Option<&G>,
+    first: &mut f64,
     proved: bool,
 ) -> Result<Traced<G, D>, Fold>
 where
@@ -184,11 +190,14 @@ where
     let mut stage = rest;
     let mut whole = stage.toward(&SVector::zeros());
     let lengths = lengths::<G, D>(&whole);
-    let (mut share, mut length) = (0.0, 1.0_f64);
+    let (mut share, mut length) = (0.0, *first);
     // What the velocity moves by on the way, in every direction a little.
     let mut course = course(&lengths, &units, 1.0);
     let mut radii = [0.0; D];
-    let most_stages = if proved { MOST_PROOFS } else { MOST_STAGES };
+    let (most_stages, aim) = match proved {
+        true => (MOST_PROOFS, SURE),
+        false => (MOST_STAGES, AIM),
+    };
     for _ in 0..most_stages {
         if share >= 1.0 {
             break;
@@ -214,7 +223,7 @@ where
             // Lengths are in proportion to strains.
             let longer = match strain.is_nan() {
                 true => least,
-                false => (AIM / strain).min(LONGER),
+                false => (aim / strain).min(LONGER),
             };
             next_length = longer * length;
             let inner = radii.map(|r| INNER * r);
@@ -233,6 +242,9 @@ where
         let Some((next, end)) = accepted else {
             return Err(fold(share, &whole));
         };
+        if share == 0.0 {
+            *first = end;
+        }
         if end >= 1.0 {
             return Ok(verdict(next, &radii, solution));
         }

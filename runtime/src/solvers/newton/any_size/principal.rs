@@ -8,7 +8,7 @@ use super::stage::{MARGIN, Stage, fits};
 use crate::scalar::largest;
 use crate::solvers::newton::node::Spread;
 use crate::solvers::newton::principal::{
-    AIM, Care, Fold, INNER, LITTLE, LONGER, MOST_PROOFS, MOST_STAGES, SHORTER, shortest,
+    AIM, Care, Fold, INNER, LITTLE, LONGER, MOST_PROOFS, MOST_STAGES, SHORTER, SURE, shortest,
 };
 
 /// What was found out on a curve.
@@ -61,9 +61,10 @@ fn traced(curve: &dyn Curve, solution: Option<Point>, care: Care) -> Result<Foun
         }
     }
     // What cannot be followed without a proof is not followed with one, a hundred times more slowly.
-    let mut found = follow(curve, stage.clone(), solution, false);
+    let mut first = 1.0;
+    let mut found = follow(curve, stage.clone(), solution, &mut first, false);
     if found.is_ok() && care.proved {
-        found = follow(curve, stage.clone(), solution, true);
+        found = follow(curve, stage.clone(), solution, &mut first, true);
     }
     // That there is no proof does not mean that there is a fold.
     found.or_else(|_| closely(curve, stage, solution))
@@ -78,11 +79,13 @@ fn times(x: &[f64], factor: f64) -> Vec<f64> {
     x.iter().map(|x| x * factor).collect()
 }
 
-/// Follows the curve stage by stage from rest, each stage proved or foreseen from its end.
+/// Follows the curve stage by stage from rest, each stage proved or foreseen from its end. `first` is how long a first
+/// stage is tried, and was in the end.
 fn follow(
     curve: &dyn Curve,
     rest: Stage,
     solution: Option<Point>,
+    first: &mut f64,
     proved: bool,
 ) -> Result<Found, Fold> {
     let parts = curve.parts();
@@ -92,11 +95,14 @@ fn follow(
     let mut stage = rest;
     let mut whole = stage.toward(&nowhere(curve));
     let lengths = parts.lengths(&whole);
-    let (mut share, mut length) = (0.0, 1.0_f64);
+    let (mut share, mut length) = (0.0, *first);
     // What the velocity moves by on the way, in every direction a little.
     let mut course = course(&lengths, &units, 1.0);
     let mut radii = vec![0.0; parts.count()];
-    let most_stages = if proved { MOST_PROOFS } else { MOST_STAGES };
+    let (most_stages, aim) = match proved {
+        true => (MOST_PROOFS, SURE),
+        false => (MOST_STAGES, AIM),
+    };
     for _ in 0..most_stages {
         if share >= 1.0 {
             break;
@@ -122,7 +128,7 @@ fn follow(
             // Lengths are in proportion to strains.
             let longer = match strain.is_nan() {
                 true => least,
-                false => (AIM / strain).min(LONGER),
+                false => (aim / strain).min(LONGER),
             };
             next_length = longer * length;
             let inner: Vec<f64> = radii.iter().map(|r| INNER * r).collect();
@@ -141,6 +147,9 @@ fn follow(
         let Some((next, end)) = accepted else {
             return Err(fold(share, &whole));
         };
+        if share == 0.0 {
+            *first = end;
+        }
         if end >= 1.0 {
             return Ok(verdict(curve, next, &radii, solution));
         }
