@@ -6,5 +6,6 @@
 
 pub mod blocks;
 pub mod body;
+pub mod coupled_bodies;
 pub mod python;
 pub mod truth;

@@ -120,7 +120,7 @@ fn compare() -> Command {
 
 fn figures() -> Command {
     Command::new("figures")
-        .about("Draw the figures of the thesis's second chapter from the cases of the gallery")
+        .about("Draw the figures of the thesis's second chapter, and of the body of its third, from named cases")
         .after_help("Examples:\n  clebsch figures --out out/figures")
         .arg(
             option(

@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::plain::shown;
 use crate::suggestion::did_you_mean;
 pub use clebsch_models::{Case, Entry};
+use std::path::{Path, PathBuf};
 
 /// All models, in the order in which they are listed.
 #[derive(Clone, Debug)]
@@ -32,13 +33,29 @@ impl Gallery {
             .find(|entry| entry.card.kebab == name || entry.card.name == name)
             .ok_or_else(|| {
                 let known = self.entries.iter().map(|entry| entry.card.kebab);
+                let beside = file_called(name).map_or_else(String::new, |path| {
+                    format!("; the model file {} is named by its path", path.display())
+                });
                 Failure::Usage(format!(
-                    "no model `{}`{}",
+                    "no model `{}`{}{beside}",
                     shown(name),
                     did_you_mean(name, known)
                 ))
             })
     }
+}
+
+/// The model file of this name in `models/` or a folder in it, below the folder at hand.
+fn file_called(name: &str) -> Option<PathBuf> {
+    let file = format!("{name}.clebsch");
+    let root = Path::new("models");
+    let folders = std::fs::read_dir(root).ok()?.flatten().map(|e| e.path());
+    let mut all: Vec<PathBuf> = folders.map(|folder| folder.join(&file)).collect();
+    all.push(root.join(&file));
+    all.sort();
+    // A name with parts of a path is none.
+    let plain = Path::new(name).components().count() == 1;
+    all.into_iter().find(|path| plain && path.is_file())
 }
 
 /// The case called `name`, or the model's first one.

@@ -415,7 +415,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         kinetic + potential
     }
     /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of the advected quantities.
-    pub fn circulation_C_2(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
+    pub fn angular_momentum_C_2(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
         let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
         let Q = state.Q.matrix();
         let C = Q.tr_mul(&(C0 * Q));
@@ -424,7 +424,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         (C * (t1 * (C * t1))).trace()
     }
     /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of the advected quantities.
-    pub fn circulation_C_4(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
+    pub fn angular_momentum_C_4(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
         let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
         let Q = state.Q.matrix();
         let C = Q.tr_mul(&(C0 * Q));
@@ -502,8 +502,8 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
         out: &mut [f64],
     ) {
         let out = put(out, [self.energy(state)]);
-        let out = put(out, [self.circulation_C_2(state)]);
-        let out = put(out, [self.circulation_C_4(state)]);
+        let out = put(out, [self.angular_momentum_C_2(state)]);
+        let out = put(out, [self.angular_momentum_C_4(state)]);
         let out = put(out, rows(self.spatial_momentum_skew_C0_inverse(state)));
     }
     /// Their sizes at a state, in steps of `h`.
@@ -562,7 +562,7 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
         doc: "Elastic ellipsoid, convective representation.",
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
-        summary: "discrete Lagrangian  tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h) - ½ h a tr(C_k) - ¼ h b tr(C_k)² + ¼ h b tr(C_k²) - ½ h c det(C_k) + ¼ h d log(det(C_k)) - ½ h a tr(C_{k+1}) - ¼ h b tr(C_{k+1})² + ¼ h b tr(C_{k+1}²) - ½ h c det(C_{k+1}) + ¼ h d log(det(C_{k+1}))\nmomentum of Q        C_k (G_k - Id) I₀ G_kᵀ/h\nRiccati form         none; linear, L = C_k/h, R = I₀\ninvariants           energy, circulation_C_2, circulation_C_4, spatial_momentum_skew_C0_inverse\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
+        summary: "discrete Lagrangian  tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h) - ½ h a tr(C_k) - ¼ h b tr(C_k)² + ¼ h b tr(C_k²) - ½ h c det(C_k) + ¼ h d log(det(C_k)) - ½ h a tr(C_{k+1}) - ¼ h b tr(C_{k+1})² + ¼ h b tr(C_{k+1}²) - ½ h c det(C_{k+1}) + ¼ h d log(det(C_{k+1}))\nmomentum of Q        C_k (G_k - Id) I₀ G_kᵀ/h\nRiccati form         none; linear, L = C_k/h, R = I₀\ninvariants           energy, angular_momentum_C_2, angular_momentum_C_4, spatial_momentum_skew_C0_inverse\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
         solver: "Explicit: the balance is linear: two small linear systems",
         order: 2u32,
         orders: &[2, 4, 6, 8],
@@ -603,12 +603,12 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
                 1usize,
             ),
             Invariant::exact(
-                "circulation_C_2",
+                "angular_momentum_C_2",
                 "tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))",
                 1usize,
             ),
             Invariant::exact(
-                "circulation_C_4",
+                "angular_momentum_C_4",
                 "tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))",
                 1usize,
             ),

@@ -138,7 +138,8 @@ impl fmt::Display for KineticWarning {
         write!(
             f,
             "The Lagrangian states kinetic minus potential energy, and the inertia must be positive \
-             definite; of a body stated by its second moments J that is I = tr(J) Id - J, not J"
+             definite, as every metric and second moment of mass in it; of a rigid body stated by its \
+             second moments J that is I = tr(J) Id - J, not J"
         )
     }
 }

@@ -1,5 +1,5 @@
 //! Time per site and step of lines that are compiled for every number of sites: Toda's chain and shallow water beside plain
-//! loops, coupled tops and an elastic rod beside the lone heavy top, the rod in quaternions beside the one in rotations, lines with held constraints beside the elastic rod. Takes no arguments; prints a table.
+//! loops, coupled tops and an elastic rod beside the lone heavy top, the rod in quaternions beside the one in rotations, lines with held constraints beside the elastic rod, bodies joined by their velocities beside a plain loop. Takes no arguments; prints a table.
 //! `cargo run --release --manifest-path benches/Cargo.toml --bin lines`, a minute.
 
 // The fields of the models are Greek letters, as in the papers.
@@ -8,10 +8,11 @@
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
 use clebsch::{BodyMomentum, Rotation, UnitQuaternion};
 use clebsch_benches::blocks::computed;
+use clebsch_benches::coupled_bodies::Row;
 use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
 use clebsch_models::lattices::{
-    coupled_tops::*, geometrically_exact_rod::*, hanging_chain::*, kirchhoff_rod::*,
-    quaternion_rod::*, shallow_water_1d::*, toda_chain::*,
+    coupled_body_chain::*, coupled_tops::*, geometrically_exact_rod::*, hanging_chain::*,
+    kirchhoff_rod::*, quaternion_rod::*, shallow_water_1d::*, toda_chain::*,
 };
 use std::hint::black_box;
 use std::time::Instant;
@@ -64,6 +65,15 @@ fn main() {
         let (one, other) = both(&mut links(n), &mut rod(n));
         row(
             "chain of rigid links, beside the elastic rod",
+            n,
+            one,
+            other,
+        );
+    }
+    for n in SIZES {
+        let (one, other) = both(&mut bodies(n), &mut bodies_by_hand(n));
+        row(
+            "bodies joined by their velocities, beside a plain loop",
             n,
             one,
             other,
@@ -424,5 +434,73 @@ fn links(n: usize) -> impl FnMut() {
             chain.step(&mut state, &mut work).expect("steps");
         }
         black_box(&state);
+    }
+}
+
+/// Attitudes and momenta of a row of bodies.
+fn of_bodies(n: usize) -> (Vec<Rotation>, Vec<Vector3<f64>>) {
+    let turns =
+        (0..n).map(|i| Rotation::exp(&Vector3::new(0.2 * (0.1 * i as f64).sin(), 0.6, 0.0)));
+    let momenta = (0..n).map(|i| Vector3::new(0.1, 0.3 * (0.2 * i as f64).cos(), 0.5));
+    (turns.collect(), momenta.collect())
+}
+
+const MOMENTS: [f64; 3] = [1.0, 0.8, 0.6];
+const PLACE: [f64; 3] = [0.3, 0.4, 0.5];
+
+fn bodies(n: usize) -> impl FnMut() {
+    let [a, b, c] = MOMENTS;
+    let parameters = CoupledBodyChainParameters {
+        J: diagonal(a, b, c),
+        d: PLACE.into(),
+        eps: 0.4,
+    };
+    let sites = CoupledBodyChainSites {
+        N: n - 1,
+        ends: CoupledBodyChainEnds::Open,
+    };
+    let row = CoupledBodyChain::new(parameters, sites).expect("bodies");
+    let (turns, momenta) = of_bodies(n);
+    let initial = CoupledBodyChainInitial {
+        Λ: turns,
+        body_momentum_Λ: momenta.into_iter().map(BodyMomentum).collect(),
+    };
+    let (mut state, mut work) = row.start(initial, 0.02).expect("starts");
+    let mut own = by_hand(n);
+    for _ in 0..20 {
+        row.step(&mut state, &mut work).expect("steps");
+        own.step();
+    }
+    // Twenty steps of a few roundings each.
+    let far = state.spatial_momentum_Λ().zip(&own.momenta);
+    let far = clebsch::scalar::largest(far.map(|(x, y)| (x.0 - y).amax()));
+    assert!(far < 1e-12, "both are the same motion: {far:e}");
+    move || {
+        for _ in 0..WORK / n {
+            row.step(&mut state, &mut work).expect("steps");
+        }
+        black_box(&state);
+    }
+}
+
+fn by_hand(n: usize) -> Row {
+    let [a, b, c] = MOMENTS;
+    let (turns, momenta) = of_bodies(n);
+    let momenta = momenta
+        .iter()
+        .zip(&turns)
+        .map(|(m, x)| x.rotate(m))
+        .collect();
+    let turns = turns.iter().map(Rotation::quaternion).collect();
+    Row::new((diagonal(a, b, c), PLACE.into(), 0.4), 0.02, turns, momenta)
+}
+
+fn bodies_by_hand(n: usize) -> impl FnMut() {
+    let mut row = by_hand(n);
+    move || {
+        for _ in 0..WORK / n {
+            row.step();
+        }
+        black_box(&row.momenta);
     }
 }

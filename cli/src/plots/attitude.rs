@@ -222,6 +222,10 @@ pub(crate) fn angles(run: &Finished<'_>, samples: &Samples) -> Plot {
 /// φ, θ, ψ; θ from its sine and cosine, since the cosine alone loses half of the digits near 0 and π.
 fn euler(r: &Matrix3<f64>) -> [f64; 3] {
     let sine = r[(0, 2)].hypot(r[(1, 2)]);
+    // Upright, only the sum of both turns about the axis is known: the first has it.
+    if sine < 1e-14 {
+        return [r[(1, 0)].atan2(r[(0, 0)]), sine.atan2(r[(2, 2)]), 0.0];
+    }
     [
         r[(0, 2)].atan2(-r[(1, 2)]),
         sine.atan2(r[(2, 2)]),
@@ -247,7 +251,9 @@ mod tests {
 
     #[test]
     fn angles_give_the_rotation_back() {
-        for (phi, theta, psi) in [(0.3, 1.1, -2.0), (-3.0, 0.001, 0.5), (2.0, 3.1, 3.0)] {
+        let upright = [(0.0, 0.0, 0.0), (0.4, 0.0, 0.0)];
+        let others = [(0.3, 1.1, -2.0), (-3.0, 0.001, 0.5), (2.0, 3.1, 3.0)];
+        for (phi, theta, psi) in upright.into_iter().chain(others) {
             let about = |axis: Vector3<f64>, angle: f64| {
                 Rotation3::from_scaled_axis(axis * angle).into_inner()
             };

@@ -29,7 +29,7 @@ fn every_figure_is_drawn_once() {
     assert_eq!((code, err.as_str()), (0, ""));
     let object: serde_json::Value = serde_json::from_str(&text).expect("one JSON object");
     let list = |key: &str| object[key].as_array().expect("a list").clone();
-    assert_eq!(list("figures").len() + list("left_out").len(), 17);
+    assert_eq!(list("figures").len() + list("left_out").len(), 18);
     assert!(list("figures").len() >= 14);
     for figure in list("figures") {
         let file = figure["file"].as_str().expect("a name");
@@ -54,7 +54,7 @@ fn figures_of_missing_models_are_left_out() {
     let folder = Folder::new("no_figures");
     let done = clebsch(&["figures", "--out", &folder.path("none")]);
     assert_eq!((done.code, done.err.as_str()), (0, ""));
-    let line = "2.5   left out: the gallery has no model `free-body`\n";
+    let line = "2.5     left out: the gallery has no model `free-body`\n";
     assert!(done.out.contains(line), "{}", done.out);
 }
 

@@ -166,7 +166,8 @@ const FLUID: System = System {
         let q = near_one(source, 0.3);
         let size = q.determinant().cbrt();
         let q = q.scaled(1.0 / size);
-        let own = moments(source);
+        // The model takes the reference for a ball.
+        let own = Square::identity().scaled(source.between(0.5, 2.0));
         // A velocity Q L with tr L = 0 keeps the determinant.
         let turning = source.matrix::<3>().scaled(0.5);
         let mean = turning.trace() / 3.0;

@@ -319,7 +319,7 @@ fn ellipsoid() {
         &found,
         &[
             "energy",
-            "circulation_C_2",
+            "angular_momentum_C_2",
             "spatial_momentum_skew_C0_inverse",
         ],
     );

@@ -322,6 +322,11 @@ fn wrong_side(
         || (w.clone(), format!("{w}^T")),
         |c| action(c.group, &w, shape.rows),
     );
+    // A form of a linear map stays symmetric: it is pulled back.
+    let back = match s.get(a.quantity).structure.is_symmetric() && there == w {
+        true => format!("{w}^T"),
+        false => back,
+    };
     let example = match (shape.is_vector(), body) {
         (true, true) => format!("next({name}) = {back} * {name}"),
         (true, false) => format!("next({name}) = {there} * {name}"),

@@ -11,7 +11,8 @@ use crate::expr::symbol::{Role, Symbols};
 use crate::syntax::FUNCTIONS;
 
 /// What the functions of the language are called elsewhere.
-const OTHERWISE: [(&str, &str); 25] = [
+const OTHERWISE: [(&str, &str); 26] = [
+    ("I3", "det(A)"),
     ("trace", "tr(A)"),
     ("determinant", "det(A)"),
     ("inverse", "inv(A)"),

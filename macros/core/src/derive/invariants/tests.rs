@@ -217,7 +217,7 @@ fn free_bodies_have_manakov_integrals_in_every_dimension() {
 fn affine_bodies_keep_circulation_and_angular_momentum() {
     let wanted = [
         "energy~",
-        "circulation_C_2",
+        "angular_momentum_C_2",
         "spatial_momentum_skew_C0_inverse",
     ];
     let names = found(

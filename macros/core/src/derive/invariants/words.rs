@@ -126,7 +126,7 @@ pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
     out.extend(homogeneous::weights(x));
     out.extend(areas(&vectors));
     out.extend(products_in_three(&vectors));
-    out.extend(circulations(x));
+    out.extend(of_forms(x));
     out.extend(across(x, &vectors));
     for m in matrices.iter().filter(|m| m.value.shape().is_square()) {
         let value = expr::det(m.value.clone());
@@ -389,9 +389,10 @@ fn across(x: &Inputs, vectors: &[Piece]) -> Vec<Candidate> {
     out
 }
 
-/// For GL(n) with an advected form `C`: traces of powers of `C skew(C⁻¹ μ)`, the circulation seen
-/// from the body, and of its mirror images.
-fn circulations(x: &Inputs) -> Vec<Candidate> {
+/// For GL(n) with an advected form `C`: traces of powers of `C skew(C⁻¹ μ)`, and of its mirror images. Where the velocity is
+/// that of the body they are those of the angular momentum in space, by the metric that is seen from the body; where it is
+/// that of space those of the circulation, by the shape that is seen from there.
+fn of_forms(x: &Inputs) -> Vec<Candidate> {
     let s = &x.letters.symbols;
     let mut out = Vec::new();
     for (i, c) in x.spec.configurations.iter().enumerate() {
@@ -410,6 +411,10 @@ fn circulations(x: &Inputs) -> Vec<Candidate> {
             let skew = |e: Expr| expr::part(Part::Skew, e);
             let sizes = [&mu, &form, &inverse].map(|e| length(x, e));
             let size = expr::product(sizes);
+            let name = match c.side.is_body() {
+                true => "angular_momentum",
+                false => "circulation",
+            };
             let images = [
                 expr::mul(form.clone(), skew(expr::mul(inverse.clone(), mu.clone()))),
                 expr::mul(skew(expr::mul(mu.clone(), inverse.clone())), form.clone()),
@@ -420,7 +425,7 @@ fn circulations(x: &Inputs) -> Vec<Candidate> {
                 for k in &images {
                     let word = (0..power).map(|_| k.clone()).collect::<Vec<_>>();
                     out.push(Candidate {
-                        name: format!("circulation_{}_{power}", symbol.ascii),
+                        name: format!("{name}_{}_{power}", symbol.ascii),
                         value: expr::trace(expr::product(word)),
                         scale: expr::power(size.clone(), Rational::integer(power)),
                     });
