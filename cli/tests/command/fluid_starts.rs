@@ -2,6 +2,7 @@
 //! of the model to rounding; equal cases start alike to the last byte; what has no value there is told with what to write.
 
 use crate::common::{Done, Folder, clebsch};
+use clebsch::scalar::largest;
 use std::collections::BTreeMap;
 
 const MODEL: &str = "model Channel {
@@ -84,7 +85,7 @@ impl Ran {
 fn imbalance(model: &str, start: &str, name: &str) -> f64 {
     let ran = Ran::of(model, &case(start), name);
     let (h, f) = (0.05, ran.parameter("f"));
-    let (mut off, mut scale) = (0.0_f64, 0.0_f64);
+    let (mut off, mut scale) = (Vec::new(), Vec::new());
     for a in 0..64 {
         let m = ran.parameter(&format!("m_{a}"));
         let x = |node: usize| [1, 2].map(|d| ran.at(&format!("X_{a}_{d}"), node));
@@ -93,10 +94,11 @@ fn imbalance(model: &str, start: &str, name: &str) -> f64 {
         for d in 0..2 {
             let p = ran.at(&format!("momentum_X_{a}_{}", d + 1), 0);
             let v = p / m - f / 2.0 * turned[d];
-            off = off.max((to[d] - from[d] - h * v).abs());
-            scale = scale.max((h * h * f / 2.0 * v).abs());
+            off.push(to[d] - from[d] - h * v);
+            scale.push(h * h * f / 2.0 * v);
         }
     }
+    let (off, scale) = (largest(off), largest(scale));
     assert!(scale > 1e-5, "{scale}");
     off / scale
 }
