@@ -2,6 +2,7 @@
 //! as operations over numbered places and executed, so that steps agree with compiled ones to the last bit.
 //! Takes the text of a model; gives a [`Card`](clebsch::card::Card) whose trajectories run.
 
+mod at_particles;
 mod cards;
 mod code;
 mod constants;
@@ -20,6 +21,7 @@ mod signs;
 mod sites;
 mod value;
 
+pub use at_particles::{AtParticles, Placed, Unvalued, at_particles};
 pub use cards::{MOST_BODY_BY_BODY, card, card_and_warnings, card_on_lattice};
 
 use clebsch_core::Errors;

@@ -1,23 +1,28 @@
 //! Values of a fluid at its particles and nodes: places on a lattice, depths, velocities, expressions of the place.
 //! Takes a case; gives the numbers of every quantity at all of its sites.
 
+mod expressions;
+mod meshes;
+
 use super::labels::{Stated, table};
 use super::location::File;
 use super::sites;
 use super::space::Space;
 use super::start::places;
-use super::value::number;
 use crate::failure::Failure;
 use clebsch::card::Field;
 use clebsch::line::LineError;
 use clebsch::mesh::{Domain, Voronoi};
 use clebsch::nalgebra::SVector;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::value::SiteData;
 use clebsch_core::lattice::{Choice, Kind, Quantity};
+use clebsch_interpret::AtParticles;
 use clebsch_interpret::lines::{LineModel, Unstarted};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::collections::HashSet;
+use std::ops::Range;
+use std::rc::Rc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -47,10 +52,25 @@ struct Reader<'a> {
     stated: &'a Stated,
     choice: &'a Choice,
     space: &'a Space,
+    parameters: Option<&'a DeTable<'a>>,
     numbers: Vec<(String, f64)>,
     /// Where the nodes of the grid are, and their weights.
     nodes: (Vec<Vec<f64>>, Vec<f64>),
+    /// Meshes at the particles, by number, once an expression takes them.
+    meshes: RefCell<BTreeMap<usize, Rc<AtParticles>>>,
     fluid: Fluid,
+}
+
+/// What is wrong with a value, and where it stands if that is a part of it.
+struct Wrong {
+    why: String,
+    at: Option<Range<usize>>,
+}
+
+impl From<String> for Wrong {
+    fn from(why: String) -> Self {
+        Wrong { why, at: None }
+    }
 }
 
 type Given<'a, 'i> = Option<&'a Spanned<DeValue<'i>>>;
@@ -78,8 +98,10 @@ impl Fluid {
             stated,
             choice,
             space: &space,
+            parameters,
             numbers: sites::numbers(top, parameters),
             nodes,
+            meshes: RefCell::default(),
             fluid: Fluid::default(),
         };
         reader.whole();
@@ -92,7 +114,12 @@ impl Fluid {
             let key = ascii(&q.name.text);
             reader.parameter(q, parameters.and_then(|t| t.get(key.as_str())))?;
         }
-        for q in quantities.iter().filter(|q| q.kind == Kind::Configuration) {
+        let moving = || quantities.iter().filter(|q| q.kind == Kind::Configuration);
+        for q in moving().filter(|q| q.domain.is_none()) {
+            let key = ascii(&q.name.text);
+            reader.beside_places(q, initial.and_then(|t| t.get(key.as_str())))?;
+        }
+        for q in moving() {
             reader.motion(q, initial, source)?;
         }
         Ok(Some(reader.fluid))
@@ -169,121 +196,6 @@ impl Reader<'_> {
         self.stated.lattice.is_grid(q.label)
     }
 
-    /// The value of a name at a site.
-    #[allow(clippy::cast_precision_loss)]
-    fn number(&self, q: &Quantity, name: &str, site: usize) -> Option<f64> {
-        let lattice = &self.stated.lattice;
-        if let Some(l) = lattice.labels.get(q.label) {
-            if l.index.text == name {
-                return Some(site as f64);
-            }
-            if !l.grid && l.count.text == name {
-                return Some(self.count(q) as f64);
-            }
-        }
-        let lengths = &self.space.lengths;
-        let even = lengths.iter().all(|l| Some(l) == lengths.first());
-        let torus = Space::torus(self.stated).unwrap_or("L");
-        match name {
-            "x" | "y" => self.coordinate(q, usize::from(name == "y"), site),
-            "Lx" => lengths.first().copied(),
-            "Ly" => lengths.get(1).copied(),
-            _ if name == torus && even => lengths.first().copied(),
-            _ => {
-                let known = self.numbers.iter().find(|(own, _)| own == name);
-                known.map(|(_, x)| *x).or_else(|| {
-                    let own = lattice
-                        .quantities
-                        .iter()
-                        .find(|o| ascii(&o.name.text) == name)?;
-                    let column = self.fluid.columns.get(name)?;
-                    let fits = own.label == q.label && column.size == 1;
-                    column.numbers.get(site).copied().filter(|_| fits)
-                })
-            }
-        }
-    }
-
-    /// A coordinate of a particle or a node.
-    fn coordinate(&self, q: &Quantity, d: usize, site: usize) -> Option<f64> {
-        if self.is_grid(q) {
-            return self.nodes.0.get(site)?.get(d).copied();
-        }
-        let own = self.stated.lattice.places()?;
-        let column = self.fluid.columns.get(&ascii(&own.name.text))?;
-        let all = column
-            .numbers
-            .get(site * column.size..(site + 1) * column.size)?;
-        all.get(d).copied()
-    }
-
-    /// Numbers, expressions, a list of either for each component, or a list with an element for each site.
-    fn read(&self, q: &Quantity, value: &DeValue<'_>) -> Result<Vec<f64>, String> {
-        let (size, count) = (size(q), self.count(q));
-        let list = match value {
-            DeValue::Array(list) => list,
-            single if size == 1 => return self.component(q, single),
-            _ => {
-                return Err(format!(
-                    "expected {size} numbers or expressions, or a list with such for each site"
-                ));
-            }
-        };
-        let nested = list.iter().any(|v| v.get_ref().is_array());
-        if !nested && size > 1 && list.len() == size {
-            let each = list.iter().map(|v| self.component(q, v.get_ref()));
-            let each: Vec<Vec<f64>> = each.collect::<Result<_, _>>()?;
-            let at = |site: usize| each.iter().filter_map(move |c| c.get(site).copied());
-            return Ok((0..count).flat_map(at).collect());
-        }
-        if list.len() != count {
-            return Err(format!(
-                "a list has a value for each of the {count} sites, and this one has {}",
-                list.len()
-            ));
-        }
-        let mut out = Vec::with_capacity(count * size);
-        for (site, one) in list.iter().enumerate() {
-            let own = match one.get_ref() {
-                DeValue::Array(own) => own.iter().map(Spanned::get_ref).collect(),
-                single => vec![single],
-            };
-            if own.len() != size {
-                return Err(format!(
-                    "site {site} has {} numbers, where {size} are taken",
-                    own.len()
-                ));
-            }
-            for value in own {
-                out.push(self.at(q, value, site)?);
-            }
-        }
-        Ok(out)
-    }
-
-    /// One number or expression, at all sites.
-    fn component(&self, q: &Quantity, value: &DeValue<'_>) -> Result<Vec<f64>, String> {
-        let DeValue::String(text) = value else {
-            return Ok(vec![number(value)?; self.count(q)]);
-        };
-        let told = |why: String| format!("\"{text}\": {why}");
-        let data = SiteData::read(text).map_err(told)?;
-        let each = (0..self.count(q)).map(|site| {
-            let value = data.value(&|name| self.number(q, name, site))?;
-            finite(value, site)
-        });
-        each.collect::<Result<_, _>>().map_err(told)
-    }
-
-    fn at(&self, q: &Quantity, value: &DeValue<'_>, site: usize) -> Result<f64, String> {
-        let DeValue::String(text) = value else {
-            return number(value);
-        };
-        let value = SiteData::read(text).and_then(|d| d.value(&|name| self.number(q, name, site)));
-        let value = value.and_then(|value| finite(value, site));
-        value.map_err(|why| format!("\"{text}\": {why}"))
-    }
-
     fn keep(&mut self, key: &str, numbers: Vec<f64>, size: usize, value: Given<'_, '_>) {
         let line = value.map_or(0, |v| self.file.line(&v.span()));
         let column = Column {
@@ -300,6 +212,16 @@ impl Reader<'_> {
         self.file.wrong(span.as_ref(), &format!("{key}: {message}"))
     }
 
+    /// The same of a part of a value.
+    fn wrong_part(&self, key: &str, value: Given<'_, '_>, wrong: &Wrong) -> Failure {
+        match &wrong.at {
+            Some(span) => self
+                .file
+                .wrong(Some(span), &format!("{key}: {}", wrong.why)),
+            None => self.wrong(key, value, &wrong.why),
+        }
+    }
+
     /// Where particles are.
     fn places(&mut self, q: &Quantity, value: Given<'_, '_>) -> Result<(), Failure> {
         let key = ascii(&q.name.text);
@@ -310,10 +232,23 @@ impl Reader<'_> {
             return Err(self.wrong(&named, value, message));
         };
         let read = match given.get_ref() {
-            DeValue::Table(table) => places(table, self.space, self.count(q)),
-            own => self.read(q, own),
+            DeValue::Table(table) => places(table, self.space, self.count(q)).map_err(Wrong::from),
+            _ => self.read(q, given),
         };
-        let numbers = read.map_err(|why| self.wrong(&named, value, &why))?;
+        let numbers = read.map_err(|wrong| self.wrong_part(&named, value, &wrong))?;
+        self.keep(&key, numbers, size(q), value);
+        Ok(())
+    }
+
+    /// A field that is no place of particles; what is missing is told where the card is filled.
+    fn beside_places(&mut self, q: &Quantity, value: Given<'_, '_>) -> Result<(), Failure> {
+        let (Some(given), Some(_)) = (value, q.shape.components()) else {
+            return Ok(());
+        };
+        let key = ascii(&q.name.text);
+        let numbers = self.read(q, given);
+        let numbers =
+            numbers.map_err(|wrong| self.wrong_part(&format!("initial.{key}"), value, &wrong))?;
         self.keep(&key, numbers, size(q), value);
         Ok(())
     }
@@ -323,20 +258,20 @@ impl Reader<'_> {
     fn parameter(&mut self, q: &Quantity, value: Given<'_, '_>) -> Result<(), Failure> {
         let key = ascii(&q.name.text);
         let named = format!("parameters.{key}");
-        let read = match value.map(Spanned::get_ref) {
+        let read = match value {
             None if self.is_grid(q) && size(q) == 1 => Ok(self.nodes.1.clone()),
             None => {
                 let message = "missing: a number, an expression of the place x, y, a list with a value for each \
                                site, or { depth = \"...\" }";
                 return Err(self.wrong(&named, value, message));
             }
-            Some(DeValue::Table(table)) => match (table.get("depth"), table.get("share")) {
+            Some(own) if let DeValue::Table(table) = own.get_ref() => match (table.get("depth"), table.get("share")) {
                 (Some(depth), share)
                     if !self.is_grid(q)
                         && size(q) == 1
                         && table.len() == 1 + usize::from(share.is_some()) =>
                 {
-                    let depths = self.read(q, depth.get_ref()).and_then(positive);
+                    let depths = self.read(q, depth).and_then(|all| Ok(positive(all)?));
                     let shares = self.shares(q, share.map(Spanned::get_ref));
                     depths.and_then(|all| {
                         let each = all.into_iter().zip(shares?);
@@ -346,12 +281,13 @@ impl Reader<'_> {
                 _ => Err(
                     "expected { depth = \"an expression of x, y\" }, for a particle's share of it, \
                      and share = \"cells\" beside it for that of its Voronoi cell"
-                        .to_owned(),
+                        .to_owned()
+                        .into(),
                 ),
             },
             Some(own) => self.read(q, own),
         };
-        let numbers = read.map_err(|why| self.wrong(&named, value, &why))?;
+        let numbers = read.map_err(|wrong| self.wrong_part(&named, value, &wrong))?;
         self.keep(&key, numbers, size(q), value);
         Ok(())
     }
@@ -405,11 +341,12 @@ impl Reader<'_> {
         };
         let Some(given) = value else { return Ok(()) };
         let named = format!("initial.{key}");
-        let numbers = self.read(q, given.get_ref());
-        let mut numbers = numbers.map_err(|why| self.wrong(&named, value, &why))?;
+        let numbers = self.read(q, given);
+        let mut numbers = numbers.map_err(|wrong| self.wrong_part(&named, value, &wrong))?;
         if v.is_some() {
             let own = self.of_velocities(q, &numbers, source);
             numbers = own.map_err(|why| match why {
+                Untold::Number(key) => self.no_number(&key),
                 Untold::Parameter(why) => self.wrong("parameters", None, &why),
                 Untold::Velocity(why) => self.wrong(&named, value, &why),
             })?;
@@ -417,6 +354,24 @@ impl Reader<'_> {
         }
         self.keep(&momentum, numbers, size(q), value);
         Ok(())
+    }
+
+    /// A parameter that is missing, or has no value where it is given.
+    fn no_number(&self, key: &str) -> Failure {
+        let value = self.parameters.and_then(|t| t.get(key));
+        let of = |name: &str| {
+            let own = self.numbers.iter().find(|(own, _)| own == name);
+            own.map(|(_, x)| *x)
+        };
+        if let Some(given) = value
+            && let Err(why) = sites::plain(given.get_ref(), &of)
+        {
+            return self.wrong(&format!("parameters.{key}"), value, &why);
+        }
+        let why = format!(
+            "missing key `parameters.{key}`, or no finite number there: the momenta of velocities take it"
+        );
+        self.wrong("parameters", None, &why)
     }
 
     /// The momenta that the model gives to velocities.
@@ -427,24 +382,14 @@ impl Reader<'_> {
         source: &str,
     ) -> Result<Vec<f64>, Untold> {
         let model = LineModel::read(source).map_err(|e| Untold::Velocity(e.to_string()))?;
-        let given = |name: &str| {
-            let key = ascii(name);
-            let column = self.fluid.columns.get(&key).map(|c| c.numbers.clone());
-            let whole = || self.fluid.whole.get(&key).cloned();
-            let number = || {
-                let known = self.numbers.iter().find(|(own, _)| *own == key);
-                known.map(|(_, x)| vec![*x])
-            };
-            column.or_else(whole).or_else(number)
-        };
-        let found = model.momenta(self.choice, &given, &q.name.text, velocities);
+        let found = model.momenta(
+            self.choice,
+            &|name| self.given(name),
+            &q.name.text,
+            velocities,
+        );
         let found = found.map_err(|e| match e {
-            Unstarted::Missing(name) => {
-                let key = ascii(&name);
-                Untold::Parameter(format!(
-                    "missing key `parameters.{key}`, or no finite number there: the momenta of velocities take it"
-                ))
-            }
+            Unstarted::Missing(name) => Untold::Number(ascii(&name)),
             Unstarted::Line(LineError::Parameter(e)) => Untold::Parameter(e.to_string()),
             other => Untold::Velocity(other.to_string()),
         })?;
@@ -452,14 +397,6 @@ impl Reader<'_> {
             let message = "the model does not tell the momenta of velocities: give momenta";
             Untold::Velocity(message.to_owned())
         })
-    }
-}
-
-/// A value of an expression at a site, if it is a number.
-fn finite(value: f64, site: usize) -> Result<f64, String> {
-    match value.is_finite() {
-        true => Ok(value),
-        false => Err(format!("{value} at site {site} is not a finite number")),
     }
 }
 
@@ -476,7 +413,9 @@ fn positive(depths: Vec<f64>) -> Result<Vec<f64>, String> {
 
 /// Why velocities have no momenta.
 enum Untold {
-    /// A parameter is missing or not admissible.
+    /// This parameter is missing or no number.
+    Number(String),
+    /// A parameter is not admissible.
     Parameter(String),
     /// The velocities are not, or the model does not say.
     Velocity(String),

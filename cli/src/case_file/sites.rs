@@ -20,15 +20,37 @@ pub(super) struct Site<'a> {
 
 pub(super) type Numbers<'a> = dyn Fn(&str) -> Option<f64> + 'a;
 
-/// The numbers that expressions may hold: parameters of the case that are numbers, and its step.
+/// The numbers that expressions may hold: parameters of the case that are numbers or expressions of others,
+/// and its step.
 pub(super) fn numbers(top: &DeTable<'_>, parameters: Option<&DeTable<'_>>) -> Vec<(String, f64)> {
     let step = top.get("h").map(|v| ("h".to_owned(), v));
     let stated = parameters.into_iter().flatten();
     let stated = stated.map(|(k, v)| (k.get_ref().to_string(), v));
-    step.into_iter()
-        .chain(stated)
-        .filter_map(|(key, value)| Some((key, number(value.get_ref()).ok()?)))
-        .collect()
+    let all: Vec<_> = step.into_iter().chain(stated).collect();
+    let plain = all
+        .iter()
+        .filter_map(|(key, value)| Some((key.clone(), number(value.get_ref()).ok()?)));
+    let mut known: Vec<(String, f64)> = plain.collect();
+    let mut rest: Vec<(String, SiteData)> = all
+        .iter()
+        .filter_map(|(key, value)| {
+            let data = SiteData::read(value.get_ref().as_str()?).ok()?;
+            Some((key.clone(), data))
+        })
+        .collect();
+    // Until none is found any more: others are of the site, and are read there.
+    loop {
+        let before = known.len();
+        rest.retain(|(key, data)| {
+            let of = |name: &str| known.iter().find(|(own, _)| own == name).map(|(_, x)| *x);
+            let value = data.value(&of).ok().filter(|x| x.is_finite());
+            known.extend(value.map(|x| (key.clone(), x)));
+            value.is_none()
+        });
+        if known.len() == before {
+            return known;
+        }
+    }
 }
 
 /// The value as TOML, texts in it evaluated.

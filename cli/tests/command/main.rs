@@ -10,6 +10,7 @@ mod comparisons;
 mod elastic;
 mod exit_codes;
 mod figures;
+mod fluid_starts;
 mod fluids;
 mod functions;
 mod groups;

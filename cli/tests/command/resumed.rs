@@ -183,7 +183,7 @@ fn a_fluid_of_particles_that_is_killed_or_interrupted_ends_bit_equal() {
         "model = \"ParticleMesh2D\"\nname = \"killed\"\ndoc = \"a bump in a channel\"\nh = {}\nsteps = 12\n\
          [labels]\na = {}\nn = [{cells}, {cells}]\n[domain]\nlengths = [1.0, 1.0]\nwalls = [\"solid\", \"periodic\"]\n\
          [parameters]\nm = {{ depth = \"1 + 0.2*cos(pi*x)*cos(2*pi*y)\" }}\nc0 = 1.0\nf = 1.0\nalpha = {}\n\
-         [initial]\nX = {{ lattice = \"square\", jitter = 0.2, seed = 3 }}\nvelocity_X = [0.1, 0.2]\n",
+         [initial]\nX = {{ lattice = \"square\", jitter = 0.2, seed = 3 }}\nvelocity_X = [\"0.1 - slope(S, 2)\", \"0.2 + slope(S, 1)\"]\n",
         0.2 / cells as f64,
         4 * cells * cells,
         2.0 / cells as f64,

@@ -1,6 +1,7 @@
 //! Deposit against images of particles that are written out, and the mass on the grid.
 
 use crate::common::*;
+use clebsch::Dual;
 use clebsch::line::Threads;
 use clebsch::mesh::*;
 use clebsch::nalgebra::SVector;
@@ -180,6 +181,108 @@ fn threads_change_no_bit() {
         let one = shared(1, &of, &at, &mass);
         for threads in [2, 3, 5, 8, 1000] {
             assert!(one == shared(threads, &of, &at, &mass), "{threads} threads");
+        }
+    }
+}
+
+/// What interpolates nodal values.
+type Interpolate<F, T> = fn(&mut F, &[T], &mut [T]) -> Result<(), MeshError>;
+
+/// Nodal values at particles beside splines that are written out, their derivatives by dual numbers beside the pull-back of the
+/// weighted values, and the sum of them over masses beside that over nodes.
+fn interpolated<const D: usize, A, B, F, G>(
+    of: &Setting<D>,
+    own: Interpolate<F, f64>,
+    twin: Interpolate<G, Dual<1>>,
+    p: usize,
+) where
+    A: Field<f64, D> + Send + Sync,
+    B: Field<Dual<1>, D> + Send + Sync,
+    F: for<'a> Functional<f64, D, Argument = A, Data<'a> = (&'a [f64],)>,
+    G: for<'a> Functional<Dual<1>, D, Argument = B, Data<'a> = (&'a [Dual<1>],)>,
+{
+    let at = places(of, 7);
+    let mass: Vec<f64> = Numbers::new(3).list(of.particles);
+    let nodes = Nodes::new(of).expect("a grid");
+    let weights = nodes.weights::<f64>();
+    let nodal = Numbers::new(4).list(nodes.count());
+    let mut deposit = F::new(of, (&mass,)).expect("a grid");
+    let fields: Vec<A> = at.iter().map(|x| A::of(*x)).collect();
+    let on_grid = values(&mut deposit, &fields);
+    let mut found = vec![0.0; at.len()];
+    own(&mut deposit, &nodal, &mut found).expect("as many");
+    for (x, found) in at.iter().zip(&found) {
+        let one = |(i, s): (usize, &f64)| {
+            let index = nodes.indices(i);
+            let factor = |d: usize| {
+                let (length, wall) = (of.domain.lengths[d], of.domain.walls[d]);
+                let cells = of.grid.expect("a grid")[d];
+                along(p, length, cells, wall, index[d] as f64, x[d])
+            };
+            s * weights[i] * (0..D).map(factor).product::<f64>()
+        };
+        let expected: f64 = nodal.iter().enumerate().map(one).sum();
+        // As above; a mean of numbers up to 1.
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    }
+    let at_particles = sum(found.iter().zip(&mass).map(|(s, m)| s * m));
+    let at_nodes = on_grid.iter().zip(&nodal).zip(&weights);
+    let at_nodes = sum(at_nodes.map(|((h, s), w)| h * s * w));
+    assert!((at_particles / at_nodes - 1.0).abs() < 1e-14);
+    let seed: Vec<f64> = nodal.iter().zip(&weights).map(|(s, w)| s * w).collect();
+    let mut slopes = vec![A::of([0.0; D]); at.len()];
+    deposit
+        .pull_back(&fields, &seed, &mut slopes)
+        .expect("a gradient");
+    // Of numbers up to 1, a cell apart: around a period a grid of one cell has no slope.
+    let cells = of.grid.expect("a grid");
+    let scale = largest((0..D).map(|d| cells[d] as f64 / of.domain.lengths[d]));
+    let wide = vec![Dual::constant(1.0); at.len()];
+    let nodal: Vec<_> = nodal.iter().map(|s| Dual::constant(*s)).collect();
+    let mut moved = G::new(of, (&wide,)).expect("a grid");
+    for d in 0..D {
+        let places = at.iter().map(|x| {
+            let mut x = x.map(Dual::constant);
+            x[d].dual = [1.0];
+            B::of(x)
+        });
+        values(&mut moved, &places.collect::<Vec<_>>());
+        let mut out = vec![Dual::constant(0.0); at.len()];
+        twin(&mut moved, &nodal, &mut out).expect("as many");
+        for ((found, m), slope) in out.iter().zip(&mass).zip(&slopes) {
+            let off = (found.dual[0] * m - slope.parts()[d]).abs() / scale;
+            assert!(off < 1e-14, "{off:e}");
+        }
+    }
+    assert!(own(&mut deposit, &[], &mut found).is_err());
+}
+
+#[test]
+fn what_stands_at_nodes_is_interpolated_by_the_same_splines() {
+    type Twin = Dual<1>;
+    type Place<T> = SVector<T, 2>;
+    for domain in lines() {
+        for cells in [1, 3, 24] {
+            let of = setting(domain, [cells], 60);
+            type Cubic<T> = deposit<T, 1>;
+            type Quintic<T> = deposit_quintic<T, 1>;
+            let (own, twin) = (Cubic::<f64>::interpolate, Cubic::<Twin>::interpolate);
+            interpolated::<1, f64, Twin, Cubic<f64>, Cubic<Twin>>(&of, own, twin, 3);
+            let (own, twin) = (Quintic::<f64>::interpolate, Quintic::<Twin>::interpolate);
+            interpolated::<1, f64, Twin, Quintic<f64>, Quintic<Twin>>(&of, own, twin, 5);
+        }
+    }
+    for domain in planes() {
+        for grid in [[1, 2], [9, 4], [20, 13]] {
+            let of = setting(domain, grid, 100);
+            type Cubic<T> = deposit<T, 2>;
+            type Quintic<T> = deposit_quintic<T, 2>;
+            let (own, twin) = (Cubic::<f64>::interpolate, Cubic::<Twin>::interpolate);
+            interpolated::<2, Place<f64>, Place<Twin>, Cubic<f64>, Cubic<Twin>>(&of, own, twin, 3);
+            let (own, twin) = (Quintic::<f64>::interpolate, Quintic::<Twin>::interpolate);
+            interpolated::<2, Place<f64>, Place<Twin>, Quintic<f64>, Quintic<Twin>>(
+                &of, own, twin, 5,
+            );
         }
     }
 }

@@ -2,10 +2,25 @@
 
 use crate::syntax;
 use crate::syntax::ast::{Expression, Kind};
+use std::collections::BTreeSet;
+
+/// A function of a number, with its name.
+type Function = (&'static str, fn(f64) -> f64);
 
 /// Functions that site data may hold.
-const FUNCTIONS: [&str; 12] = [
-    "sin", "cos", "tan", "atan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "abs", "sign",
+const FUNCTIONS: [Function; 12] = [
+    ("sin", f64::sin),
+    ("cos", f64::cos),
+    ("tan", f64::tan),
+    ("atan", f64::atan),
+    ("exp", f64::exp),
+    ("log", f64::ln),
+    ("sqrt", f64::sqrt),
+    ("sinh", f64::sinh),
+    ("cosh", f64::cosh),
+    ("tanh", f64::tanh),
+    ("abs", f64::abs),
+    ("sign", |x| if x == 0.0 { 0.0 } else { x.signum() }),
 ];
 
 /// An expression that was read.
@@ -32,17 +47,88 @@ impl SiteData {
     ///
     /// # Errors
     /// A name without a value, or an operation that numbers do not have.
-    pub fn value(&self, of: &dyn Fn(&str) -> Option<f64>) -> Result<f64, String> {
-        value(&self.expression, of)
+    pub fn value(&self, of: &Names<'_>) -> Result<f64, String> {
+        self.value_and_slopes(of, &|_, _| None)
+    }
+
+    /// The same where names have slopes, `slope(S, 1)`, as [`SiteData::slopes`] lists them.
+    ///
+    /// # Errors
+    /// As [`SiteData::value`]; a slope that has no value.
+    pub fn value_and_slopes(&self, of: &Names<'_>, slope: &Slopes<'_>) -> Result<f64, String> {
+        value(&self.expression, &Given { of, slope })
+    }
+
+    /// The names in it, those of slopes too.
+    pub fn names(&self) -> BTreeSet<String> {
+        let mut out = BTreeSet::new();
+        self.expression.each(&mut |e| {
+            if let Kind::Name(n) = &e.kind {
+                out.insert(n.clone());
+            }
+        });
+        out
+    }
+
+    /// The slopes in it: of what, along which direction, counted from 1.
+    ///
+    /// # Errors
+    /// One is not that of a name along a direction that is written as a number.
+    pub fn slopes(&self) -> Result<Vec<(String, u64)>, String> {
+        let mut out = Vec::new();
+        self.expression.each(&mut |e| {
+            if let Kind::Call(f, arguments) = &e.kind
+                && f.text == SLOPE
+            {
+                out.push(slope_of(arguments).map(|(name, along)| (name.to_owned(), along)));
+            }
+        });
+        out.into_iter().collect()
     }
 }
 
-fn value(e: &Expression, of: &dyn Fn(&str) -> Option<f64>) -> Result<f64, String> {
+/// The values of names.
+pub type Names<'a> = dyn Fn(&str) -> Option<f64> + 'a;
+
+/// The slopes of names along directions.
+pub type Slopes<'a> = dyn Fn(&str, u64) -> Option<f64> + 'a;
+
+/// The function of a name and a direction.
+const SLOPE: &str = "slope";
+
+struct Given<'a> {
+    of: &'a Names<'a>,
+    slope: &'a Slopes<'a>,
+}
+
+/// Of what a slope is, and along which direction.
+fn slope_of(arguments: &[Expression]) -> Result<(&str, u64), String> {
+    let [name, direction] = arguments else {
+        return Err("a slope is that of a mesh along a direction, as in slope(S, 1)".to_owned());
+    };
+    let Kind::Name(name) = &name.kind else {
+        return Err(
+            "a slope is that of a mesh by its name, as in slope(S, 1): write out what it is of sums, products and \
+             functions, as 2*S*slope(S, 1) of S^2"
+                .to_owned(),
+        );
+    };
+    let along = match &direction.kind {
+        Kind::Number(q) => q.as_integer().and_then(|n| u64::try_from(n).ok()),
+        _ => None,
+    };
+    let along = along.ok_or_else(|| {
+        format!("the direction of a slope is a whole number, as in slope({name}, 1)")
+    })?;
+    Ok((name, along))
+}
+
+fn value(e: &Expression, of: &Given<'_>) -> Result<f64, String> {
     Ok(match &e.kind {
         Kind::Number(q) => q.value(),
         Kind::Constant(c) => c.value(),
         Kind::Name(n) if crate::syntax::is_circle(n) => std::f64::consts::PI,
-        Kind::Name(n) => of(n).ok_or_else(|| match n.as_str() {
+        Kind::Name(n) => (of.of)(n).ok_or_else(|| match n.as_str() {
             "t" => "`t` has no value here: data are of the start, and what an end holds stays as it is there".to_owned(),
             n => format!("`{n}` has no value here"),
         })?,
@@ -71,32 +157,28 @@ fn value(e: &Expression, of: &dyn Fn(&str) -> Option<f64>) -> Result<f64, String
                 None => base.powf(q.value()),
             }
         }
+        Kind::Call(f, arguments) if f.text == SLOPE => {
+            let (name, along) = slope_of(arguments)?;
+            (of.slope)(name, along).ok_or_else(|| {
+                format!(
+                    "slope({name}, {along}) has no value here: slopes are those of meshes on the grid of a fluid, in values of \
+                     [initial] at its particles"
+                )
+            })?
+        }
         Kind::Call(f, arguments) => {
+            let own = FUNCTIONS.iter().find(|(name, _)| *name == f.text);
+            let Some((_, function)) = own else {
+                let known = FUNCTIONS.map(|(name, _)| name).join(" ");
+                return Err(format!(
+                    "`{}` is no function of site data; there are {known}, and for fluids on a grid slope",
+                    f.text
+                ));
+            };
             let [x] = arguments.as_slice() else {
                 return Err(format!("`{}` takes one number here", f.text));
             };
-            let x = value(x, of)?;
-            match f.text.as_str() {
-                "sin" => x.sin(),
-                "cos" => x.cos(),
-                "tan" => x.tan(),
-                "atan" => x.atan(),
-                "exp" => x.exp(),
-                "log" => x.ln(),
-                "sqrt" => x.sqrt(),
-                "sinh" => x.sinh(),
-                "cosh" => x.cosh(),
-                "tanh" => x.tanh(),
-                "abs" => x.abs(),
-                "sign" if x == 0.0 => 0.0,
-                "sign" => x.signum(),
-                other => {
-                    let known = FUNCTIONS.join(" ");
-                    return Err(format!(
-                        "`{other}` is no function of site data; there are {known}"
-                    ));
-                }
-            }
+            function(value(x, of)?)
         }
         Kind::Transpose(_) | Kind::Component(..) => {
             return Err(
@@ -104,4 +186,31 @@ fn value(e: &Expression, of: &dyn Fn(&str) -> Option<f64>) -> Result<f64, String
             );
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SiteData;
+
+    #[test]
+    fn names_and_slopes_are_listed_and_have_their_values() {
+        let data = SiteData::read("-(c^2/f)*slope(S, 2) + sqrt(S)").expect("is read");
+        assert_eq!(data.slopes(), Ok(vec![("S".to_owned(), 2)]));
+        assert_eq!(Vec::from_iter(data.names()), ["S", "c", "f"]);
+        let of = |name: &str| Some(if name == "S" { 4.0 } else { 3.0 });
+        let slope = |name: &str, along: u64| (name == "S" && along == 2).then_some(0.5);
+        assert_eq!(data.value_and_slopes(&of, &slope), Ok(-1.5 + 2.0));
+        let none = data.value(&of).expect_err("no slopes here");
+        assert!(none.contains("slope(S, 2) has no value here"), "{none}");
+        for wrong in [
+            "slope(S)",
+            "slope(S, 1.5)",
+            "slope(S, -1)",
+            "slope(2*S, 1)",
+            "slope(S, c)",
+        ] {
+            let data = SiteData::read(wrong).expect("is read");
+            assert!(data.slopes().is_err(), "{wrong}");
+        }
+    }
 }

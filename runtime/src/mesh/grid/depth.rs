@@ -9,7 +9,7 @@ use super::padded::Padded;
 use super::position::Position;
 use super::sorted::{Rows, Sorted};
 use super::spline::{Basis, Splines};
-use super::stencil::{gather, scatter};
+use super::stencil::{gather, interpolate, scatter};
 use crate::line::Threads;
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SVector;
@@ -149,6 +149,24 @@ where
         ranges.for_each(collect);
         Ok(())
     }
+
+    /// Once for each start: one thread does.
+    fn interpolate(&mut self, values: &[T], out: &mut [T]) -> Result<(), MeshError> {
+        MeshError::unless_of_length(values, self.nodes.count())?;
+        MeshError::unless_of_length(out, self.mass.len())?;
+        let weights = self.nodes.weights::<T>();
+        let seed: Vec<T> = values.iter().zip(weights).map(|(v, w)| *v * w).collect();
+        self.padded.extend(&seed);
+        let (places, width) = (self.padded.places(), self.padded.width());
+        let ranges = self.sorted.ranges();
+        for (rows, out) in ranges.zip(out.chunks_mut(self.sorted.range())) {
+            for (row, from) in (0..self.nodes.axes()[0].intervals()).zip((0..).step_by(width)) {
+                let places = &places[from..from + K * width];
+                interpolate::<T, D, K>(places, width, rows.row(row), out);
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The functionals that models name, for lines and for the plane.
@@ -162,6 +180,18 @@ macro_rules! named {
 
         named!($name, 1, T);
         named!($name, 2, SVector<T, 2>);
+
+        impl<T: Real, const D: usize> $name<T, D> {
+            /// What stands at the nodes, interpolated by the splines of the deposit at the particles of its last value,
+            /// `Σ_i values_i Φ_i(X_a)`, whatever their masses. Of values times the weights of nodes the pull-back is
+            /// the gradient of this times the mass.
+            ///
+            /// # Errors
+            /// One of the lists has another length.
+            pub fn interpolate(&mut self, values: &[T], out: &mut [T]) -> Result<(), MeshError> {
+                self.0.interpolate(values, out)
+            }
+        }
     };
     ($name:ident, $d:literal, $position:ty) => {
         impl<T: Real> Functional<T, $d> for $name<T, $d> {

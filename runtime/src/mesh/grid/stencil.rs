@@ -99,3 +99,33 @@ pub(super) fn gather<T: Real, A: Position<T, D>, const D: usize, const K: usize>
         }
     }
 }
+
+/// What stands at the nodes, interpolated at the particles of one row of cells, from `K` rows of places.
+#[inline(always)]
+pub(super) fn interpolate<T: Real, const D: usize, const K: usize>(
+    places: &[T],
+    width: usize,
+    particles: &[Particle<T, D>],
+    out: &mut [T],
+) where
+    Splines<K>: Basis<K>,
+{
+    for particle in particles {
+        let across = Splines::<K>::values(particle.fraction[0]);
+        let mut sum = T::zero();
+        for (row, weight) in places.chunks_exact(width).zip(across) {
+            if D == 1 {
+                sum += row[0] * weight;
+                continue;
+            }
+            let along = Splines::<K>::values(particle.fraction[D - 1]);
+            let column = particle.column();
+            let own = row.get(column..column + K).unwrap_or_default();
+            let each = own.iter().zip(along);
+            sum += each.fold(T::zero(), |sum, (value, along)| sum + *value * along) * weight;
+        }
+        if let Some(place) = out.get_mut(particle.number()) {
+            *place = sum;
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! Starts of fluids that are stated by the meshes of the model: values and slopes at the particles. They are in balance with the force
+//! of the model to rounding; equal cases start alike to the last byte; what has no value there is told with what to write.
+
+use crate::common::{Done, Folder, clebsch};
+use clebsch::scalar::largest;
+use std::collections::BTreeMap;
+
+const MODEL: &str = "model Channel {
+    label a in 0..N; grid n;
+    param m: Real at a; param w: Real at n; param c0, f, alpha: Real;
+    field X: Vec<2> at a on box;
+    mesh H: Real at n = deposit(X, m);
+    mesh S: Real at n = smooth(H, alpha);
+    lagrangian = (m/(2*h))*dot(next(X) - X, next(X) - X) + (m*f/2)*dot(perp(X), next(X)) - h*(c0^2/2)*w*H*S;
+}
+";
+
+const VELOCITY: &str = r#"["-(c0^2/f)*slope(S, 2)", "(c0^2/f)*slope(S, 1)"]"#;
+
+/// Particles on a lattice that is out of order, which a step takes to no wall; numbers by expressions of one another.
+fn case(start: &str) -> String {
+    format!(
+        "model = \"Channel\"\nh = 0.05\nsteps = 1\n[labels]\na = 64\nn = [6, 5]\n\
+         [domain]\nlengths = [2.0, 1.5]\nwalls = [\"solid\", \"periodic\"]\n\
+         [parameters]\nm = {{ depth = \"1 + 0.2*exp(-4*((x - 1)^2 + (y - 0.7)^2))\" }}\n\
+         alpha = \"0.1*c0\"\nc0 = \"pi/2\"\nf = 1.5\n\
+         [initial]\nX = {{ lattice = \"square\", jitter = 0.3, seed = 5 }}\n{start}\n"
+    )
+}
+
+fn run(folder: &Folder, model: &str, case: &str, more: &[&str]) -> Done {
+    let model = folder.write("model.clebsch", model);
+    let case = folder.write("case.toml", case);
+    let mut all = vec!["run", &model[..], "--case", &case];
+    all.extend(more);
+    clebsch(&all)
+}
+
+/// The numbers of a run: a column of `trajectory.csv` for each name, and parameters.
+struct Ran {
+    columns: BTreeMap<String, Vec<f64>>,
+    parameters: serde_json::Value,
+}
+
+impl Ran {
+    fn of(model: &str, case: &str, name: &str) -> Self {
+        let folder = Folder::new(&format!("fluid-starts-{name}"));
+        let out = folder.path("out");
+        let done = run(&folder, model, case, &["--out", &out]);
+        assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+        let csv = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
+        let mut lines = csv.lines();
+        let names = lines.next().expect("a head").split(',').map(str::to_owned);
+        let mut columns: BTreeMap<String, Vec<f64>> = names.clone().map(|n| (n, vec![])).collect();
+        let names: Vec<String> = names.collect();
+        for line in lines {
+            for (name, x) in names.iter().zip(line.split(',')) {
+                let own = columns.get_mut(name).expect("a column");
+                own.push(x.parse().expect("a number"));
+            }
+        }
+        let json = std::fs::read_to_string(format!("{out}/run.json")).expect("is written");
+        let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        let parameters = json["parameters"].clone();
+        Self {
+            columns,
+            parameters,
+        }
+    }
+
+    fn at(&self, name: &str, node: usize) -> f64 {
+        self.columns
+            .get(name)
+            .unwrap_or_else(|| panic!("no {name}"))[node]
+    }
+
+    fn parameter(&self, name: &str) -> f64 {
+        self.parameters[name].as_f64().expect("a number")
+    }
+}
+
+/// By how much the first step is off the straight line of the velocity, of what the Coriolis force alone would turn it by. The force and
+/// the Coriolis force cancel at the start where, and only where, it is nothing: the velocity u of the step solves
+/// `u - (f h/2) R u = v + (h/2) a`, and `v` itself does for `a = -f R v`.
+fn imbalance(model: &str, start: &str, name: &str) -> f64 {
+    let ran = Ran::of(model, &case(start), name);
+    let (h, f) = (0.05, ran.parameter("f"));
+    let (mut off, mut scale) = (Vec::new(), Vec::new());
+    for a in 0..64 {
+        let m = ran.parameter(&format!("m_{a}"));
+        let x = |node: usize| [1, 2].map(|d| ran.at(&format!("X_{a}_{d}"), node));
+        let [from, to] = [x(0), x(1)];
+        let turned = [-from[1], from[0]];
+        for d in 0..2 {
+            let p = ran.at(&format!("momentum_X_{a}_{}", d + 1), 0);
+            let v = p / m - f / 2.0 * turned[d];
+            off.push(to[d] - from[d] - h * v);
+            scale.push(h * h * f / 2.0 * v);
+        }
+    }
+    let (off, scale) = (largest(off), largest(scale));
+    assert!(scale > 1e-5, "{scale}");
+    off / scale
+}
+
+#[test]
+fn velocities_by_slopes_are_in_balance_with_the_force_of_the_model() {
+    let other = MODEL
+        .replace("deposit(X, m)", "deposit_quintic(X, m)")
+        .replace("smooth(H", "smooth_isotropic(H");
+    // Places of size 2 are rounded to 2e-16, over turns of 1e-4 at least; the isotropic smoother is an iteration, whose rest is another
+    // one in its transpose.
+    for (name, model, rounding) in [("cubic", MODEL, 1e-11), ("quintic", &other, 1e-10)] {
+        let off = imbalance(model, &format!("velocity_X = {VELOCITY}"), name);
+        println!("{name}: {off:e}");
+        assert!(off < rounding, "{name}: {off:e}");
+    }
+    // Another slope, another mesh.
+    for wrong in [
+        r#"["-(c0^2/f)*slope(S, 1)", "(c0^2/f)*slope(S, 1)"]"#,
+        r#"["-(c0^2/f)*slope(H, 2)", "(c0^2/f)*slope(H, 1)"]"#,
+    ] {
+        let off = imbalance(MODEL, &format!("velocity_X = {wrong}"), "wrong");
+        assert!(off > 1e-2, "{wrong}: {off:e}");
+    }
+}
+
+#[test]
+fn along_a_line_a_momentum_that_the_first_kick_takes_away_moves_nothing() {
+    let model = "model Line {
+        label a in 0..N; grid n; param m: Real at a; param w: Real at n; param c0, alpha: Real;
+        field X: Real at a on box; mesh H: Real at n = deposit(X, m); mesh S: Real at n = smooth(H, alpha);
+        lagrangian = m*(next(X) - X)^2/(2*h) - h*(c0^2/2)*w*H*S;
+    }";
+    let case = "model = \"Line\"\nh = 0.1\nsteps = 1\n[labels]\na = 40\nn = 12\n[domain]\nlengths = [1.5]\nwalls = [\"solid\"]\n\
+        [parameters]\nm = { depth = \"1 + 0.3*cos(pi*x/Lx)\" }\nc0 = 1.0\nalpha = 0.2\n\
+        [initial]\nX = { lattice = \"square\", jitter = 0.2 }\nmomentum_X = \"m*(h/2)*c0^2*slope(S, 1)\"\n";
+    let ran = Ran::of(model, case, "line");
+    for a in 0..40 {
+        let [from, to] = [0, 1].map(|node| ran.at(&format!("X_{a}"), node));
+        // A rounding of the place, of 1.5 at most.
+        assert!((to - from).abs() < 1e-15, "{a}: {from} {to}");
+        assert!(ran.at(&format!("momentum_X_{a}"), 0).abs() > 1e-9, "{a}");
+    }
+}
+
+/// The interpolation is the transpose of the deposit: the masses of the particles times the depth at them is the sum over nodes of the
+/// depth, the deposit and the weight.
+#[test]
+fn a_mesh_by_its_name_is_its_value_at_the_particle() {
+    let ran = Ran::of(MODEL, &case("momentum_X = [\"m*S\", 0.0]"), "values");
+    let (mut there, mut here) = (0.0, 0.0);
+    for a in 0..64 {
+        let p = ran.at(&format!("momentum_X_{a}_1"), 0);
+        let value = p / ran.parameter(&format!("m_{a}"));
+        assert!((0.9..1.3).contains(&value), "{a}: {value}");
+        there += p;
+    }
+    for n in 0..35 {
+        let [s, h] = ["S", "H"].map(|mesh| ran.at(&format!("{mesh}_{n}"), 0));
+        here += ran.parameter(&format!("w_{n}")) * s * h;
+    }
+    // Sums of a few hundred terms of one sign.
+    assert!((there / here - 1.0).abs() < 1e-13, "{there} {here}");
+    // Meshes at particles are theirs.
+    let model = "model Cells {
+        label a in 0..N; param m: Real at a; param g, α: Real; field X: Vec<2> at a on torus(L);
+        mesh φ: Real at a = helmholtz_depth(X, m, α);
+        lagrangian = (m/(2*h))*dot(next(X) - X, next(X) - X) - h*g*m*φ/2;
+    }";
+    let case = "model = \"Cells\"\nh = 0.01\nsteps = 1\n[labels]\na = 36\n[domain]\nL = [1.0, 1.0]\n\
+        [parameters]\nm = { depth = \"1 + 0.1*cos(2*pi*x)\" }\ng = 1.0\nalpha = 0.2\n\
+        [initial]\nX = { lattice = \"brick\", jitter = 0.2 }\nvelocity_X = [\"phi\", \"0.1*sin(2*pi*phi)\"]\n";
+    let ran = Ran::of(model, case, "cells");
+    for a in 0..36 {
+        let p = ran.at(&format!("momentum_X_{a}_1"), 0);
+        let expected = ran.parameter(&format!("m_{a}")) * ran.at(&format!("phi_{a}"), 0);
+        // Both are solved for from the same places, and multiplied once.
+        assert!((p / expected - 1.0).abs() < 1e-15, "{a}: {p} {expected}");
+    }
+}
+
+#[test]
+fn equal_cases_start_alike_to_the_last_byte_and_go_on_from_a_checkpoint() {
+    let folder = Folder::new("fluid-starts-bytes");
+    let text = case(&format!("velocity_X = {VELOCITY}"));
+    let whole = |name: &str, more: &[&str]| {
+        let out = folder.path(name);
+        let mut all = vec!["--steps", "20", "--out", &out[..]];
+        all.extend(more);
+        let done = run(&folder, MODEL, &text, &all);
+        assert_eq!(done.code, 0, "{}", done.err);
+        ["trajectory.csv", "trajectory.npz", "run.json"]
+            .map(|file| std::fs::read(format!("{out}/{file}")).expect("is written"))
+    };
+    let first = whole("first", &[]);
+    assert!(first == whole("second", &[]));
+    // A run that is complete is taken up as the same one: its start has the same numbers.
+    assert!(first == whole("first", &["--resume"]));
+}
+
+#[test]
+fn what_has_no_value_is_told_with_what_to_write() {
+    let folder = Folder::new("fluid-starts-wrong");
+    let check = |text: &str, said: &[&str]| {
+        let done = run(&folder, MODEL, text, &[]);
+        assert_eq!(done.code, 2, "{}{}", done.out, done.err);
+        for said in said {
+            assert!(done.err.contains(said), "{said}\n{}", done.err);
+        }
+    };
+    let velocity = |first: &str| case(&format!("velocity_X = [\n\"0\",\n\"{first}\"]"));
+    let (line, _) = case("")
+        .split_once("[initial]")
+        .map_or((0, ""), |(head, _)| (head.lines().count() + 5, ""));
+    let place = format!("case.toml:{line}: initial.velocity_X: ");
+    for (text, said) in [
+        (
+            "slope(S, 3)",
+            "slope(S, 3): the domain has two directions: write 1 or 2",
+        ),
+        ("slope(S, 0)", "the domain has two directions"),
+        (
+            "slope(S, x)",
+            "the direction of a slope is a whole number, as in slope(S, 1)",
+        ),
+        (
+            "slope(S)",
+            "a slope is that of a mesh along a direction, as in slope(S, 1)",
+        ),
+        ("slope(2, 1)", "a slope is that of a mesh by its name"),
+        ("slope(S^2, 1)", "2*S*slope(S, 1) of S^2"),
+        (
+            "slope(m, 1)",
+            "`m` is no mesh of the model; slopes are those of meshes on a grid, of which the model has `H`, `S`",
+        ),
+        ("slope(Q, 1)", "`Q` is no mesh of the model"),
+        (
+            "grad(S, 1)",
+            "`grad` is no function of site data; there are sin",
+        ),
+        ("Q", "`Q` has no value here"),
+        ("w", "`w` has no value here"),
+    ] {
+        check(&velocity(text), &[&place, text, said]);
+    }
+    let of = |from: &str, to: &str| {
+        let text = velocity("0");
+        assert!(text.contains(from), "{from}");
+        text.replacen(from, to, 1)
+    };
+    check(
+        &of("1 + 0.2*exp", "1 + 0.2*S*exp"),
+        &[
+            "parameters.m: ",
+            "`S` is a mesh, whose values the parameters and the places X decide",
+            "velocity_X = [\"-slope(S, 2)\"",
+        ],
+    );
+    check(
+        &of("f = 1.5", "f = \"slope(S, 1)\""),
+        &[
+            "parameters.f: ",
+            "slope(S, 1) has no value here: slopes are those of meshes on the grid of a fluid",
+        ],
+    );
+    check(
+        &of(
+            "{ lattice = \"square\", jitter = 0.3, seed = 5 }",
+            "[\"a/N\", \"S\"]",
+        ),
+        &[
+            "initial.X: ",
+            "`S` depends on the places X, which are stated here",
+        ],
+    );
+    check(
+        &velocity("S").replace("alpha = \"0.1*c0\"\n", ""),
+        &["`S` is made of alpha: missing key `parameters.alpha`"],
+    );
+    check(
+        &velocity("S").replace("\"0.1*c0\"", "-1.0"),
+        &["`S` has no value at these places: "],
+    );
+    // Another set of sites.
+    let two = MODEL
+        .replace("grid n;", "label b in 0..M; grid n; param k: Real at b;")
+        .replace("    mesh H", "    field Y: Vec<2> at b;\n    mesh H")
+        .replace(
+            "- h*(c0",
+            "+ (k/(2*h))*dot(next(Y) - Y, next(Y) - Y) - h*(c0",
+        );
+    let text = velocity("0")
+        .replace("velocity_X", "momentum_X")
+        .replace("a = 64", "a = 64\nb = 3");
+    let text = text.replace("c0 = ", "k = 1.0\nc0 = ");
+    for (momentum, said) in [
+        (
+            "S",
+            "`S` has values at the particles `a`, and those of Y stand at `b`",
+        ),
+        ("x", "`x` has no value here"),
+    ] {
+        let text = format!("{text}Y = [\"b\", 0.0]\nmomentum_Y = [\"{momentum}\", 0.0]\n");
+        let done = run(&folder, &two, &text, &[]);
+        assert_eq!(done.code, 2, "{}{}", done.out, done.err);
+        let said = format!("initial.momentum_Y: \"{momentum}\": {said}");
+        assert!(done.err.contains(&said), "{}", done.err);
+    }
+}

@@ -1,0 +1,271 @@
+//! Functionals of all sites at the particles of a fluid before it starts. Takes the places of the particles and what a case gives
+//! beside; gives the values at each particle and, of what stands on a grid, the slopes, by the splines of its deposit.
+
+use crate::functional::{Around, Extent, Held, made};
+use crate::lines::Numbers;
+use crate::sites::Column;
+use crate::value::Value;
+use clebsch::ParameterError;
+use clebsch::mesh::{
+    self, Domain, Functional, MeshError, Nodes, Setting, Wall, deposit, deposit_quintic,
+};
+use clebsch_core::lattice::{Known, Lattice, Mesh, Source};
+use core::fmt;
+use nalgebra::SVector;
+
+/// Where the particles of a fluid are.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed<'a> {
+    /// Lengths of the domain along each of one or two directions.
+    pub lengths: &'a [f64],
+    /// Whether each of them ends in walls.
+    pub walls: &'a [bool],
+    /// Cells of the grid along each, where there is one.
+    pub cells: Option<&'a [usize]>,
+    /// Coordinates of one particle after the other.
+    pub at: &'a [f64],
+}
+
+/// A functional at the particles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtParticles {
+    /// The value at each particle; of one on a grid by the splines of its deposit.
+    pub values: Vec<f64>,
+    /// Of one on a grid the derivatives along each direction, one particle after the other. Of the functional that the
+    /// potential is made of they are the force for unit mass, as the deposit pulls it back, to rounding.
+    pub slopes: Option<Vec<f64>>,
+}
+
+/// Why a functional has no values at the particles.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Unvalued {
+    /// What it is made of is not given, by name.
+    Missing(String),
+    /// It is Rust code, by its path.
+    Path(String),
+    /// It cannot be made of what is given.
+    Parameter(ParameterError),
+    /// It has no value there.
+    Mesh(MeshError),
+    /// Its domain has no grid, or it is made of something else than these places.
+    Unfit,
+}
+
+impl fmt::Display for Unvalued {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing(name) => write!(f, "it is made of `{name}`, which is not given"),
+            Self::Path(path) => write!(f, "`{path}` is Rust code of its own, which needs a build"),
+            Self::Parameter(e) => write!(f, "{e}"),
+            Self::Mesh(e) => write!(f, "{e}"),
+            Self::Unfit => write!(f, "it is not made of the places of these particles"),
+        }
+    }
+}
+
+impl std::error::Error for Unvalued {}
+
+impl From<ParameterError> for Unvalued {
+    fn from(e: ParameterError) -> Self {
+        Unvalued::Parameter(e)
+    }
+}
+
+impl From<MeshError> for Unvalued {
+    fn from(e: MeshError) -> Self {
+        Unvalued::Mesh(e)
+    }
+}
+
+/// The functional number `mesh` of a model at the particles; `numbers` gives parameters by their names as the model writes them,
+/// those at particles one after the other.
+///
+/// # Errors
+/// [`Unvalued`]: what is missing, or why there is no value.
+pub fn at_particles(
+    lattice: &Lattice,
+    mesh: usize,
+    placed: &Placed<'_>,
+    numbers: &Numbers<'_>,
+) -> Result<AtParticles, Unvalued> {
+    let count = placed.at.len() / placed.lengths.len().max(1);
+    let around = extent(placed).and_then(|e| Around::new(e, placed.cells, count));
+    let around = around.ok_or(Unvalued::Unfit)?;
+    let (column, root) = values(lattice, mesh, &around, placed, numbers)?;
+    let Column::Numbers(values) = column else {
+        return Err(Unvalued::Unfit);
+    };
+    let (Some(root), Some(own)) = (lattice.meshes.get(root), lattice.meshes.get(mesh)) else {
+        return Err(Unvalued::Unfit);
+    };
+    if lattice
+        .find(&own.name.text)
+        .is_some_and(|q| !lattice.is_grid(q.label))
+    {
+        return Ok(AtParticles {
+            values,
+            slopes: None,
+        });
+    }
+    let places = || {
+        placed
+            .at
+            .as_chunks::<2>()
+            .0
+            .iter()
+            .map(|x| SVector::from(*x))
+    };
+    match (named(root)?, &around) {
+        ("deposit", Around::Line(s)) => {
+            interpolated::<deposit<f64, 1>, f64, 1>(s, placed.at, &values)
+        }
+        ("deposit", Around::Plane(s)) => {
+            let at: Vec<SVector<f64, 2>> = places().collect();
+            interpolated::<deposit<f64, 2>, _, 2>(s, &at, &values)
+        }
+        ("deposit_quintic", Around::Line(s)) => {
+            interpolated::<deposit_quintic<f64, 1>, f64, 1>(s, placed.at, &values)
+        }
+        ("deposit_quintic", Around::Plane(s)) => {
+            let at: Vec<SVector<f64, 2>> = places().collect();
+            interpolated::<deposit_quintic<f64, 2>, _, 2>(s, &at, &values)
+        }
+        _ => Err(Unvalued::Unfit),
+    }
+}
+
+fn extent(placed: &Placed<'_>) -> Option<Extent> {
+    let wall = |solid: &bool| match solid {
+        true => Wall::Solid,
+        false => Wall::Periodic,
+    };
+    Some(match (placed.lengths, placed.walls) {
+        ([length], [w]) => Extent::Line(Domain {
+            lengths: [*length],
+            walls: [wall(w)],
+        }),
+        ([width, height], [w, v]) => Extent::Plane(Domain {
+            lengths: [*width, *height],
+            walls: [wall(w), wall(v)],
+        }),
+        _ => return None,
+    })
+}
+
+/// The name of a functional that the runtime supplies.
+fn named(mesh: &Mesh) -> Result<&str, Unvalued> {
+    let name = mesh.path.strip_prefix("clebsch::mesh::");
+    let known = name.filter(|_| mesh.kind != Known::Path);
+    known.ok_or_else(|| Unvalued::Path(mesh.path.clone()))
+}
+
+/// The values at the sites of a functional, and the number of the first of those that it is made of.
+fn values(
+    lattice: &Lattice,
+    at: usize,
+    around: &Around,
+    placed: &Placed<'_>,
+    numbers: &Numbers<'_>,
+) -> Result<(Column<f64>, usize), Unvalued> {
+    let mesh = lattice.meshes.get(at).ok_or(Unvalued::Unfit)?;
+    let (of, root) = match &mesh.of {
+        Source::Field(name) if lattice.places().is_some_and(|q| q.name.text == *name) => {
+            let column = match placed.lengths.len() {
+                1 => Column::Numbers(placed.at.to_vec()),
+                d => Column::of_rows([d, 1], placed.at),
+            };
+            (column, at)
+        }
+        Source::Field(_) => return Err(Unvalued::Unfit),
+        // Functionals are declared before those that are made of them.
+        Source::Functional(i) if *i < at => values(lattice, *i, around, placed, numbers)?,
+        Source::Functional(_) => return Err(Unvalued::Unfit),
+    };
+    let data = mesh.arguments.iter().skip(1).map(|a| {
+        let missing = || Unvalued::Missing(a.text.clone());
+        let list = numbers(&a.text).ok_or_else(missing)?;
+        Ok(match lattice.find(&a.text) {
+            Some(_) => Value::Sites(Column::Numbers(list)),
+            None => Value::Real(*list.first().ok_or_else(missing)?),
+        })
+    });
+    let data: Vec<Value<f64>> = data.collect::<Result<_, Unvalued>>()?;
+    let made = made::<f64>(named(mesh)?, around, &data).ok_or(Unvalued::Unfit)?;
+    let mut functional: Held<f64> = made?;
+    let own = lattice.find(&mesh.name.text).ok_or(Unvalued::Unfit)?;
+    let count = match lattice.is_grid(own.label) {
+        true => around.nodes(),
+        false => placed.at.len() / placed.lengths.len().max(1),
+    };
+    let mut out = vec![0.0; count];
+    functional.value(&of, &mut out).ok_or(Unvalued::Unfit)??;
+    Ok((Column::Numbers(out), root))
+}
+
+/// A deposit as what interpolates: that of unit masses, so that particles without mass have values and slopes too.
+trait Interpolates<A, const D: usize>:
+    for<'a> Functional<f64, D, Argument = A, Data<'a> = (&'a [f64],)>
+{
+    fn at_last(&mut self, nodal: &[f64], out: &mut [f64]) -> Result<(), MeshError>;
+    fn zero() -> A;
+    fn coordinates(of: &A) -> [f64; D];
+}
+
+macro_rules! interpolates {
+    ($($name:ident),*) => {$(
+        impl Interpolates<f64, 1> for mesh::$name<f64, 1> {
+            fn at_last(&mut self, nodal: &[f64], out: &mut [f64]) -> Result<(), MeshError> {
+                self.interpolate(nodal, out)
+            }
+
+            fn zero() -> f64 {
+                0.0
+            }
+
+            fn coordinates(of: &f64) -> [f64; 1] {
+                [*of]
+            }
+        }
+
+        impl Interpolates<SVector<f64, 2>, 2> for mesh::$name<f64, 2> {
+            fn at_last(&mut self, nodal: &[f64], out: &mut [f64]) -> Result<(), MeshError> {
+                self.interpolate(nodal, out)
+            }
+
+            fn zero() -> SVector<f64, 2> {
+                SVector::zeros()
+            }
+
+            fn coordinates(of: &SVector<f64, 2>) -> [f64; 2] {
+                [of.x, of.y]
+            }
+        }
+    )*};
+}
+
+interpolates!(deposit, deposit_quintic);
+
+fn interpolated<F, A, const D: usize>(
+    setting: &Setting<D>,
+    at: &[A],
+    nodal: &[f64],
+) -> Result<AtParticles, Unvalued>
+where
+    A: Copy,
+    F: Interpolates<A, D>,
+{
+    let mut spread = F::new(setting, (&vec![1.0; at.len()],))?;
+    let mut nodes = vec![0.0; nodal.len()];
+    spread.value(at, &mut nodes)?;
+    let mut values = vec![0.0; at.len()];
+    spread.at_last(nodal, &mut values)?;
+    let weights = Nodes::new(setting)?.weights::<f64>();
+    let seed: Vec<f64> = nodal.iter().zip(weights).map(|(s, w)| s * w).collect();
+    let mut slopes = vec![F::zero(); at.len()];
+    spread.pull_back(at, &seed, &mut slopes)?;
+    let slopes = slopes.iter().flat_map(F::coordinates).collect();
+    Ok(AtParticles {
+        values,
+        slopes: Some(slopes),
+    })
+}
