@@ -142,10 +142,10 @@ impl Plan {
             ..
         } = &self.case;
         let settings = Settings {
-            h: *h,
             order: self.order,
             solver: self.solver,
             compensated: self.compensated,
+            ..Settings::step(*h)
         };
         let opened = match self.halve {
             true => Halved::open(card, parameters, initial, settings)

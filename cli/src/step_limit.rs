@@ -11,6 +11,9 @@ use serde_json::{Value, json};
 /// Most numbers of initial values of which the longest step is sought: each of some sixty openings reads them all.
 const SOUGHT: usize = 20_000;
 
+/// The same where constraints are held, whose steps are searches and of which twice as many are taken.
+const SOUGHT_HELD: usize = 5_000;
+
 /// What is known of the longest step before a run.
 #[derive(Clone, Debug)]
 pub(crate) enum StepLimit {
@@ -28,19 +31,23 @@ impl StepLimit {
         let case = &plan.case;
         let has_sites = plan.choice.is_some();
         let numbers: usize = case.initial.iter().map(Vec::len).sum();
-        let why = if model_file::is_held(card) {
-            "constraints are held".to_owned()
-        } else if numbers > SOUGHT {
-            format!("the state has {numbers} numbers, more than {SOUGHT}")
+        let is_held = model_file::is_held(card);
+        let most = match is_held {
+            true => SOUGHT_HELD,
+            false => SOUGHT,
+        };
+        let why = if numbers > most {
+            format!("the state has {numbers} numbers, more than {most}")
         } else {
-            let Some(limit) = LongestStep::of(card, &case.parameters, &case.initial, case.h) else {
-                return Self::Silent;
+            let found = LongestStep::of(card, &case.parameters, &case.initial, case.h);
+            let near = |limit: &LongestStep| {
+                case.h.abs() > 0.5 * limit.step || limit.warning(case.h).is_some()
             };
-            let near = case.h.abs() > 0.5 * limit.step || limit.warning(case.h).is_some();
-            return match has_sites || near {
-                true => Self::Known(limit),
-                false => Self::Silent,
-            };
+            match found {
+                Ok(limit) if has_sites || near(&limit) => return Self::Known(limit),
+                Err(why) if is_held => why.to_string(),
+                Ok(_) | Err(_) => return Self::Silent,
+            }
         };
         match has_sites {
             true => Self::NotSought(why),

@@ -38,12 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let parameters = [vec![1.0], vec![1.0], vec![2.0]];
     let initial = [vec![0.3], vec![0.0]];
-    let settings = Settings {
-        h: 0.05,
-        order: None,
-        solver: None,
-        compensated: false,
-    };
+    let settings = Settings::step(0.05);
     let mut running = (card.open)(&parameters, &initial, settings)?;
     let mut record = Record::new(running.card());
     let summary = run(running.as_mut(), 2000, 200, &mut record)?;

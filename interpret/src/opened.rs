@@ -3,7 +3,7 @@
 use crate::Refused;
 use crate::code::{Places, Routine};
 use crate::constants::Constants;
-use crate::lower::{Shared, entry};
+use crate::lower::{self, Shared, entry};
 use crate::program::{Program, type_name};
 use crate::signs::Agreement;
 use crate::value::{Layout, Value};
@@ -50,6 +50,8 @@ pub struct Functions {
     pub new: Routine<f64>,
     /// From initial values to the state.
     pub begin: Routine<f64>,
+    /// The same, with momenta projected on constraints, where any are held.
+    pub projecting: Option<Routine<f64>>,
     /// The model with another solver, where one can be chosen.
     pub with_solver: Option<Routine<f64>>,
     /// The workspace of a state, without a step that is tried.
@@ -164,6 +166,7 @@ impl Opened {
         let all = [
             Some(&functions.new),
             Some(&functions.begin),
+            functions.projecting.as_ref(),
             functions.with_solver.as_ref(),
             Some(&functions.prepared),
             functions.compensated.as_ref(),
@@ -272,10 +275,17 @@ fn functions(shared: &mut Shared<'_, f64>, name: &str) -> Result<Functions, Refu
     let compensated = where_given(&format!("{name}Workspace"), "compensated", &[WORK])?;
     let attempt = where_given(name, "attempt", &[MODEL, STATE, STEP])?;
     let kinetic = where_given(name, "kinetic_warning", &[MODEL, STATE])?;
-    let mut lower = |function: &str, given: &[usize]| lower(name, function, given);
+    // Only a model with constraints projects.
+    let projecting = match program.function(name, "project") {
+        Some(_) => Some(lower::projecting(shared, (name, "begin"), &[MODEL, GIVEN])?),
+        None => None,
+    };
+    let mut lower =
+        |function: &str, given: &[usize]| entry(shared, (name, function), given, at::FIRST);
     Ok(Functions {
         new: lower("new", &[GIVEN])?,
         begin: lower("begin", &[MODEL, GIVEN])?,
+        projecting,
         with_solver,
         prepared: lower("prepared", &[MODEL, STATE, STEP, GIVEN])?,
         compensated,

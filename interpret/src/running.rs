@@ -64,7 +64,9 @@ impl Opened {
         }
         let given = collected(&self.initial, card.initial, &initial)?;
         put(&mut places, at::GIVEN, given);
-        let state = run(&f.begin, &mut places).map_err(Failure::start)?;
+        let projecting = f.projecting.as_ref().filter(|_| settings.projected);
+        let begin = projecting.unwrap_or(&f.begin);
+        let state = run(begin, &mut places).map_err(Failure::start)?;
         put(&mut places, at::STATE, state.clone());
         // Judged before the first step is tried: it may be why that is refused.
         let kinetic = match &f.kinetic {

@@ -57,12 +57,7 @@ fn typed(file: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
 
 /// A trajectory of any model, from its card and lists of numbers.
 fn from_card(file: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
-    let settings = Settings {
-        h: 0.05,
-        order: Some(4),
-        solver: None,
-        compensated: false,
-    };
+    let settings = Settings::step(0.05).of_order(4);
     let open = || {
         (Planet::CARD.open)(
             &[vec![1.0], vec![1.0]],

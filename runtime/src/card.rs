@@ -161,6 +161,9 @@ pub struct Settings {
     /// Whether steps with modified moments are made symplectic with the attitude by a constant turn
     /// about the momentum; only for the orders of [`Settings::COMPENSATED`].
     pub compensated: bool,
+    /// Whether of momenta at the start what points across held constraints is taken away, however much it is; else more
+    /// than rounding is refused. Models that are built refuse it always.
+    pub projected: bool,
 }
 
 impl Settings {
@@ -176,6 +179,16 @@ impl Settings {
             order: None,
             solver: None,
             compensated: false,
+            projected: false,
+        }
+    }
+
+    /// The same steps, of a start whose momenta are projected on held constraints.
+    #[must_use]
+    pub fn projected(self) -> Self {
+        Self {
+            projected: true,
+            ..self
         }
     }
 

@@ -10,10 +10,8 @@ const ORDERS: [u32; 6] = [1, 2, 4, 6, 8, 10];
 /// Begins a trajectory and makes one step: what refuses it says so.
 fn first_step(card: &Card, case: &Case, h: f64, order: Option<u32>) -> Result<(), String> {
     let settings = Settings {
-        h,
         order,
-        solver: None,
-        compensated: false,
+        ..Settings::step(h)
     };
     let mut trajectory = match (card.open)(&case.parameters, &case.initial, settings) {
         Ok(trajectory) => trajectory,
@@ -105,12 +103,7 @@ fn steps_that_have_no_inverse_or_are_none_are_named() {
         let case = &entry.cases[0];
         let card = entry.card_of(case);
         for h in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e-320] {
-            let settings = Settings {
-                h,
-                order: None,
-                solver: None,
-                compensated: false,
-            };
+            let settings = Settings::step(h);
             let said = match (card.open)(&case.parameters, &case.initial, settings) {
                 Err(OpenError::Parameter(e) | OpenError::Start(StartError::Initial(e))) => {
                     e.to_string()

@@ -114,6 +114,23 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             )),
             _ => None,
         },
+        // Whether the impulse is known that the momentum is projected with, whatever is taken.
+        ("validate::is_determined", 5) => |a, _| match a {
+            [
+                Value::Text(name),
+                Value::Text(equation),
+                Value::Real(impulse),
+                _,
+                _,
+            ] => told(validate::along_constraint(
+                name,
+                equation,
+                *impulse,
+                T::zero(),
+                T::one(),
+            )),
+            _ => None,
+        },
         ("validate::inside", 4) => argument!(validate::inside),
         ("validate::defined", 4) => argument!(validate::defined),
         _ => return None,

@@ -14,7 +14,7 @@ pub use given::Numbers;
 use crate::Refused;
 use crate::code::{Exit, Places, Routine};
 use crate::failure::Failure;
-use crate::lower::{Shared, entry};
+use crate::lower::{self, Shared, entry};
 use crate::opened::at;
 use crate::program::Program;
 use crate::sites::Column;
@@ -91,6 +91,8 @@ pub struct LineModel {
     initial: Given,
     new: Routine<f64>,
     start: Routine<f64>,
+    /// The same, with momenta projected on constraints, where any are held.
+    projecting: Option<Routine<f64>>,
     step: Routine<f64>,
     /// Whether velocities of all sites are found together.
     together: bool,
@@ -225,6 +227,13 @@ impl LineModel {
         let observers = asked(&state, observers, &[at::STATE])?;
         let functionals = asked(name, functionals, &[at::MODEL, at::STATE])?;
         let momenta = asked(name, momenta, &[at::MODEL, at::GIVEN, at::OUT])?;
+        let projecting = match line.holds.is_empty() {
+            true => None,
+            false => {
+                let of = [at::MODEL, at::GIVEN, at::STEP];
+                Some(lower::projecting(&mut shared, (name, "start"), &of)?)
+            }
+        };
         shared.by_size = true;
         let of = [at::MODEL, at::STATE];
         let energy_sizes = match has_energies {
@@ -257,7 +266,11 @@ impl LineModel {
         let of_state = of_state.chain(&functionals).chain(&momenta);
         let of_state = of_state.map(|(_, r)| r.places);
         let own = [&new, &start, &step].into_iter();
-        let own = own.chain(&energies).chain(&energy_sizes).chain(&enlarged);
+        let own = own
+            .chain(&energies)
+            .chain(&energy_sizes)
+            .chain(&enlarged)
+            .chain(&projecting);
         let own = own.map(|r| r.places);
         let places = own.chain(of_state).max();
         Ok(Arc::new(LineModel {
@@ -274,6 +287,7 @@ impl LineModel {
             initial,
             new,
             start,
+            projecting,
             step,
             together: !line.ties.is_empty(),
             energies,
@@ -407,6 +421,30 @@ impl LineModel {
         h: f64,
         numbers: &Numbers<'_>,
     ) -> Result<LineTrajectory, Unstarted> {
+        self.start_by(&self.start, choice, h, numbers)
+    }
+
+    /// The same; momenta are projected on the constraints that are held, however far they point across.
+    ///
+    /// # Errors
+    /// As [`LineModel::start`].
+    pub fn start_projected(
+        self: &Arc<Self>,
+        choice: &Choice,
+        h: f64,
+        numbers: &Numbers<'_>,
+    ) -> Result<LineTrajectory, Unstarted> {
+        let start = self.projecting.as_ref().unwrap_or(&self.start);
+        self.start_by(start, choice, h, numbers)
+    }
+
+    fn start_by(
+        self: &Arc<Self>,
+        start: &Routine<f64>,
+        choice: &Choice,
+        h: f64,
+        numbers: &Numbers<'_>,
+    ) -> Result<LineTrajectory, Unstarted> {
         for c in &self.coordinates {
             coordinates::admit(c, numbers)?;
         }
@@ -427,7 +465,7 @@ impl LineModel {
             self.initial.value(numbers, &|_| None)?,
         );
         put(&mut places, at::STEP, Value::Real(h));
-        let both = run(&self.start, &mut places);
+        let both = run(start, &mut places);
         let both = both.map_err(|e| coordinates::named(&self.coordinates, e.line()))?;
         put(&mut places, at::GIVEN, Value::Unit);
         let Value::List(both) = both else {

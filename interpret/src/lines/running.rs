@@ -112,7 +112,10 @@ impl Carded {
                 _ => None,
             }
         };
-        let started = self.model.start(&self.choice, settings.h, &numbers);
+        let started = match settings.projected {
+            true => (self.model).start_projected(&self.choice, settings.h, &numbers),
+            false => self.model.start(&self.choice, settings.h, &numbers),
+        };
         let line = started.map_err(|e| self.refused(e))?;
         let sites = |name: &str| self.sites.get(name).copied();
         let kinetic = self.model.kinetic_warning(&self.choice, &numbers, sites);

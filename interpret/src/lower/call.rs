@@ -234,6 +234,10 @@ impl<T: Lowered> Lower<'_, '_, T> {
             (true, "cross") => "cross_sizes",
             _ => name,
         };
+        let name = match (self.shared.projects, name) {
+            (true, "validate::along_constraint") => "validate::is_determined",
+            _ => name,
+        };
         let mut arguments: Vec<Code<T>> = receiver.into_iter().collect();
         for e in list {
             arguments.push(self.argument(e)?);

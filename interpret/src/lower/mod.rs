@@ -41,6 +41,8 @@ pub struct Shared<'a, T: Real> {
     pub by_size: bool,
     /// Whether products of vectors are those of their lengths: what is read of a momentum has the size of the whole.
     pub by_length: bool,
+    /// Whether of momenta at the start what points across constraints is taken away, of any size.
+    pub projects: bool,
     /// The first place that no function uses.
     free: usize,
     routines: Routines<T>,
@@ -59,6 +61,7 @@ impl<'a, T: Real> Shared<'a, T> {
             layouts: BTreeMap::new(),
             by_size: false,
             by_length: false,
+            projects: false,
             free: 0,
             routines: BTreeMap::new(),
         }
@@ -80,6 +83,7 @@ impl<'a, T: Real> Shared<'a, T> {
             layouts: BTreeMap::new(),
             by_size: self.by_size,
             by_length: self.by_length,
+            projects: self.projects,
             free: 0,
             routines: BTreeMap::new(),
         }
@@ -169,6 +173,21 @@ pub fn entry<T: Lowered>(
         places: lower.next,
         body: Code::Function(Box::new(body)),
     })
+}
+
+/// The same of a start that projects momenta on constraints, however far they point across.
+pub fn projecting<T: Lowered>(
+    shared: &mut Shared<'_, T>,
+    function: (&str, &str),
+    given: &[usize],
+) -> Result<Routine<T>, Refused> {
+    // Functions that it calls are others too.
+    let usual = std::mem::take(&mut shared.routines);
+    shared.projects = true;
+    let routine = entry(shared, function, given, crate::opened::at::FIRST);
+    shared.projects = false;
+    shared.routines = usual;
+    routine
 }
 
 impl<T: Lowered> Lower<'_, '_, T> {

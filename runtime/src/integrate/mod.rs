@@ -25,7 +25,7 @@ pub use drift::Drift;
 pub use drift::{filled, not_less};
 pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
 pub use halved::{Halved, Halvings};
-pub use longest_step::LongestStep;
+pub use longest_step::{LongestStep, Unknown};
 pub use model::Model;
 pub use residual::Residual;
 pub use run::{LargestResidual, Observer, Summary, Watch, run, run_until_stopped};

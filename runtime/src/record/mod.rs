@@ -50,7 +50,7 @@ impl Table {
 ///     }
 /// }
 ///
-/// let settings = clebsch::card::Settings { h: 0.1, order: None, solver: None, compensated: false };
+/// let settings = clebsch::card::Settings::step(0.1);
 /// let mut running = (Oscillator::CARD.open)(&[vec![1.0], vec![4.0]], &[vec![1.0], vec![0.0]], settings)?;
 /// let mut record = Record::new(running.card());
 /// run(running.as_mut(), 100, 10, &mut record)?;

@@ -1,0 +1,109 @@
+//! The slowest and the fastest of small motions, by Lanczos' method in the inner product of the mass.
+//! Takes answers of a model; gives two motions.
+
+use super::probe::Probe;
+use super::unknown::Unknown;
+use crate::scalar::largest;
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// Most vectors of the Krylov space: the fastest of thousands of motions is found to about a hundredth.
+const VECTORS: usize = 30;
+
+/// A small motion: its ω², and what moves with the kinetic energy one half.
+pub(super) struct Motion {
+    pub(super) square: f64,
+    pub(super) velocity: Vec<f64>,
+    pub(super) momentum: Vec<f64>,
+}
+
+impl Probe<'_> {
+    /// The motions of least and of largest ω², by Lanczos' method in the inner product of the mass.
+    pub(super) fn extremes(&self) -> Result<[Motion; 2], Unknown> {
+        let count = self.count();
+        // Momenta that give about equal velocities in parts of what moves.
+        let nothing = || self.why(Unknown::Kinetic);
+        let mut p = self.along(numbers(count)).ok_or_else(nothing)?;
+        let first = self.velocity(&p).ok_or_else(nothing)?;
+        for ((p, v), unit) in p.iter_mut().zip(&first).zip(&self.units) {
+            let own = (v / unit).abs();
+            *p /= own.max(1e-3);
+        }
+        let (mut velocities, mut momenta) = (Vec::<Vec<f64>>::new(), Vec::<Vec<f64>>::new());
+        let (mut alphas, mut betas) = (Vec::<f64>::new(), Vec::<f64>::new());
+        for _ in 0..VECTORS.min(count) {
+            // Twice is enough.
+            for _ in 0..2 {
+                for (v, q) in velocities.iter().zip(&momenta) {
+                    let part = dot(v, &p);
+                    p.iter_mut().zip(q).for_each(|(p, q)| *p -= part * q);
+                }
+            }
+            let along = self.along(p).ok_or_else(nothing)?;
+            let Some(v) = self.velocity(&along) else {
+                break;
+            };
+            p = along;
+            let square = dot(&v, &p);
+            // The space is exhausted: what is left of it is the rounding of the inquiry.
+            let least = 1e-6 * largest(alphas.iter().copied());
+            if square.is_nan() || square <= 0.0 || (!alphas.is_empty() && square.sqrt() <= least) {
+                break;
+            }
+            let length = square.sqrt();
+            if !alphas.is_empty() {
+                betas.push(length);
+            }
+            let v: Vec<f64> = v.iter().map(|x| x / length).collect();
+            momenta.push(p.iter().map(|x| x / length).collect());
+            let own = momenta.last().ok_or(Unknown::Still)?;
+            p = self.stiffness(&v, own).ok_or_else(nothing)?;
+            // Nothing resists: no step is too long for that.
+            if velocities.is_empty() && p.iter().all(|x| *x == 0.0) {
+                return Err(Unknown::Still);
+            }
+            alphas.push(dot(&v, &p));
+            velocities.push(v);
+        }
+        if alphas.is_empty() {
+            return Err(nothing());
+        }
+        let at = |i: usize, j: usize| match i.abs_diff(j) {
+            0 => alphas[i],
+            1 => betas[i.min(j)],
+            _ => 0.0,
+        };
+        let small = SymmetricEigen::new(DMatrix::from_fn(alphas.len(), alphas.len(), at));
+        let motion = |k: usize| {
+            let of = |all: &[Vec<f64>]| {
+                let mut sum = vec![0.0; count];
+                for (part, own) in small.eigenvectors.column(k).iter().zip(all) {
+                    sum.iter_mut().zip(own).for_each(|(s, x)| *s += part * x);
+                }
+                sum
+            };
+            Motion {
+                square: small.eigenvalues[k],
+                velocity: of(&velocities),
+                momentum: of(&momenta),
+            }
+        };
+        let by = |a: &usize, b: &usize| small.eigenvalues[*a].total_cmp(&small.eigenvalues[*b]);
+        let least = (0..alphas.len()).min_by(by).unwrap_or(0);
+        let largest = (0..alphas.len()).max_by(by).unwrap_or(0);
+        Ok([motion(least), motion(largest)])
+    }
+}
+
+/// Numbers at random between minus one half and one half, the same every time.
+pub(super) fn numbers(count: usize) -> Vec<f64> {
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let next = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        f64::from(u32::try_from(seed >> 33).unwrap_or(0)) / f64::from(1_u32 << 31) - 0.5
+    };
+    std::iter::repeat_with(next).take(count).collect()
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

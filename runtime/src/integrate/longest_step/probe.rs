@@ -1,0 +1,264 @@
+//! What a model says of small motions about its start, at rest, asked by single steps: forces of disturbances, velocities
+//! of momenta, momenta along held constraints.
+//! Takes a card with its data; gives linear answers in lists over all freedoms.
+
+use super::extremes::{Motion, dot, numbers};
+use super::moves::{self, Moves};
+use super::unknown::Unknown;
+use crate::card::{Card, OpenError, Settings, Trajectory};
+use crate::scalar::largest;
+use std::cell::Cell;
+
+/// A disturbance in parts of what is disturbed, and a momentum likewise: forces and velocities are taken as linear
+/// in them. The square root of rounding and more, since models bend.
+const PART: f64 = 1e-5;
+
+/// The same of a held model, over the number of its configurations: constraints bend by disturbances beside the distance
+/// of neighbours, which is about that part of what is disturbed.
+const PART_HELD: f64 = 1e-6;
+
+/// What a projection takes from momenta at random where anything is held is more than this part of them.
+const TAKEN: f64 = 1e-9;
+
+pub(super) struct Probe<'a> {
+    card: &'a Card,
+    parameters: &'a [Vec<f64>],
+    /// At rest.
+    initial: Vec<Vec<f64>>,
+    pub(super) moves: Vec<Moves>,
+    /// The step of the inquiry.
+    h: f64,
+    /// The unit of disturbances of each freedom.
+    pub(super) units: Vec<f64>,
+    /// What is observed after a step from rest.
+    rest: Vec<f64>,
+    /// Where forces are compared, at rest: the start, of held models where a step from it ends, as disturbed ones do.
+    base: Vec<Vec<f64>>,
+    /// What is observed after a step from there.
+    pushed: Vec<f64>,
+    /// Disturbances in parts of what is disturbed.
+    part: f64,
+    /// Whether momenta are projected on constraints.
+    held: bool,
+    /// Whether the model refused a state that it was asked of.
+    refused: Cell<bool>,
+}
+
+impl<'a> Probe<'a> {
+    pub(super) fn new(
+        card: &'a Card,
+        parameters: &'a [Vec<f64>],
+        initial: &[Vec<f64>],
+        h: f64,
+    ) -> Result<Self, Unknown> {
+        let moves = Moves::all(card).ok_or(Unknown::Kind)?;
+        let mut initial = initial.to_vec();
+        for body in &moves {
+            let momentum = initial.get_mut(body.behind).ok_or(Unknown::Kind)?;
+            momentum.fill(0.0);
+        }
+        let units = moves::units(&moves, &initial);
+        let mut probe = Probe {
+            card,
+            parameters,
+            base: initial.clone(),
+            initial,
+            moves,
+            h,
+            units,
+            rest: Vec::new(),
+            pushed: Vec::new(),
+            part: PART,
+            held: false,
+            refused: Cell::new(false),
+        };
+        let step = probe.after(&probe.initial, h);
+        probe.rest = step.ok_or(Unknown::Start)?;
+        let p = numbers(probe.count());
+        let along = probe.projected(&p).ok_or(Unknown::Start)?;
+        let taken = largest(p.iter().zip(&along).map(|(a, b)| a - b));
+        probe.held = taken > TAKEN * largest(p.iter().copied());
+        if probe.held {
+            probe.part = PART_HELD / probe.moves.len() as f64;
+            let base = probe.at_rest(&probe.rest);
+            probe.base = base.ok_or(Unknown::Start)?;
+        }
+        let step = probe.after(&probe.base, h);
+        probe.pushed = step.ok_or(Unknown::Start)?;
+        Ok(probe)
+    }
+
+    /// How many freedoms there are.
+    pub(super) fn count(&self) -> usize {
+        self.moves.iter().map(Moves::count).sum()
+    }
+
+    /// Whether momenta are projected on constraints.
+    pub(super) fn is_held(&self) -> bool {
+        self.held
+    }
+
+    /// Why nothing is known where answers end: a refused state, or what was asked.
+    pub(super) fn why(&self, otherwise: Unknown) -> Unknown {
+        match self.refused.get() {
+            true => Unknown::Refused,
+            false => otherwise,
+        }
+    }
+
+    /// The trajectory from a state; momenta are projected.
+    fn open(&self, initial: &[Vec<f64>], h: f64) -> Result<Box<dyn Trajectory>, OpenError> {
+        (self.card.open)(self.parameters, initial, Settings::step(h).projected())
+    }
+
+    /// What is observed of a trajectory after so many steps.
+    fn observed(&self, initial: &[Vec<f64>], h: f64, steps: usize) -> Option<Vec<f64>> {
+        let mut trajectory = self.open(initial, h).ok()?;
+        for _ in 0..steps {
+            trajectory.step().ok()?;
+        }
+        let mut out = vec![0.0; self.card.observable_count()];
+        trajectory.observe(&mut out);
+        out.iter().all(|x| x.is_finite()).then_some(out)
+    }
+
+    /// What is observed after one step of `h`.
+    fn after(&self, initial: &[Vec<f64>], h: f64) -> Option<Vec<f64>> {
+        let found = self.observed(initial, h, 1);
+        self.refused.set(self.refused.get() || found.is_none());
+        found
+    }
+
+    /// What is observed of momenta, in the order of freedoms.
+    fn momenta<'o>(&'o self, observed: &'o [f64]) -> impl Iterator<Item = f64> + 'o {
+        let each = self.moves.iter().flat_map(|body| body.momentum.clone());
+        each.map(|column| observed[column])
+    }
+
+    /// The start with momenta.
+    fn thrown(&self, p: &[f64], scale: f64) -> Option<Vec<Vec<f64>>> {
+        let mut moved = self.initial.clone();
+        let mut from = 0;
+        for body in &self.moves {
+            let own = &p[from..from + body.count()];
+            from += body.count();
+            let target = moved.get_mut(body.behind)?;
+            target.clone_from(&own.iter().map(|x| x * scale).collect());
+        }
+        Some(moved)
+    }
+
+    /// A state at rest in the configurations that are observed.
+    fn at_rest(&self, observed: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let mut state = self.initial.clone();
+        for body in &self.moves {
+            let place = observed.get(body.place.clone())?;
+            *state.get_mut(body.initial)? = place.to_vec();
+        }
+        Some(state)
+    }
+
+    /// Momenta less what would move the start off its constraints; the same where none are held.
+    fn projected(&self, p: &[f64]) -> Option<Vec<f64>> {
+        // A state that is at rest but for these is refused for their size alone.
+        let scale = 1.0 / largest(p.iter().copied());
+        if !scale.is_finite() {
+            return Some(p.to_vec());
+        }
+        let start = self.observed(&self.thrown(p, scale)?, self.h, 0)?;
+        Some(self.momenta(&start).map(|x| x / scale).collect())
+    }
+
+    /// The same, which changes nothing where none are held.
+    pub(super) fn along(&self, p: Vec<f64>) -> Option<Vec<f64>> {
+        match self.held {
+            true => self.projected(&p),
+            false => Some(p),
+        }
+    }
+
+    /// Of momenta after a step from rest, disturbed by the velocity `v` with momentum `p`, what the disturbance adds: minus
+    /// the stiffness times `v`, and the step.
+    pub(super) fn stiffness(&self, v: &[f64], p: &[f64]) -> Option<Vec<f64>> {
+        let scale = self.part / self.size(v);
+        let after = self.after(&self.disturbed(v, p, scale)?, self.h)?;
+        let change = self.momenta(&self.pushed).zip(self.momenta(&after));
+        let change = change.map(|(rest, after)| (rest - after) / (scale * self.h));
+        Some(change.collect())
+    }
+
+    /// The velocity of a momentum `p`: by how much a step with it goes farther than one from rest.
+    pub(super) fn velocity(&self, p: &[f64]) -> Option<Vec<f64>> {
+        // How far it goes is known once it has gone.
+        let mut scale = self.part / largest(p.iter().copied());
+        if !scale.is_finite() {
+            return None;
+        }
+        for _ in 0..12 {
+            let after = self.after(&self.thrown(p, scale)?, self.h)?;
+            let change = self.change(&self.rest, &after);
+            let most = self.size(&change);
+            if (0.01 * self.part..=100.0 * self.part).contains(&most) {
+                return Some(change.iter().map(|x| x / (scale * self.h)).collect());
+            }
+            scale *= if most > 0.0 { self.part / most } else { 1e6 };
+        }
+        None
+    }
+
+    /// Whether a step of `h` from rest, disturbed by this motion, leaves `1 - h² ω²/2` of it, as steps with the potential
+    /// at the nodes do: one with it in the middle leaves `(4 - h² ω²)/(4 + h² ω²)`. Half a step where one cannot be made; `None` where
+    /// that cannot either.
+    pub(super) fn is_left(&self, motion: &Motion, h: f64) -> Option<bool> {
+        // Of half a step the two differ by a tenth of the square, of a whole one by a quarter.
+        [(h, 0.1), (0.5 * h, 0.05)]
+            .into_iter()
+            .find_map(|(h, near)| Some((self.left(motion, h)?, near)))
+            .map(|((h, left), near)| {
+                let square = h * h * motion.square;
+                (left - (1.0 - 0.5 * square)).abs() < near * square.abs()
+            })
+    }
+
+    /// The part of a motion that a step leaves, and the step; `None` where it cannot be made.
+    fn left(&self, motion: &Motion, h: f64) -> Option<(f64, f64)> {
+        let scale = self.part / self.size(&motion.velocity);
+        let moved = self.disturbed(&motion.velocity, &motion.momentum, scale)?;
+        let change = self.change(&self.after(&self.base, h)?, &self.after(&moved, h)?);
+        Some((h, dot(&motion.momentum, &change) / scale))
+    }
+
+    /// The largest part of a change in units of disturbances.
+    pub(super) fn size(&self, change: &[f64]) -> f64 {
+        largest(change.iter().zip(&self.units).map(|(x, unit)| x / unit))
+    }
+
+    /// From the configurations of one observation to those of another.
+    fn change(&self, from: &[f64], to: &[f64]) -> Vec<f64> {
+        let each = self.moves.iter().flat_map(|body| {
+            let place = body.place.clone();
+            moves::difference(body, &from[place.clone()], &to[place])
+        });
+        each.collect()
+    }
+
+    /// The start with a disturbance `scale` times `v`; of a held model what a step with its momentum `p` leads to, which is
+    /// on the constraints.
+    fn disturbed(&self, v: &[f64], p: &[f64], scale: f64) -> Option<Vec<Vec<f64>>> {
+        if self.held {
+            let thrown = self.thrown(p, scale / self.h)?;
+            return self.at_rest(&self.after(&thrown, self.h)?);
+        }
+        let mut moved = self.initial.clone();
+        let mut from = 0;
+        for body in &self.moves {
+            let own: Vec<f64> = v[from..from + body.count()]
+                .iter()
+                .map(|x| x * scale)
+                .collect();
+            from += body.count();
+            moves::disturb(moved.get_mut(body.initial)?, body, &own)?;
+        }
+        Some(moved)
+    }
+}

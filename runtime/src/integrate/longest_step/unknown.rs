@@ -1,0 +1,45 @@
+//! Why the longest step of small motions is not known of a model.
+
+use core::fmt;
+
+/// Why it is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unknown {
+    /// Configurations are others than fields, rotations of space and unit quaternions with a momentum each.
+    Kind,
+    /// No step can be taken from the start at rest: it is refused, or its constraints are not independent.
+    Start,
+    /// A state near the start is refused.
+    Refused,
+    /// A velocity, along the constraints where any are held, has no positive kinetic energy.
+    Kinetic,
+    /// Nothing resists a disturbance.
+    Still,
+    /// Steps of about 2/ω cannot be taken from the start at rest.
+    Far,
+    /// A step does not move the fastest motion as steps with the potential at the nodes do: with a potential in the
+    /// middle of steps, with strong terms linear in velocities, at a kink, all steps may be stable.
+    OtherSteps,
+}
+
+impl fmt::Display for Unknown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Kind => {
+                "its configurations are not fields, rotations of space or unit quaternions with a momentum each"
+            }
+            Self::Start => "from the start, at rest, no short step can be taken",
+            Self::Refused => "a state near the start, at rest, is refused",
+            Self::Kinetic => {
+                "the kinetic energy is not positive for every velocity that the model admits"
+            }
+            Self::Still => "at rest nothing resists a disturbance of the start",
+            Self::Far => "from the start, at rest, no step of about 2/ω can be taken",
+            Self::OtherSteps => {
+                "the step does not move the fastest one as steps with the potential at the nodes do"
+            }
+        })
+    }
+}
+
+impl std::error::Error for Unknown {}
