@@ -376,10 +376,10 @@ fn panel(
     root.draw(&Rectangle::new(edge, INK.stroke_width(fine(1))))?;
     let time = format!("t = {}", axis::plain(shot.time));
     text(root, &time, 13, INK, (left, up - 20))?;
-    text(root, &axis::plain(frame.low[0]), 11, INK, (left, down + 4))?;
+    text(root, &axis::short(frame.low[0]), 11, INK, (left, down + 4))?;
     text(
         root,
-        &axis::plain(frame.high[0]),
+        &axis::short(frame.high[0]),
         11,
         INK,
         (right - 10, down + 4),
