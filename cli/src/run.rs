@@ -86,7 +86,11 @@ pub fn run(
             }
         }
     };
-    let limit = StepLimit::of(card, &plan);
+    let limit = {
+        let what = "looking for the longest step of small motions".to_owned();
+        let _told = Waiting::told(what, streams.progress);
+        StepLimit::of(card, &plan)
+    };
     let too_long = limit.warning(plan.case.h);
     // With `--json` a warning stands in the object as well; nothing is lost when it cannot be written.
     let mut warn = |warning: &str| {

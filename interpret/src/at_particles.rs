@@ -1,14 +1,12 @@
 //! Functionals of all sites at the particles of a fluid before it starts. Takes the places of the particles and what a case gives
 //! beside; gives the values at each particle and, of what stands on a grid, the slopes, by the splines of its deposit.
 
-use crate::functional::{Around, Extent, Held, made};
-use crate::lines::Numbers;
+use crate::functional::{Around, Held, made};
+use crate::lines::{Numbers, extent};
 use crate::sites::Column;
 use crate::value::Value;
 use clebsch::ParameterError;
-use clebsch::mesh::{
-    self, Domain, Functional, MeshError, Nodes, Setting, Wall, deposit, deposit_quintic,
-};
+use clebsch::mesh::{self, Functional, MeshError, Nodes, Setting, deposit, deposit_quintic};
 use clebsch_core::lattice::{Known, Lattice, Mesh, Source};
 use core::fmt;
 use nalgebra::SVector;
@@ -89,7 +87,8 @@ pub fn at_particles(
     numbers: &Numbers<'_>,
 ) -> Result<AtParticles, Unvalued> {
     let count = placed.at.len() / placed.lengths.len().max(1);
-    let around = extent(placed).and_then(|e| Around::new(e, placed.cells, count));
+    let around =
+        extent(placed.lengths, placed.walls).and_then(|e| Around::new(e, placed.cells, count));
     let around = around.ok_or(Unvalued::Unfit)?;
     let (column, root) = values(lattice, mesh, &around, placed, numbers)?;
     let Column::Numbers(values) = column else {
@@ -132,24 +131,6 @@ pub fn at_particles(
         }
         _ => Err(Unvalued::Unfit),
     }
-}
-
-fn extent(placed: &Placed<'_>) -> Option<Extent> {
-    let wall = |solid: &bool| match solid {
-        true => Wall::Solid,
-        false => Wall::Periodic,
-    };
-    Some(match (placed.lengths, placed.walls) {
-        ([length], [w]) => Extent::Line(Domain {
-            lengths: [*length],
-            walls: [wall(w)],
-        }),
-        ([width, height], [w, v]) => Extent::Plane(Domain {
-            lengths: [*width, *height],
-            walls: [wall(w), wall(v)],
-        }),
-        _ => return None,
-    })
 }
 
 /// The name of a functional that the runtime supplies.

@@ -109,13 +109,13 @@ fn read(ty: &syn::Type) -> Option<Read> {
     })
 }
 
-/// A box of one or two directions.
-fn extent(lengths: &[f64], walls: &[f64]) -> Option<Extent> {
-    let wall = |x: &f64| match *x == 0.0 {
-        true => Wall::Periodic,
-        false => Wall::Solid,
+/// A box of one or two directions, each of which ends in walls or closes on itself.
+pub(crate) fn extent(lengths: &[f64], solid: &[bool]) -> Option<Extent> {
+    let wall = |solid: &bool| match solid {
+        true => Wall::Solid,
+        false => Wall::Periodic,
     };
-    Some(match (lengths, walls) {
+    Some(match (lengths, solid) {
         ([length], [w]) => Extent::Line(Domain {
             lengths: [*length],
             walls: [wall(w)],
@@ -179,7 +179,8 @@ impl Read {
             }
             Read::Box(size) => {
                 let (lengths, walls) = list.split_at((*size).min(list.len()));
-                match extent(lengths, walls) {
+                let solid: Vec<bool> = walls.iter().map(|x| *x != 0.0).collect();
+                match extent(lengths, &solid) {
                     Some(extent) => Value::Extent(extent),
                     None => Value::Unit,
                 }

@@ -10,6 +10,7 @@ mod running;
 
 pub(crate) use card::Carded;
 pub use given::Numbers;
+pub(crate) use given::extent;
 
 use crate::Refused;
 use crate::code::{Exit, Places, Routine};
