@@ -201,7 +201,7 @@ fn equal_cases_start_alike_to_the_last_byte_and_go_on_from_a_checkpoint() {
 
 #[test]
 fn what_has_no_value_is_told_with_what_to_write() {
-    let folder = Folder::new("fluid-starts-wrong");
+    let folder = Folder::new("fluid-starts-refused");
     let check = |text: &str, said: &[&str]| {
         let done = run(&folder, MODEL, text, &[]);
         assert_eq!(done.code, 2, "{}{}", done.out, done.err);
