@@ -7,10 +7,12 @@ mod coordinates;
 mod given;
 mod kinetic;
 mod running;
+mod trajectory;
 
 pub(crate) use card::Carded;
 pub use given::Numbers;
 pub(crate) use given::extent;
+pub use trajectory::LineTrajectory;
 
 use crate::Refused;
 use crate::code::{Exit, Places, Routine};
@@ -22,7 +24,6 @@ use crate::sites::Column;
 use crate::value::Value;
 use clebsch::StepCause;
 use clebsch::line::LineError;
-use clebsch::saved::{Saved, Words};
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::Choice;
 use clebsch_core::line::{self as core_line, Coordinates};
@@ -519,43 +520,6 @@ fn run(routine: &Routine<f64>, places: &mut Places<f64>) -> Result<Value<f64>, F
     }
 }
 
-/// A line on its way.
-#[derive(Clone, Debug)]
-pub struct LineTrajectory {
-    model: Arc<LineModel>,
-    places: Places<f64>,
-    h: f64,
-}
-
-impl LineTrajectory {
-    /// The number of the node.
-    pub fn node(&self) -> u64 {
-        match self.places.get(at::STATE) {
-            Some(Value::Struct(s)) => match s.field(self.model.node) {
-                Some(Value::Int(n)) => u64::try_from(*n).unwrap_or(0),
-                _ => 0,
-            },
-            _ => 0,
-        }
-    }
-
-    /// The step size.
-    pub fn h(&self) -> f64 {
-        self.h
-    }
-
-    /// One step.
-    ///
-    /// # Errors
-    /// [`LineError::Step`] names the site; the state is then unchanged.
-    pub fn step(&mut self) -> Result<(), LineError> {
-        let model = self.model.clone();
-        run(&model.step, &mut self.places)
-            .map(|_| ())
-            .map_err(|e| coordinates::named(&model.coordinates, e.line()))
-    }
-}
-
 /// How many numbers a total has, by its type.
 fn rows(output: &syn::ReturnType) -> Option<usize> {
     let syn::ReturnType::Type(_, ty) = output else {
@@ -595,15 +559,4 @@ fn numbers(value: &Value<f64>) -> Option<Vec<f64>> {
         Value::Quaternion(q) => q.components().to_vec(),
         other => other.dense()?.transpose().data,
     })
-}
-
-impl Saved for LineTrajectory {
-    fn words(&mut self, words: &mut Words) {
-        for at in [at::STATE, at::WORK] {
-            match self.places.get_mut(at) {
-                Some(value) => value.words(words),
-                None => words.refuse(),
-            }
-        }
-    }
 }

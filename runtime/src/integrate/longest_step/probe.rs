@@ -78,11 +78,14 @@ impl<'a> Probe<'a> {
         let along = probe.projected(&p).ok_or(Unknown::Start)?;
         let taken = largest(p.iter().zip(&along).map(|(a, b)| a - b));
         probe.held = taken > TAKEN * largest(p.iter().copied());
-        if probe.held {
-            probe.part = PART_HELD / probe.moves.len() as f64;
-            let base = probe.at_rest(&probe.rest);
-            probe.base = base.ok_or(Unknown::Start)?;
+        if !probe.held {
+            // The base is the start.
+            probe.pushed.clone_from(&probe.rest);
+            return Ok(probe);
         }
+        probe.part = PART_HELD / probe.moves.len() as f64;
+        let base = probe.at_rest(&probe.rest);
+        probe.base = base.ok_or(Unknown::Start)?;
         let step = probe.after(&probe.base, h);
         probe.pushed = step.ok_or(Unknown::Start)?;
         Ok(probe)

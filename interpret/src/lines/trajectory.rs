@@ -1,0 +1,58 @@
+//! A line on its way: its node, its steps, and what of it a checkpoint keeps. What it is asked stands in `asked`.
+//! Takes a model and the places of its routines; goes from node to node.
+
+use super::{LineModel, coordinates, run};
+use crate::code::Places;
+use crate::opened::at;
+use crate::value::Value;
+use clebsch::line::LineError;
+use clebsch::saved::{Saved, Words};
+use std::sync::Arc;
+
+/// A line on its way.
+#[derive(Clone, Debug)]
+pub struct LineTrajectory {
+    pub(super) model: Arc<LineModel>,
+    pub(super) places: Places<f64>,
+    pub(super) h: f64,
+}
+
+impl LineTrajectory {
+    /// The number of the node.
+    pub fn node(&self) -> u64 {
+        match self.places.get(at::STATE) {
+            Some(Value::Struct(s)) => match s.field(self.model.node) {
+                Some(Value::Int(n)) => u64::try_from(*n).unwrap_or(0),
+                _ => 0,
+            },
+            _ => 0,
+        }
+    }
+
+    /// The step size.
+    pub fn h(&self) -> f64 {
+        self.h
+    }
+
+    /// One step.
+    ///
+    /// # Errors
+    /// [`LineError::Step`] names the site; the state is then unchanged.
+    pub fn step(&mut self) -> Result<(), LineError> {
+        let model = self.model.clone();
+        run(&model.step, &mut self.places)
+            .map(|_| ())
+            .map_err(|e| coordinates::named(&model.coordinates, e.line()))
+    }
+}
+
+impl Saved for LineTrajectory {
+    fn words(&mut self, words: &mut Words) {
+        for at in [at::STATE, at::WORK] {
+            match self.places.get_mut(at) {
+                Some(value) => value.words(words),
+                None => words.refuse(),
+            }
+        }
+    }
+}
