@@ -102,11 +102,64 @@ fn a_wrong_sign_between_neighbours_is_warned_of() {
     let wrong = text.replace("+ (h/s)*tr(C", "- (h/s)*tr(C");
     assert_ne!(wrong, text);
     let case = folder.write("case.toml", &case);
-    for (text, warned) in [(text, false), (wrong, true)] {
-        let model = folder.write("model.clebsch", &text);
-        let done = clebsch(&["run", &model, "--case", &case, "--steps", "1"]);
-        let said = done.err.contains("is there a sign wrong");
-        assert_eq!(said, warned, "{}{}", done.out, done.err);
+    // However short the step: what grows there alternates from site to site.
+    for h in ["0.04", "0.0001"] {
+        for (text, warned) in [(&text, false), (&wrong, true)] {
+            let model = folder.write("model.clebsch", text);
+            let done = clebsch(&["run", &model, "--case", &case, "--steps", "1", "--h", h]);
+            let said = done.err.contains("is there a sign wrong");
+            assert_eq!(said, warned, "{h}: {}{}", done.out, done.err);
+            assert_eq!(done.err.contains("elliptic"), warned, "{}", done.err);
+        }
+    }
+}
+
+/// Of a field, of rigid motions of the plane and of space and of linear maps in rows of springs: ω is that of the row of beads,
+/// 2 sqrt(k/m) sin(π n/(2n + 2)) of n + 1 free ones, whatever the unit of mass and however short the step that is asked for.
+#[test]
+fn rows_of_springs_have_one_limit_in_all_groups() {
+    let folder = Folder::new("rows-of-springs");
+    let ends = "end i = 0 { free; } end i = N { free; } }";
+    let field = "field q: Vec<2> at nodes; lagrangian = h*m*dot((next(q) - q)/h, (next(q) - q)/h)/2 \
+        - h*k*dot(next(q, i) - q, next(q, i) - q)/2;";
+    let maps = "group Q: GL<2> at nodes velocity W; constraint next(Q) = Q*W; \
+        lagrangian = m*tr((next(Q) - Q)^T*(next(Q) - Q))/(2*h) - h*k*tr((next(Q, i) - Q)^T*(next(Q, i) - Q))/2;";
+    let motions = "group G: SE<3> at nodes velocity U; constraint next(G) = G*U; \
+        lagrangian = m*tr((next(G) - G)^T*(next(G) - G))/(2*h) - h*k*tr((next(G, i) - G)^T*(next(G, i) - G))/2;";
+    let zero = "[0.0, 0.0]";
+    let cases = [
+        ("field", field, format!("q = {zero}\nmomentum_q = {zero}\n")),
+        (
+            "maps",
+            maps,
+            "Q = [[1.0, 0.0], [0.0, 1.0]]\nbody_momentum_Q = [[0.0, 0.0], [0.0, 0.0]]\n".to_owned(),
+        ),
+        (
+            "motions",
+            motions,
+            "G = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]\n\
+             body_momentum_G = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]\n"
+                .to_owned(),
+        ),
+    ];
+    for (name, text, start) in &cases {
+        let text = format!("model Row {{ label i in 0..N; param m, k: Real; {text} {ends}");
+        let model = folder.write(&format!("{name}.clebsch"), &text);
+        for (n, size, h) in [(4, 1.0, 0.1), (40, 1e-12, 0.01), (40, 1.0, 1e-12)] {
+            let case = format!(
+                "model = \"row\"\nname = \"row\"\nh = {h:e}\nsteps = 1\n[labels]\ni = {n}\n[ends]\n\
+                 i = [\"free\", \"free\"]\n[parameters]\nm = {size:e}\nk = {size:e}\n[initial]\n{start}"
+            );
+            let case = folder.write(&format!("{name}-{n}.toml"), &case);
+            let found = 2.0 / printed(&model, &case, &[]);
+            let half = std::f64::consts::FRAC_PI_2 * f64::from(n) / f64::from(n + 1);
+            let wanted = 2.0 * half.sin();
+            // Three digits are printed.
+            assert!(
+                (found / wanted - 1.0).abs() < 0.01,
+                "{name} {n} {size:e} {h:e}: {found} {wanted}"
+            );
+        }
     }
 }
 

@@ -5,6 +5,7 @@ mod extremes;
 mod moves;
 mod probe;
 mod unknown;
+mod waves;
 
 pub use unknown::Unknown;
 
@@ -20,8 +21,21 @@ const FAR: f64 = 0.1;
 /// By which parts of the step.
 const SHORTER: [f64; 5] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10];
 
+/// Where nothing is seen to swing, by which multiples of the step: it may be far below all times of the motion.
+const LONGER: [f64; 4] = [1e3, 1e6, 1e9, 1e12];
+
+/// A growth that no step confirms is none where its square is a smaller part than this of that of the fastest motion.
+const SLIGHT: f64 = 1e-3;
+
 /// Growth in a step of which is warned: that of a body on its head takes many steps.
 const GROWTH: f64 = 0.3;
+
+/// Waves that turn by more than about 135 degrees from site to site alternate; of two neighbours alone that move against one another this
+/// is 1.5.
+const ALTERNATING: f64 = 1.7;
+
+/// Of fewer configurations nothing is said of waves.
+const WAVES: usize = 4;
 
 /// What small motions about the start, at rest, ask of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +46,9 @@ pub struct LongestStep {
     pub growth: f64,
     /// How many configurations were disturbed, each at every site.
     pub configurations: usize,
+    /// By how much neighbours move against one another in the motion that grows fastest: 0 where they move alike, 2 where they
+    /// alternate; 0 where none grows.
+    pub alternating: f64,
 }
 
 impl LongestStep {
@@ -53,6 +70,11 @@ impl LongestStep {
         let has_an_end = found.is_ok_and(|found| found.step > FAR * h.abs());
         if has_an_end || matches!(found, Err(Unknown::Kind)) {
             return found;
+        }
+        if matches!(found, Err(Unknown::Still)) {
+            let longer = LONGER.into_iter().filter_map(|part| asked(part).ok());
+            let mut longer = longer.filter(|found| found.step > h.abs());
+            return longer.next().map_or(found, Ok);
         }
         // Of a step that is hundreds of times too long even a small part is no short one.
         let shorter = SHORTER.into_iter().filter_map(|part| asked(part).ok());
@@ -97,9 +119,15 @@ impl LongestStep {
             true => probe.is_left(&largest, step).ok_or(Unknown::Far)?,
             false => true,
         };
-        let moved = swung && (!grows || growing || probe.is_held() && swings);
+        // What grows hardly beside the fastest may be the turn of forces with the frames that they are seen from.
+        let slight = swings && least.square.abs() < SLIGHT * largest.square;
+        let moved = swung && (!grows || growing || slight || probe.is_held() && swings);
         let growth = match growing {
             true => growth,
+            false => 0.0,
+        };
+        let alternating = match growing {
+            true => probe.shortness(&least),
             false => 0.0,
         };
         match moved {
@@ -107,6 +135,7 @@ impl LongestStep {
                 step,
                 growth,
                 configurations: probe.moves.len(),
+                alternating,
             }),
             false => Err(Unknown::OtherSteps),
         }
@@ -124,10 +153,25 @@ impl LongestStep {
         GROWTH / self.growth
     }
 
+    /// Whether what grows fastest alternates between neighbours: the shorter a wave the faster it grows, as where a sign makes the
+    /// equations elliptic along the label.
+    #[must_use]
+    pub fn is_elliptic(&self) -> bool {
+        self.configurations >= WAVES && self.growth > 0.0 && self.alternating > ALTERNATING
+    }
+
     /// What is wrong with steps of `h`, if anything: they are too long, or a motion grows as they go on.
     #[must_use]
     pub fn warning(&self, h: f64) -> Option<String> {
         let h = h.abs();
+        if self.is_elliptic() {
+            return Some(format!(
+                "small motions about the start, at rest, grow, and fastest those that alternate between neighbours, with the \
+                 rate {:.3e}: is there a sign wrong in the potential energy, or in a term that joins neighbours? Where the label \
+                 is a coordinate the problem is elliptic then: the more sites the faster this grows, whatever the step",
+                self.growth
+            ));
+        }
         if h > self.step {
             return Some(format!(
                 "the step h = {h} is {:.2} times the longest one that keeps small motions about the start small, \

@@ -5,7 +5,7 @@ use crate::Rotation;
 use crate::card::{Card, Field, Kind};
 use crate::groups::so3::hamilton;
 use crate::scalar::largest;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::ops::Range;
 
 /// A configuration and its momentum among the initial values and among what is observed.
@@ -33,8 +33,18 @@ impl Moves {
         let momentum = card.initial.get(behind)?;
         let known = match (place.kind, momentum.kind) {
             (_, Kind::FieldMomentum) => place.count() == momentum.count(),
-            (Kind::Rotation | Kind::UnitQuaternion, Kind::BodyMomentum | Kind::SpatialMomentum) => {
+            (Kind::Rotation, Kind::BodyMomentum | Kind::SpatialMomentum) => {
+                matches!((place.count(), momentum.count()), (9, 3) | (4, 1))
+            }
+            (Kind::UnitQuaternion, Kind::BodyMomentum | Kind::SpatialMomentum) => {
                 momentum.count() == 3
+            }
+            (Kind::RigidMotion, Kind::BodyMomentum | Kind::SpatialMomentum) => {
+                matches!((place.count(), momentum.count()), (16, 6) | (9, 3))
+            }
+            // Linear maps, with a momentum of their shape.
+            (_, Kind::BodyMomentum | Kind::SpatialMomentum) => {
+                place.rows == place.cols && place.count() == momentum.count()
             }
             _ => false,
         };
@@ -43,7 +53,10 @@ impl Moves {
             behind,
             kind: match momentum.kind {
                 Kind::FieldMomentum => Kind::FieldMomentum,
-                _ => place.kind,
+                _ => match place.kind {
+                    Kind::Rotation | Kind::UnitQuaternion | Kind::RigidMotion => place.kind,
+                    _ => Kind::Matrix,
+                },
             },
             spatial: momentum.kind == Kind::SpatialMomentum,
             place: columns(card, place)?,
@@ -91,39 +104,135 @@ fn columns(card: &Card, wanted: &Field) -> Option<Range<usize>> {
     None
 }
 
-/// Of an angle one; of a field how far its values at all sites lie apart, if they do not the size of its values, at most one.
+/// Of an angle and of a linear map one; of places, which are fields and those of rigid motions, how far they lie apart at all sites,
+/// if they do not their size, at most one.
 pub(super) fn units(moves: &[Moves], initial: &[Vec<f64>]) -> Vec<f64> {
-    let fields = moves.iter().filter(|m| m.kind == Kind::FieldMomentum);
-    let all = fields.flat_map(|m| initial.get(m.initial).into_iter().flatten());
-    let all: Vec<f64> = all.copied().collect();
+    let places = moves.iter().filter_map(|m| {
+        let value = initial.get(m.initial)?;
+        match m.kind {
+            Kind::FieldMomentum => Some(value.clone()),
+            Kind::RigidMotion => Some(rigid(value).1.as_slice().to_vec()),
+            _ => None,
+        }
+    });
+    let all: Vec<f64> = places.flatten().collect();
     let first = all.first().copied().unwrap_or(0.0);
     let apart = largest(all.iter().map(|x| x - first));
     let sizes = [apart, largest(all.iter().copied()).min(1.0), 1.0];
     let unit = sizes.into_iter().find(|x| *x > 0.0).unwrap_or(1.0);
     let each = moves.iter().flat_map(|m| {
-        let own = if m.kind == Kind::FieldMomentum {
-            unit
-        } else {
-            1.0
+        let own = |i: usize| match m.kind {
+            Kind::FieldMomentum => unit,
+            Kind::RigidMotion if i >= angles(m.count()) => unit,
+            _ => 1.0,
         };
-        vec![own; m.count()]
+        (0..m.count()).map(own).collect::<Vec<f64>>()
     });
     each.collect()
 }
 
+/// The numbers of angles among those of a rigid motion's velocity: of the plane, of space.
+fn angles(count: usize) -> usize {
+    match count {
+        3 => 1,
+        _ => 3,
+    }
+}
+
+/// Attitude and place of a rigid motion, from its homogeneous matrix, row-major.
+fn rigid(value: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+    let n = value.len().isqrt();
+    let all = DMatrix::from_row_slice(n, n, value);
+    let attitude = all.view((0, 0), (n - 1, n - 1)).into_owned();
+    let place = all.view((0, n - 1), (n - 1, 1)).column(0).into_owned();
+    (attitude, place)
+}
+
+/// The small turn by an angle of the plane, or by those about the axes of space; to first order where it is not asked for a rotation.
+fn turn_by(angles: &[f64], is_whole: bool) -> DMatrix<f64> {
+    match *angles {
+        [angle] if is_whole => {
+            let (sin, cos) = angle.sin_cos();
+            DMatrix::from_row_slice(2, 2, &[cos, -sin, sin, cos])
+        }
+        [angle] => DMatrix::from_row_slice(2, 2, &[0.0, -angle, angle, 0.0]),
+        [a, b, c] => {
+            let about = Vector3::new(a, b, c);
+            let turn = match is_whole {
+                true => Rotation::exp(&about).matrix(),
+                false => about.cross_matrix(),
+            };
+            DMatrix::from_row_slice(3, 3, turn.transpose().as_slice())
+        }
+        _ => DMatrix::zeros(0, 0),
+    }
+}
+
+/// A rigid motion moved by a small velocity, angular then linear, in the frame of the momentum.
+fn rigid_moved(value: &[f64], spatial: bool, by: &[f64]) -> Vec<f64> {
+    let (attitude, place) = rigid(value);
+    let (turn, along) = by.split_at(angles(by.len()));
+    let along = DVector::from_column_slice(along);
+    let (next, moved) = if spatial {
+        let carried = turn_by(turn, false) * &place;
+        (turn_by(turn, true) * attitude, place + carried + along)
+    } else {
+        let along = &attitude * along;
+        (attitude * turn_by(turn, true), place + along)
+    };
+    let n = moved.len();
+    let mut all = DMatrix::identity(n + 1, n + 1);
+    all.view_mut((0, 0), (n, n)).copy_from(&next);
+    all.view_mut((0, n), (n, 1)).copy_from(&moved);
+    all.transpose().as_slice().to_vec()
+}
+
+/// The small velocity from one rigid motion to another.
+fn rigid_difference(a: &[f64], b: &[f64], spatial: bool) -> Vec<f64> {
+    let ((from, here), (to, there)) = (rigid(a), rigid(b));
+    let turn = match spatial {
+        true => to * from.transpose(),
+        false => from.transpose() * to,
+    };
+    let half = |i: usize, j: usize| 0.5 * (turn[(i, j)] - turn[(j, i)]);
+    let mut all = match here.len() {
+        2 => vec![half(1, 0)],
+        _ => vec![half(2, 1), half(0, 2), half(1, 0)],
+    };
+    let moved = there - &here;
+    let along = match spatial {
+        true => moved - turn_by(&all, false) * here,
+        false => from.tr_mul(&moved),
+    };
+    all.extend_from_slice(along.as_slice());
+    all
+}
+
 /// Moves a configuration by a small change: added to a field, a turn in the frame of the momentum for an attitude.
 pub(super) fn disturb(value: &mut Vec<f64>, body: &Moves, by: &[f64]) -> Option<()> {
-    let turn = || Rotation::exp(&Vector3::new(by[0], by[1], by[2]));
     match body.kind {
         Kind::FieldMomentum => value.iter_mut().zip(by).for_each(|(x, by)| *x += by),
+        // Of the plane all turns commute.
+        Kind::Rotation if body.count() == 1 => {
+            let own = DMatrix::from_row_slice(2, 2, value);
+            *value = (own * turn_by(by, true)).transpose().as_slice().to_vec();
+        }
         Kind::Rotation => {
             let own = Matrix3::from_row_slice(value.get(..9)?);
-            let turn = turn().matrix();
+            let turn = Rotation::exp(&Vector3::new(by[0], by[1], by[2])).matrix();
             let next = if body.spatial { turn * own } else { own * turn };
             *value = next.transpose().as_slice().to_vec();
         }
+        Kind::RigidMotion => *value = rigid_moved(value, body.spatial, by),
+        Kind::Matrix => {
+            let n = value.len().isqrt();
+            let [own, by] = [value.as_slice(), by].map(|x| DMatrix::from_row_slice(n, n, x));
+            let change = if body.spatial { by * &own } else { &own * by };
+            *value = (own + change).transpose().as_slice().to_vec();
+        }
         _ => {
-            let [a, b] = [value.as_slice().try_into().ok()?, turn().quaternion()];
+            let turn = Rotation::exp(&Vector3::new(by[0], by[1], by[2]));
+            let [a, b] = [value.as_slice().try_into().ok()?, turn.quaternion()];
             let next = if body.spatial {
                 hamilton(b, a)
             } else {
@@ -139,6 +248,7 @@ pub(super) fn disturb(value: &mut Vec<f64>, body: &Moves, by: &[f64]) -> Option<
 pub(super) fn difference(body: &Moves, a: &[f64], b: &[f64]) -> Vec<f64> {
     match body.kind {
         Kind::FieldMomentum => a.iter().zip(b).map(|(a, b)| b - a).collect(),
+        Kind::Rotation if body.count() == 1 => vec![a[0] * b[2] - a[2] * b[0]],
         Kind::Rotation => {
             let [a, b] = [a, b].map(Matrix3::from_row_slice);
             let turn = if body.spatial {
@@ -148,6 +258,20 @@ pub(super) fn difference(body: &Moves, a: &[f64], b: &[f64]) -> Vec<f64> {
             };
             let half = |i: usize, j: usize| 0.5 * (turn[(i, j)] - turn[(j, i)]);
             vec![half(2, 1), half(0, 2), half(1, 0)]
+        }
+        Kind::RigidMotion => rigid_difference(a, b, body.spatial),
+        Kind::Matrix => {
+            let n = a.len().isqrt();
+            let [a, b] = [a, b].map(|x| DMatrix::from_row_slice(n, n, x));
+            let Some(inverse) = a.clone().try_inverse() else {
+                return vec![f64::NAN; n * n];
+            };
+            let change = if body.spatial {
+                (b - a) * inverse
+            } else {
+                inverse * (b - a)
+            };
+            change.transpose().as_slice().to_vec()
         }
         _ => {
             let of = |q: &[f64]| [q[0], q[1], q[2], q[3]];

@@ -5,6 +5,7 @@
 use super::extremes::{Motion, dot, numbers};
 use super::moves::{self, Moves};
 use super::unknown::Unknown;
+use super::waves;
 use crate::card::{Card, OpenError, Settings, Trajectory};
 use crate::scalar::largest;
 use std::cell::Cell;
@@ -19,6 +20,10 @@ const PART_HELD: f64 = 1e-6;
 
 /// What a projection takes from momenta at random where anything is held is more than this part of them.
 const TAKEN: f64 = 1e-9;
+
+/// How many sizes of a momentum are tried for one that moves by the wanted part, and by what one is less that is refused.
+const SCALES: usize = 12;
+const SLOWER: f64 = 1e-4;
 
 pub(super) struct Probe<'a> {
     card: &'a Card,
@@ -197,8 +202,13 @@ impl<'a> Probe<'a> {
         if !scale.is_finite() {
             return None;
         }
-        for _ in 0..12 {
-            let after = self.after(&self.thrown(p, scale)?, self.h)?;
+        for _ in 0..SCALES {
+            // What is too fast for the model may be refused: of a mass that is small beside one.
+            let thrown = self.thrown(p, scale)?;
+            let Some(after) = self.observed(&thrown, self.h, 1) else {
+                scale *= SLOWER;
+                continue;
+            };
             let change = self.change(&self.rest, &after);
             let most = self.size(&change);
             if (0.01 * self.part..=100.0 * self.part).contains(&most) {
@@ -206,6 +216,7 @@ impl<'a> Probe<'a> {
             }
             scale *= if most > 0.0 { self.part / most } else { 1e6 };
         }
+        self.refused.set(true);
         None
     }
 
@@ -229,6 +240,16 @@ impl<'a> Probe<'a> {
         let moved = self.disturbed(&motion.velocity, &motion.momentum, scale)?;
         let change = self.change(&self.after(&self.base, h)?, &self.after(&moved, h)?);
         Some((h, dot(&motion.momentum, &change) / scale))
+    }
+
+    /// By how much neighbours move against one another in a motion.
+    pub(super) fn shortness(&self, motion: &Motion) -> f64 {
+        let names = self.moves.iter();
+        let names: Vec<&str> = names
+            .map(|body| self.card.initial[body.initial].ascii)
+            .collect();
+        let pairs = waves::neighbours(&self.moves, &names);
+        waves::shortness(&motion.velocity, &self.units, &pairs)
     }
 
     /// The largest part of a change in units of disturbances.

@@ -5,7 +5,7 @@ use core::fmt;
 /// Why it is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
-    /// Configurations are others than fields, rotations of space and unit quaternions with a momentum each.
+    /// A configuration has no momentum of its own.
     Kind,
     /// No step can be taken from the start at rest: it is refused, or its constraints are not independent.
     Start,
@@ -25,9 +25,7 @@ pub enum Unknown {
 impl fmt::Display for Unknown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Kind => {
-                "its configurations are not fields, rotations of space or unit quaternions with a momentum each"
-            }
+            Self::Kind => "a configuration has no momentum of its own",
             Self::Start => "from the start, at rest, no short step can be taken",
             Self::Refused => "a state near the start, at rest, is refused",
             Self::Kinetic => {
