@@ -1,5 +1,6 @@
 //! The step of a forced Moser-Veselov equation, or of its like on SU(2): a number is found, then the node's torques act.
-//! Takes the derivation; gives `step`, the edge momentum and the words of a refusal.
+//! Takes the derivation; gives the edge momentum and what acts on arrival, of which the runtime's protocol makes the
+//! step; on SU(2) `step` and the words of a refusal themselves.
 
 use super::element::{Family, family};
 use super::expression::{Bindings, program};
@@ -41,10 +42,6 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
     let node = names.local("node");
     let begin = begin(d, names, mv);
     let kind = items::factor_type(d);
-    let error = match family(&d.spec.configurations[0]) {
-        Family::Quaternion => quote!(QuaternionError),
-        _ => quote!(MoserVeselovError),
-    };
     let used = Generics::of(d).used();
     let torques = Torques {
         leave: expr::neg(mv.rest.clone()),
@@ -55,6 +52,10 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
             .unwrap_or_else(|| expr::neg(mv.rest.clone())),
         seen: mv.torque.clone(),
     };
+    if super::stepper::is_forced(d) {
+        let arrived = kept(d, names, &torques);
+        return quote!(#begin #arrived);
+    }
     // On SO(3) such a body has a solver of its own.
     let step = match torques.leave.is_zero() && torques.arrive.is_zero() {
         true => super::quaternionic::free(d, names),
@@ -66,7 +67,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
 
         /// Says how far the step is beyond the bound, and which step could be solved.
         #[cold]
-        fn refused(&self, state: #state #used, factor: &#kind, h: T, e: #error) -> StepError {
+        fn refused(&self, state: #state #used, factor: &#kind, h: T, e: QuaternionError) -> StepError {
             let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
             StepCause::from(e).at_node(state.#node)
         }
@@ -131,7 +132,8 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     }
 }
 
-/// The step that finds its edge in the workspace and leaves the next one there.
+/// What acts at the node where an edge ends: the function of the next node, on SU(2) the whole step, which finds its
+/// edge in the workspace and leaves the next one there.
 fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     let (leave, arrive) = (&torques.leave, &torques.arrive);
     let s = &d.letters.symbols;
@@ -139,15 +141,8 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     let (element, momentum) = (own(d, c.element), per_configuration(d, "momentum", 0));
     let [moved, mut next] = ["moved", "next"].map(|tag| tagged(d, names, c.element, tag));
     let quaternion = family(c) == Family::Quaternion;
-    let [edge, following, space, momentum_next, node, turned] = [
-        "edge",
-        "edge_next",
-        "space",
-        "momentum_next",
-        "node",
-        "turned",
-    ]
-    .map(|base| names.local(base));
+    let [edge, following, space, momentum_next, node] =
+        ["edge", "edge_next", "space", "momentum_next", "node"].map(|base| names.local(base));
     let step = variable(s, d.spec.step);
     // Everything acts at the new node: what arrives there, and what leaves it on the next edge.
     // Where the two are equal, half their sum is each of them.
@@ -251,19 +246,6 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
             }
         }
     };
-    let factor = body(d);
-    // References do not change: what moves is written where it is, and not read back.
-    let follow = follow(d, names);
-    let next_edge = names.local("arrival");
-    let solution = match quaternion {
-        true => quote!(#edge.turn_in_quaternions(#factor, #step, &state.#element)),
-        false => quote! {
-            match work.method {
-                Method::Kappa => #edge.turn(#factor, #step, &state.#element),
-                method => #edge.turn_by(method, #factor, #step, &state.#element),
-            }
-        },
-    };
     let at_next = quote! {
         #parameters
         #attitude
@@ -272,64 +254,39 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         let #space = #edge.space();
         #act
     };
-    let there = [
-        quote!(#next_edge.attitude),
-        quote!(#next_edge.momentum),
-        quote!(#next_edge.edge),
-    ];
-    let (follows, arrived, [there, momentum_there, edge_there]) = match quaternion {
-        true => (
-            quote! {
-                #at_next
-                let (#next_edge, #momentum_next) =
-                    (#moved.unit_quaternion(), SpatialMomentum(#momentum_next));
-            },
-            TokenStream::new(),
-            [
-                quote!(#next_edge),
-                quote!(#momentum_next),
-                quote!(#following),
-            ],
-        ),
-        false => (
-            quote!(let #next_edge = self.arrived(state, #edge, #step, #moved);),
-            arrived(
-                d,
-                names,
-                &moved,
-                &quote! {
-                    #at_next
-                    Moving { attitude: #moved.rotation(), momentum: SpatialMomentum(#momentum_next), edge: #following }
-                },
-            ),
-            there,
-        ),
-    };
-    let finite = [quote!(all_finite(&#momentum_there.0))];
+    if !quaternion {
+        let body = quote! {
+            #at_next
+            Moving { attitude: #moved.rotation(), momentum: SpatialMomentum(#momentum_next), edge: #following }
+        };
+        return arrived(d, names, &moved, &body);
+    }
+    let factor = body(d);
+    // References do not change: what moves is written where it is, and not read back.
+    let follow = follow(d, names);
+    let [turned, arrival] = ["turned", "arrival"].map(|base| names.local(base));
+    let finite = [quote!(all_finite(&#momentum_next.0))];
     let finite = super::domain::finite_in_step(d, names, &finite);
-    let step_of = step_signature(
+    step_signature(
         d,
         quote! {
             #follow
             let #edge = &work.edge;
-            let #turned = #solution;
+            let #turned = #edge.turn_in_quaternions(#factor, #step, &state.#element);
             let #moved = match #turned {
                 Ok(turned) => turned,
                 Err(e) => return Err(self.refused(*state, #factor, #step, e)),
             };
-            #follows
+            #at_next
+            let (#arrival, #momentum_next) = (#moved.unit_quaternion(), SpatialMomentum(#momentum_next));
             #finite
-            (state.#element, work.here.#element) = (#there, #there);
-            (state.#momentum, work.here.#momentum) = (#momentum_there, #momentum_there);
+            (state.#element, work.here.#element) = (#arrival, #arrival);
+            (state.#momentum, work.here.#momentum) = (#momentum_next, #momentum_next);
             state.#node += 1;
-            work.edge = #edge_there;
+            work.edge = #following;
             Ok(())
         },
-    );
-    quote! {
-        #step_of
-        #arrived
-    }
+    )
 }
 
 /// The step size, and the workspace made anew where it is that of another state.
