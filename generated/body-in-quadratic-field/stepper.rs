@@ -132,12 +132,10 @@ impl<T: Real> BodyInQuadraticField<T> {
         let space = edge.space();
         let torque = -((K * Γ_next).cross(&Γ_next) * h);
         let kick = Λ_next * torque;
-        let momentum_next = space + kick * T::from_f64(0.5);
-        let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
         Moving {
             attitude: Λ_moved.rotation(),
-            momentum: SpatialMomentum(momentum_next),
-            edge: edge_next,
+            momentum: SpatialMomentum(space + kick * T::from_f64(0.5)),
+            edge: Edge::new(Λ_next.tr_mul(&space) + torque, space + kick),
         }
     }
     /// `Γ` at the node of this state.
@@ -145,18 +143,19 @@ impl<T: Real> BodyInQuadraticField<T> {
     pub fn Γ(&self, state: &BodyInQuadraticFieldState<T>) -> SVector<T, 3> {
         let Λ = state.Λ.matrix();
         let Γ_reference = state.Γ;
-        let Γ = Λ.tr_mul(&Γ_reference);
-        Γ
+        Λ.tr_mul(&Γ_reference)
     }
 }
 ::clebsch::stepper! {
-    [] BodyInQuadraticField, BodyInQuadraticFieldParameters { J, K },
-    BodyInQuadraticFieldInitial { Λ, body_momentum, Γ }, BodyInQuadraticFieldState {
-    Λ, momentum, Γ } at node, BodyInQuadraticFieldWorkspace { h, method, edge, here },
-    forced { Λ, momentum, Γ }
+    [] BodyInQuadraticField,
+    BodyInQuadraticFieldParameters { J, K },
+    BodyInQuadraticFieldInitial { Λ, body_momentum, Γ },
+    BodyInQuadraticFieldState { Λ, momentum, Γ } at node,
+    BodyInQuadraticFieldWorkspace { h, method, edge, here },
+    forced { Λ, momentum, Γ } solver symmetric judged { 3 }
     ("C is constant and symmetric: explicit up to the root of one quartic per step")
-    solver symmetric judged { 3 } observables { state.Λ, state.body_momentum, state
-    .spatial_momentum, Γ } invariants { energy, momentum_Gamma, Gamma_squared }
+    observables { state.Λ, state.body_momentum, state.spatial_momentum, Γ }
+    invariants { energy, momentum_Gamma, Gamma_squared }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -201,9 +200,7 @@ impl<T: Real> BodyInQuadraticField<T> {
     ) -> [Residual; 1] {
         let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
         let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let Λ_next = after.Λ.matrix();
-        let Γ_reference = before.Γ;
-        let Γ_next = Λ_next.tr_mul(&Γ_reference);
+        let Γ_next = self.Γ(after);
         let t1 = h.powi(-1);
         let t2 = Γ_next.dot(&Γ_next).sqrt();
         [
@@ -227,8 +224,7 @@ impl<T: Real> BodyInQuadraticField<T> {
             t1 * J.trace() - J * t1
         })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &BodyInQuadraticFieldState<T>) -> (T, T) {
         let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
         let Γ = self.Γ(state);
@@ -264,12 +260,8 @@ impl<T: Real> BodyInQuadraticField<T> {
     ) -> T {
         let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
         let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let Γ_reference = before.Γ;
-        let Γ = Λ.tr_mul(&Γ_reference);
-        let Λ_next = after.Λ.matrix();
-        let Γ_reference = before.Γ;
-        let Γ_next = Λ_next.tr_mul(&Γ_reference);
+        let Γ = self.Γ(before);
+        let Γ_next = self.Γ(after);
         T::from_f64(0.25) * Γ.dot(&(K * Γ))
             + T::from_f64(0.25) * Γ_next.dot(&(K * Γ_next))
             - (J * less_identity(&Ω_matrix)).trace() / (h * h)

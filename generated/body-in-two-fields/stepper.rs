@@ -118,12 +118,10 @@ impl<T: Real> BodyInTwoFields<T> {
         let space = edge.space();
         let torque = (p * h).cross(&B_next) - (gU * h).cross(&Γ_next);
         let kick = Λ_next * torque;
-        let momentum_next = space + kick * T::from_f64(0.5);
-        let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
         Moving {
             attitude: Λ_moved.rotation(),
-            momentum: SpatialMomentum(momentum_next),
-            edge: edge_next,
+            momentum: SpatialMomentum(space + kick * T::from_f64(0.5)),
+            edge: Edge::new(Λ_next.tr_mul(&space) + torque, space + kick),
         }
     }
     /// `Γ` at the node of this state.
@@ -131,24 +129,25 @@ impl<T: Real> BodyInTwoFields<T> {
     pub fn Γ(&self, state: &BodyInTwoFieldsState<T>) -> SVector<T, 3> {
         let BodyInTwoFieldsParameters { z, .. } = self.parameters;
         let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        Γ
+        Λ.tr_mul(&z)
     }
     /// `B` at the node of this state.
     #[inline]
     pub fn B(&self, state: &BodyInTwoFieldsState<T>) -> SVector<T, 3> {
         let BodyInTwoFieldsParameters { b, .. } = self.parameters;
         let Λ = state.Λ.matrix();
-        let B = Λ.tr_mul(&b);
-        B
+        Λ.tr_mul(&b)
     }
 }
 ::clebsch::stepper! {
-    [] BodyInTwoFields, BodyInTwoFieldsParameters { J, gU, p, z, b },
-    BodyInTwoFieldsInitial { Λ, body_momentum }, BodyInTwoFieldsState { Λ, momentum }
-    at node, BodyInTwoFieldsWorkspace { h, method, edge, here }, forced { Λ, momentum }
+    [] BodyInTwoFields,
+    BodyInTwoFieldsParameters { J, gU, p, z, b },
+    BodyInTwoFieldsInitial { Λ, body_momentum },
+    BodyInTwoFieldsState { Λ, momentum } at node,
+    BodyInTwoFieldsWorkspace { h, method, edge, here },
+    forced { Λ, momentum } solver symmetric judged { 3 }
     ("C is constant and symmetric: explicit up to the root of one quartic per step")
-    solver symmetric judged { 3 } start { Λ, momentum = body_momentum.to_space } {}
+    start { Λ, momentum = body_momentum.to_space }
     observables { state.Λ, state.body_momentum, state.spatial_momentum, Γ, B }
     invariants { energy, Gamma_squared, Gamma_B, B_squared }
 }
@@ -191,11 +190,10 @@ impl<T: Real> BodyInTwoFields<T> {
         after: &BodyInTwoFieldsState<T>,
         h: T,
     ) -> [Residual; 1] {
-        let BodyInTwoFieldsParameters { J, gU, p, z, b, .. } = self.parameters;
+        let BodyInTwoFieldsParameters { J, gU, p, .. } = self.parameters;
         let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let Λ_next = after.Λ.matrix();
-        let Γ_next = Λ_next.tr_mul(&z);
-        let B_next = Λ_next.tr_mul(&b);
+        let Γ_next = self.Γ(after);
+        let B_next = self.B(after);
         let t1 = h.powi(-1);
         let t2 = (h * h).sqrt();
         [
@@ -222,8 +220,7 @@ impl<T: Real> BodyInTwoFields<T> {
             t1 * J.trace() - J * t1
         })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &BodyInTwoFieldsState<T>) -> (T, T) {
         let BodyInTwoFieldsParameters { gU, p, .. } = self.parameters;
         let Γ = self.Γ(state);
@@ -260,14 +257,12 @@ impl<T: Real> BodyInTwoFields<T> {
         before: &BodyInTwoFieldsState<T>,
         after: &BodyInTwoFieldsState<T>,
     ) -> T {
-        let BodyInTwoFieldsParameters { J, gU, p, z, b, .. } = self.parameters;
+        let BodyInTwoFieldsParameters { J, gU, p, .. } = self.parameters;
         let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        let B = Λ.tr_mul(&b);
-        let Λ_next = after.Λ.matrix();
-        let Γ_next = Λ_next.tr_mul(&z);
-        let B_next = Λ_next.tr_mul(&b);
+        let Γ = self.Γ(before);
+        let Γ_next = self.Γ(after);
+        let B = self.B(before);
+        let B_next = self.B(after);
         T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
             - T::from_f64(0.5) * p.dot(&B) - T::from_f64(0.5) * p.dot(&B_next)
             - (J * less_identity(&Ω_matrix)).trace() / (h * h)

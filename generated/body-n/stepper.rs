@@ -151,11 +151,15 @@ impl<const N: usize, T: Real> BodyN<N, T> {
     }
 }
 ::clebsch::stepper! {
-    [N] BodyN, BodyNParameters { C }, BodyNInitial { Λ, body_momentum }, BodyNState {
-    Λ, momentum } at node, BodyNWorkspace { h, method }, explicit {} solver none judged
-    { 0 + (N * (N - 1) / 2) } observables { state.Λ, state.body_momentum, state
-    .spatial_momentum } invariants { state.spatial_momentum as skew, momentum_squared,
-    trace_momentum4, trace_momentum6, trace_momentum8 }
+    [N] BodyN,
+    BodyNParameters { C },
+    BodyNInitial { Λ, body_momentum },
+    BodyNState { Λ, momentum } at node,
+    BodyNWorkspace { h, method },
+    explicit {} solver none judged { (N * (N - 1) / 2) }
+    observables { state.Λ, state.body_momentum, state.spatial_momentum }
+    invariants { state.spatial_momentum as skew, momentum_squared, trace_momentum4,
+        trace_momentum6, trace_momentum8 }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]

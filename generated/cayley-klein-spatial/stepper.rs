@@ -175,17 +175,18 @@ impl<T: Real> CayleyKleinSpatial<T> {
     pub fn I(&self, state: &CayleyKleinSpatialState<T>) -> SMatrix<T, 3, 3> {
         let q = state.q.matrix();
         let I_reference = state.I;
-        let I = quaternion_rotation(&q)
-            * (I_reference * quaternion_rotation(&q).transpose());
-        I
+        quaternion_rotation(&q) * (I_reference * quaternion_rotation(&q).transpose())
     }
 }
 ::clebsch::stepper! {
-    [] CayleyKleinSpatial, CayleyKleinSpatialParameters { c }, CayleyKleinSpatialInitial
-    { q, spatial_momentum, I }, CayleyKleinSpatialState { q, momentum, I } at node,
-    CayleyKleinSpatialWorkspace { h, factor, edge, here }, explicit {} nothing symmetric
-    judged { 0 + 3 } observables { state.q, state.body_momentum, state.spatial_momentum,
-    I } invariants { energy, state.spatial_momentum, trace_I1, trace_I2, trace_I3 }
+    [] CayleyKleinSpatial,
+    CayleyKleinSpatialParameters { c },
+    CayleyKleinSpatialInitial { q, spatial_momentum, I },
+    CayleyKleinSpatialState { q, momentum, I } at node,
+    CayleyKleinSpatialWorkspace { h, factor, edge, here },
+    explicit {} nothing symmetric judged { 3 }
+    observables { state.q, state.body_momentum, state.spatial_momentum, I }
+    invariants { energy, state.spatial_momentum, trace_I1, trace_I2, trace_I3 }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -239,10 +240,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
     ) -> [Residual; 1] {
         let CayleyKleinSpatialParameters { c, .. } = self.parameters;
         let w_matrix = before.q.spatial_velocity(&after.q).matrix();
-        let q = before.q.matrix();
-        let I_reference = before.I;
-        let I = quaternion_rotation(&q)
-            * (I_reference * quaternion_rotation(&q).transpose());
+        let I = self.I(before);
         let t1 = h.powi(-1);
         let t2 = quaternion_imaginary(&w_matrix);
         let t3 = quaternion_imaginary(&(w_matrix * w_matrix));
@@ -271,11 +269,10 @@ impl<T: Real> CayleyKleinSpatial<T> {
             I * ξ
         })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &CayleyKleinSpatialState<T>) -> (T, T) {
         let momentum = state.spatial_momentum().0;
-        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 0 + 3);
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
         (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
     }
     /// The physical energy at this node.
@@ -307,10 +304,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
     ) -> T {
         let CayleyKleinSpatialParameters { c, .. } = self.parameters;
         let w_matrix = before.q.spatial_velocity(&after.q).matrix();
-        let q = before.q.matrix();
-        let I_reference = before.I;
-        let I = quaternion_rotation(&q)
-            * (I_reference * quaternion_rotation(&q).transpose());
+        let I = self.I(before);
         let t1 = quaternion_imaginary(&w_matrix);
         (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
             / (h * h)

@@ -137,10 +137,14 @@ impl<T: Real> CayleyKlein<T> {
     }
 }
 ::clebsch::stepper! {
-    [] CayleyKlein, CayleyKleinParameters { I, c }, CayleyKleinInitial { q, body_momentum
-    }, CayleyKleinState { q, momentum } at node, CayleyKleinWorkspace { h, edge, here },
-    explicit {} nothing symmetric judged { 0 + 3 } start { q, momentum = body_momentum
-    .to_space } {} observables { state.q, state.body_momentum, state.spatial_momentum }
+    [] CayleyKlein,
+    CayleyKleinParameters { I, c },
+    CayleyKleinInitial { q, body_momentum },
+    CayleyKleinState { q, momentum } at node,
+    CayleyKleinWorkspace { h, edge, here },
+    explicit {} nothing symmetric judged { 3 }
+    start { q, momentum = body_momentum.to_space }
+    observables { state.q, state.body_momentum, state.spatial_momentum }
     invariants { energy, state.spatial_momentum, momentum_squared }
 }
 /// A configuration at one node, solution or not.
@@ -218,11 +222,10 @@ impl<T: Real> CayleyKlein<T> {
             diagonal_times(&I, &ξ)
         })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &CayleyKleinState<T>) -> (T, T) {
         let momentum = state.body_momentum().0;
-        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 0 + 3);
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
         (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
     }
     /// The physical energy at this node.

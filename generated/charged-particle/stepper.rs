@@ -126,11 +126,15 @@ impl<T: Real> ChargedParticle<T> {
     }
 }
 ::clebsch::stepper! {
-    [] ChargedParticle, ChargedParticleParameters { m, q, B, E }, ChargedParticleInitial
-    { X, momentum }, ChargedParticleState { X, momentum, place_rest, momentum_rest } at
-    node, ChargedParticleWorkspace { h }, tried {} nothing symmetric judged { 0 + (3 * 1)
-    } start { X, momentum = momentum } { place_rest, momentum_rest } observables { state
-    .X, state.momentum } invariants { energy, momentum_across_E }
+    [] ChargedParticle,
+    ChargedParticleParameters { m, q, B, E },
+    ChargedParticleInitial { X, momentum },
+    ChargedParticleState { X, momentum, place_rest, momentum_rest } at node,
+    ChargedParticleWorkspace { h },
+    tried {} nothing symmetric judged { (3 * 1) }
+    start { X, momentum = momentum } { place_rest, momentum_rest }
+    observables { state.X, state.momentum }
+    invariants { energy, momentum_across_E }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -199,17 +203,12 @@ impl<T: Real> ChargedParticle<T> {
             ξ * m
         })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &ChargedParticleState<T>) -> (T, T) {
         let ChargedParticleParameters { q, B, E, .. } = self.parameters;
         let X = state.X.matrix();
         let momentum = state.momentum().0 - (B * (T::from_f64(0.5) * q)).cross(&X);
-        let velocity = solve_leading_or_nan(
-            &self.inertia_at(state),
-            &momentum,
-            0 + (3 * 1),
-        );
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, (3 * 1));
         (momentum.dot(&velocity) * T::from_f64(0.5), -(q * E.dot(&X)))
     }
     /// The physical energy at this node.

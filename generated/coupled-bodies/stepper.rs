@@ -445,20 +445,21 @@ impl<T: Real> CoupledBodies<T> {
     pub fn R(&self, state: &CoupledBodiesState<T>) -> SMatrix<T, 3, 3> {
         let Λ1 = state.Λ1.matrix();
         let Λ2 = state.Λ2.matrix();
-        let R = Λ1.tr_mul(&Λ2);
-        R
+        Λ1.tr_mul(&Λ2)
     }
 }
 ::clebsch::stepper! {
-    [] CoupledBodies, CoupledBodiesParameters { J1, J2, d1, d2, eps },
+    [] CoupledBodies,
+    CoupledBodiesParameters { J1, J2, d1, d2, eps },
     CoupledBodiesInitial { Λ1, body_momentum_Λ1, Λ2, body_momentum_Λ2 },
     CoupledBodiesState { Λ1, momentum_Λ1, Λ2, momentum_Λ2 } at node,
-    CoupledBodiesWorkspace { h, search }, tried {} nothing symmetric judged { 6 } start {
-    Λ1, momentum_Λ1 = body_momentum_Λ1.to_space; Λ2, momentum_Λ2 = body_momentum_Λ2
-    .to_space } {} observables { state.Λ1, state.body_momentum_Λ1, state
-    .spatial_momentum_Λ1, state.Λ2, state.body_momentum_Λ2, state
-    .spatial_momentum_Λ2, R } invariants { energy, total_momentum,
-    total_momentum_squared }
+    CoupledBodiesWorkspace { h, search },
+    tried {} nothing symmetric judged { 6 }
+    start { Λ1, momentum_Λ1 = body_momentum_Λ1.to_space; Λ2, momentum_Λ2 =
+        body_momentum_Λ2.to_space }
+    observables { state.Λ1, state.body_momentum_Λ1, state.spatial_momentum_Λ1, state.Λ2,
+        state.body_momentum_Λ2, state.spatial_momentum_Λ2, R }
+    invariants { energy, total_momentum, total_momentum_squared }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -535,9 +536,7 @@ impl<T: Real> CoupledBodies<T> {
         let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
         let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
         let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
-        let Λ1 = before.Λ1.matrix();
-        let Λ2 = before.Λ2.matrix();
-        let R = Λ1.tr_mul(&Λ2);
+        let R = self.R(before);
         let t1 = (Ω1_matrix.tr_mul(&Ω1_matrix)).trace().sqrt();
         let t2 = (h * h).sqrt();
         let t3 = (eps * eps).sqrt();
@@ -620,8 +619,7 @@ impl<T: Real> CoupledBodies<T> {
         }
         inertia
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &CoupledBodiesState<T>) -> (T, T) {
         let momentum = {
             let parts: [SVector<T, 3>; 2] = [
@@ -660,9 +658,7 @@ impl<T: Real> CoupledBodies<T> {
         let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
         let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
         let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
-        let Λ1 = before.Λ1.matrix();
-        let Λ2 = before.Λ2.matrix();
-        let R = Λ1.tr_mul(&Λ2);
+        let R = self.R(before);
         let t1 = less_identity(&Ω1_matrix);
         let t2 = less_identity(&Ω2_matrix);
         (-((eps * (t1 * d1).dot(&(R * (t2 * d2)))) / (h * h)))

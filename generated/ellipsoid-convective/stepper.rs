@@ -248,17 +248,20 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
     pub fn C(&self, state: &EllipsoidConvectiveState<N, T>) -> SMatrix<T, N, N> {
         let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
         let Q = state.Q.matrix();
-        let C = Q.tr_mul(&(C0 * Q));
-        C
+        Q.tr_mul(&(C0 * Q))
     }
 }
 ::clebsch::stepper! {
-    [N] EllipsoidConvective, EllipsoidConvectiveParameters { C0, I0, a, b, c, d },
-    EllipsoidConvectiveInitial { Q, body_momentum }, EllipsoidConvectiveState { Q,
-    momentum } at node, EllipsoidConvectiveWorkspace { h }, tried {} nothing symmetric
-    judged { 0 + (N * N) } start { Q, momentum = body_momentum.to_space } {} observables
-    { state.Q, state.body_momentum, state.spatial_momentum, C } invariants { energy,
-    angular_momentum_C_2, angular_momentum_C_4, spatial_momentum_skew_C0_inverse }
+    [N] EllipsoidConvective,
+    EllipsoidConvectiveParameters { C0, I0, a, b, c, d },
+    EllipsoidConvectiveInitial { Q, body_momentum },
+    EllipsoidConvectiveState { Q, momentum } at node,
+    EllipsoidConvectiveWorkspace { h },
+    tried {} nothing symmetric judged { (N * N) }
+    start { Q, momentum = body_momentum.to_space }
+    observables { state.Q, state.body_momentum, state.spatial_momentum, C }
+    invariants { energy, angular_momentum_C_2, angular_momentum_C_4,
+        spatial_momentum_skew_C0_inverse }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -316,12 +319,10 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         after: &EllipsoidConvectiveState<N, T>,
         h: T,
     ) -> [Residual; 1] {
-        let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let EllipsoidConvectiveParameters { I0, a, b, c, d, .. } = self.parameters;
         let G_matrix = before.Q.body_velocity(&after.Q).matrix();
-        let Q = before.Q.matrix();
-        let C = Q.tr_mul(&(C0 * Q));
-        let Q_next = after.Q.matrix();
-        let C_next = Q_next.tr_mul(&(C0 * Q_next));
+        let C = self.C(before);
+        let C_next = self.C(after);
         let t1 = G_matrix.tr_mul(&C);
         let t2 = C_next * C_next;
         let t3 = h.powi(-1);
@@ -365,8 +366,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         }
         inertia
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &EllipsoidConvectiveState<N, T>) -> (T, T) {
         let EllipsoidConvectiveParameters { a, b, c, d, .. } = self.parameters;
         let C = self.C(state);
@@ -378,11 +378,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
             let _ = rest;
             all
         };
-        let velocity = solve_leading_or_nan(
-            &self.inertia_at(state),
-            &momentum,
-            0 + (N * N),
-        );
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, (N * N));
         (
             momentum.dot(&velocity) * T::from_f64(0.5),
             a * C.trace() + T::from_f64(0.5) * b * (C.trace() * C.trace())
@@ -428,12 +424,10 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         before: &EllipsoidConvectiveState<N, T>,
         after: &EllipsoidConvectiveState<N, T>,
     ) -> T {
-        let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let EllipsoidConvectiveParameters { I0, a, b, c, d, .. } = self.parameters;
         let G_matrix = before.Q.body_velocity(&after.Q).matrix();
-        let Q = before.Q.matrix();
-        let C = Q.tr_mul(&(C0 * Q));
-        let Q_next = after.Q.matrix();
-        let C_next = Q_next.tr_mul(&(C0 * Q_next));
+        let C = self.C(before);
+        let C_next = self.C(after);
         let t1 = C.trace();
         let t2 = determinant(&(C));
         let t3 = C_next.trace();

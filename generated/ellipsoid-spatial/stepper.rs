@@ -246,17 +246,20 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
     pub fn S(&self, state: &EllipsoidSpatialState<N, T>) -> SMatrix<T, N, N> {
         let EllipsoidSpatialParameters { I0, .. } = self.parameters;
         let Q = state.Q.matrix();
-        let S = Q * (I0 * Q.transpose());
-        S
+        Q * (I0 * Q.transpose())
     }
 }
 ::clebsch::stepper! {
-    [N] EllipsoidSpatial, EllipsoidSpatialParameters { C0, I0, a, b, c, d },
-    EllipsoidSpatialInitial { Q, spatial_momentum }, EllipsoidSpatialState { Q, momentum
-    } at node, EllipsoidSpatialWorkspace { h }, tried {} nothing symmetric judged { 0 +
-    (N * N) } start { Q, momentum = spatial_momentum } {} observables { state.Q, state
-    .body_momentum, state.spatial_momentum, S } invariants { energy, circulation_S_2,
-    circulation_S_4, body_momentum_skew_I0_inverse_right }
+    [N] EllipsoidSpatial,
+    EllipsoidSpatialParameters { C0, I0, a, b, c, d },
+    EllipsoidSpatialInitial { Q, spatial_momentum },
+    EllipsoidSpatialState { Q, momentum } at node,
+    EllipsoidSpatialWorkspace { h },
+    tried {} nothing symmetric judged { (N * N) }
+    start { Q, momentum = spatial_momentum }
+    observables { state.Q, state.body_momentum, state.spatial_momentum, S }
+    invariants { energy, circulation_S_2, circulation_S_4,
+        body_momentum_skew_I0_inverse_right }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -314,12 +317,10 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         after: &EllipsoidSpatialState<N, T>,
         h: T,
     ) -> [Residual; 1] {
-        let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let EllipsoidSpatialParameters { C0, a, b, c, d, .. } = self.parameters;
         let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
-        let Q = before.Q.matrix();
-        let S = Q * (I0 * Q.transpose());
-        let Q_next = after.Q.matrix();
-        let S_next = Q_next * (I0 * Q_next.transpose());
+        let S = self.S(before);
+        let S_next = self.S(after);
         let t1 = g_matrix * S;
         let t2 = S_next * S_next;
         let t3 = h.powi(-1);
@@ -363,8 +364,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         }
         inertia
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &EllipsoidSpatialState<N, T>) -> (T, T) {
         let EllipsoidSpatialParameters { a, b, c, d, .. } = self.parameters;
         let S = self.S(state);
@@ -376,11 +376,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
             let _ = rest;
             all
         };
-        let velocity = solve_leading_or_nan(
-            &self.inertia_at(state),
-            &momentum,
-            0 + (N * N),
-        );
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, (N * N));
         (
             momentum.dot(&velocity) * T::from_f64(0.5),
             a * S.trace() + T::from_f64(0.5) * b * (S.trace() * S.trace())
@@ -426,12 +422,10 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         before: &EllipsoidSpatialState<N, T>,
         after: &EllipsoidSpatialState<N, T>,
     ) -> T {
-        let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let EllipsoidSpatialParameters { C0, a, b, c, d, .. } = self.parameters;
         let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
-        let Q = before.Q.matrix();
-        let S = Q * (I0 * Q.transpose());
-        let Q_next = after.Q.matrix();
-        let S_next = Q_next * (I0 * Q_next.transpose());
+        let S = self.S(before);
+        let S_next = self.S(after);
         let t1 = S.trace();
         let t2 = determinant(&(S));
         let t3 = S_next.trace();

@@ -154,17 +154,19 @@ impl<T: Real> FreeBodySpatial<T> {
     pub fn J(&self, state: &FreeBodySpatialState<T>) -> SMatrix<T, 3, 3> {
         let Λ = state.Λ.matrix();
         let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        J
+        Λ * (J_reference * Λ.transpose())
     }
 }
 ::clebsch::stepper! {
-    [] FreeBodySpatial, FreeBodySpatialParameters { scalar }, FreeBodySpatialInitial {
-    Λ, spatial_momentum, J }, FreeBodySpatialState { Λ, momentum, J } at node,
-    FreeBodySpatialWorkspace { h, solver, J }, free { Λ, momentum } order modified
-    judged { 3 } observables { state.Λ, state.body_momentum, state.spatial_momentum, J }
+    [] FreeBodySpatial,
+    FreeBodySpatialParameters { scalar },
+    FreeBodySpatialInitial { Λ, spatial_momentum, J },
+    FreeBodySpatialState { Λ, momentum, J } at node,
+    FreeBodySpatialWorkspace { h, solver, J },
+    free { Λ, momentum } order modified judged { 3 }
+    observables { state.Λ, state.body_momentum, state.spatial_momentum, J }
     invariants { energy, work.Λ.spatial_momentum, trace_J1, trace_J2, trace_J3,
-    momentum_quadratic }
+        momentum_quadratic }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -207,9 +209,7 @@ impl<T: Real> FreeBodySpatial<T> {
         h: T,
     ) -> [Residual; 1] {
         let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let J_reference = before.J;
-        let J = Λ * (J_reference * Λ.transpose());
+        let J = self.J(before);
         let t1 = h.powi(-1);
         [
             Residual::between(
@@ -230,8 +230,7 @@ impl<T: Real> FreeBodySpatial<T> {
             t1 * J.trace() - J * t1
         })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &FreeBodySpatialState<T>) -> (T, T) {
         let momentum = state.spatial_momentum().0;
         let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
@@ -271,9 +270,7 @@ impl<T: Real> FreeBodySpatial<T> {
         after: &FreeBodySpatialState<T>,
     ) -> T {
         let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let J_reference = before.J;
-        let J = Λ * (J_reference * Λ.transpose());
+        let J = self.J(before);
         -((less_identity(&ω_matrix) * J).trace() / (h * h))
     }
 }

@@ -112,11 +112,15 @@ impl<T: Real> FreeBody<T> {
     }
 }
 ::clebsch::stepper! {
-    [] FreeBody, FreeBodyParameters { J }, FreeBodyInitial { Λ, body_momentum },
-    FreeBodyState { Λ, momentum } at node, FreeBodyWorkspace { h, solver }, free { Λ,
-    momentum } order modified judged { 3 } start { Λ, momentum = body_momentum.to_space
-    } {} observables { state.Λ, state.body_momentum, state.spatial_momentum } invariants
-    { energy, work.Λ.spatial_momentum, momentum_squared, momentum_quadratic }
+    [] FreeBody,
+    FreeBodyParameters { J },
+    FreeBodyInitial { Λ, body_momentum },
+    FreeBodyState { Λ, momentum } at node,
+    FreeBodyWorkspace { h, solver },
+    free { Λ, momentum } order modified judged { 3 }
+    start { Λ, momentum = body_momentum.to_space }
+    observables { state.Λ, state.body_momentum, state.spatial_momentum }
+    invariants { energy, work.Λ.spatial_momentum, momentum_squared, momentum_quadratic }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -175,8 +179,7 @@ impl<T: Real> FreeBody<T> {
             t1 * J.trace() - J * t1
         })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &FreeBodyState<T>) -> (T, T) {
         let momentum = state.body_momentum().0;
         let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);

@@ -146,13 +146,11 @@ impl<T: Real> HeavyTopSpatial<T> {
         let space = edge.space();
         let torque = (Λ_next.tr_mul(&z)).cross(&(χ_reference * (h * w)));
         let kick = (z * (h * w)).cross(&χ_next);
-        let momentum_next = space + kick * T::from_f64(0.5);
         let left = space + kick;
-        let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, left);
         Moving {
             attitude: Λ_moved.rotation(),
-            momentum: SpatialMomentum(momentum_next),
-            edge: edge_next,
+            momentum: SpatialMomentum(space + kick * T::from_f64(0.5)),
+            edge: Edge::new(Λ_next.tr_mul(&space) + torque, left),
         }
     }
     /// `J` at the node of this state.
@@ -160,27 +158,28 @@ impl<T: Real> HeavyTopSpatial<T> {
     pub fn J(&self, state: &HeavyTopSpatialState<T>) -> SMatrix<T, 3, 3> {
         let Λ = state.Λ.matrix();
         let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        J
+        Λ * (J_reference * Λ.transpose())
     }
     /// `χ` at the node of this state.
     #[inline]
     pub fn χ(&self, state: &HeavyTopSpatialState<T>) -> SVector<T, 3> {
         let Λ = state.Λ.matrix();
         let χ_reference = state.χ;
-        let χ = Λ * χ_reference;
-        χ
+        Λ * χ_reference
     }
 }
 ::clebsch::stepper! {
-    [] HeavyTopSpatial, HeavyTopSpatialParameters { w, z }, HeavyTopSpatialInitial { Λ,
-    spatial_momentum, J, χ }, HeavyTopSpatialState { Λ, momentum, J, χ } at node,
-    HeavyTopSpatialWorkspace { h, method, factor, edge, here }, forced { Λ, momentum, J,
-    χ }
+    [] HeavyTopSpatial,
+    HeavyTopSpatialParameters { w, z },
+    HeavyTopSpatialInitial { Λ, spatial_momentum, J, χ },
+    HeavyTopSpatialState { Λ, momentum, J, χ } at node,
+    HeavyTopSpatialWorkspace { h, method, factor, edge, here },
+    forced { Λ, momentum, J, χ } solver symmetric judged { 3 }
     ("C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step",
-    of J) solver symmetric judged { 3 } observables { state.Λ, state.body_momentum,
-    state.spatial_momentum, J, χ } invariants { energy, chi_squared, trace_J1, trace_J2,
-    trace_J3, chi_J_chi, chi_J2_chi, momentum_z }
+        of J)
+    observables { state.Λ, state.body_momentum, state.spatial_momentum, J, χ }
+    invariants { energy, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi,
+        chi_J2_chi, momentum_z }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -230,12 +229,8 @@ impl<T: Real> HeavyTopSpatial<T> {
     ) -> [Residual; 1] {
         let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
         let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let J_reference = before.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        let Λ_next = after.Λ.matrix();
-        let χ_reference = before.χ;
-        let χ_next = Λ_next * χ_reference;
+        let J = self.J(before);
+        let χ_next = self.χ(after);
         let t1 = h.powi(-1);
         [
             Residual::between(
@@ -259,8 +254,7 @@ impl<T: Real> HeavyTopSpatial<T> {
             t1 * J.trace() - J * t1
         })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &HeavyTopSpatialState<T>) -> (T, T) {
         let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
         let χ = self.χ(state);
@@ -320,14 +314,9 @@ impl<T: Real> HeavyTopSpatial<T> {
     ) -> T {
         let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
         let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let J_reference = before.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        let χ_reference = before.χ;
-        let χ = Λ * χ_reference;
-        let Λ_next = after.Λ.matrix();
-        let χ_reference = before.χ;
-        let χ_next = Λ_next * χ_reference;
+        let J = self.J(before);
+        let χ = self.χ(before);
+        let χ_next = self.χ(after);
         T::from_f64(0.5) * w * z.dot(&χ) + T::from_f64(0.5) * w * z.dot(&χ_next)
             - (less_identity(&ω_matrix) * J).trace() / (h * h)
     }

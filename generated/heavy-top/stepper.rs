@@ -107,12 +107,10 @@ impl<T: Real> HeavyTop<T> {
         let space = edge.space();
         let torque = -(gU * h).cross(&Γ_next);
         let kick = Λ_next * torque;
-        let momentum_next = space + kick * T::from_f64(0.5);
-        let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
         Moving {
             attitude: Λ_moved.rotation(),
-            momentum: SpatialMomentum(momentum_next),
-            edge: edge_next,
+            momentum: SpatialMomentum(space + kick * T::from_f64(0.5)),
+            edge: Edge::new(Λ_next.tr_mul(&space) + torque, space + kick),
         }
     }
     /// `Γ` at the node of this state.
@@ -120,18 +118,20 @@ impl<T: Real> HeavyTop<T> {
     pub fn Γ(&self, state: &HeavyTopState<T>) -> SVector<T, 3> {
         let HeavyTopParameters { z, .. } = self.parameters;
         let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        Γ
+        Λ.tr_mul(&z)
     }
 }
 ::clebsch::stepper! {
-    [] HeavyTop, HeavyTopParameters { J, gU, z }, HeavyTopInitial { Λ, body_momentum },
-    HeavyTopState { Λ, momentum } at node, HeavyTopWorkspace { h, method, edge, here },
-    forced { Λ, momentum }
+    [] HeavyTop,
+    HeavyTopParameters { J, gU, z },
+    HeavyTopInitial { Λ, body_momentum },
+    HeavyTopState { Λ, momentum } at node,
+    HeavyTopWorkspace { h, method, edge, here },
+    forced { Λ, momentum } solver symmetric judged { 3 }
     ("C is constant and symmetric: explicit up to the root of one quartic per step")
-    solver symmetric judged { 3 } start { Λ, momentum = body_momentum.to_space } {}
-    observables { state.Λ, state.body_momentum, state.spatial_momentum, Γ } invariants
-    { energy, momentum_Gamma, Gamma_squared }
+    start { Λ, momentum = body_momentum.to_space }
+    observables { state.Λ, state.body_momentum, state.spatial_momentum, Γ }
+    invariants { energy, momentum_Gamma, Gamma_squared }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -171,10 +171,9 @@ impl<T: Real> HeavyTop<T> {
         after: &HeavyTopState<T>,
         h: T,
     ) -> [Residual; 1] {
-        let HeavyTopParameters { J, gU, z, .. } = self.parameters;
+        let HeavyTopParameters { J, gU, .. } = self.parameters;
         let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let Λ_next = after.Λ.matrix();
-        let Γ_next = Λ_next.tr_mul(&z);
+        let Γ_next = self.Γ(after);
         let t1 = h.powi(-1);
         [
             Residual::between(
@@ -197,8 +196,7 @@ impl<T: Real> HeavyTop<T> {
             t1 * J.trace() - J * t1
         })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &HeavyTopState<T>) -> (T, T) {
         let HeavyTopParameters { gU, .. } = self.parameters;
         let Γ = self.Γ(state);
@@ -229,12 +227,10 @@ impl<T: Real> HeavyTop<T> {
         before: &HeavyTopState<T>,
         after: &HeavyTopState<T>,
     ) -> T {
-        let HeavyTopParameters { J, gU, z, .. } = self.parameters;
+        let HeavyTopParameters { J, gU, .. } = self.parameters;
         let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        let Λ_next = after.Λ.matrix();
-        let Γ_next = Λ_next.tr_mul(&z);
+        let Γ = self.Γ(before);
+        let Γ_next = self.Γ(after);
         T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
             - (J * less_identity(&Ω_matrix)).trace() / (h * h)
     }

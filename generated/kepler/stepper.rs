@@ -128,11 +128,15 @@ impl<T: Real> Kepler<T> {
     }
 }
 ::clebsch::stepper! {
-    [] Kepler, KeplerParameters { m, k }, KeplerInitial { X, momentum }, KeplerState { X,
-    momentum, place_rest, momentum_rest } at node, KeplerWorkspace { h }, tried {}
-    nothing symmetric judged { 0 + (3 * 1) } start { X, momentum = momentum } {
-    place_rest, momentum_rest } observables { state.X, state.momentum } invariants {
-    energy, momentum_angular }
+    [] Kepler,
+    KeplerParameters { m, k },
+    KeplerInitial { X, momentum },
+    KeplerState { X, momentum, place_rest, momentum_rest } at node,
+    KeplerWorkspace { h },
+    tried {} nothing symmetric judged { (3 * 1) }
+    start { X, momentum = momentum } { place_rest, momentum_rest }
+    observables { state.X, state.momentum }
+    invariants { energy, momentum_angular }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -202,17 +206,12 @@ impl<T: Real> Kepler<T> {
             ξ * m
         })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &KeplerState<T>) -> (T, T) {
         let KeplerParameters { m, k, .. } = self.parameters;
         let X = state.X.matrix();
         let momentum = state.momentum().0;
-        let velocity = solve_leading_or_nan(
-            &self.inertia_at(state),
-            &momentum,
-            0 + (3 * 1),
-        );
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, (3 * 1));
         (momentum.dot(&velocity) * T::from_f64(0.5), -(m * k / X.dot(&X).sqrt()))
     }
     /// The physical energy at this node.

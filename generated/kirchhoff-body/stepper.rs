@@ -555,18 +555,20 @@ impl<T: Real> KirchhoffBody<T> {
     pub fn P(&self, state: &KirchhoffBodyState<T>) -> SVector<T, 4> {
         let KirchhoffBodyParameters { Z, .. } = self.parameters;
         let G = state.G.matrix();
-        let P = G.tr_mul(&Z);
-        P
+        G.tr_mul(&Z)
     }
 }
 ::clebsch::stepper! {
-    [] KirchhoffBody, KirchhoffBodyParameters { J, M, D, b, Z }, KirchhoffBodyInitial {
-    G, body_momentum }, KirchhoffBodyState { G, momentum, place_rest, momentum_rest } at
-    node, KirchhoffBodyWorkspace { h, search }, tried {} nothing symmetric judged { 0 + 6
-    } start { G, momentum = body_momentum.carried } { place_rest, momentum_rest }
-    observables { state.G, state.body_momentum, state.spatial_momentum, P } invariants {
-    energy, P_part_squared, momentum_linear_across_P_part_squared,
-    spatial_momentum_linear_across_Z, spatial_momentum_angular_Z }
+    [] KirchhoffBody,
+    KirchhoffBodyParameters { J, M, D, b, Z },
+    KirchhoffBodyInitial { G, body_momentum },
+    KirchhoffBodyState { G, momentum, place_rest, momentum_rest } at node,
+    KirchhoffBodyWorkspace { h, search },
+    tried {} nothing symmetric judged { 6 }
+    start { G, momentum = body_momentum.carried } { place_rest, momentum_rest }
+    observables { state.G, state.body_momentum, state.spatial_momentum, P }
+    invariants { energy, P_part_squared, momentum_linear_across_P_part_squared,
+        spatial_momentum_linear_across_Z, spatial_momentum_angular_Z }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -677,13 +679,12 @@ impl<T: Real> KirchhoffBody<T> {
         after: &KirchhoffBodyState<T>,
         h: T,
     ) -> [Residual; 2] {
-        let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+        let KirchhoffBodyParameters { J, M, D, b, .. } = self.parameters;
         let V_matrix = before
             .G
             .velocity_between(&before.place_rest, &after.G, &after.place_rest)
             .matrix();
-        let G_next = after.G.matrix();
-        let P_next = G_next.tr_mul(&Z);
+        let P_next = self.P(after);
         let t1 = h.powi(-1);
         let t2 = motion_rotation(&V_matrix);
         let t3 = t2.transpose();
@@ -764,13 +765,12 @@ impl<T: Real> KirchhoffBody<T> {
                 + into_rows::<T, 6, 3, 1>(&(M * rows_from::<T, 6, 3, 1>(&ξ, 3)), 3)
         })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &KirchhoffBodyState<T>) -> (T, T) {
         let KirchhoffBodyParameters { b, .. } = self.parameters;
         let P = self.P(state);
         let momentum = state.body_momentum().0;
-        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 0 + 6);
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 6);
         (momentum.dot(&velocity) * T::from_f64(0.5), b.dot(&P))
     }
     /// The physical energy at this node.
@@ -823,15 +823,13 @@ impl<T: Real> KirchhoffBody<T> {
         before: &KirchhoffBodyState<T>,
         after: &KirchhoffBodyState<T>,
     ) -> T {
-        let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+        let KirchhoffBodyParameters { J, M, D, b, .. } = self.parameters;
         let V_matrix = before
             .G
             .velocity_between(&before.place_rest, &after.G, &after.place_rest)
             .matrix();
-        let G = before.G.matrix();
-        let P = G.tr_mul(&Z);
-        let G_next = after.G.matrix();
-        let P_next = G_next.tr_mul(&Z);
+        let P = self.P(before);
+        let P_next = self.P(after);
         let t1 = motion_translation(&V_matrix);
         let t2 = motion_rotation(&V_matrix);
         let t3 = t1 + t2.tr_mul(&t1);

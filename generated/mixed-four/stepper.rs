@@ -978,23 +978,25 @@ impl<T: Real> MixedFour<T> {
     pub fn relative_R_q(&self, state: &MixedFourState<T>) -> SMatrix<T, 3, 3> {
         let R = state.R.matrix();
         let q = state.q.matrix();
-        let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
-        relative_R_q
+        R.tr_mul(&quaternion_rotation(&q))
     }
 }
 ::clebsch::stepper! {
-    [] MixedFour, MixedFourParameters { J, A, M, I, m, b, k, p, s, e, g },
+    [] MixedFour,
+    MixedFourParameters { J, A, M, I, m, b, k, p, s, e, g },
     MixedFourInitial { R, body_momentum_R, G, body_momentum_G, q, body_momentum_q, X,
-    momentum_X }, MixedFourState { R, momentum_R, G, momentum_G, place_rest_G,
-    momentum_rest_G, q, momentum_q, X, momentum_X, place_rest_X, momentum_rest_X } at
-    node, MixedFourWorkspace { h, method, search_2, search_4 }, tried {} solver symmetric
-    judged { 0 + 3 + 6 + 3 + (3 * 1) } start { R, momentum_R = body_momentum_R.to_space;
-    G, momentum_G = body_momentum_G.carried; q, momentum_q = body_momentum_q.to_space; X,
-    momentum_X = momentum_X } { place_rest_G, momentum_rest_G, place_rest_X,
-    momentum_rest_X } observables { state.R, state.body_momentum_R, state
-    .spatial_momentum_R, state.G, state.body_momentum_G, state.spatial_momentum_G, state
-    .q, state.body_momentum_q, state.spatial_momentum_q, state.X, state.momentum_X,
-    relative_R_q } invariants { total_momentum_angular_g }
+        momentum_X },
+    MixedFourState { R, momentum_R, G, momentum_G, place_rest_G, momentum_rest_G, q,
+        momentum_q, X, momentum_X, place_rest_X, momentum_rest_X } at node,
+    MixedFourWorkspace { h, method, search_2, search_4 },
+    tried {} solver symmetric judged { 3 + 6 + 3 + (3 * 1) }
+    start { R, momentum_R = body_momentum_R.to_space; G, momentum_G =
+        body_momentum_G.carried; q, momentum_q = body_momentum_q.to_space; X, momentum_X
+        = momentum_X } { place_rest_G, momentum_rest_G, place_rest_X, momentum_rest_X }
+    observables { state.R, state.body_momentum_R, state.spatial_momentum_R, state.G,
+        state.body_momentum_G, state.spatial_momentum_G, state.q, state.body_momentum_q,
+        state.spatial_momentum_q, state.X, state.momentum_X, relative_R_q }
+    invariants { total_momentum_angular_g }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1128,9 +1130,8 @@ impl<T: Real> MixedFour<T> {
             .matrix();
         let R_next = after.R.matrix();
         let G_next = after.G.matrix();
-        let q_next = after.q.matrix();
         let X_next = after.X.matrix();
-        let relative_R_q_next = R_next.tr_mul(&quaternion_rotation(&q_next));
+        let relative_R_q_next = self.relative_R_q(after);
         let t1 = h.powi(-1);
         let t2 = p.cross(&(relative_R_q_next * e_));
         let t3 = motion_rotation(&W_matrix);
@@ -1287,7 +1288,7 @@ impl<T: Real> MixedFour<T> {
                 let _ = rest;
                 all
             };
-            inertia.set_column(0 + 3 + axis, &along);
+            inertia.set_column(3 + axis, &along);
         }
         for axis in 0..3 {
             let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
@@ -1324,7 +1325,7 @@ impl<T: Real> MixedFour<T> {
                 let _ = rest;
                 all
             };
-            inertia.set_column(0 + 3 + 6 + axis, &along);
+            inertia.set_column(3 + 6 + axis, &along);
         }
         for axis in 0..(3 * 1) {
             let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
@@ -1361,7 +1362,7 @@ impl<T: Real> MixedFour<T> {
                 let _ = rest;
                 all
             };
-            inertia.set_column(0 + 3 + 6 + 3 + axis, &along);
+            inertia.set_column(3 + 6 + 3 + axis, &along);
         }
         inertia
     }
@@ -1403,14 +1404,12 @@ impl<T: Real> MixedFour<T> {
             .matrix();
         let R = before.R.matrix();
         let G = before.G.matrix();
-        let q = before.q.matrix();
         let X = before.X.matrix();
-        let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
         let R_next = after.R.matrix();
         let G_next = after.G.matrix();
-        let q_next = after.q.matrix();
         let X_next = after.X.matrix();
-        let relative_R_q_next = R_next.tr_mul(&quaternion_rotation(&q_next));
+        let relative_R_q = self.relative_R_q(before);
+        let relative_R_q_next = self.relative_R_q(after);
         let t1 = motion_translation(&W_matrix);
         let t2 = (T::from_f64(2.0) * h) * (T::from_f64(2.0) * h);
         let t3 = quaternion_imaginary(&Y_matrix);

@@ -167,14 +167,6 @@ impl Parse for Protocol {
         let work: Type = input.parse()?;
         comma(input)?;
         let form = input.parse()?;
-        let forced = match input.peek(syn::token::Paren) {
-            true => {
-                let inside;
-                parenthesized!(inside in input);
-                inside.parse()?
-            }
-            false => Forced::default(),
-        };
         let choice = input.parse()?;
         let _orders: Ident = input.parse()?;
         let _judged: Ident = input.parse()?;
@@ -186,14 +178,28 @@ impl Parse for Protocol {
             }
             false => None,
         };
+        let forced = match input.peek(syn::token::Paren) {
+            true => {
+                let inside;
+                parenthesized!(inside in input);
+                inside.parse()?
+            }
+            false => Forced::default(),
+        };
         let start = match input.fork().parse::<Ident>()? == "start" {
             true => {
                 let _start: Ident = input.parse()?;
-                let (each, rests);
+                let each;
                 braced!(each in input);
-                braced!(rests in input);
                 let each = Punctuated::<Start, Token![;]>::parse_terminated(&each)?;
-                let rests = Punctuated::<Ident, Token![,]>::parse_terminated(&rests)?;
+                let rests = match input.peek(syn::token::Brace) {
+                    true => {
+                        let rests;
+                        braced!(rests in input);
+                        Punctuated::<Ident, Token![,]>::parse_terminated(&rests)?
+                    }
+                    false => Punctuated::new(),
+                };
                 Some((each.into_iter().collect(), rests.into_iter().collect()))
             }
             false => None,

@@ -6,12 +6,12 @@
 /// The protocol of a model: its types with all their fields, const parameters in brackets, and
 ///
 /// - `forced` (`forced_untested` where the model tests its steps itself), `free`, `tried` (it has a short way to try
-///   a step) or `explicit`, with the fields of the element and of its momentum and what else is kept; in parentheses
-///   how forced steps are solved, `of` which fields the factor is made that is kept with the trajectory, and what
-///   `tests` a start of them;
+///   a step) or `explicit`, with the fields of the element, of its momentum and of what else is kept;
 /// - what may be chosen about its steps: `order`, `solver`, `nothing`;
 /// - how orders above its own are reached: `modified` moments, compositions of `symmetric` steps, or `none`;
 /// - whether its kinetic energy is `judged` at the start, in how many coordinates, or `unjudged`;
+/// - in parentheses how forced steps are solved, `of` which fields the factor is made that is kept with the
+///   trajectory, and the function that `tests` a start of them;
 /// - what of a state at its `start` is an element, and of which momentum given there how its momentum is made; then
 ///   the rests of what is kept in two numbers. Nothing where the model has a `begin` of its own;
 /// - what is observed and what is invariant, as `shown!` reads them.
@@ -24,10 +24,9 @@ macro_rules! stepper {
         $initial:ident { $($given:ident),* },
         $state:ident { $($kept:ident),* } at $node:ident,
         $work:ident { $($remembered:ident),* },
-        $form:ident { $($moved:ident),* }
+        $form:ident { $($moved:ident),* } $choice:ident $orders:ident $judged:ident $({ $coordinates:expr })?
         $(($solved:literal $(, of $($reference:ident)&+)? $(, tests $tests:ident)?))?
-        $choice:ident $orders:ident $judged:ident $({ $coordinates:expr })?
-        $(start $start:tt $rests:tt)?
+        $(start $start:tt $({ $($rest:ident),* })?)?
         observables { $($($seen:ident).+ $(as $shape:ident)?),* }
         invariants { $($($constant:ident).+ $(as $form_of:ident)?),* }
     ) => {
@@ -66,7 +65,7 @@ macro_rules! stepper {
 
             $crate::stepper_part! { @started $choice [$($size)*] $initial $state $work T }
 
-            $crate::stepper_part! { @begin [$($start $rests)?] [$($size)*] $initial $state $node T }
+            $crate::stepper_part! { @begin [$($start { $($($rest),*)? })?] [$($size)*] $initial $state $node T }
 
             $crate::stepper_part! {
                 @made $form { $($moved),* } [$($($($reference)&+)?)?] [$($solved $($tests)?)?]

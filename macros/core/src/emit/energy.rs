@@ -132,8 +132,7 @@ fn both(d: &Derivation, body: TokenStream) -> TokenStream {
     let state = item(d, "State");
     let used = Generics::of(d).used();
     quote! {
-        /// The kinetic and the potential energy at this node: those of the limit of small steps,
-        /// at the node's momentum.
+        /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
         pub fn energies(&self, state: &#state #used) -> (T, T) {
             #body
         }

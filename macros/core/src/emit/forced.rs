@@ -193,36 +193,34 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         None => quote!(#next.tr_mul(&#left)),
     };
     let seen_lets = seen.as_ref().map(|(lets, _)| lets);
-    let act = match values.as_slice() {
+    // What acts, then the momentum at the node, unless it has a name already, and the edge that begins there.
+    let (act, momentum_there, edge_there) = match values.as_slice() {
         [both] if c.side.is_body() => {
             let [torque, kick] = ["torque", "kick"].map(|base| names.local(base));
-            quote! {
-                let #torque = #both;
-                let #kick = #next * #torque;
-                let #momentum_next = #space + #kick * T::from_f64(0.5);
-                let #following = Edge::new(#next.tr_mul(&#space) + #torque, #space + #kick);
-            }
+            (
+                quote!(let #torque = #both; let #kick = #next * #torque;),
+                Some(quote!(#space + #kick * T::from_f64(0.5))),
+                quote!(Edge::new(#next.tr_mul(&#space) + #torque, #space + #kick)),
+            )
         }
         [both] => {
             let [kick, left] = ["kick", "left"].map(|base| names.local(base));
             let body = from_body(quote!(#left));
-            quote! {
-                #seen_lets
-                let #kick = #both;
-                let #momentum_next = #space + #kick * T::from_f64(0.5);
-                let #left = #space + #kick;
-                let #following = Edge::new(#body, #left);
-            }
+            (
+                quote!(#seen_lets let #kick = #both; let #left = #space + #kick;),
+                Some(quote!(#space + #kick * T::from_f64(0.5))),
+                quote!(Edge::new(#body, #left)),
+            )
         }
         [arrived, kick] if c.side.is_spatial() => {
             let left = names.local("left");
             let body = from_body(quote!(#left));
-            quote! {
+            let acted = quote! {
                 #seen_lets
                 let #momentum_next = #space + #arrived;
                 let #left = #momentum_next + #kick;
-                let #following = Edge::new(#body, #left);
-            }
+            };
+            (acted, None, quote!(Edge::new(#body, #left)))
         }
         _ => {
             let acting: Vec<_> = ["arrive", "leave"]
@@ -239,11 +237,11 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
                 Some(quote!(+ #next * #n))
             };
             let (arrived, left) = (space_part(0), space_part(1));
-            quote! {
-                #(#named)*
-                let #momentum_next = #space #arrived;
-                let #following = Edge::new(#next.tr_mul(&#space) #(#body)*, #momentum_next #left);
-            }
+            (
+                quote!(#(#named)* let #momentum_next = #space #arrived;),
+                None,
+                quote!(Edge::new(#next.tr_mul(&#space) #(#body)*, #momentum_next #left)),
+            )
         }
     };
     let at_next = quote! {
@@ -255,15 +253,17 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         #act
     };
     if !quaternion {
+        let momentum = momentum_there.unwrap_or_else(|| quote!(#momentum_next));
         let body = quote! {
             #at_next
-            Moving { attitude: #moved.rotation(), momentum: SpatialMomentum(#momentum_next), edge: #following }
+            Moving { attitude: #moved.rotation(), momentum: SpatialMomentum(#momentum), edge: #edge_there }
         };
         return arrived(d, names, &moved, &body);
     }
     let factor = body(d);
     // References do not change: what moves is written where it is, and not read back.
     let follow = follow(d, names);
+    let named = momentum_there.map(|momentum| quote!(let #momentum_next = #momentum;));
     let [turned, arrival] = ["turned", "arrival"].map(|base| names.local(base));
     let finite = [quote!(all_finite(&#momentum_next.0))];
     let finite = super::domain::finite_in_step(d, names, &finite);
@@ -278,6 +278,8 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
                 Err(e) => return Err(self.refused(*state, #factor, #step, e)),
             };
             #at_next
+            #named
+            let #following = #edge_there;
             let (#arrival, #momentum_next) = (#moved.unit_quaternion(), SpatialMomentum(#momentum_next));
             #finite
             (state.#element, work.here.#element) = (#arrival, #arrival);

@@ -124,7 +124,9 @@ pub(super) fn plain(d: &Derivation, names: &Names) -> Option<TokenStream> {
         quote!(#element, #momentum = #given #way)
     });
     let rests = list.flat_map(|(i, _)| element::rests(d, i).into_iter().flatten());
-    alone.then(|| quote!(start { #(#each);* } { #(#rests),* }))
+    let rests: Vec<_> = rests.collect();
+    let rests = (!rests.is_empty()).then(|| quote!({ #(#rests),* }));
+    alone.then(|| quote!(start { #(#each);* } #rests))
 }
 
 /// The state at node 0, as the body of a function of the initial data.

@@ -364,13 +364,19 @@ fn advected_access(d: &Derivation, names: &Names) -> TokenStream {
     let state = item(d, "State");
     let used = Generics::of(d).used();
     let mut out = TokenStream::new();
-    for a in &d.spec.advected {
+    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
         let letter = at(a.quantity, Shift::HERE);
-        let needed = with_transports(d, &[letter], 0);
+        let mut needed = with_transports(d, &[letter], 0);
         let parameters = parameter_locals(d, quote!(self.parameters), &needed);
+        needed.retain(|l| *l != letter);
         let mut bindings = Bindings::new();
-        let locals = here(d, names, &[letter], &mut bindings);
-        let (name, local) = (own(d, a.quantity), variable(s, a.quantity));
+        let locals = here(d, names, &needed, &mut bindings);
+        let reference = |id| {
+            let kept = own(d, id);
+            quote!(state.#kept)
+        };
+        let (found, value) = items::advected_value(d, names, a, t, 0, &reference, &bindings);
+        let name = own(d, a.quantity);
         let t = super::expression::ty(s, s.get(a.quantity).shape);
         let doc = format!(" `{name}` at the node of this state.");
         out.extend(quote! {
@@ -379,7 +385,8 @@ fn advected_access(d: &Derivation, names: &Names) -> TokenStream {
             pub fn #name(&self, state: &#state #used) -> #t {
                 #parameters
                 #locals
-                #local
+                #found
+                #value
             }
         });
     }

@@ -52,7 +52,7 @@ pub fn protocol(d: &Derivation, names: &Names) -> TokenStream {
             #initial { #(#of_initial),* },
             #state { #(#of_state),* } at #node,
             #work { #(#of_work),* },
-            #form { #(#moved),* } #solved #choice #orders #judged #start
+            #form { #(#moved),* } #choice #orders #judged #solved #start
             observables { #(#observables),* }
             invariants { #(#invariants),* }
         }
