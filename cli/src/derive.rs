@@ -5,13 +5,14 @@ use crate::Streams;
 use crate::asked::case_file;
 use crate::failure::Failure;
 use crate::gallery::Gallery;
+use crate::generated;
 use crate::lines::fitted;
 use crate::model_file;
 use crate::plain::shown;
 use clap::ArgMatches;
 use clebsch_core::print::Format;
 use clebsch_core::syntax::ast::Model;
-use clebsch_core::{Derivation, derive_source, document, generated, lattice, pipeline};
+use clebsch_core::{Derivation, derive_source, document, lattice, pipeline};
 use std::io::Read;
 use std::path::Path;
 
@@ -166,7 +167,7 @@ fn on_lattice(
     let format = match format {
         "rust" | "rs" => {
             let items = pipeline::emitted_line(model, source).map_err(told)?;
-            let text = clebsch_core::pretty::pretty(items)?;
+            let text = generated::formatted(items)?;
             return Ok((text, String::new()));
         }
         "latex" | "tex" => Format::Latex,
@@ -208,7 +209,10 @@ fn explanation(derivation: &Derivation, proofs: Proofs) -> String {
 #[cfg(feature = "second-proof")]
 fn second_proof(derivation: &Derivation) -> String {
     let mut text = "Second proof, by equality saturation (egg), step by step:\n".to_owned();
-    for (i, line) in document::second_proof(derivation).into_iter().enumerate() {
+    for (i, line) in clebsch_prove::second_proof(derivation)
+        .into_iter()
+        .enumerate()
+    {
         text.push_str(&format!("\n{:>3}. {line}\n", i + 1));
     }
     text

@@ -17,6 +17,7 @@ pub mod failure;
 mod figures;
 mod follow;
 pub mod gallery;
+pub mod generated;
 mod lines;
 mod list;
 mod model_file;

@@ -39,7 +39,7 @@ impl Filled {
     pub(crate) fn wrong_in(&self, errors: &Errors, case: Option<(&str, &str)>) -> Option<Failure> {
         let (name, text) = case?;
         let (diagnostic, key) = errors.iter().find_map(|d| {
-            let at = offset(&self.text, d.place.line_and_column()?)?;
+            let at = offset(&self.text, d.place.line_and_column())?;
             let mut put = self.put.iter();
             let (_, key) = put.find(|(range, _)| range.contains(&at))?;
             Some((d, key))
@@ -219,7 +219,7 @@ fn replaced(text: &str, open: &[Open], written: &[Vec<String>]) -> Filled {
         .zip(written)
         .filter_map(|(f, each)| {
             let list = format!(" {}", formula::in_quotes(each));
-            Some((after_word(text, f.at?)?, f.name.text.as_str(), list))
+            Some((after_word(text, f.at)?, f.name.text.as_str(), list))
         })
         .collect();
     all.sort_by_key(|(at, ..)| *at);

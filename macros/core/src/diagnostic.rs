@@ -24,15 +24,10 @@ impl Place {
         }
     }
 
-    /// Line and column of its start, counted from 1, where tokens know where they stand.
-    pub fn line_and_column(self) -> Option<(usize, usize)> {
-        #[cfg(feature = "locations")]
-        {
-            let start = self.first.start();
-            Some((start.line, start.column + 1))
-        }
-        #[cfg(not(feature = "locations"))]
-        None
+    /// Line and column of its start, counted from 1.
+    pub fn line_and_column(self) -> (usize, usize) {
+        let start = self.first.start();
+        (start.line, start.column + 1)
     }
 
     /// From the start of one range to the end of another.
@@ -105,7 +100,6 @@ impl Diagnostic {
 
     /// The diagnostic for a terminal, with a word on how grave it is: file, line, column, the line
     /// itself and carets.
-    #[cfg(feature = "locations")]
     pub fn render(&self, level: &str, source: &str, file: &str) -> String {
         let mut out = format!("{level}: {}\n", self.message);
         out.push_str(&snippet(source, file, self.place));
@@ -199,7 +193,6 @@ impl Errors {
     }
 
     /// The mistakes as text for a terminal: file, line, column, the line itself and carets.
-    #[cfg(feature = "locations")]
     pub fn render(&self, source: &str, file: &str) -> String {
         self.list
             .iter()
@@ -236,10 +229,8 @@ fn compile_error(place: Place, text: &str) -> TokenStream {
 }
 
 /// How much of a line is quoted, in letters.
-#[cfg(feature = "locations")]
 const LONGEST: usize = 200;
 
-#[cfg(feature = "locations")]
 fn snippet(source: &str, file: &str, place: Place) -> String {
     let (start, end) = (place.first.start(), place.last.end());
     let line_text = source

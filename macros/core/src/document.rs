@@ -23,8 +23,6 @@ pub use lattice::{
     CardWords, InvariantWords, Printed, card_words, default_choice, printed_lattice,
 };
 pub use proof::proof;
-#[cfg(feature = "egraph")]
-pub use proof::second_proof;
 pub use source::source;
 
 use crate::derive::Derivation;

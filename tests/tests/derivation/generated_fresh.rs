@@ -1,7 +1,8 @@
 //! What is committed under `generated/` is what the engine gives for the gallery today, byte for
 //! byte, and nothing else; the text a macro keeps of its model derives to the same model.
 
-use clebsch_core::{derive_source, document, generated};
+use clebsch_cli::generated;
+use clebsch_core::{derive_source, document};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

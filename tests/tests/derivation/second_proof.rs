@@ -4,8 +4,8 @@
 
 use clebsch_core::expr::symbol::Symbols;
 use clebsch_core::expr::{self, Expr, Node};
-use clebsch_core::prove::{Limits, Statement, Verdict, prove};
 use clebsch_core::{Derivation, derive_source};
+use clebsch_prove::{Limits, Statement, Verdict, prove};
 
 fn derivations() -> impl Iterator<Item = (&'static str, Derivation)> {
     let gallery = clebsch_models::gallery().into_iter();

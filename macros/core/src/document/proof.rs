@@ -26,28 +26,3 @@ pub fn proof(d: &Derivation) -> String {
     }
     out
 }
-
-/// What equality saturation makes of every step, one text each: the proof by named rules, or why
-/// it found none (which refutes nothing).
-#[cfg(feature = "egraph")]
-pub fn second_proof(d: &Derivation) -> Vec<String> {
-    use crate::prove::{Limits, Statement, Verdict, prove};
-    let verdict = |step: &crate::derive::certificate::Step| {
-        let statement = Statement {
-            name: step.name.clone(),
-            left: step.left.clone(),
-            right: step.right.clone(),
-        };
-        match prove(&d.letters.symbols, &statement, &Limits::default()) {
-            Verdict::Proved { explanation, .. } => {
-                format!(
-                    "{}: proved\n       {}",
-                    step.name,
-                    explanation.join("\n       ")
-                )
-            }
-            Verdict::Unproved { reason, .. } => format!("{}: unproved, {reason}", step.name),
-        }
-    };
-    d.certificate.steps.iter().map(verdict).collect()
-}

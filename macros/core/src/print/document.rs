@@ -24,7 +24,7 @@ pub struct Remark {
     /// What to do.
     pub help: Vec<String>,
     /// Line and column, counted from 1, in the text of the model, where they are known.
-    pub at: Option<(usize, usize)>,
+    pub at: (usize, usize),
 }
 
 /// A section.

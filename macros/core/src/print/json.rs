@@ -48,13 +48,13 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
 
 fn remark(remark: &Remark) -> Value {
     let help = remark.help.iter().cloned().map(Value::Text).collect();
-    let number = |n: Option<usize>| n.map_or(Value::Null, Value::Number);
+    let (line, column) = remark.at;
     Value::Object(vec![
         ("topic", Value::Text(remark.topic.to_owned())),
         ("message", Value::Text(remark.message.clone())),
         ("help", Value::List(help)),
-        ("line", number(remark.at.map(|(line, _)| line))),
-        ("column", number(remark.at.map(|(_, column)| column))),
+        ("line", Value::Number(line)),
+        ("column", Value::Number(column)),
     ])
 }
 

@@ -51,7 +51,7 @@ fn read(text: &str) -> Result<Expression, Diagnostic> {
     super::expression(text).map_err(|errors| {
         let mut first = errors.first();
         let at = match first.place.line_and_column() {
-            Some((1, column)) if column > 1 => format!(", at character {column}"),
+            (1, column) if column > 1 => format!(", at character {column}"),
             _ => String::new(),
         };
         first.message = format!("in this expression{at}: {}", first.message);
@@ -133,7 +133,7 @@ pub struct Open {
     /// Whether what it is stands there already.
     pub is_filled: bool,
     /// Line and column of the word `case` in the text, from 1.
-    pub at: Option<(usize, usize)>,
+    pub at: (usize, usize),
 }
 
 /// The functions of a model that the case gives.

@@ -106,7 +106,6 @@ fn the_transpose_of_what_is_needed_is_told_to_be_transposed() {
 }
 
 /// What stands in a terminal: of a very long line only what is around the mistake.
-#[cfg(feature = "locations")]
 #[test]
 fn long_lines_are_cut_around_a_mistake() {
     let filler = "q + ".repeat(100);

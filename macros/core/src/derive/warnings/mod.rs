@@ -215,7 +215,6 @@ pub(crate) fn warnings(x: &Inputs) -> Vec<Warning> {
 
 impl Derivation {
     /// The warnings as text for a terminal: file, line, column, the line itself and carets.
-    #[cfg(feature = "locations")]
     pub fn render_warnings(&self, source: &str, file: &str) -> String {
         let list = self.warnings.iter();
         list.map(|w| w.diagnostic.render("warning", source, file))

@@ -9,9 +9,9 @@ mod soundness;
 mod vectors;
 
 use super::{Limits, Statement, Verdict, prove};
-use crate::expr::shape::{Dim, Shape, Structure};
-use crate::expr::symbol::{Role, Symbols};
-use crate::expr::{Expr, here, transpose};
+use clebsch_core::expr::shape::{Dim, Shape, Structure};
+use clebsch_core::expr::symbol::{Role, Symbols};
+use clebsch_core::expr::{Expr, here, transpose};
 
 /// Dimension of all fixed-size letters of the tests.
 const N: Dim = Dim::Fixed(3);

@@ -1,13 +1,13 @@
 //! Identities of matrices and of numbers made of them: transposes, traces, inverses, quotients.
 
 use super::Desk;
-use crate::algebra::Rational;
-use crate::expr::shape::{Shape, Structure};
-use crate::expr::symbol::Role;
-use crate::expr::*;
-use crate::prove::conditions::{Value, put};
-use crate::prove::language::{Leaf, Term};
-use crate::prove::{Limits, prove_terms};
+use crate::conditions::{Value, put};
+use crate::language::{Leaf, Term};
+use crate::{Limits, prove_terms};
+use clebsch_core::algebra::Rational;
+use clebsch_core::expr::shape::{Shape, Structure};
+use clebsch_core::expr::symbol::Role;
+use clebsch_core::expr::*;
 use egg::{PatternAst, RecExpr, Var};
 
 /// A term written with `?name` for letters: expressions cannot hold a transposed product, since

@@ -3,8 +3,8 @@
 //! an explanation when it is checked.
 
 use super::language::{Leaf, Number, Term};
-use crate::algebra::Rational;
-use crate::expr::shape::{Dim, Shape, Structure};
+use clebsch_core::algebra::Rational;
+use clebsch_core::expr::shape::{Dim, Shape, Structure};
 use egg::{ENodeOrVar, Id, Language, PatternAst, RecExpr, Var};
 
 /// Whether a structure is the wanted one.

@@ -1,9 +1,9 @@
 //! Identities of discrete mechanics: constraint-preserving variations, momenta, transport.
 
 use super::{Desk, N};
-use crate::expr::shape::{Shape, Structure};
-use crate::expr::symbol::Role;
-use crate::expr::*;
+use clebsch_core::expr::shape::{Shape, Structure};
+use clebsch_core::expr::symbol::Role;
+use clebsch_core::expr::*;
 
 /// The letter of an expression that is one.
 fn at(e: &Expr) -> Letter {

@@ -2,9 +2,9 @@
 //! become scalings. Takes an expression, gives its term, or nothing where shapes do not fit.
 
 use super::language::{Leaf, Number, Term, shape};
-use crate::algebra::Rational;
-use crate::expr::shape::{Dim, Shape};
-use crate::expr::{Expr, Function, Node, Part};
+use clebsch_core::algebra::Rational;
+use clebsch_core::expr::shape::{Dim, Shape};
+use clebsch_core::expr::{Expr, Function, Node, Part};
 use egg::{Id, Language, RecExpr};
 
 /// A term under construction, with the shape of each of its sub-terms.

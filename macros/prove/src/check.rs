@@ -6,8 +6,8 @@
 use super::conditions::{Value, View, decide, put};
 use super::language::{Term, shape};
 use super::rulebook::Rule;
-use crate::algebra::Rational;
-use crate::expr::shape::Shape;
+use clebsch_core::algebra::Rational;
+use clebsch_core::expr::shape::Shape;
 use egg::{ENodeOrVar, FlatTerm, Id, Language, PatternAst, RecExpr, Var};
 use std::collections::BTreeMap;
 

@@ -1,22 +1,11 @@
-//! Emitted tokens as formatted Rust source, for `generated/` and for readers.
-
-use proc_macro2::TokenStream;
+//! Calls of the runtime's protocol in a formatted file: the formatter fills lines with the words of a macro, whatever they
+//! mean. Takes the text of a file; gives it with a line for each part of such a call.
 
 /// Columns of a line at most, as those of the formatter.
 const WIDTH: usize = 89;
 
-/// Formats a whole file of items.
-///
-/// # Errors
-/// If the tokens are not Rust items, which emission never produces.
-pub fn pretty(tokens: TokenStream) -> Result<String, String> {
-    let file: syn::File = syn::parse2(tokens).map_err(|e| e.to_string())?;
-    Ok(with_calls(&prettyplease::unparse(&file)))
-}
-
-/// The same with what calls of the protocol say in lines of their own: the formatter fills lines with the words of a
-/// macro, whatever they mean.
-fn with_calls(text: &str) -> String {
+/// The text with what calls of the protocol say in lines of their own.
+pub(super) fn with_calls(text: &str) -> String {
     let mut out = String::new();
     let mut call: Option<String> = None;
     for line in text.lines() {

@@ -1,8 +1,8 @@
 //! What is not searched, and how that is answered.
 
 use super::Desk;
-use crate::expr::*;
-use crate::prove::{Limits, Statement, Verdict, prove};
+use crate::{Limits, Statement, Verdict, prove};
+use clebsch_core::expr::*;
 
 #[test]
 fn reordered_sums_up_to_the_limit() {

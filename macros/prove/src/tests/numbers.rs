@@ -1,8 +1,8 @@
 //! Terms as numbers: evaluates patterns on matrices of doubles, by other formulas than the rules
 //! use. Takes a pattern and values of its variables, gives a matrix, or nothing where undefined.
 
-use crate::expr::shape::{Dim, Shape};
-use crate::prove::language::{Leaf, Term};
+use crate::language::{Leaf, Term};
+use clebsch_core::expr::shape::{Dim, Shape};
 use egg::{ENodeOrVar, Id, PatternAst, Var};
 use std::collections::BTreeMap;
 
@@ -155,7 +155,7 @@ pub fn value(pattern: &PatternAst<Term>, id: Id, known: &BTreeMap<Var, Matrix>) 
         .iter()
         .map(|c| Some(v(c)?.shape()))
         .collect();
-    crate::prove::language::shape(node, &shapes?)?;
+    crate::language::shape(node, &shapes?)?;
     Some(match node {
         Term::Number(q) => Matrix::scalar(q.0.value()),
         Term::Leaf(Leaf::Size(Dim::Fixed(n))) => Matrix::identity(*n as usize),

@@ -2,8 +2,8 @@
 //! sides share. Takes expressions; reordering n summands makes about n 2^n terms, which is
 //! what bounds the search.
 
-use crate::algebra::Rational;
-use crate::expr::{Expr, Node, neg, sum};
+use clebsch_core::algebra::Rational;
+use clebsch_core::expr::{Expr, Node, neg, sum};
 
 /// The largest number of summands of any sum inside the expression, multiplied out; saturating.
 pub fn count(e: &Expr) -> usize {

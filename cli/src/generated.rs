@@ -1,11 +1,12 @@
 //! The files of `generated/` for one model: its derivation as Markdown and LaTeX, and the emitted
 //! Rust. The same bytes on every machine; a test checks that the committed ones are these.
 
-use crate::derive::Derivation;
-use crate::document::printed;
-use crate::emit::emit;
-use crate::pretty::pretty;
-use crate::print::Format;
+mod calls;
+
+use clebsch_core::Derivation;
+use clebsch_core::document::printed;
+use clebsch_core::emit::{emit, refusal};
+use clebsch_core::print::Format;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -36,10 +37,19 @@ pub fn files(d: &Derivation) -> Result<Vec<(String, String)>, String> {
 /// # Errors
 /// The reason why no stepper is emitted for the model.
 pub fn rust(d: &Derivation) -> Result<String, String> {
-    if let Some(refused) = crate::emit::refusal(d) {
+    if let Some(refused) = refusal(d) {
         return Err(refused.text());
     }
-    pretty(of_module(emit(d, false)))
+    formatted(of_module(emit(d, false)))
+}
+
+/// A whole file of items, formatted.
+///
+/// # Errors
+/// If the tokens are not Rust items, which emission never produces.
+pub fn formatted(tokens: TokenStream) -> Result<String, String> {
+    let file: syn::File = syn::parse2(tokens).map_err(|e| e.to_string())?;
+    Ok(calls::with_calls(&prettyplease::unparse(&file)))
 }
 
 /// What stands inside the module that is emitted, as the file of that module: its documentation and what it

@@ -1,7 +1,7 @@
 //! Identities of vectors in space: hat, vee, cross and dot.
 
 use super::{Desk, N};
-use crate::expr::*;
+use clebsch_core::expr::*;
 
 #[test]
 fn products_of_three_vectors() {

@@ -1,5 +1,5 @@
 //! A second prover, by equality saturation: it shares neither normal forms nor reductions with
-//! [`crate::algebra`]. Takes a statement `left = right`, gives a proof whose every step has been
+//! [`clebsch_core::algebra`]. Takes a statement `left = right`, gives a proof whose every step has been
 //! re-checked, or the reason why none was found. No answer of it refutes a statement.
 
 mod check;
@@ -15,10 +15,35 @@ mod tests;
 mod translate;
 mod worth;
 
-use crate::expr::Expr;
-use crate::expr::symbol::Symbols;
+use clebsch_core::Derivation;
+use clebsch_core::derive::certificate::Step;
+use clebsch_core::expr::Expr;
+use clebsch_core::expr::symbol::Symbols;
 use egg::{Language, RecExpr};
 use language::{Leaf, Term};
+
+/// What equality saturation makes of every step of a derivation's certificate, one text each: the proof by named rules, or why
+/// it found none (which refutes nothing).
+pub fn second_proof(d: &Derivation) -> Vec<String> {
+    let verdict = |step: &Step| {
+        let statement = Statement {
+            name: step.name.clone(),
+            left: step.left.clone(),
+            right: step.right.clone(),
+        };
+        match prove(&d.letters.symbols, &statement, &Limits::default()) {
+            Verdict::Proved { explanation, .. } => {
+                format!(
+                    "{}: proved\n       {}",
+                    step.name,
+                    explanation.join("\n       ")
+                )
+            }
+            Verdict::Unproved { reason, .. } => format!("{}: unproved, {reason}", step.name),
+        }
+    };
+    d.certificate.steps.iter().map(verdict).collect()
+}
 
 /// An equation between two expressions of one shape, to hold for all admissible values of its
 /// letters wherever both sides are defined.

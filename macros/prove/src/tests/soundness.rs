@@ -4,13 +4,13 @@
 
 use super::numbers::{Matrix, Sequence, value};
 use super::{Desk, Limits};
-use crate::algebra::Rational;
-use crate::expr::shape::Shape;
-use crate::expr::{mul, neg, sub};
-use crate::prove::conditions::{Given, View, decide, put};
-use crate::prove::language::Term;
-use crate::prove::rules::{Row, TABLE};
-use crate::prove::{check, leaves, rulebook, search, translate};
+use crate::conditions::{Given, View, decide, put};
+use crate::language::Term;
+use crate::rules::{Row, TABLE};
+use crate::{check, leaves, rulebook, search, translate};
+use clebsch_core::algebra::Rational;
+use clebsch_core::expr::shape::Shape;
+use clebsch_core::expr::{mul, neg, sub};
 use egg::{ENodeOrVar, PatternAst, Symbol, Var};
 use std::collections::BTreeMap;
 

@@ -2,8 +2,8 @@
 //! text; brackets show the nesting, since nesting is what some steps change.
 
 use super::language::{Leaf, Term};
-use crate::expr::Letter;
-use crate::expr::symbol::Symbols;
+use clebsch_core::expr::Letter;
+use clebsch_core::expr::symbol::Symbols;
 use egg::{FlatTerm, Id, Language, RecExpr};
 
 /// How tightly a text binds: a higher number needs fewer brackets.
@@ -60,7 +60,7 @@ fn within(symbols: &Symbols, term: Option<&FlatTerm<Term>>, least: u8) -> String
 
 fn is_minus_one(term: Option<&FlatTerm<Term>>) -> bool {
     term.is_some_and(
-        |t| matches!(t.node, Term::Number(q) if q.0 == crate::algebra::Rational::MINUS_ONE),
+        |t| matches!(t.node, Term::Number(q) if q.0 == clebsch_core::algebra::Rational::MINUS_ONE),
     )
 }
 

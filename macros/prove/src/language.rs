@@ -2,9 +2,9 @@
 //! associativity and commutativity are rules like any other. Takes operators and operands, gives
 //! terms and their shapes; every term of one class of equal terms has the same shape.
 
-use crate::algebra::Rational;
-use crate::expr::shape::{Dim, Shape};
-use crate::expr::{Constant, Letter};
+use clebsch_core::algebra::Rational;
+use clebsch_core::expr::shape::{Dim, Shape};
+use clebsch_core::expr::{Constant, Letter};
 use core::fmt;
 use core::str::FromStr;
 use egg::{Analysis, DidMerge, EGraph, Id, Language, define_language};

@@ -6,9 +6,9 @@ use super::conditions::{Given, Structured, Value, put};
 use super::language::{Leaf, Term};
 use super::rules::{Group, Row, TABLE};
 use super::worth::Worth;
-use crate::algebra::Rational;
-use crate::expr::shape::Dim;
-use crate::expr::symbol::Symbols;
+use clebsch_core::algebra::Rational;
+use clebsch_core::expr::shape::Dim;
+use clebsch_core::expr::symbol::Symbols;
 use egg::{PatternAst, Var};
 
 /// One rule, ready for use.

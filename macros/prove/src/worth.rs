@@ -4,8 +4,8 @@
 
 use super::conditions::View;
 use super::language::{Facts, Term};
-use crate::algebra::Rational;
-use crate::expr::shape::Shape;
+use clebsch_core::algebra::Rational;
+use clebsch_core::expr::shape::Shape;
 use egg::{EGraph, Id, Subst, Var};
 
 /// One condition on the worth of a rule, over its variables.
