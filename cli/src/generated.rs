@@ -1,6 +1,8 @@
 //! The files of `generated/` for one model: its derivation as Markdown and LaTeX, and the emitted
 //! Rust. The same bytes on every machine; a test checks that the committed ones are these.
 
+mod calls;
+
 use clebsch_core::Derivation;
 use clebsch_core::document::printed;
 use clebsch_core::emit::{emit, refusal};
@@ -47,7 +49,7 @@ pub fn rust(d: &Derivation) -> Result<String, String> {
 /// If the tokens are not Rust items, which emission never produces.
 pub fn formatted(tokens: TokenStream) -> Result<String, String> {
     let file: syn::File = syn::parse2(tokens).map_err(|e| e.to_string())?;
-    Ok(prettyplease::unparse(&file))
+    Ok(calls::with_calls(&prettyplease::unparse(&file)))
 }
 
 /// What stands inside the module that is emitted, as the file of that module: its documentation and what it

@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`BodyInTwoFields`](struct@BodyInTwoFields) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`BodyInTwoFields`](struct@BodyInTwoFields), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,67 +91,16 @@ pub struct BodyInTwoFieldsWorkspace<T = f64> {
     here: BodyInTwoFieldsState<T>,
 }
 impl<T: Real> BodyInTwoFields<T> {
-    /// The state at node 0.
-    fn begin(
-        &self,
-        initial: BodyInTwoFieldsInitial<T>,
-    ) -> Result<BodyInTwoFieldsState<T>, StartError> {
-        validate::finite("Λ", &initial.Λ.quaternion())?;
-        validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-        Ok(BodyInTwoFieldsState {
-            Λ: initial.Λ,
-            momentum: initial.body_momentum.to_space(&initial.Λ),
-            node: 0,
-        })
-    }
-    /// What steps of `h` from `state` begin with.
-    fn prepared(
-        &self,
-        state: &BodyInTwoFieldsState<T>,
-        h: T,
-        choice: Option<Method>,
-    ) -> Result<BodyInTwoFieldsWorkspace<T>, StartError> {
-        let method = choice.unwrap_or(self.method);
-        Ok(BodyInTwoFieldsWorkspace {
-            h,
-            method,
-            edge: self.edge(state, h),
-            here: *state,
-        })
-    }
-    /// One step, in place. Solved thus: C is constant and symmetric: explicit up to the root of one quartic per step.
-    ///
-    /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-    #[inline]
-    pub fn step(
-        &self,
-        state: &mut BodyInTwoFieldsState<T>,
-        work: &mut BodyInTwoFieldsWorkspace<T>,
-    ) -> Result<(), StepError> {
-        let h = work.h;
-        if work.here.Λ != state.Λ || work.here.momentum != state.momentum {
-            work.edge = self.edge(state, h);
-            work.here = *state;
-        }
-        let edge = &work.edge;
-        let turned = match work.method {
-            Method::Kappa => edge.turn(&self.factor, h, &state.Λ),
-            method => edge.turn_by(method, &self.factor, h, &state.Λ),
-        };
-        let Λ_moved = match turned {
-            Ok(turned) => turned,
-            Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
-        };
-        let arrival = self.arrived(state, edge, h, Λ_moved);
-        if !(all_finite(&arrival.momentum.0)) {
-            return Err(StepCause::not_finite("momentum").at_node(state.node));
-        }
-        (state.Λ, work.here.Λ) = (arrival.attitude, arrival.attitude);
-        (state.momentum, work.here.momentum) = (arrival.momentum, arrival.momentum);
-        state.node += 1;
-        work.edge = arrival.edge;
-        Ok(())
+    /// The edge that begins at this state, for a step `h`.
+    #[inline(never)]
+    fn edge(&self, state: &BodyInTwoFieldsState<T>, h: T) -> Edge<T> {
+        let BodyInTwoFieldsParameters { gU, p, z, b, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let Γ = Λ.tr_mul(&z);
+        let B = Λ.tr_mul(&b);
+        let kick = gU.cross(&Γ) * (T::from_f64(0.5) * h)
+            - p.cross(&B) * (T::from_f64(0.5) * h);
+        Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
     }
     /// The next node and the edge that begins there, given the attitude there.
     #[inline(always)]
@@ -175,59 +118,38 @@ impl<T: Real> BodyInTwoFields<T> {
         let space = edge.space();
         let torque = (p * h).cross(&B_next) - (gU * h).cross(&Γ_next);
         let kick = Λ_next * torque;
-        let momentum_next = space + kick * T::from_f64(0.5);
-        let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
         Moving {
             attitude: Λ_moved.rotation(),
-            momentum: SpatialMomentum(momentum_next),
-            edge: edge_next,
+            momentum: SpatialMomentum(space + kick * T::from_f64(0.5)),
+            edge: Edge::new(Λ_next.tr_mul(&space) + torque, space + kick),
         }
-    }
-    /// The edge that begins at this state, for a step `h`.
-    #[inline(never)]
-    fn edge(&self, state: &BodyInTwoFieldsState<T>, h: T) -> Edge<T> {
-        let BodyInTwoFieldsParameters { gU, p, z, b, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        let B = Λ.tr_mul(&b);
-        let kick = gU.cross(&Γ) * (T::from_f64(0.5) * h)
-            - p.cross(&B) * (T::from_f64(0.5) * h);
-        Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
-    }
-    /// Says how far the step is beyond the bound, and which step could be solved.
-    #[cold]
-    fn refused(
-        &self,
-        state: BodyInTwoFieldsState<T>,
-        factor: &Poinsot<T>,
-        h: T,
-        e: MoserVeselovError,
-    ) -> StepError {
-        let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
-        StepCause::from(e).at_node(state.node)
     }
     /// `Γ` at the node of this state.
     #[inline]
     pub fn Γ(&self, state: &BodyInTwoFieldsState<T>) -> SVector<T, 3> {
         let BodyInTwoFieldsParameters { z, .. } = self.parameters;
         let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        Γ
+        Λ.tr_mul(&z)
     }
     /// `B` at the node of this state.
     #[inline]
     pub fn B(&self, state: &BodyInTwoFieldsState<T>) -> SVector<T, 3> {
         let BodyInTwoFieldsParameters { b, .. } = self.parameters;
         let Λ = state.Λ.matrix();
-        let B = Λ.tr_mul(&b);
-        B
+        Λ.tr_mul(&b)
     }
 }
 ::clebsch::stepper! {
-    [] BodyInTwoFields, BodyInTwoFieldsParameters { J, gU, p, z, b },
-    BodyInTwoFieldsInitial { Λ, body_momentum }, BodyInTwoFieldsState { Λ, momentum }
-    at node, BodyInTwoFieldsWorkspace { h, method, edge, here }, forced { Λ, momentum }
-    solver symmetric judged
+    [] BodyInTwoFields,
+    BodyInTwoFieldsParameters { J, gU, p, z, b },
+    BodyInTwoFieldsInitial { Λ, body_momentum },
+    BodyInTwoFieldsState { Λ, momentum } at node,
+    BodyInTwoFieldsWorkspace { h, method, edge, here },
+    forced { Λ, momentum } solver symmetric judged { 3 }
+    ("C is constant and symmetric: explicit up to the root of one quartic per step")
+    start { Λ, momentum = body_momentum.to_space }
+    observables { state.Λ, state.body_momentum, state.spatial_momentum, Γ, B }
+    invariants { energy, Gamma_squared, Gamma_B, B_squared }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -268,11 +190,10 @@ impl<T: Real> BodyInTwoFields<T> {
         after: &BodyInTwoFieldsState<T>,
         h: T,
     ) -> [Residual; 1] {
-        let BodyInTwoFieldsParameters { J, gU, p, z, b, .. } = self.parameters;
+        let BodyInTwoFieldsParameters { J, gU, p, .. } = self.parameters;
         let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let Λ_next = after.Λ.matrix();
-        let Γ_next = Λ_next.tr_mul(&z);
-        let B_next = Λ_next.tr_mul(&b);
+        let Γ_next = self.Γ(after);
+        let B_next = self.B(after);
         let t1 = h.powi(-1);
         let t2 = (h * h).sqrt();
         [
@@ -293,22 +214,17 @@ impl<T: Real> BodyInTwoFields<T> {
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &BodyInTwoFieldsState<T>) -> SMatrix<T, 3, 3> {
         let BodyInTwoFieldsParameters { J, .. } = self.parameters;
-        let mut inertia = SMatrix::<T, 3, 3>::zeros();
-        for axis in 0..3 {
+        columns(|axis| {
             let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
             let t1 = vee(&ξ);
-            let along = t1 * J.trace() - J * t1;
-            inertia.set_column(axis, &along);
-        }
-        inertia
+            t1 * J.trace() - J * t1
+        })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &BodyInTwoFieldsState<T>) -> (T, T) {
-        let BodyInTwoFieldsParameters { gU, p, z, b, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        let B = Λ.tr_mul(&b);
+        let BodyInTwoFieldsParameters { gU, p, .. } = self.parameters;
+        let Γ = self.Γ(state);
+        let B = self.B(state);
         let momentum = state.body_momentum().0;
         let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
         (momentum.dot(&velocity) * T::from_f64(0.5), gU.dot(&Γ) - p.dot(&B))
@@ -320,24 +236,18 @@ impl<T: Real> BodyInTwoFields<T> {
     }
     /// `Γ_k·Γ_k`: Casimir: invariant under the group action.
     pub fn Gamma_squared(&self, state: &BodyInTwoFieldsState<T>) -> T {
-        let BodyInTwoFieldsParameters { z, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
+        let Γ = self.Γ(state);
         Γ.dot(&Γ)
     }
     /// `Γ_k·B_k`: Casimir: invariant under the group action.
     pub fn Gamma_B(&self, state: &BodyInTwoFieldsState<T>) -> T {
-        let BodyInTwoFieldsParameters { z, b, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        let B = Λ.tr_mul(&b);
+        let Γ = self.Γ(state);
+        let B = self.B(state);
         Γ.dot(&B)
     }
     /// `B_k·B_k`: Casimir: invariant under the group action.
     pub fn B_squared(&self, state: &BodyInTwoFieldsState<T>) -> T {
-        let BodyInTwoFieldsParameters { b, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let B = Λ.tr_mul(&b);
+        let B = self.B(state);
         B.dot(&B)
     }
     /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h² + ½ gU·Γ_k + ½ gU·Γ_{k+1} - ½ p·B_k - ½ p·B_{k+1}`: bounded, since the stepper is symplectic.
@@ -347,72 +257,33 @@ impl<T: Real> BodyInTwoFields<T> {
         before: &BodyInTwoFieldsState<T>,
         after: &BodyInTwoFieldsState<T>,
     ) -> T {
-        let BodyInTwoFieldsParameters { J, gU, p, z, b, .. } = self.parameters;
+        let BodyInTwoFieldsParameters { J, gU, p, .. } = self.parameters;
         let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        let B = Λ.tr_mul(&b);
-        let Λ_next = after.Λ.matrix();
-        let Γ_next = Λ_next.tr_mul(&z);
-        let B_next = Λ_next.tr_mul(&b);
+        let Γ = self.Γ(before);
+        let Γ_next = self.Γ(after);
+        let B = self.B(before);
+        let B_next = self.B(after);
         T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
             - T::from_f64(0.5) * p.dot(&B) - T::from_f64(0.5) * p.dot(&B_next)
             - (J * less_identity(&Ω_matrix)).trace() / (h * h)
     }
 }
 impl BodyInTwoFields<f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &BodyInTwoFieldsState<f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.Λ().matrix()));
-        let out = put(out, rows(state.body_momentum().0));
-        let out = put(out, rows(state.spatial_momentum().0));
-        let out = put(out, rows(self.Γ(state)));
-        let out = put(out, rows(self.B(state)));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &BodyInTwoFieldsState<f64>,
-        _: f64,
-        _: Option<&BodyInTwoFieldsWorkspace<f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let out = put(out, [self.Gamma_squared(state)]);
-        let out = put(out, [self.Gamma_B(state)]);
-        let out = put(out, [self.B_squared(state)]);
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &BodyInTwoFieldsState<f64>, h: f64, out: &mut [f64]) {
-        let mut enlarged = *state;
-        {
-            type T = f64;
-            let BodyInTwoFieldsParameters { gU, p, z, b, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let Γ = Λ.tr_mul(&z);
-            let B = Λ.tr_mul(&b);
-            let t1 = (h * h).sqrt();
-            enlarged.momentum = SpatialMomentum(
-                not_less(
-                    enlarged.momentum.0,
-                    (0, 3),
-                    t1 * gU.dot(&gU).sqrt() * Γ.dot(&Γ).sqrt()
-                        + t1 * p.dot(&p).sqrt() * B.dot(&B).sqrt(),
-                ),
-            );
-        }
-        let state = &enlarged;
-        type T = f64;
-        let BodyInTwoFieldsParameters { z, b, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        let B = Λ.tr_mul(&b);
+        let BodyInTwoFieldsParameters { gU, p, .. } = self.parameters;
+        let Γ = self.Γ(state);
+        let B = self.B(state);
+        let s1 = (h * h).sqrt();
+        let impulse = s1 * gU.dot(&gU).sqrt() * Γ.dot(&Γ).sqrt()
+            + s1 * p.dot(&p).sqrt() * B.dot(&B).sqrt();
+        let state = &BodyInTwoFieldsState {
+            momentum: SpatialMomentum(not_less(state.momentum.0, (0, 3), impulse)),
+            ..*state
+        };
         let t1 = Γ.dot(&Γ).sqrt();
         let t2 = B.dot(&B).sqrt();
-        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-        let out = put(out, [t1 * t1; 1usize]);
-        let out = put(out, [t1 * t2; 1usize]);
-        let out = put(out, [t2 * t2; 1usize]);
+        put(out, [sum_of_sizes(self.energies(state)), t1 * t1, t1 * t2, t2 * t2]);
     }
     /// The model as data.
     pub const CARD: Card = Card {
@@ -423,10 +294,6 @@ impl BodyInTwoFields<f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J Ω_k)/h - ½ h gU·Γ_k + ½ h p·B_k - ½ h gU·Γ_{k+1} + ½ h p·B_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, Gamma_squared, Gamma_B, B_squared\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
         solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
-        order: 2u32,
-        orders: &[2, 4, 6, 8],
-        preprocessed: false,
-        reversible: true,
         parameters: &[
             Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
             Kind::Vector
@@ -440,21 +307,15 @@ impl BodyInTwoFields<f64> {
             Kind::Vector.field("b", [3, 1], "field that acts on the dipole, space frame"),
         ],
         initial: &[
-            Kind::Rotation
-                .field("Λ", [3, 3], "attitude, body to space")
-                .spelt("Lambda"),
+            Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
         ],
         observables: &[
-            Kind::Rotation
-                .field("Λ", [3, 3], "attitude, body to space")
-                .spelt("Lambda"),
+            Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum", [3, 1], "momentum, space frame"),
-            Kind::Vector
-                .field("Γ", [3, 1], "the vertical seen from the body")
-                .spelt("Gamma"),
+            Kind::Vector.spelt("Γ", "Gamma", [3, 1], "the vertical seen from the body"),
             Kind::Vector.field("B", [3, 1], "the field seen from the body"),
         ],
         invariants: &[
@@ -472,18 +333,7 @@ impl BodyInTwoFields<f64> {
             "tr(J)/h² - tr(J Ω_k)/h² + ½ gU·Γ_k + ½ gU·Γ_{k+1} - ½ p·B_k - ½ p·B_{k+1}",
             1,
         ),
-        open: open::<Self>,
         solvers: &Method::NAMES,
-        dimensions: &[],
-        sized: only_size::<Self>,
+        ..Card::plain(open::<Self>, only_size::<Self>)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(
-        &self,
-        state: &BodyInTwoFieldsState<f64>,
-    ) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 3)
-    }
 }

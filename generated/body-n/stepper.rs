@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`BodyN`](struct@BodyN) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`BodyN`](struct@BodyN), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,8 +151,15 @@ impl<const N: usize, T: Real> BodyN<N, T> {
     }
 }
 ::clebsch::stepper! {
-    [N] BodyN, BodyNParameters { C }, BodyNInitial { Λ, body_momentum }, BodyNState {
-    Λ, momentum } at node, BodyNWorkspace { h, method }, explicit {} solver none judged
+    [N] BodyN,
+    BodyNParameters { C },
+    BodyNInitial { Λ, body_momentum },
+    BodyNState { Λ, momentum } at node,
+    BodyNWorkspace { h, method },
+    explicit {} solver none judged { (N * (N - 1) / 2) }
+    observables { state.Λ, state.body_momentum, state.spatial_momentum }
+    invariants { state.spatial_momentum as skew, momentum_squared, trace_momentum4,
+        trace_momentum6, trace_momentum8 }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -279,29 +280,8 @@ impl<const N: usize, T: Real> BodyN<N, T> {
     }
 }
 impl<const N: usize> BodyN<N, f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &BodyNState<N, f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.Λ().matrix()));
-        let out = put(out, rows(state.body_momentum().0));
-        let out = put(out, rows(state.spatial_momentum().0));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &BodyNState<N, f64>,
-        _: f64,
-        _: Option<&BodyNWorkspace<N, f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, skew_coordinates(&state.spatial_momentum().0));
-        let out = put(out, [self.momentum_squared(state)]);
-        let out = put(out, [self.trace_momentum4(state)]);
-        let out = put(out, [self.trace_momentum6(state)]);
-        let out = put(out, [self.trace_momentum8(state)]);
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &BodyNState<N, f64>, h: f64, out: &mut [f64]) {
-        type T = f64;
         let Λ = state.Λ.matrix();
         let μ = state.body_momentum().0;
         let t1 = Λ * μ;
@@ -311,12 +291,14 @@ impl<const N: usize> BodyN<N, f64> {
             out,
             ::core::iter::repeat_n((-(t2 * t2).trace()).sqrt(), (N * (N - 1) / 2)),
         );
-        let out = put(out, ::core::iter::repeat_n(t3 * t3, 1usize));
-        let out = put(out, ::core::iter::repeat_n(t3 * t3 * t3 * t3, 1usize));
-        let out = put(out, ::core::iter::repeat_n(t3 * t3 * t3 * t3 * t3 * t3, 1usize));
-        let out = put(
+        put(
             out,
-            ::core::iter::repeat_n(t3 * t3 * t3 * t3 * t3 * t3 * t3 * t3, 1usize),
+            [
+                t3 * t3,
+                t3 * t3 * t3 * t3,
+                t3 * t3 * t3 * t3 * t3 * t3,
+                t3 * t3 * t3 * t3 * t3 * t3 * t3 * t3,
+            ],
         );
     }
     /// The model as data.
@@ -328,24 +310,19 @@ impl<const N: usize> BodyN<N, f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(Cᵀ Ω_k)/h\nmomentum of Λ        -C Ω_kᵀ/h + Ω_k Cᵀ/h\nRiccati form         exact, C = C\ninvariants           spatial_momentum, momentum_squared, trace_momentum4, trace_momentum6, trace_momentum8\ntime reversal        not symmetric: first order\ncertificate          10 identities proved by normal form",
         solver: "Moser-Veselov: C is constant: Newton's method on the Lie algebra",
-        order: 1u32,
-        orders: &[1],
-        preprocessed: false,
+        order: 1,
         reversible: false,
+        orders: &[1],
         parameters: &[
             Kind::Matrix
                 .field("C", [N, N], "second moments; any matrix of positive determinant"),
         ],
         initial: &[
-            Kind::Rotation
-                .field("Λ", [N, N], "attitude, body to space")
-                .spelt("Lambda"),
+            Kind::Rotation.spelt("Λ", "Lambda", [N, N], "attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [N, N], "momentum, body frame"),
         ],
         observables: &[
-            Kind::Rotation
-                .field("Λ", [N, N], "attitude, body to space")
-                .spelt("Lambda"),
+            Kind::Rotation.spelt("Λ", "Lambda", [N, N], "attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [N, N], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum", [N, N], "momentum, space frame"),
@@ -362,7 +339,6 @@ impl<const N: usize> BodyN<N, f64> {
             "tr(C)/h² - tr(C Ω_kᵀ)/h²",
             1,
         ),
-        open: open::<Self>,
         solvers: if N == 3 { &Method::NAMES } else { &Method::ANY_SIZE },
         dimensions: &[
             Dimension {
@@ -372,14 +348,8 @@ impl<const N: usize> BodyN<N, f64> {
                 value: N,
             },
         ],
-        sized: Self::sized,
+        ..Card::plain(open::<Self>, Self::sized)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(&self, state: &BodyNState<N, f64>) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 0 + (N * (N - 1) / 2))
-    }
     /// The card of the model at the given sizes, in the order of their declaration.
     fn sized(sizes: &[usize]) -> Option<Card> {
         match sizes {

@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`CayleyKleinSpatial`](struct@CayleyKleinSpatial) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`CayleyKleinSpatial`](struct@CayleyKleinSpatial), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,16 +175,18 @@ impl<T: Real> CayleyKleinSpatial<T> {
     pub fn I(&self, state: &CayleyKleinSpatialState<T>) -> SMatrix<T, 3, 3> {
         let q = state.q.matrix();
         let I_reference = state.I;
-        let I = quaternion_rotation(&q)
-            * (I_reference * quaternion_rotation(&q).transpose());
-        I
+        quaternion_rotation(&q) * (I_reference * quaternion_rotation(&q).transpose())
     }
 }
 ::clebsch::stepper! {
-    [] CayleyKleinSpatial, CayleyKleinSpatialParameters { c }, CayleyKleinSpatialInitial
-    { q, spatial_momentum, I }, CayleyKleinSpatialState { q, momentum, I } at node,
-    CayleyKleinSpatialWorkspace { h, factor, edge, here }, explicit {} nothing symmetric
-    judged
+    [] CayleyKleinSpatial,
+    CayleyKleinSpatialParameters { c },
+    CayleyKleinSpatialInitial { q, spatial_momentum, I },
+    CayleyKleinSpatialState { q, momentum, I } at node,
+    CayleyKleinSpatialWorkspace { h, factor, edge, here },
+    explicit {} nothing symmetric judged { 3 }
+    observables { state.q, state.body_momentum, state.spatial_momentum, I }
+    invariants { energy, state.spatial_momentum, trace_I1, trace_I2, trace_I3 }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -244,10 +240,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
     ) -> [Residual; 1] {
         let CayleyKleinSpatialParameters { c, .. } = self.parameters;
         let w_matrix = before.q.spatial_velocity(&after.q).matrix();
-        let q = before.q.matrix();
-        let I_reference = before.I;
-        let I = quaternion_rotation(&q)
-            * (I_reference * quaternion_rotation(&q).transpose());
+        let I = self.I(before);
         let t1 = h.powi(-1);
         let t2 = quaternion_imaginary(&w_matrix);
         let t3 = quaternion_imaginary(&(w_matrix * w_matrix));
@@ -270,23 +263,16 @@ impl<T: Real> CayleyKleinSpatial<T> {
     }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &CayleyKleinSpatialState<T>) -> SMatrix<T, 3, 3> {
-        let q = state.q.matrix();
-        let I_reference = state.I;
-        let I = quaternion_rotation(&q)
-            * (I_reference * quaternion_rotation(&q).transpose());
-        let mut inertia = SMatrix::<T, 3, 3>::zeros();
-        for axis in 0..3 {
+        let I = self.I(state);
+        columns(|axis| {
             let ξ: SVector<T, 3> = unit::<T, 3>(axis);
-            let along = I * ξ;
-            inertia.set_column(axis, &along);
-        }
-        inertia
+            I * ξ
+        })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &CayleyKleinSpatialState<T>) -> (T, T) {
         let momentum = state.spatial_momentum().0;
-        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 0 + 3);
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
         (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
     }
     /// The physical energy at this node.
@@ -296,26 +282,17 @@ impl<T: Real> CayleyKleinSpatial<T> {
     }
     /// `tr(I_k)`: Casimir: invariant under the group action.
     pub fn trace_I1(&self, state: &CayleyKleinSpatialState<T>) -> T {
-        let q = state.q.matrix();
-        let I_reference = state.I;
-        let I = quaternion_rotation(&q)
-            * (I_reference * quaternion_rotation(&q).transpose());
+        let I = self.I(state);
         I.trace()
     }
     /// `tr(I_k²)`: Casimir: invariant under the group action.
     pub fn trace_I2(&self, state: &CayleyKleinSpatialState<T>) -> T {
-        let q = state.q.matrix();
-        let I_reference = state.I;
-        let I = quaternion_rotation(&q)
-            * (I_reference * quaternion_rotation(&q).transpose());
+        let I = self.I(state);
         (I * I).trace()
     }
     /// `tr(I_k³)`: Casimir: invariant under the group action.
     pub fn trace_I3(&self, state: &CayleyKleinSpatialState<T>) -> T {
-        let q = state.q.matrix();
-        let I_reference = state.I;
-        let I = quaternion_rotation(&q)
-            * (I_reference * quaternion_rotation(&q).transpose());
+        let I = self.I(state);
         (I * (I * I)).trace()
     }
     /// The discrete energy of the edge between two consecutive states, `-4 c re(w_k)/h² + 2 im(w_k)·((I_k - c Id) im(w_k))/h² + 4 c/h²`: bounded, since the stepper is symplectic.
@@ -327,10 +304,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
     ) -> T {
         let CayleyKleinSpatialParameters { c, .. } = self.parameters;
         let w_matrix = before.q.spatial_velocity(&after.q).matrix();
-        let q = before.q.matrix();
-        let I_reference = before.I;
-        let I = quaternion_rotation(&q)
-            * (I_reference * quaternion_rotation(&q).transpose());
+        let I = self.I(before);
         let t1 = quaternion_imaginary(&w_matrix);
         (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
             / (h * h)
@@ -339,41 +313,15 @@ impl<T: Real> CayleyKleinSpatial<T> {
     }
 }
 impl CayleyKleinSpatial<f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &CayleyKleinSpatialState<f64>, out: &mut [f64]) {
-        let out = put(out, state.q().components());
-        let out = put(out, rows(state.body_momentum().0));
-        let out = put(out, rows(state.spatial_momentum().0));
-        let out = put(out, rows(self.I(state)));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &CayleyKleinSpatialState<f64>,
-        _: f64,
-        _: Option<&CayleyKleinSpatialWorkspace<f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let out = put(out, rows(state.spatial_momentum().0));
-        let out = put(out, [self.trace_I1(state)]);
-        let out = put(out, [self.trace_I2(state)]);
-        let out = put(out, [self.trace_I3(state)]);
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &CayleyKleinSpatialState<f64>, h: f64, out: &mut [f64]) {
         type T = f64;
-        let q = state.q.matrix();
-        let I_reference = state.I;
-        let I = quaternion_rotation(&q)
-            * (I_reference * quaternion_rotation(&q).transpose());
+        let I = self.I(state);
         let m = state.spatial_momentum().0;
         let t1 = (I * I).trace().sqrt();
-        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+        let out = put(out, [sum_of_sizes(self.energies(state))]);
         let out = put(out, [m.dot(&m).sqrt(); 3usize]);
-        let out = put(out, [T::from_f64(3.0).sqrt() * t1; 1usize]);
-        let out = put(out, [t1 * t1; 1usize]);
-        let out = put(out, [t1 * t1 * t1; 1usize]);
+        put(out, [T::from_f64(3.0).sqrt() * t1, t1 * t1, t1 * t1 * t1]);
     }
     /// The model as data.
     pub const CARD: Card = Card {
@@ -384,10 +332,6 @@ impl CayleyKleinSpatial<f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -4 c re(w_k)/h + 2 im(w_k)·((I_k - c Id) im(w_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I_k - c Id) im(w_k)/h)) w_kᵀ)\nRiccati form         none; in unit quaternions, A = I_k - c Id, β = c\ninvariants           energy, spatial_momentum, trace_I1, trace_I2, trace_I3\ntime reversal        symmetric: second order\ncertificate          10 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
         solver: "Unit quaternions: A is carried by the motion, constant in the body, and symmetric, β constant: one equation for one number a step",
-        order: 2u32,
-        orders: &[2, 4, 6, 8],
-        preprocessed: false,
-        reversible: true,
         parameters: &[
             Kind::Scalar.field("c", [1, 1], "0: Moser-Veselov; 1: as in the thesis"),
         ],
@@ -416,18 +360,6 @@ impl CayleyKleinSpatial<f64> {
             "-4 c re(w_k)/h² + 2 im(w_k)·((I_k - c Id) im(w_k))/h² + 4 c/h²",
             1,
         ),
-        open: open::<Self>,
-        solvers: &[],
-        dimensions: &[],
-        sized: only_size::<Self>,
+        ..Card::plain(open::<Self>, only_size::<Self>)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(
-        &self,
-        state: &CayleyKleinSpatialState<f64>,
-    ) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 0 + 3)
-    }
 }

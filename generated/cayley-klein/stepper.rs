@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`CayleyKlein`](struct@CayleyKlein) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`CayleyKlein`](struct@CayleyKlein), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,19 +79,6 @@ pub struct CayleyKleinWorkspace<T = f64> {
     here: CayleyKleinState<T>,
 }
 impl<T: Real> CayleyKlein<T> {
-    /// The state at node 0.
-    fn begin(
-        &self,
-        initial: CayleyKleinInitial<T>,
-    ) -> Result<CayleyKleinState<T>, StartError> {
-        validate::finite("q", &initial.q.components())?;
-        validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-        Ok(CayleyKleinState {
-            q: initial.q,
-            momentum: initial.body_momentum.to_space(&initial.q),
-            node: 0,
-        })
-    }
     /// What steps of `h` from `state` begin with.
     fn prepared(
         &self,
@@ -156,9 +137,15 @@ impl<T: Real> CayleyKlein<T> {
     }
 }
 ::clebsch::stepper! {
-    [] CayleyKlein, CayleyKleinParameters { I, c }, CayleyKleinInitial { q, body_momentum
-    }, CayleyKleinState { q, momentum } at node, CayleyKleinWorkspace { h, edge, here },
-    explicit {} nothing symmetric judged
+    [] CayleyKlein,
+    CayleyKleinParameters { I, c },
+    CayleyKleinInitial { q, body_momentum },
+    CayleyKleinState { q, momentum } at node,
+    CayleyKleinWorkspace { h, edge, here },
+    explicit {} nothing symmetric judged { 3 }
+    start { q, momentum = body_momentum.to_space }
+    observables { state.q, state.body_momentum, state.spatial_momentum }
+    invariants { energy, state.spatial_momentum, momentum_squared }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -230,19 +217,15 @@ impl<T: Real> CayleyKlein<T> {
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &CayleyKleinState<T>) -> SMatrix<T, 3, 3> {
         let CayleyKleinParameters { I, .. } = self.parameters;
-        let mut inertia = SMatrix::<T, 3, 3>::zeros();
-        for axis in 0..3 {
+        columns(|axis| {
             let ξ: SVector<T, 3> = unit::<T, 3>(axis);
-            let along = diagonal_times(&I, &ξ);
-            inertia.set_column(axis, &along);
-        }
-        inertia
+            diagonal_times(&I, &ξ)
+        })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &CayleyKleinState<T>) -> (T, T) {
         let momentum = state.body_momentum().0;
-        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 0 + 3);
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
         (momentum.dot(&velocity) * T::from_f64(0.5), T::zero())
     }
     /// The physical energy at this node.
@@ -272,34 +255,15 @@ impl<T: Real> CayleyKlein<T> {
     }
 }
 impl CayleyKlein<f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &CayleyKleinState<f64>, out: &mut [f64]) {
-        let out = put(out, state.q().components());
-        let out = put(out, rows(state.body_momentum().0));
-        let out = put(out, rows(state.spatial_momentum().0));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &CayleyKleinState<f64>,
-        _: f64,
-        _: Option<&CayleyKleinWorkspace<f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let out = put(out, rows(state.spatial_momentum().0));
-        let out = put(out, [self.momentum_squared(state)]);
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &CayleyKleinState<f64>, h: f64, out: &mut [f64]) {
-        type T = f64;
         let q = state.q.matrix();
         let μ = state.body_momentum().0;
         let t1 = quaternion_rotation(&q) * μ;
         let t2 = μ.dot(&μ).sqrt();
-        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+        let out = put(out, [sum_of_sizes(self.energies(state))]);
         let out = put(out, [t1.dot(&t1).sqrt(); 3usize]);
-        let out = put(out, [t2 * t2; 1usize]);
+        put(out, [t2 * t2]);
     }
     /// The model as data.
     pub const CARD: Card = Card {
@@ -310,10 +274,6 @@ impl CayleyKlein<f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h\nmomentum of q        2 im((-c Id/h + ½ quat(2 (I - c Id) im(W_k)/h)) W_kᵀ)\nRiccati form         none; in unit quaternions, A = I - c Id, β = c\ninvariants           energy, spatial_momentum, momentum_squared\ntime reversal        symmetric: second order\ncertificate          4 identities proved by normal form, 6 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
         solver: "Unit quaternions: A is constant and symmetric, β constant: one equation for one number a step",
-        order: 2u32,
-        orders: &[2, 4, 6, 8],
-        preprocessed: false,
-        reversible: true,
         parameters: &[
             Kind::Diagonal.field("I", [3, 3], "principal moments of inertia"),
             Kind::Scalar.field("c", [1, 1], "0: Moser-Veselov; 1: as in the thesis"),
@@ -338,18 +298,6 @@ impl CayleyKlein<f64> {
             "-4 c re(W_k)/h² + 2 im(W_k)·((I - c Id) im(W_k))/h² + 4 c/h²",
             1,
         ),
-        open: open::<Self>,
-        solvers: &[],
-        dimensions: &[],
-        sized: only_size::<Self>,
+        ..Card::plain(open::<Self>, only_size::<Self>)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(
-        &self,
-        state: &CayleyKleinState<f64>,
-    ) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 0 + 3)
-    }
 }

@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`ChargedParticle`](struct@ChargedParticle) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`ChargedParticle`](struct@ChargedParticle), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,21 +74,6 @@ pub struct ChargedParticleWorkspace<T = f64> {
     h: T,
 }
 impl<T: Real> ChargedParticle<T> {
-    /// The state at node 0.
-    fn begin(
-        &self,
-        initial: ChargedParticleInitial<T>,
-    ) -> Result<ChargedParticleState<T>, StartError> {
-        validate::finite("X", initial.X.matrix().as_slice())?;
-        validate::finite("momentum", initial.momentum.0.as_slice())?;
-        Ok(ChargedParticleState {
-            X: initial.X,
-            momentum: initial.momentum,
-            place_rest: SMatrix::zeros(),
-            momentum_rest: SMatrix::zeros(),
-            node: 0,
-        })
-    }
     /// What steps of `h` from `state` begin with.
     fn prepared(
         &self,
@@ -147,9 +126,15 @@ impl<T: Real> ChargedParticle<T> {
     }
 }
 ::clebsch::stepper! {
-    [] ChargedParticle, ChargedParticleParameters { m, q, B, E }, ChargedParticleInitial
-    { X, momentum }, ChargedParticleState { X, momentum, place_rest, momentum_rest } at
-    node, ChargedParticleWorkspace { h }, tried {} nothing symmetric judged
+    [] ChargedParticle,
+    ChargedParticleParameters { m, q, B, E },
+    ChargedParticleInitial { X, momentum },
+    ChargedParticleState { X, momentum, place_rest, momentum_rest } at node,
+    ChargedParticleWorkspace { h },
+    tried {} nothing symmetric judged { (3 * 1) }
+    start { X, momentum = momentum } { place_rest, momentum_rest }
+    observables { state.X, state.momentum }
+    invariants { energy, momentum_across_E }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -213,25 +198,17 @@ impl<T: Real> ChargedParticle<T> {
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &ChargedParticleState<T>) -> SMatrix<T, 3, 3> {
         let ChargedParticleParameters { m, .. } = self.parameters;
-        let mut inertia = SMatrix::<T, 3, 3>::zeros();
-        for axis in 0..(3 * 1) {
+        columns(|axis| {
             let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-            let along = ξ * m;
-            inertia.set_column(axis, &along);
-        }
-        inertia
+            ξ * m
+        })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &ChargedParticleState<T>) -> (T, T) {
         let ChargedParticleParameters { q, B, E, .. } = self.parameters;
         let X = state.X.matrix();
         let momentum = state.momentum().0 - (B * (T::from_f64(0.5) * q)).cross(&X);
-        let velocity = solve_leading_or_nan(
-            &self.inertia_at(state),
-            &momentum,
-            0 + (3 * 1),
-        );
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, (3 * 1));
         (momentum.dot(&velocity) * T::from_f64(0.5), -(q * E.dot(&X)))
     }
     /// The physical energy at this node.
@@ -276,47 +253,21 @@ impl<T: Real> ChargedParticle<T> {
     }
 }
 impl ChargedParticle<f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &ChargedParticleState<f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.X().matrix()));
-        let out = put(out, rows(state.momentum().0));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &ChargedParticleState<f64>,
-        _: f64,
-        _: Option<&ChargedParticleWorkspace<f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let out = put(out, rows(self.momentum_across_E(state)));
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &ChargedParticleState<f64>, h: f64, out: &mut [f64]) {
-        let mut enlarged = *state;
-        {
-            type T = f64;
-            let ChargedParticleParameters { q, E, .. } = self.parameters;
-            enlarged.momentum = FieldMomentum(
-                not_less(
-                    enlarged.momentum.0,
-                    (0, 3),
-                    T::from_f64(0.5) * (h * h).sqrt() * (q * q).sqrt() * E.dot(&E).sqrt(),
-                ),
-            );
-        }
-        let state = &enlarged;
         type T = f64;
         let ChargedParticleParameters { q, B, E, .. } = self.parameters;
         let X = state.X.matrix();
+        let impulse = T::from_f64(0.5) * (h * h).sqrt() * (q * q).sqrt()
+            * E.dot(&E).sqrt();
+        let state = &ChargedParticleState {
+            momentum: FieldMomentum(not_less(state.momentum.0, (0, 3), impulse)),
+            ..*state
+        };
         let p = state.momentum().0;
         let t1 = E.cross(&X.cross(&(B * (T::from_f64(0.5) * q))));
-        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-        let out = put(
-            out,
-            [t1.dot(&t1).sqrt() + p.dot(&p).sqrt() * E.dot(&E).sqrt(); 3 * 1],
-        );
+        let out = put(out, [sum_of_sizes(self.energies(state))]);
+        put(out, [t1.dot(&t1).sqrt() + p.dot(&p).sqrt() * E.dot(&E).sqrt(); 3 * 1]);
     }
     /// The model as data.
     pub const CARD: Card = Card {
@@ -327,10 +278,6 @@ impl ChargedParticle<f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  m ΔX_k·ΔX_k/(2 h) + ½ q B·(X_k × ΔX_k) + ½ h q E·X_k + ½ h q E·X_{k+1}\nmomentum of X        m ΔX_k/h + ½ q (B × X_k)\nRiccati form         none; linear, L = m Id/h + ½ q hat(B), R = 1\ninvariants           energy, momentum_across_E\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
         solver: "Explicit: the balance is linear: one small linear system",
-        order: 2u32,
-        orders: &[2, 4, 6, 8],
-        preprocessed: false,
-        reversible: true,
         parameters: &[
             Kind::Scalar.field("m", [1, 1], "mass"),
             Kind::Scalar.field("q", [1, 1], "charge"),
@@ -362,18 +309,6 @@ impl ChargedParticle<f64> {
             "m ΔX_k·ΔX_k/(2 h²) - ½ q E·X_k - ½ q E·X_{k+1}",
             1,
         ),
-        open: open::<Self>,
-        solvers: &[],
-        dimensions: &[],
-        sized: only_size::<Self>,
+        ..Card::plain(open::<Self>, only_size::<Self>)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(
-        &self,
-        state: &ChargedParticleState<f64>,
-    ) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 0 + (3 * 1))
-    }
 }

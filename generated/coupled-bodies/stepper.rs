@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`CoupledBodies`](struct@CoupledBodies) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`CoupledBodies`](struct@CoupledBodies), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,23 +105,6 @@ impl<T: Real> CoupledBodiesWorkspace<T> {
 }
 type CoupledBodiesNode<T> = (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]);
 impl<T: Real> CoupledBodies<T> {
-    /// The state at node 0.
-    fn begin(
-        &self,
-        initial: CoupledBodiesInitial<T>,
-    ) -> Result<CoupledBodiesState<T>, StartError> {
-        validate::finite("Λ1", &initial.Λ1.quaternion())?;
-        validate::finite("body_momentum_Λ1", initial.body_momentum_Λ1.0.as_slice())?;
-        validate::finite("Λ2", &initial.Λ2.quaternion())?;
-        validate::finite("body_momentum_Λ2", initial.body_momentum_Λ2.0.as_slice())?;
-        Ok(CoupledBodiesState {
-            Λ1: initial.Λ1,
-            momentum_Λ1: initial.body_momentum_Λ1.to_space(&initial.Λ1),
-            Λ2: initial.Λ2,
-            momentum_Λ2: initial.body_momentum_Λ2.to_space(&initial.Λ2),
-            node: 0,
-        })
-    }
     /// What steps of `h` from `state` begin with.
     fn prepared(
         &self,
@@ -468,15 +445,21 @@ impl<T: Real> CoupledBodies<T> {
     pub fn R(&self, state: &CoupledBodiesState<T>) -> SMatrix<T, 3, 3> {
         let Λ1 = state.Λ1.matrix();
         let Λ2 = state.Λ2.matrix();
-        let R = Λ1.tr_mul(&Λ2);
-        R
+        Λ1.tr_mul(&Λ2)
     }
 }
 ::clebsch::stepper! {
-    [] CoupledBodies, CoupledBodiesParameters { J1, J2, d1, d2, eps },
+    [] CoupledBodies,
+    CoupledBodiesParameters { J1, J2, d1, d2, eps },
     CoupledBodiesInitial { Λ1, body_momentum_Λ1, Λ2, body_momentum_Λ2 },
     CoupledBodiesState { Λ1, momentum_Λ1, Λ2, momentum_Λ2 } at node,
-    CoupledBodiesWorkspace { h, search }, tried {} nothing symmetric judged
+    CoupledBodiesWorkspace { h, search },
+    tried {} nothing symmetric judged { 6 }
+    start { Λ1, momentum_Λ1 = body_momentum_Λ1.to_space; Λ2, momentum_Λ2 =
+        body_momentum_Λ2.to_space }
+    observables { state.Λ1, state.body_momentum_Λ1, state.spatial_momentum_Λ1, state.Λ2,
+        state.body_momentum_Λ2, state.spatial_momentum_Λ2, R }
+    invariants { energy, total_momentum, total_momentum_squared }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -553,9 +536,7 @@ impl<T: Real> CoupledBodies<T> {
         let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
         let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
         let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
-        let Λ1 = before.Λ1.matrix();
-        let Λ2 = before.Λ2.matrix();
-        let R = Λ1.tr_mul(&Λ2);
+        let R = self.R(before);
         let t1 = (Ω1_matrix.tr_mul(&Ω1_matrix)).trace().sqrt();
         let t2 = (h * h).sqrt();
         let t3 = (eps * eps).sqrt();
@@ -600,9 +581,7 @@ impl<T: Real> CoupledBodies<T> {
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &CoupledBodiesState<T>) -> SMatrix<T, 6, 6> {
         let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
-        let Λ1 = state.Λ1.matrix();
-        let Λ2 = state.Λ2.matrix();
-        let R = Λ1.tr_mul(&Λ2);
+        let R = self.R(state);
         let mut inertia = SMatrix::<T, 6, 6>::zeros();
         for axis in 0..3 {
             let ξ1: SMatrix<T, 3, 3> = basis::<T>(axis);
@@ -640,8 +619,7 @@ impl<T: Real> CoupledBodies<T> {
         }
         inertia
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &CoupledBodiesState<T>) -> (T, T) {
         let momentum = {
             let parts: [SVector<T, 3>; 2] = [
@@ -664,9 +642,7 @@ impl<T: Real> CoupledBodies<T> {
     }
     /// `(μ_{1,k} + R_k μ_{2,k})·(μ_{1,k} + R_k μ_{2,k})`: Casimir: the Kelvin-Noether quantity of the advected quantities.
     pub fn total_momentum_squared(&self, state: &CoupledBodiesState<T>) -> T {
-        let Λ1 = state.Λ1.matrix();
-        let Λ2 = state.Λ2.matrix();
-        let R = Λ1.tr_mul(&Λ2);
+        let R = self.R(state);
         let μ1 = state.body_momentum_Λ1().0;
         let μ2 = state.body_momentum_Λ2().0;
         let t1 = μ1 + R * μ2;
@@ -682,9 +658,7 @@ impl<T: Real> CoupledBodies<T> {
         let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
         let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
         let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
-        let Λ1 = before.Λ1.matrix();
-        let Λ2 = before.Λ2.matrix();
-        let R = Λ1.tr_mul(&Λ2);
+        let R = self.R(before);
         let t1 = less_identity(&Ω1_matrix);
         let t2 = less_identity(&Ω2_matrix);
         (-((eps * (t1 * d1).dot(&(R * (t2 * d2)))) / (h * h)))
@@ -710,31 +684,8 @@ impl<T: Real> CoupledBodies<T> {
     }
 }
 impl CoupledBodies<f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &CoupledBodiesState<f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.Λ1().matrix()));
-        let out = put(out, rows(state.body_momentum_Λ1().0));
-        let out = put(out, rows(state.spatial_momentum_Λ1().0));
-        let out = put(out, rows(state.Λ2().matrix()));
-        let out = put(out, rows(state.body_momentum_Λ2().0));
-        let out = put(out, rows(state.spatial_momentum_Λ2().0));
-        let out = put(out, rows(self.R(state)));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &CoupledBodiesState<f64>,
-        _: f64,
-        _: Option<&CoupledBodiesWorkspace<f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let out = put(out, rows(self.total_momentum(state)));
-        let out = put(out, [self.total_momentum_squared(state)]);
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &CoupledBodiesState<f64>, h: f64, out: &mut [f64]) {
-        type T = f64;
         let Λ1 = state.Λ1.matrix();
         let Λ2 = state.Λ2.matrix();
         let μ1 = state.body_momentum_Λ1().0;
@@ -742,9 +693,9 @@ impl CoupledBodies<f64> {
         let t1 = Λ1 * μ1;
         let t2 = Λ2 * μ2;
         let t3 = μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt();
-        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+        let out = put(out, [sum_of_sizes(self.energies(state))]);
         let out = put(out, [t1.dot(&t1).sqrt() + t2.dot(&t2).sqrt(); 3usize]);
-        let out = put(out, [t3 * t3; 1usize]);
+        put(out, [t3 * t3]);
     }
     /// The model as data.
     pub const CARD: Card = Card {
@@ -755,10 +706,6 @@ impl CoupledBodies<f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J₁ Ω_{1,k})/h - tr(J₂ Ω_{2,k})/h - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h\nmomentum of Λ1       -(J₁/h + eps R_k (Ω_{2,k} - Id) d₂ d₁ᵀ/h) Ω_{1,k}ᵀ + Ω_{1,k} (J₁/h + eps d₁ d₂ᵀ (Ω_{2,k}ᵀ - Id) R_kᵀ/h)\nmomentum of Λ2       -(J₂/h + eps R_kᵀ (Ω_{1,k} - Id) d₁ d₂ᵀ/h) Ω_{2,k}ᵀ + Ω_{2,k} (J₂/h + eps d₂ d₁ᵀ (Ω_{1,k}ᵀ - Id) R_k/h)\nRiccati form         coupled, C = J₁; coupled, C = J₂\ninvariants           energy, total_momentum, total_momentum_squared\ntime reversal        symmetric: second order\ncertificate          32 identities proved by normal form",
         solver: "Newton: several velocities are solved together: Newton on the derived residuals",
-        order: 2u32,
-        orders: &[2, 4, 6, 8],
-        preprocessed: false,
-        reversible: true,
         parameters: &[
             Kind::SecondMoments
                 .field(
@@ -780,37 +727,57 @@ impl CoupledBodies<f64> {
         ],
         initial: &[
             Kind::Rotation
-                .field("Λ1", [3, 3], "attitude of body 1, body to space")
-                .spelt("Lambda1"),
+                .spelt("Λ1", "Lambda1", [3, 3], "attitude of body 1, body to space"),
             Kind::BodyMomentum
-                .field("body_momentum_Λ1", [3, 1], "momentum, body frame")
-                .spelt("body_momentum_Lambda1"),
+                .spelt(
+                    "body_momentum_Λ1",
+                    "body_momentum_Lambda1",
+                    [3, 1],
+                    "momentum, body frame",
+                ),
             Kind::Rotation
-                .field("Λ2", [3, 3], "attitude of body 2, body to space")
-                .spelt("Lambda2"),
+                .spelt("Λ2", "Lambda2", [3, 3], "attitude of body 2, body to space"),
             Kind::BodyMomentum
-                .field("body_momentum_Λ2", [3, 1], "momentum, body frame")
-                .spelt("body_momentum_Lambda2"),
+                .spelt(
+                    "body_momentum_Λ2",
+                    "body_momentum_Lambda2",
+                    [3, 1],
+                    "momentum, body frame",
+                ),
         ],
         observables: &[
             Kind::Rotation
-                .field("Λ1", [3, 3], "attitude of body 1, body to space")
-                .spelt("Lambda1"),
+                .spelt("Λ1", "Lambda1", [3, 3], "attitude of body 1, body to space"),
             Kind::BodyMomentum
-                .field("body_momentum_Λ1", [3, 1], "momentum, body frame")
-                .spelt("body_momentum_Lambda1"),
+                .spelt(
+                    "body_momentum_Λ1",
+                    "body_momentum_Lambda1",
+                    [3, 1],
+                    "momentum, body frame",
+                ),
             Kind::SpatialMomentum
-                .field("spatial_momentum_Λ1", [3, 1], "momentum, space frame")
-                .spelt("spatial_momentum_Lambda1"),
+                .spelt(
+                    "spatial_momentum_Λ1",
+                    "spatial_momentum_Lambda1",
+                    [3, 1],
+                    "momentum, space frame",
+                ),
             Kind::Rotation
-                .field("Λ2", [3, 3], "attitude of body 2, body to space")
-                .spelt("Lambda2"),
+                .spelt("Λ2", "Lambda2", [3, 3], "attitude of body 2, body to space"),
             Kind::BodyMomentum
-                .field("body_momentum_Λ2", [3, 1], "momentum, body frame")
-                .spelt("body_momentum_Lambda2"),
+                .spelt(
+                    "body_momentum_Λ2",
+                    "body_momentum_Lambda2",
+                    [3, 1],
+                    "momentum, body frame",
+                ),
             Kind::SpatialMomentum
-                .field("spatial_momentum_Λ2", [3, 1], "momentum, space frame")
-                .spelt("spatial_momentum_Lambda2"),
+                .spelt(
+                    "spatial_momentum_Λ2",
+                    "spatial_momentum_Lambda2",
+                    [3, 1],
+                    "momentum, space frame",
+                ),
             Kind::Matrix.field("R", [3, 3], "body 2 seen from body 1"),
         ],
         invariants: &[
@@ -835,18 +802,6 @@ impl CoupledBodies<f64> {
             "-tr(J₁ Ω_{1,k})/h² - tr(J₂ Ω_{2,k})/h² - eps ((Ω_{1,k} - Id) d₁)·(R_k (Ω_{2,k} - Id) d₂)/h² + tr(J₁)/h² + tr(J₂)/h²",
             1,
         ),
-        open: open::<Self>,
-        solvers: &[],
-        dimensions: &[],
-        sized: only_size::<Self>,
+        ..Card::plain(open::<Self>, only_size::<Self>)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(
-        &self,
-        state: &CoupledBodiesState<f64>,
-    ) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 6)
-    }
 }

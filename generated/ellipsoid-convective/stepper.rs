@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`EllipsoidConvective`](struct@EllipsoidConvective) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`EllipsoidConvective`](struct@EllipsoidConvective), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,19 +98,6 @@ pub struct EllipsoidConvectiveWorkspace<const N: usize, T = f64> {
     h: T,
 }
 impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
-    /// The state at node 0.
-    fn begin(
-        &self,
-        initial: EllipsoidConvectiveInitial<N, T>,
-    ) -> Result<EllipsoidConvectiveState<N, T>, StartError> {
-        validate::finite("Q", initial.Q.matrix().as_slice())?;
-        validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-        Ok(EllipsoidConvectiveState {
-            Q: initial.Q,
-            momentum: initial.body_momentum.to_space(&initial.Q),
-            node: 0,
-        })
-    }
     /// What steps of `h` from `state` begin with.
     fn prepared(
         &self,
@@ -267,15 +248,20 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
     pub fn C(&self, state: &EllipsoidConvectiveState<N, T>) -> SMatrix<T, N, N> {
         let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
         let Q = state.Q.matrix();
-        let C = Q.tr_mul(&(C0 * Q));
-        C
+        Q.tr_mul(&(C0 * Q))
     }
 }
 ::clebsch::stepper! {
-    [N] EllipsoidConvective, EllipsoidConvectiveParameters { C0, I0, a, b, c, d },
-    EllipsoidConvectiveInitial { Q, body_momentum }, EllipsoidConvectiveState { Q,
-    momentum } at node, EllipsoidConvectiveWorkspace { h }, tried {} nothing symmetric
-    judged
+    [N] EllipsoidConvective,
+    EllipsoidConvectiveParameters { C0, I0, a, b, c, d },
+    EllipsoidConvectiveInitial { Q, body_momentum },
+    EllipsoidConvectiveState { Q, momentum } at node,
+    EllipsoidConvectiveWorkspace { h },
+    tried {} nothing symmetric judged { (N * N) }
+    start { Q, momentum = body_momentum.to_space }
+    observables { state.Q, state.body_momentum, state.spatial_momentum, C }
+    invariants { energy, angular_momentum_C_2, angular_momentum_C_4,
+        spatial_momentum_skew_C0_inverse }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -333,12 +319,10 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         after: &EllipsoidConvectiveState<N, T>,
         h: T,
     ) -> [Residual; 1] {
-        let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let EllipsoidConvectiveParameters { I0, a, b, c, d, .. } = self.parameters;
         let G_matrix = before.Q.body_velocity(&after.Q).matrix();
-        let Q = before.Q.matrix();
-        let C = Q.tr_mul(&(C0 * Q));
-        let Q_next = after.Q.matrix();
-        let C_next = Q_next.tr_mul(&(C0 * Q_next));
+        let C = self.C(before);
+        let C_next = self.C(after);
         let t1 = G_matrix.tr_mul(&C);
         let t2 = C_next * C_next;
         let t3 = h.powi(-1);
@@ -365,9 +349,8 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
     }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &EllipsoidConvectiveState<N, T>) -> SMatrix<T, 16, 16> {
-        let EllipsoidConvectiveParameters { C0, I0, .. } = self.parameters;
-        let Q = state.Q.matrix();
-        let C = Q.tr_mul(&(C0 * Q));
+        let EllipsoidConvectiveParameters { I0, .. } = self.parameters;
+        let C = self.C(state);
         let mut inertia = SMatrix::<T, 16, 16>::zeros();
         for axis in 0..(N * N) {
             let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
@@ -383,12 +366,10 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         }
         inertia
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &EllipsoidConvectiveState<N, T>) -> (T, T) {
-        let EllipsoidConvectiveParameters { C0, a, b, c, d, .. } = self.parameters;
-        let Q = state.Q.matrix();
-        let C = Q.tr_mul(&(C0 * Q));
+        let EllipsoidConvectiveParameters { a, b, c, d, .. } = self.parameters;
+        let C = self.C(state);
         let momentum = {
             let parts: [SMatrix<T, N, N>; 1] = [state.body_momentum().0];
             let mut all = SVector::<T, 16>::zeros();
@@ -397,11 +378,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
             let _ = rest;
             all
         };
-        let velocity = solve_leading_or_nan(
-            &self.inertia_at(state),
-            &momentum,
-            0 + (N * N),
-        );
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, (N * N));
         (
             momentum.dot(&velocity) * T::from_f64(0.5),
             a * C.trace() + T::from_f64(0.5) * b * (C.trace() * C.trace())
@@ -416,18 +393,14 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
     }
     /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of the advected quantities.
     pub fn angular_momentum_C_2(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
-        let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
-        let Q = state.Q.matrix();
-        let C = Q.tr_mul(&(C0 * Q));
+        let C = self.C(state);
         let μ = state.body_momentum().0;
         let t1 = skew_part(&(inverse_or_nan(&(C)) * μ));
         (C * (t1 * (C * t1))).trace()
     }
     /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of the advected quantities.
     pub fn angular_momentum_C_4(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
-        let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
-        let Q = state.Q.matrix();
-        let C = Q.tr_mul(&(C0 * Q));
+        let C = self.C(state);
         let μ = state.body_momentum().0;
         let t1 = skew_part(&(inverse_or_nan(&(C)) * μ));
         (C * (t1 * (C * (t1 * (C * (t1 * (C * t1))))))).trace()
@@ -451,12 +424,10 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         before: &EllipsoidConvectiveState<N, T>,
         after: &EllipsoidConvectiveState<N, T>,
     ) -> T {
-        let EllipsoidConvectiveParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let EllipsoidConvectiveParameters { I0, a, b, c, d, .. } = self.parameters;
         let G_matrix = before.Q.body_velocity(&after.Q).matrix();
-        let Q = before.Q.matrix();
-        let C = Q.tr_mul(&(C0 * Q));
-        let Q_next = after.Q.matrix();
-        let C_next = Q_next.tr_mul(&(C0 * Q_next));
+        let C = self.C(before);
+        let C_next = self.C(after);
         let t1 = C.trace();
         let t2 = determinant(&(C));
         let t3 = C_next.trace();
@@ -486,53 +457,23 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
     }
 }
 impl<const N: usize> EllipsoidConvective<N, f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &EllipsoidConvectiveState<N, f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.Q().matrix()));
-        let out = put(out, rows(state.body_momentum().0));
-        let out = put(out, rows(state.spatial_momentum().0));
-        let out = put(out, rows(self.C(state)));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &EllipsoidConvectiveState<N, f64>,
-        _: f64,
-        _: Option<&EllipsoidConvectiveWorkspace<N, f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let out = put(out, [self.angular_momentum_C_2(state)]);
-        let out = put(out, [self.angular_momentum_C_4(state)]);
-        let out = put(out, rows(self.spatial_momentum_skew_C0_inverse(state)));
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &EllipsoidConvectiveState<N, f64>, h: f64, out: &mut [f64]) {
-        let mut enlarged = *state;
-        {
-            type T = f64;
-            let EllipsoidConvectiveParameters { C0, a, b, c, d, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let C = Q.tr_mul(&(C0 * Q));
-            let t1 = (h * h).sqrt();
-            let t2 = (C * C).trace().sqrt();
-            let t3 = determinant(&(C));
-            enlarged.momentum = SpatialMomentumMatrix(
-                not_less(
-                    enlarged.momentum.0,
-                    (0, N),
-                    t1 * (a * a).sqrt() * t2
-                        + T::from_f64(3.0) * t1 * (b * b).sqrt() * t2 * t2
-                        + t1 * (c * c).sqrt() * (t3 * t3).sqrt()
-                        + T::from_f64(0.5) * t1 * (d * d).sqrt(),
-                ),
-            );
-        }
-        let state = &enlarged;
         type T = f64;
-        let EllipsoidConvectiveParameters { C0, .. } = self.parameters;
+        let EllipsoidConvectiveParameters { C0, a, b, c, d, .. } = self.parameters;
         let Q = state.Q.matrix();
-        let C = Q.tr_mul(&(C0 * Q));
+        let C = self.C(state);
+        let s1 = (h * h).sqrt();
+        let s2 = (C * C).trace().sqrt();
+        let s3 = determinant(&(C));
+        let impulse = s1 * (a * a).sqrt() * s2
+            + T::from_f64(3.0) * s1 * (b * b).sqrt() * s2 * s2
+            + s1 * (c * c).sqrt() * (s3 * s3).sqrt()
+            + T::from_f64(0.5) * s1 * (d * d).sqrt();
+        let state = &EllipsoidConvectiveState {
+            momentum: SpatialMomentumMatrix(not_less(state.momentum.0, (0, N), impulse)),
+            ..*state
+        };
         let μ = state.body_momentum().0;
         let t1 = Q * μ.transpose();
         let t2 = inverse_or_nan(&(C));
@@ -540,13 +481,8 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
             * (t2 * t2).trace().sqrt();
         let t4 = inverse_or_nan(&(Q));
         let t5 = inverse_or_nan(&(C0));
-        let out = put(
-            out,
-            ::core::iter::repeat_n(sum_of_sizes(self.energies(state)), 1usize),
-        );
-        let out = put(out, ::core::iter::repeat_n(t3 * t3, 1usize));
-        let out = put(out, ::core::iter::repeat_n(t3.powi(4), 1usize));
-        let out = put(
+        let out = put(out, [sum_of_sizes(self.energies(state)), t3 * t3, t3.powi(4)]);
+        put(
             out,
             ::core::iter::repeat_n(
                 (t1 * (t4 * t4.tr_mul(&t1.transpose()))).trace().sqrt()
@@ -564,10 +500,6 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h) - ½ h a tr(C_k) - ¼ h b tr(C_k)² + ¼ h b tr(C_k²) - ½ h c det(C_k) + ¼ h d log(det(C_k)) - ½ h a tr(C_{k+1}) - ¼ h b tr(C_{k+1})² + ¼ h b tr(C_{k+1}²) - ½ h c det(C_{k+1}) + ¼ h d log(det(C_{k+1}))\nmomentum of Q        C_k (G_k - Id) I₀ G_kᵀ/h\nRiccati form         none; linear, L = C_k/h, R = I₀\ninvariants           energy, angular_momentum_C_2, angular_momentum_C_4, spatial_momentum_skew_C0_inverse\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
         solver: "Explicit: the balance is linear: two small linear systems",
-        order: 2u32,
-        orders: &[2, 4, 6, 8],
-        preprocessed: false,
-        reversible: true,
         parameters: &[
             Kind::Symmetric.field("C0", [N, N], "metric of space"),
             Kind::Symmetric
@@ -623,8 +555,6 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
             "2 tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h)² + ½ a tr(C_k) + ¼ b tr(C_k)² - ¼ b tr(C_k²) + ½ c det(C_k) - ¼ d log(det(C_k)) + ½ a tr(C_{k+1}) + ¼ b tr(C_{k+1})² - ¼ b tr(C_{k+1}²) + ½ c det(C_{k+1}) - ¼ d log(det(C_{k+1}))",
             1,
         ),
-        open: open::<Self>,
-        solvers: &[],
         dimensions: &[
             Dimension {
                 name: "n",
@@ -633,17 +563,8 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
                 value: N,
             },
         ],
-        sized: Self::sized,
+        ..Card::plain(open::<Self>, Self::sized)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(
-        &self,
-        state: &EllipsoidConvectiveState<N, f64>,
-    ) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 0 + (N * N))
-    }
     /// The card of the model at the given sizes, in the order of their declaration.
     fn sized(sizes: &[usize]) -> Option<Card> {
         match sizes {

@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`EllipsoidSpatial`](struct@EllipsoidSpatial) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`EllipsoidSpatial`](struct@EllipsoidSpatial), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,19 +98,6 @@ pub struct EllipsoidSpatialWorkspace<const N: usize, T = f64> {
     h: T,
 }
 impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
-    /// The state at node 0.
-    fn begin(
-        &self,
-        initial: EllipsoidSpatialInitial<N, T>,
-    ) -> Result<EllipsoidSpatialState<N, T>, StartError> {
-        validate::finite("Q", initial.Q.matrix().as_slice())?;
-        validate::finite("spatial_momentum", initial.spatial_momentum.0.as_slice())?;
-        Ok(EllipsoidSpatialState {
-            Q: initial.Q,
-            momentum: initial.spatial_momentum,
-            node: 0,
-        })
-    }
     /// What steps of `h` from `state` begin with.
     fn prepared(
         &self,
@@ -265,14 +246,20 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
     pub fn S(&self, state: &EllipsoidSpatialState<N, T>) -> SMatrix<T, N, N> {
         let EllipsoidSpatialParameters { I0, .. } = self.parameters;
         let Q = state.Q.matrix();
-        let S = Q * (I0 * Q.transpose());
-        S
+        Q * (I0 * Q.transpose())
     }
 }
 ::clebsch::stepper! {
-    [N] EllipsoidSpatial, EllipsoidSpatialParameters { C0, I0, a, b, c, d },
-    EllipsoidSpatialInitial { Q, spatial_momentum }, EllipsoidSpatialState { Q, momentum
-    } at node, EllipsoidSpatialWorkspace { h }, tried {} nothing symmetric judged
+    [N] EllipsoidSpatial,
+    EllipsoidSpatialParameters { C0, I0, a, b, c, d },
+    EllipsoidSpatialInitial { Q, spatial_momentum },
+    EllipsoidSpatialState { Q, momentum } at node,
+    EllipsoidSpatialWorkspace { h },
+    tried {} nothing symmetric judged { (N * N) }
+    start { Q, momentum = spatial_momentum }
+    observables { state.Q, state.body_momentum, state.spatial_momentum, S }
+    invariants { energy, circulation_S_2, circulation_S_4,
+        body_momentum_skew_I0_inverse_right }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -330,12 +317,10 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         after: &EllipsoidSpatialState<N, T>,
         h: T,
     ) -> [Residual; 1] {
-        let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let EllipsoidSpatialParameters { C0, a, b, c, d, .. } = self.parameters;
         let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
-        let Q = before.Q.matrix();
-        let S = Q * (I0 * Q.transpose());
-        let Q_next = after.Q.matrix();
-        let S_next = Q_next * (I0 * Q_next.transpose());
+        let S = self.S(before);
+        let S_next = self.S(after);
         let t1 = g_matrix * S;
         let t2 = S_next * S_next;
         let t3 = h.powi(-1);
@@ -362,9 +347,8 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
     }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &EllipsoidSpatialState<N, T>) -> SMatrix<T, 16, 16> {
-        let EllipsoidSpatialParameters { C0, I0, .. } = self.parameters;
-        let Q = state.Q.matrix();
-        let S = Q * (I0 * Q.transpose());
+        let EllipsoidSpatialParameters { C0, .. } = self.parameters;
+        let S = self.S(state);
         let mut inertia = SMatrix::<T, 16, 16>::zeros();
         for axis in 0..(N * N) {
             let ξ: SMatrix<T, N, N> = matrix_basis::<T, N>(axis);
@@ -380,12 +364,10 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         }
         inertia
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &EllipsoidSpatialState<N, T>) -> (T, T) {
-        let EllipsoidSpatialParameters { I0, a, b, c, d, .. } = self.parameters;
-        let Q = state.Q.matrix();
-        let S = Q * (I0 * Q.transpose());
+        let EllipsoidSpatialParameters { a, b, c, d, .. } = self.parameters;
+        let S = self.S(state);
         let momentum = {
             let parts: [SMatrix<T, N, N>; 1] = [state.spatial_momentum().0];
             let mut all = SVector::<T, 16>::zeros();
@@ -394,11 +376,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
             let _ = rest;
             all
         };
-        let velocity = solve_leading_or_nan(
-            &self.inertia_at(state),
-            &momentum,
-            0 + (N * N),
-        );
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, (N * N));
         (
             momentum.dot(&velocity) * T::from_f64(0.5),
             a * S.trace() + T::from_f64(0.5) * b * (S.trace() * S.trace())
@@ -413,18 +391,14 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
     }
     /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of the advected quantities.
     pub fn circulation_S_2(&self, state: &EllipsoidSpatialState<N, T>) -> T {
-        let EllipsoidSpatialParameters { I0, .. } = self.parameters;
-        let Q = state.Q.matrix();
-        let S = Q * (I0 * Q.transpose());
+        let S = self.S(state);
         let m = state.spatial_momentum().0;
         let t1 = skew_part(&(m * inverse_or_nan(&(S))));
         (t1 * (S * (t1 * S))).trace()
     }
     /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of the advected quantities.
     pub fn circulation_S_4(&self, state: &EllipsoidSpatialState<N, T>) -> T {
-        let EllipsoidSpatialParameters { I0, .. } = self.parameters;
-        let Q = state.Q.matrix();
-        let S = Q * (I0 * Q.transpose());
+        let S = self.S(state);
         let m = state.spatial_momentum().0;
         let t1 = skew_part(&(m * inverse_or_nan(&(S))));
         (t1 * (S * (t1 * (S * (t1 * (S * (t1 * S))))))).trace()
@@ -448,12 +422,10 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         before: &EllipsoidSpatialState<N, T>,
         after: &EllipsoidSpatialState<N, T>,
     ) -> T {
-        let EllipsoidSpatialParameters { C0, I0, a, b, c, d, .. } = self.parameters;
+        let EllipsoidSpatialParameters { C0, a, b, c, d, .. } = self.parameters;
         let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
-        let Q = before.Q.matrix();
-        let S = Q * (I0 * Q.transpose());
-        let Q_next = after.Q.matrix();
-        let S_next = Q_next * (I0 * Q_next.transpose());
+        let S = self.S(before);
+        let S_next = self.S(after);
         let t1 = S.trace();
         let t2 = determinant(&(S));
         let t3 = S_next.trace();
@@ -483,53 +455,23 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
     }
 }
 impl<const N: usize> EllipsoidSpatial<N, f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &EllipsoidSpatialState<N, f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.Q().matrix()));
-        let out = put(out, rows(state.body_momentum().0));
-        let out = put(out, rows(state.spatial_momentum().0));
-        let out = put(out, rows(self.S(state)));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &EllipsoidSpatialState<N, f64>,
-        _: f64,
-        _: Option<&EllipsoidSpatialWorkspace<N, f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let out = put(out, [self.circulation_S_2(state)]);
-        let out = put(out, [self.circulation_S_4(state)]);
-        let out = put(out, rows(self.body_momentum_skew_I0_inverse_right(state)));
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &EllipsoidSpatialState<N, f64>, h: f64, out: &mut [f64]) {
-        let mut enlarged = *state;
-        {
-            type T = f64;
-            let EllipsoidSpatialParameters { I0, a, b, c, d, .. } = self.parameters;
-            let Q = state.Q.matrix();
-            let S = Q * (I0 * Q.transpose());
-            let t1 = (h * h).sqrt();
-            let t2 = (S * S).trace().sqrt();
-            let t3 = determinant(&(S));
-            enlarged.momentum = SpatialMomentumMatrix(
-                not_less(
-                    enlarged.momentum.0,
-                    (0, N),
-                    t1 * (a * a).sqrt() * t2
-                        + T::from_f64(3.0) * t1 * (b * b).sqrt() * t2 * t2
-                        + t1 * (c * c).sqrt() * (t3 * t3).sqrt()
-                        + T::from_f64(0.5) * t1 * (d * d).sqrt(),
-                ),
-            );
-        }
-        let state = &enlarged;
         type T = f64;
-        let EllipsoidSpatialParameters { I0, .. } = self.parameters;
+        let EllipsoidSpatialParameters { I0, a, b, c, d, .. } = self.parameters;
         let Q = state.Q.matrix();
-        let S = Q * (I0 * Q.transpose());
+        let S = self.S(state);
+        let s1 = (h * h).sqrt();
+        let s2 = (S * S).trace().sqrt();
+        let s3 = determinant(&(S));
+        let impulse = s1 * (a * a).sqrt() * s2
+            + T::from_f64(3.0) * s1 * (b * b).sqrt() * s2 * s2
+            + s1 * (c * c).sqrt() * (s3 * s3).sqrt()
+            + T::from_f64(0.5) * s1 * (d * d).sqrt();
+        let state = &EllipsoidSpatialState {
+            momentum: SpatialMomentumMatrix(not_less(state.momentum.0, (0, N), impulse)),
+            ..*state
+        };
         let m = state.spatial_momentum().0;
         let t1 = m.tr_mul(&Q);
         let t2 = inverse_or_nan(&(S));
@@ -537,13 +479,8 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
             * (t2 * t2).trace().sqrt();
         let t4 = inverse_or_nan(&(Q));
         let t5 = inverse_or_nan(&(I0));
-        let out = put(
-            out,
-            ::core::iter::repeat_n(sum_of_sizes(self.energies(state)), 1usize),
-        );
-        let out = put(out, ::core::iter::repeat_n(t3 * t3, 1usize));
-        let out = put(out, ::core::iter::repeat_n(t3.powi(4), 1usize));
-        let out = put(
+        let out = put(out, [sum_of_sizes(self.energies(state)), t3 * t3, t3.powi(4)]);
+        put(
             out,
             ::core::iter::repeat_n(
                 (t4 * (t1 * t1.tr_mul(&t4.transpose()))).trace().sqrt()
@@ -561,10 +498,6 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h) - ½ h a tr(S_k) - ¼ h b tr(S_k)² + ¼ h b tr(S_k²) - ½ h c det(S_k) + ¼ h d log(det(S_k)) - ½ h a tr(S_{k+1}) - ¼ h b tr(S_{k+1})² + ¼ h b tr(S_{k+1}²) - ½ h c det(S_{k+1}) + ¼ h d log(det(S_{k+1}))\nmomentum of Q        C₀ (g_k - Id) S_k g_kᵀ/h\nRiccati form         none; linear, L = C₀/h, R = S_k\ninvariants           energy, circulation_S_2, circulation_S_4, body_momentum_skew_I0_inverse_right\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
         solver: "Explicit: the balance is linear: two small linear systems",
-        order: 2u32,
-        orders: &[2, 4, 6, 8],
-        preprocessed: false,
-        reversible: true,
         parameters: &[
             Kind::Symmetric.field("C0", [N, N], "metric of space"),
             Kind::Symmetric
@@ -621,8 +554,6 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
             "2 tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h)² + ½ a tr(S_k) + ¼ b tr(S_k)² - ¼ b tr(S_k²) + ½ c det(S_k) - ¼ d log(det(S_k)) + ½ a tr(S_{k+1}) + ¼ b tr(S_{k+1})² - ¼ b tr(S_{k+1}²) + ½ c det(S_{k+1}) - ¼ d log(det(S_{k+1}))",
             1,
         ),
-        open: open::<Self>,
-        solvers: &[],
         dimensions: &[
             Dimension {
                 name: "n",
@@ -631,17 +562,8 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
                 value: N,
             },
         ],
-        sized: Self::sized,
+        ..Card::plain(open::<Self>, Self::sized)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(
-        &self,
-        state: &EllipsoidSpatialState<N, f64>,
-    ) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 0 + (N * N))
-    }
     /// The card of the model at the given sizes, in the order of their declaration.
     fn sized(sizes: &[usize]) -> Option<Card> {
         match sizes {

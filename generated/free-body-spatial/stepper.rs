@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`FreeBodySpatial`](struct@FreeBodySpatial) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`FreeBodySpatial`](struct@FreeBodySpatial), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,15 +154,19 @@ impl<T: Real> FreeBodySpatial<T> {
     pub fn J(&self, state: &FreeBodySpatialState<T>) -> SMatrix<T, 3, 3> {
         let Λ = state.Λ.matrix();
         let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        J
+        Λ * (J_reference * Λ.transpose())
     }
 }
 ::clebsch::stepper! {
-    [] FreeBodySpatial, FreeBodySpatialParameters { scalar }, FreeBodySpatialInitial {
-    Λ, spatial_momentum, J }, FreeBodySpatialState { Λ, momentum, J } at node,
-    FreeBodySpatialWorkspace { h, solver, J }, free { Λ, momentum } order modified
-    judged
+    [] FreeBodySpatial,
+    FreeBodySpatialParameters { scalar },
+    FreeBodySpatialInitial { Λ, spatial_momentum, J },
+    FreeBodySpatialState { Λ, momentum, J } at node,
+    FreeBodySpatialWorkspace { h, solver, J },
+    free { Λ, momentum } order modified judged { 3 }
+    observables { state.Λ, state.body_momentum, state.spatial_momentum, J }
+    invariants { energy, work.Λ.spatial_momentum, trace_J1, trace_J2, trace_J3,
+        momentum_quadratic }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -211,9 +209,7 @@ impl<T: Real> FreeBodySpatial<T> {
         h: T,
     ) -> [Residual; 1] {
         let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let J_reference = before.J;
-        let J = Λ * (J_reference * Λ.transpose());
+        let J = self.J(before);
         let t1 = h.powi(-1);
         [
             Residual::between(
@@ -227,20 +223,14 @@ impl<T: Real> FreeBodySpatial<T> {
     }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &FreeBodySpatialState<T>) -> SMatrix<T, 3, 3> {
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        let mut inertia = SMatrix::<T, 3, 3>::zeros();
-        for axis in 0..3 {
+        let J = self.J(state);
+        columns(|axis| {
             let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
             let t1 = vee(&ξ);
-            let along = t1 * J.trace() - J * t1;
-            inertia.set_column(axis, &along);
-        }
-        inertia
+            t1 * J.trace() - J * t1
+        })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &FreeBodySpatialState<T>) -> (T, T) {
         let momentum = state.spatial_momentum().0;
         let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
@@ -253,30 +243,22 @@ impl<T: Real> FreeBodySpatial<T> {
     }
     /// `tr(J_k)`: Casimir: invariant under the group action.
     pub fn trace_J1(&self, state: &FreeBodySpatialState<T>) -> T {
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
+        let J = self.J(state);
         J.trace()
     }
     /// `tr(J_k²)`: Casimir: invariant under the group action.
     pub fn trace_J2(&self, state: &FreeBodySpatialState<T>) -> T {
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
+        let J = self.J(state);
         (J * J).trace()
     }
     /// `tr(J_k³)`: Casimir: invariant under the group action.
     pub fn trace_J3(&self, state: &FreeBodySpatialState<T>) -> T {
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
+        let J = self.J(state);
         (J * (J * J)).trace()
     }
     /// `m_k·(J_k² m_k)`: Manakov integral, quadratic in the momentum.
     pub fn momentum_quadratic(&self, state: &FreeBodySpatialState<T>) -> T {
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
+        let J = self.J(state);
         let m = state.spatial_momentum().0;
         m.dot(&(J * (J * m)))
     }
@@ -288,52 +270,22 @@ impl<T: Real> FreeBodySpatial<T> {
         after: &FreeBodySpatialState<T>,
     ) -> T {
         let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let J_reference = before.J;
-        let J = Λ * (J_reference * Λ.transpose());
+        let J = self.J(before);
         -((less_identity(&ω_matrix) * J).trace() / (h * h))
     }
 }
 impl FreeBodySpatial<f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &FreeBodySpatialState<f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.Λ().matrix()));
-        let out = put(out, rows(state.body_momentum().0));
-        let out = put(out, rows(state.spatial_momentum().0));
-        let out = put(out, rows(self.J(state)));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &FreeBodySpatialState<f64>,
-        _: f64,
-        work: Option<&FreeBodySpatialWorkspace<f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let iterated = work.map(|w| w.solver.body_momentum().to_space(&state.Λ()));
-        let out = put(out, rows(iterated.unwrap_or(state.spatial_momentum()).0));
-        let out = put(out, [self.trace_J1(state)]);
-        let out = put(out, [self.trace_J2(state)]);
-        let out = put(out, [self.trace_J3(state)]);
-        let out = put(out, [self.momentum_quadratic(state)]);
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &FreeBodySpatialState<f64>, h: f64, out: &mut [f64]) {
         type T = f64;
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
+        let J = self.J(state);
         let m = state.spatial_momentum().0;
         let t1 = m.dot(&m).sqrt();
         let t2 = (J * J).trace();
         let t3 = t2.sqrt();
-        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+        let out = put(out, [sum_of_sizes(self.energies(state))]);
         let out = put(out, [t1; 3usize]);
-        let out = put(out, [T::from_f64(3.0).sqrt() * t3; 1usize]);
-        let out = put(out, [t3 * t3; 1usize]);
-        let out = put(out, [t3 * t3 * t3; 1usize]);
-        let out = put(out, [t2 * (t1 * t1); 1usize]);
+        put(out, [T::from_f64(3.0).sqrt() * t3, t3 * t3, t3 * t3 * t3, t2 * (t1 * t1)]);
     }
     /// The model as data.
     pub const CARD: Card = Card {
@@ -344,24 +296,18 @@ impl FreeBodySpatial<f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(ω_k J_k)/h\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, spatial_momentum, trace_J1, trace_J2, trace_J3, momentum_quadratic\ntime reversal        symmetric: second order\ncertificate          16 identities proved by normal form",
         solver: "Moser-Veselov: C is carried by the motion, constant in the body, and no node term acts, so κ is conserved: solved once, every step explicit",
-        order: 2u32,
         orders: &[2, 4, 6, 8, 10],
         preprocessed: true,
-        reversible: true,
         parameters: &[],
         initial: &[
-            Kind::Rotation
-                .field("Λ", [3, 3], "attitude, body to space")
-                .spelt("Lambda"),
+            Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
             Kind::SpatialMomentum
                 .field("spatial_momentum", [3, 1], "momentum, space frame"),
             Kind::SecondMoments
                 .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
         ],
         observables: &[
-            Kind::Rotation
-                .field("Λ", [3, 3], "attitude, body to space")
-                .spelt("Lambda"),
+            Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum", [3, 1], "momentum, space frame"),
@@ -385,18 +331,7 @@ impl FreeBodySpatial<f64> {
             "-tr(ω_k J_k)/h² + tr(J_k)/h²",
             1,
         ),
-        open: open::<Self>,
         solvers: &Method::NAMES,
-        dimensions: &[],
-        sized: only_size::<Self>,
+        ..Card::plain(open::<Self>, only_size::<Self>)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(
-        &self,
-        state: &FreeBodySpatialState<f64>,
-    ) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 3)
-    }
 }

@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`FreeBody`](struct@FreeBody) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`FreeBody`](struct@FreeBody), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,19 +75,6 @@ pub struct FreeBodyWorkspace<T = f64> {
     solver: Free<T>,
 }
 impl<T: Real> FreeBody<T> {
-    /// The state at node 0.
-    fn begin(
-        &self,
-        initial: FreeBodyInitial<T>,
-    ) -> Result<FreeBodyState<T>, StartError> {
-        validate::finite("Λ", &initial.Λ.quaternion())?;
-        validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-        Ok(FreeBodyState {
-            Λ: initial.Λ,
-            momentum: initial.body_momentum.to_space(&initial.Λ),
-            node: 0,
-        })
-    }
     /// What steps of `h` from `state` begin with.
     fn prepared(
         &self,
@@ -131,9 +112,15 @@ impl<T: Real> FreeBody<T> {
     }
 }
 ::clebsch::stepper! {
-    [] FreeBody, FreeBodyParameters { J }, FreeBodyInitial { Λ, body_momentum },
-    FreeBodyState { Λ, momentum } at node, FreeBodyWorkspace { h, solver }, free { Λ,
-    momentum } order modified judged
+    [] FreeBody,
+    FreeBodyParameters { J },
+    FreeBodyInitial { Λ, body_momentum },
+    FreeBodyState { Λ, momentum } at node,
+    FreeBodyWorkspace { h, solver },
+    free { Λ, momentum } order modified judged { 3 }
+    start { Λ, momentum = body_momentum.to_space }
+    observables { state.Λ, state.body_momentum, state.spatial_momentum }
+    invariants { energy, work.Λ.spatial_momentum, momentum_squared, momentum_quadratic }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -186,17 +173,13 @@ impl<T: Real> FreeBody<T> {
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &FreeBodyState<T>) -> SMatrix<T, 3, 3> {
         let FreeBodyParameters { J, .. } = self.parameters;
-        let mut inertia = SMatrix::<T, 3, 3>::zeros();
-        for axis in 0..3 {
+        columns(|axis| {
             let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
             let t1 = vee(&ξ);
-            let along = t1 * J.trace() - J * t1;
-            inertia.set_column(axis, &along);
-        }
-        inertia
+            t1 * J.trace() - J * t1
+        })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &FreeBodyState<T>) -> (T, T) {
         let momentum = state.body_momentum().0;
         let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
@@ -231,38 +214,16 @@ impl<T: Real> FreeBody<T> {
     }
 }
 impl FreeBody<f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &FreeBodyState<f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.Λ().matrix()));
-        let out = put(out, rows(state.body_momentum().0));
-        let out = put(out, rows(state.spatial_momentum().0));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &FreeBodyState<f64>,
-        _: f64,
-        work: Option<&FreeBodyWorkspace<f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let iterated = work.map(|w| w.solver.body_momentum().to_space(&state.Λ()));
-        let out = put(out, rows(iterated.unwrap_or(state.spatial_momentum()).0));
-        let out = put(out, [self.momentum_squared(state)]);
-        let out = put(out, [self.momentum_quadratic(state)]);
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &FreeBodyState<f64>, h: f64, out: &mut [f64]) {
-        type T = f64;
         let FreeBodyParameters { J, .. } = self.parameters;
         let Λ = state.Λ.matrix();
         let μ = state.body_momentum().0;
         let t1 = Λ * μ;
         let t2 = μ.dot(&μ).sqrt();
-        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
+        let out = put(out, [sum_of_sizes(self.energies(state))]);
         let out = put(out, [t1.dot(&t1).sqrt(); 3usize]);
-        let out = put(out, [t2 * t2; 1usize]);
-        let out = put(out, [(J * J).trace() * (t2 * t2); 1usize]);
+        put(out, [t2 * t2, (J * J).trace() * (t2 * t2)]);
     }
     /// The model as data.
     pub const CARD: Card = Card {
@@ -273,23 +234,17 @@ impl FreeBody<f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J Ω_k)/h\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, spatial_momentum, momentum_squared, momentum_quadratic\ntime reversal        symmetric: second order\ncertificate          10 identities proved by normal form",
         solver: "Moser-Veselov: C is constant and no node term acts, so κ is conserved: solved once, every step explicit",
-        order: 2u32,
         orders: &[2, 4, 6, 8, 10],
         preprocessed: true,
-        reversible: true,
         parameters: &[
             Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
         ],
         initial: &[
-            Kind::Rotation
-                .field("Λ", [3, 3], "attitude, body to space")
-                .spelt("Lambda"),
+            Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
         ],
         observables: &[
-            Kind::Rotation
-                .field("Λ", [3, 3], "attitude, body to space")
-                .spelt("Lambda"),
+            Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum", [3, 1], "momentum, space frame"),
@@ -309,15 +264,7 @@ impl FreeBody<f64> {
             "tr(J)/h² - tr(J Ω_k)/h²",
             1,
         ),
-        open: open::<Self>,
         solvers: &Method::NAMES,
-        dimensions: &[],
-        sized: only_size::<Self>,
+        ..Card::plain(open::<Self>, only_size::<Self>)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(&self, state: &FreeBodyState<f64>) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 3)
-    }
 }

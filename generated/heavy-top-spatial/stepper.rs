@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`HeavyTopSpatial`](struct@HeavyTopSpatial) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`HeavyTopSpatial`](struct@HeavyTopSpatial), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,22 +111,6 @@ impl<T: Real> HeavyTopSpatial<T> {
             node: 0,
         })
     }
-    /// What steps of `h` from `state` begin with.
-    fn prepared(
-        &self,
-        state: &HeavyTopSpatialState<T>,
-        h: T,
-        choice: Option<Method>,
-    ) -> Result<HeavyTopSpatialWorkspace<T>, StartError> {
-        let method = choice.unwrap_or(self.method);
-        Ok(HeavyTopSpatialWorkspace {
-            h,
-            method,
-            factor: self.factor(state)?,
-            edge: self.edge(state, h),
-            here: *state,
-        })
-    }
     /// The body behind the quantities of a state.
     #[inline(never)]
     fn factor(
@@ -142,49 +120,15 @@ impl<T: Real> HeavyTopSpatial<T> {
         let J = state.J;
         Poinsot::new(J).map_err(|e| e.in_field("J_k"))
     }
-    /// One step, in place. Solved thus: C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step.
-    ///
-    /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-    #[inline]
-    pub fn step(
-        &self,
-        state: &mut HeavyTopSpatialState<T>,
-        work: &mut HeavyTopSpatialWorkspace<T>,
-    ) -> Result<(), StepError> {
-        let h = work.h;
-        if work.here.Λ != state.Λ || work.here.momentum != state.momentum
-            || !(same(&work.here.J, &state.J) & same(&work.here.χ, &state.χ))
-        {
-            if !(same(&work.here.J, &state.J)) {
-                work.factor = match self.factor(state) {
-                    Ok(factor) => factor,
-                    Err(_) => {
-                        return Err(StepCause::not_finite("body").at_node(state.node));
-                    }
-                };
-            }
-            work.edge = self.edge(state, h);
-            work.here = *state;
-        }
-        let edge = &work.edge;
-        let turned = match work.method {
-            Method::Kappa => edge.turn(&work.factor, h, &state.Λ),
-            method => edge.turn_by(method, &work.factor, h, &state.Λ),
-        };
-        let Λ_moved = match turned {
-            Ok(turned) => turned,
-            Err(e) => return Err(self.refused(*state, &work.factor, h, e)),
-        };
-        let arrival = self.arrived(state, edge, h, Λ_moved);
-        if !(all_finite(&arrival.momentum.0)) {
-            return Err(StepCause::not_finite("momentum").at_node(state.node));
-        }
-        (state.Λ, work.here.Λ) = (arrival.attitude, arrival.attitude);
-        (state.momentum, work.here.momentum) = (arrival.momentum, arrival.momentum);
-        state.node += 1;
-        work.edge = arrival.edge;
-        Ok(())
+    /// The edge that begins at this state, for a step `h`.
+    #[inline(never)]
+    fn edge(&self, state: &HeavyTopSpatialState<T>, h: T) -> Edge<T> {
+        let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let χ_reference = state.χ;
+        let χ = Λ * χ_reference;
+        let space = state.momentum.0 - (-(z.cross(&χ) * (T::from_f64(0.5) * h * w)));
+        Edge::new(state.Λ.matrix().tr_mul(&space), space)
     }
     /// The next node and the edge that begins there, given the attitude there.
     #[inline(always)]
@@ -202,59 +146,40 @@ impl<T: Real> HeavyTopSpatial<T> {
         let space = edge.space();
         let torque = (Λ_next.tr_mul(&z)).cross(&(χ_reference * (h * w)));
         let kick = (z * (h * w)).cross(&χ_next);
-        let momentum_next = space + kick * T::from_f64(0.5);
         let left = space + kick;
-        let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, left);
         Moving {
             attitude: Λ_moved.rotation(),
-            momentum: SpatialMomentum(momentum_next),
-            edge: edge_next,
+            momentum: SpatialMomentum(space + kick * T::from_f64(0.5)),
+            edge: Edge::new(Λ_next.tr_mul(&space) + torque, left),
         }
-    }
-    /// The edge that begins at this state, for a step `h`.
-    #[inline(never)]
-    fn edge(&self, state: &HeavyTopSpatialState<T>, h: T) -> Edge<T> {
-        let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let χ_reference = state.χ;
-        let χ = Λ * χ_reference;
-        let space = state.momentum.0 - (-(z.cross(&χ) * (T::from_f64(0.5) * h * w)));
-        Edge::new(state.Λ.matrix().tr_mul(&space), space)
-    }
-    /// Says how far the step is beyond the bound, and which step could be solved.
-    #[cold]
-    fn refused(
-        &self,
-        state: HeavyTopSpatialState<T>,
-        factor: &Poinsot<T>,
-        h: T,
-        e: MoserVeselovError,
-    ) -> StepError {
-        let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
-        StepCause::from(e).at_node(state.node)
     }
     /// `J` at the node of this state.
     #[inline]
     pub fn J(&self, state: &HeavyTopSpatialState<T>) -> SMatrix<T, 3, 3> {
         let Λ = state.Λ.matrix();
         let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        J
+        Λ * (J_reference * Λ.transpose())
     }
     /// `χ` at the node of this state.
     #[inline]
     pub fn χ(&self, state: &HeavyTopSpatialState<T>) -> SVector<T, 3> {
         let Λ = state.Λ.matrix();
         let χ_reference = state.χ;
-        let χ = Λ * χ_reference;
-        χ
+        Λ * χ_reference
     }
 }
 ::clebsch::stepper! {
-    [] HeavyTopSpatial, HeavyTopSpatialParameters { w, z }, HeavyTopSpatialInitial { Λ,
-    spatial_momentum, J, χ }, HeavyTopSpatialState { Λ, momentum, J, χ } at node,
-    HeavyTopSpatialWorkspace { h, method, factor, edge, here }, forced_of_state { Λ,
-    momentum, J, χ } solver symmetric judged
+    [] HeavyTopSpatial,
+    HeavyTopSpatialParameters { w, z },
+    HeavyTopSpatialInitial { Λ, spatial_momentum, J, χ },
+    HeavyTopSpatialState { Λ, momentum, J, χ } at node,
+    HeavyTopSpatialWorkspace { h, method, factor, edge, here },
+    forced { Λ, momentum, J, χ } solver symmetric judged { 3 }
+    ("C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step",
+        of J)
+    observables { state.Λ, state.body_momentum, state.spatial_momentum, J, χ }
+    invariants { energy, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi,
+        chi_J2_chi, momentum_z }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -304,12 +229,8 @@ impl<T: Real> HeavyTopSpatial<T> {
     ) -> [Residual; 1] {
         let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
         let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let J_reference = before.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        let Λ_next = after.Λ.matrix();
-        let χ_reference = before.χ;
-        let χ_next = Λ_next * χ_reference;
+        let J = self.J(before);
+        let χ_next = self.χ(after);
         let t1 = h.powi(-1);
         [
             Residual::between(
@@ -326,25 +247,17 @@ impl<T: Real> HeavyTopSpatial<T> {
     }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &HeavyTopSpatialState<T>) -> SMatrix<T, 3, 3> {
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        let mut inertia = SMatrix::<T, 3, 3>::zeros();
-        for axis in 0..3 {
+        let J = self.J(state);
+        columns(|axis| {
             let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
             let t1 = vee(&ξ);
-            let along = t1 * J.trace() - J * t1;
-            inertia.set_column(axis, &along);
-        }
-        inertia
+            t1 * J.trace() - J * t1
+        })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &HeavyTopSpatialState<T>) -> (T, T) {
         let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let χ_reference = state.χ;
-        let χ = Λ * χ_reference;
+        let χ = self.χ(state);
         let momentum = state.spatial_momentum().0;
         let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
         (momentum.dot(&velocity) * T::from_f64(0.5), w * z.dot(&χ))
@@ -356,48 +269,34 @@ impl<T: Real> HeavyTopSpatial<T> {
     }
     /// `χ_k·χ_k`: Casimir: invariant under the group action.
     pub fn chi_squared(&self, state: &HeavyTopSpatialState<T>) -> T {
-        let Λ = state.Λ.matrix();
-        let χ_reference = state.χ;
-        let χ = Λ * χ_reference;
+        let χ = self.χ(state);
         χ.dot(&χ)
     }
     /// `tr(J_k)`: Casimir: invariant under the group action.
     pub fn trace_J1(&self, state: &HeavyTopSpatialState<T>) -> T {
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
+        let J = self.J(state);
         J.trace()
     }
     /// `tr(J_k²)`: Casimir: invariant under the group action.
     pub fn trace_J2(&self, state: &HeavyTopSpatialState<T>) -> T {
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
+        let J = self.J(state);
         (J * J).trace()
     }
     /// `tr(J_k³)`: Casimir: invariant under the group action.
     pub fn trace_J3(&self, state: &HeavyTopSpatialState<T>) -> T {
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
+        let J = self.J(state);
         (J * (J * J)).trace()
     }
     /// `χ_k·(J_k χ_k)`: Casimir: invariant under the group action.
     pub fn chi_J_chi(&self, state: &HeavyTopSpatialState<T>) -> T {
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        let χ_reference = state.χ;
-        let χ = Λ * χ_reference;
+        let J = self.J(state);
+        let χ = self.χ(state);
         χ.dot(&(J * χ))
     }
     /// `χ_k·(J_k² χ_k)`: Casimir: invariant under the group action.
     pub fn chi_J2_chi(&self, state: &HeavyTopSpatialState<T>) -> T {
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        let χ_reference = state.χ;
-        let χ = Λ * χ_reference;
+        let J = self.J(state);
+        let χ = self.χ(state);
         χ.dot(&(J * (J * χ)))
     }
     /// `m_k·z`: Noether: the action is invariant under rotations about the axis in space.
@@ -415,81 +314,42 @@ impl<T: Real> HeavyTopSpatial<T> {
     ) -> T {
         let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
         let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let J_reference = before.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        let χ_reference = before.χ;
-        let χ = Λ * χ_reference;
-        let Λ_next = after.Λ.matrix();
-        let χ_reference = before.χ;
-        let χ_next = Λ_next * χ_reference;
+        let J = self.J(before);
+        let χ = self.χ(before);
+        let χ_next = self.χ(after);
         T::from_f64(0.5) * w * z.dot(&χ) + T::from_f64(0.5) * w * z.dot(&χ_next)
             - (less_identity(&ω_matrix) * J).trace() / (h * h)
     }
 }
 impl HeavyTopSpatial<f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &HeavyTopSpatialState<f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.Λ().matrix()));
-        let out = put(out, rows(state.body_momentum().0));
-        let out = put(out, rows(state.spatial_momentum().0));
-        let out = put(out, rows(self.J(state)));
-        let out = put(out, rows(self.χ(state)));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &HeavyTopSpatialState<f64>,
-        _: f64,
-        _: Option<&HeavyTopSpatialWorkspace<f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let out = put(out, [self.chi_squared(state)]);
-        let out = put(out, [self.trace_J1(state)]);
-        let out = put(out, [self.trace_J2(state)]);
-        let out = put(out, [self.trace_J3(state)]);
-        let out = put(out, [self.chi_J_chi(state)]);
-        let out = put(out, [self.chi_J2_chi(state)]);
-        let out = put(out, [self.momentum_z(state)]);
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &HeavyTopSpatialState<f64>, h: f64, out: &mut [f64]) {
-        let mut enlarged = *state;
-        {
-            type T = f64;
-            let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let χ_reference = state.χ;
-            let χ = Λ * χ_reference;
-            enlarged.momentum = SpatialMomentum(
-                not_less(
-                    enlarged.momentum.0,
-                    (0, 3),
-                    T::from_f64(0.5) * (h * h).sqrt() * (w * w).sqrt() * z.dot(&z).sqrt()
-                        * χ.dot(&χ).sqrt(),
-                ),
-            );
-        }
-        let state = &enlarged;
         type T = f64;
-        let HeavyTopSpatialParameters { z, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let J_reference = state.J;
-        let J = Λ * (J_reference * Λ.transpose());
-        let χ_reference = state.χ;
-        let χ = Λ * χ_reference;
+        let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
+        let J = self.J(state);
+        let χ = self.χ(state);
+        let impulse = T::from_f64(0.5) * (h * h).sqrt() * (w * w).sqrt()
+            * z.dot(&z).sqrt() * χ.dot(&χ).sqrt();
+        let state = &HeavyTopSpatialState {
+            momentum: SpatialMomentum(not_less(state.momentum.0, (0, 3), impulse)),
+            ..*state
+        };
         let m = state.spatial_momentum().0;
         let t1 = χ.dot(&χ).sqrt();
         let t2 = (J * J).trace().sqrt();
-        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-        let out = put(out, [t1 * t1; 1usize]);
-        let out = put(out, [T::from_f64(3.0).sqrt() * t2; 1usize]);
-        let out = put(out, [t2 * t2; 1usize]);
-        let out = put(out, [t2 * t2 * t2; 1usize]);
-        let out = put(out, [t1 * t2 * t1; 1usize]);
-        let out = put(out, [t1 * t2 * t2 * t1; 1usize]);
-        let out = put(out, [m.dot(&m).sqrt() * z.dot(&z).sqrt(); 1usize]);
+        put(
+            out,
+            [
+                sum_of_sizes(self.energies(state)),
+                t1 * t1,
+                T::from_f64(3.0).sqrt() * t2,
+                t2 * t2,
+                t2 * t2 * t2,
+                t1 * t2 * t1,
+                t1 * t2 * t2 * t1,
+                m.dot(&m).sqrt() * z.dot(&z).sqrt(),
+            ],
+        );
     }
     /// The model as data.
     pub const CARD: Card = Card {
@@ -500,38 +360,28 @@ impl HeavyTopSpatial<f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(ω_k J_k)/h - ½ h w χ_k·z - ½ h w χ_{k+1}·z\nmomentum of Λ        ω_k J_k/h - J_k ω_kᵀ/h\nRiccati form         exact, C = J_k\ninvariants           energy, chi_squared, trace_J1, trace_J2, trace_J3, chi_J_chi, chi_J2_chi, momentum_z\ntime reversal        symmetric: second order\ncertificate          22 identities proved by normal form",
         solver: "Moser-Veselov: C is carried by the motion, constant in the body, and symmetric: explicit up to the root of one quartic per step",
-        order: 2u32,
-        orders: &[2, 4, 6, 8],
-        preprocessed: false,
-        reversible: true,
         parameters: &[
             Kind::Scalar.field("w", [1, 1], "weight"),
             Kind::Vector.field("z", [3, 1], "vertical (up), space frame"),
         ],
         initial: &[
-            Kind::Rotation
-                .field("Λ", [3, 3], "attitude, body to space")
-                .spelt("Lambda"),
+            Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
             Kind::SpatialMomentum
                 .field("spatial_momentum", [3, 1], "momentum, space frame"),
             Kind::SecondMoments
                 .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
             Kind::Vector
-                .field("χ", [3, 1], "support -> centre of mass, space axes")
-                .spelt("chi"),
+                .spelt("χ", "chi", [3, 1], "support -> centre of mass, space axes"),
         ],
         observables: &[
-            Kind::Rotation
-                .field("Λ", [3, 3], "attitude, body to space")
-                .spelt("Lambda"),
+            Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum", [3, 1], "momentum, space frame"),
             Kind::SecondMoments
                 .field("J", [3, 3], "Poinsot (second-moment) matrix in space axes"),
             Kind::Vector
-                .field("χ", [3, 1], "support -> centre of mass, space axes")
-                .spelt("chi"),
+                .spelt("χ", "chi", [3, 1], "support -> centre of mass, space axes"),
         ],
         invariants: &[
             Invariant::bounded(
@@ -552,18 +402,7 @@ impl HeavyTopSpatial<f64> {
             "-tr(ω_k J_k)/h² + tr(J_k)/h² + ½ w z·χ_k + ½ w z·χ_{k+1}",
             1,
         ),
-        open: open::<Self>,
         solvers: &Method::NAMES,
-        dimensions: &[],
-        sized: only_size::<Self>,
+        ..Card::plain(open::<Self>, only_size::<Self>)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(
-        &self,
-        state: &HeavyTopSpatialState<f64>,
-    ) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 3)
-    }
 }

@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`HeavyTop`](struct@HeavyTop) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`HeavyTop`](struct@HeavyTop), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,67 +83,14 @@ pub struct HeavyTopWorkspace<T = f64> {
     here: HeavyTopState<T>,
 }
 impl<T: Real> HeavyTop<T> {
-    /// The state at node 0.
-    fn begin(
-        &self,
-        initial: HeavyTopInitial<T>,
-    ) -> Result<HeavyTopState<T>, StartError> {
-        validate::finite("Λ", &initial.Λ.quaternion())?;
-        validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-        Ok(HeavyTopState {
-            Λ: initial.Λ,
-            momentum: initial.body_momentum.to_space(&initial.Λ),
-            node: 0,
-        })
-    }
-    /// What steps of `h` from `state` begin with.
-    fn prepared(
-        &self,
-        state: &HeavyTopState<T>,
-        h: T,
-        choice: Option<Method>,
-    ) -> Result<HeavyTopWorkspace<T>, StartError> {
-        let method = choice.unwrap_or(self.method);
-        Ok(HeavyTopWorkspace {
-            h,
-            method,
-            edge: self.edge(state, h),
-            here: *state,
-        })
-    }
-    /// One step, in place. Solved thus: C is constant and symmetric: explicit up to the root of one quartic per step.
-    ///
-    /// # Errors
-    /// When the step cannot be solved, with numbers and a remedy; the state is then unchanged.
-    #[inline]
-    pub fn step(
-        &self,
-        state: &mut HeavyTopState<T>,
-        work: &mut HeavyTopWorkspace<T>,
-    ) -> Result<(), StepError> {
-        let h = work.h;
-        if work.here.Λ != state.Λ || work.here.momentum != state.momentum {
-            work.edge = self.edge(state, h);
-            work.here = *state;
-        }
-        let edge = &work.edge;
-        let turned = match work.method {
-            Method::Kappa => edge.turn(&self.factor, h, &state.Λ),
-            method => edge.turn_by(method, &self.factor, h, &state.Λ),
-        };
-        let Λ_moved = match turned {
-            Ok(turned) => turned,
-            Err(e) => return Err(self.refused(*state, &self.factor, h, e)),
-        };
-        let arrival = self.arrived(state, edge, h, Λ_moved);
-        if !(all_finite(&arrival.momentum.0)) {
-            return Err(StepCause::not_finite("momentum").at_node(state.node));
-        }
-        (state.Λ, work.here.Λ) = (arrival.attitude, arrival.attitude);
-        (state.momentum, work.here.momentum) = (arrival.momentum, arrival.momentum);
-        state.node += 1;
-        work.edge = arrival.edge;
-        Ok(())
+    /// The edge that begins at this state, for a step `h`.
+    #[inline(never)]
+    fn edge(&self, state: &HeavyTopState<T>, h: T) -> Edge<T> {
+        let HeavyTopParameters { gU, z, .. } = self.parameters;
+        let Λ = state.Λ.matrix();
+        let Γ = Λ.tr_mul(&z);
+        let kick = gU.cross(&Γ) * (T::from_f64(0.5) * h);
+        Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
     }
     /// The next node and the edge that begins there, given the attitude there.
     #[inline(always)]
@@ -166,48 +107,31 @@ impl<T: Real> HeavyTop<T> {
         let space = edge.space();
         let torque = -(gU * h).cross(&Γ_next);
         let kick = Λ_next * torque;
-        let momentum_next = space + kick * T::from_f64(0.5);
-        let edge_next = Edge::new(Λ_next.tr_mul(&space) + torque, space + kick);
         Moving {
             attitude: Λ_moved.rotation(),
-            momentum: SpatialMomentum(momentum_next),
-            edge: edge_next,
+            momentum: SpatialMomentum(space + kick * T::from_f64(0.5)),
+            edge: Edge::new(Λ_next.tr_mul(&space) + torque, space + kick),
         }
-    }
-    /// The edge that begins at this state, for a step `h`.
-    #[inline(never)]
-    fn edge(&self, state: &HeavyTopState<T>, h: T) -> Edge<T> {
-        let HeavyTopParameters { gU, z, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        let kick = gU.cross(&Γ) * (T::from_f64(0.5) * h);
-        Edge::new(Λ.tr_mul(&state.momentum.0) - kick, state.momentum.0 - Λ * kick)
-    }
-    /// Says how far the step is beyond the bound, and which step could be solved.
-    #[cold]
-    fn refused(
-        &self,
-        state: HeavyTopState<T>,
-        factor: &Poinsot<T>,
-        h: T,
-        e: MoserVeselovError,
-    ) -> StepError {
-        let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
-        StepCause::from(e).at_node(state.node)
     }
     /// `Γ` at the node of this state.
     #[inline]
     pub fn Γ(&self, state: &HeavyTopState<T>) -> SVector<T, 3> {
         let HeavyTopParameters { z, .. } = self.parameters;
         let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        Γ
+        Λ.tr_mul(&z)
     }
 }
 ::clebsch::stepper! {
-    [] HeavyTop, HeavyTopParameters { J, gU, z }, HeavyTopInitial { Λ, body_momentum },
-    HeavyTopState { Λ, momentum } at node, HeavyTopWorkspace { h, method, edge, here },
-    forced { Λ, momentum } solver symmetric judged
+    [] HeavyTop,
+    HeavyTopParameters { J, gU, z },
+    HeavyTopInitial { Λ, body_momentum },
+    HeavyTopState { Λ, momentum } at node,
+    HeavyTopWorkspace { h, method, edge, here },
+    forced { Λ, momentum } solver symmetric judged { 3 }
+    ("C is constant and symmetric: explicit up to the root of one quartic per step")
+    start { Λ, momentum = body_momentum.to_space }
+    observables { state.Λ, state.body_momentum, state.spatial_momentum, Γ }
+    invariants { energy, momentum_Gamma, Gamma_squared }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -247,10 +171,9 @@ impl<T: Real> HeavyTop<T> {
         after: &HeavyTopState<T>,
         h: T,
     ) -> [Residual; 1] {
-        let HeavyTopParameters { J, gU, z, .. } = self.parameters;
+        let HeavyTopParameters { J, gU, .. } = self.parameters;
         let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let Λ_next = after.Λ.matrix();
-        let Γ_next = Λ_next.tr_mul(&z);
+        let Γ_next = self.Γ(after);
         let t1 = h.powi(-1);
         [
             Residual::between(
@@ -267,21 +190,16 @@ impl<T: Real> HeavyTop<T> {
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &HeavyTopState<T>) -> SMatrix<T, 3, 3> {
         let HeavyTopParameters { J, .. } = self.parameters;
-        let mut inertia = SMatrix::<T, 3, 3>::zeros();
-        for axis in 0..3 {
+        columns(|axis| {
             let ξ: SMatrix<T, 3, 3> = basis::<T>(axis);
             let t1 = vee(&ξ);
-            let along = t1 * J.trace() - J * t1;
-            inertia.set_column(axis, &along);
-        }
-        inertia
+            t1 * J.trace() - J * t1
+        })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &HeavyTopState<T>) -> (T, T) {
-        let HeavyTopParameters { gU, z, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
+        let HeavyTopParameters { gU, .. } = self.parameters;
+        let Γ = self.Γ(state);
         let momentum = state.body_momentum().0;
         let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 3);
         (momentum.dot(&velocity) * T::from_f64(0.5), gU.dot(&Γ))
@@ -293,17 +211,13 @@ impl<T: Real> HeavyTop<T> {
     }
     /// `μ_k·Γ_k`: Casimir: the Kelvin-Noether quantity of the advected quantities.
     pub fn momentum_Gamma(&self, state: &HeavyTopState<T>) -> T {
-        let HeavyTopParameters { z, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
+        let Γ = self.Γ(state);
         let μ = state.body_momentum().0;
         μ.dot(&Γ)
     }
     /// `Γ_k·Γ_k`: Casimir: invariant under the group action.
     pub fn Gamma_squared(&self, state: &HeavyTopState<T>) -> T {
-        let HeavyTopParameters { z, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
+        let Γ = self.Γ(state);
         Γ.dot(&Γ)
     }
     /// The discrete energy of the edge between two consecutive states, `tr(J)/h² - tr(J Ω_k)/h² + ½ gU·Γ_k + ½ gU·Γ_{k+1}`: bounded, since the stepper is symplectic.
@@ -313,62 +227,27 @@ impl<T: Real> HeavyTop<T> {
         before: &HeavyTopState<T>,
         after: &HeavyTopState<T>,
     ) -> T {
-        let HeavyTopParameters { J, gU, z, .. } = self.parameters;
+        let HeavyTopParameters { J, gU, .. } = self.parameters;
         let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let Λ = before.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
-        let Λ_next = after.Λ.matrix();
-        let Γ_next = Λ_next.tr_mul(&z);
+        let Γ = self.Γ(before);
+        let Γ_next = self.Γ(after);
         T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
             - (J * less_identity(&Ω_matrix)).trace() / (h * h)
     }
 }
 impl HeavyTop<f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &HeavyTopState<f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.Λ().matrix()));
-        let out = put(out, rows(state.body_momentum().0));
-        let out = put(out, rows(state.spatial_momentum().0));
-        let out = put(out, rows(self.Γ(state)));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &HeavyTopState<f64>,
-        _: f64,
-        _: Option<&HeavyTopWorkspace<f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let out = put(out, [self.momentum_Gamma(state)]);
-        let out = put(out, [self.Gamma_squared(state)]);
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &HeavyTopState<f64>, h: f64, out: &mut [f64]) {
-        let mut enlarged = *state;
-        {
-            type T = f64;
-            let HeavyTopParameters { gU, z, .. } = self.parameters;
-            let Λ = state.Λ.matrix();
-            let Γ = Λ.tr_mul(&z);
-            enlarged.momentum = SpatialMomentum(
-                not_less(
-                    enlarged.momentum.0,
-                    (0, 3),
-                    (h * h).sqrt() * gU.dot(&gU).sqrt() * Γ.dot(&Γ).sqrt(),
-                ),
-            );
-        }
-        let state = &enlarged;
-        type T = f64;
-        let HeavyTopParameters { z, .. } = self.parameters;
-        let Λ = state.Λ.matrix();
-        let Γ = Λ.tr_mul(&z);
+        let HeavyTopParameters { gU, .. } = self.parameters;
+        let Γ = self.Γ(state);
+        let impulse = (h * h).sqrt() * gU.dot(&gU).sqrt() * Γ.dot(&Γ).sqrt();
+        let state = &HeavyTopState {
+            momentum: SpatialMomentum(not_less(state.momentum.0, (0, 3), impulse)),
+            ..*state
+        };
         let μ = state.body_momentum().0;
         let t1 = Γ.dot(&Γ).sqrt();
-        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-        let out = put(out, [μ.dot(&μ).sqrt() * t1; 1usize]);
-        let out = put(out, [t1 * t1; 1usize]);
+        put(out, [sum_of_sizes(self.energies(state)), μ.dot(&μ).sqrt() * t1, t1 * t1]);
     }
     /// The model as data.
     pub const CARD: Card = Card {
@@ -379,10 +258,6 @@ impl HeavyTop<f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J Ω_k)/h - ½ h gU·Γ_k - ½ h gU·Γ_{k+1}\nmomentum of Λ        -J Ω_kᵀ/h + Ω_k J/h\nRiccati form         exact, C = J\ninvariants           energy, momentum_Gamma, Gamma_squared\ntime reversal        symmetric: second order\ncertificate          17 identities proved by normal form",
         solver: "Moser-Veselov: C is constant and symmetric: explicit up to the root of one quartic per step",
-        order: 2u32,
-        orders: &[2, 4, 6, 8],
-        preprocessed: false,
-        reversible: true,
         parameters: &[
             Kind::SecondMoments.field("J", [3, 3], "Poinsot (second-moment) matrix"),
             Kind::Vector
@@ -394,21 +269,15 @@ impl HeavyTop<f64> {
             Kind::Vector.field("z", [3, 1], "vertical (up), space frame"),
         ],
         initial: &[
-            Kind::Rotation
-                .field("Λ", [3, 3], "attitude, body to space")
-                .spelt("Lambda"),
+            Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
         ],
         observables: &[
-            Kind::Rotation
-                .field("Λ", [3, 3], "attitude, body to space")
-                .spelt("Lambda"),
+            Kind::Rotation.spelt("Λ", "Lambda", [3, 3], "attitude, body to space"),
             Kind::BodyMomentum.field("body_momentum", [3, 1], "momentum, body frame"),
             Kind::SpatialMomentum
                 .field("spatial_momentum", [3, 1], "momentum, space frame"),
-            Kind::Vector
-                .field("Γ", [3, 1], "the vertical seen from the body")
-                .spelt("Gamma"),
+            Kind::Vector.spelt("Γ", "Gamma", [3, 1], "the vertical seen from the body"),
         ],
         invariants: &[
             Invariant::bounded(
@@ -424,15 +293,7 @@ impl HeavyTop<f64> {
             "tr(J)/h² - tr(J Ω_k)/h² + ½ gU·Γ_k + ½ gU·Γ_{k+1}",
             1,
         ),
-        open: open::<Self>,
         solvers: &Method::NAMES,
-        dimensions: &[],
-        sized: only_size::<Self>,
+        ..Card::plain(open::<Self>, only_size::<Self>)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(&self, state: &HeavyTopState<f64>) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 3)
-    }
 }

@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`Kepler`](struct@Kepler) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`Kepler`](struct@Kepler), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,18 +66,6 @@ pub struct KeplerWorkspace<T = f64> {
     h: T,
 }
 impl<T: Real> Kepler<T> {
-    /// The state at node 0.
-    fn begin(&self, initial: KeplerInitial<T>) -> Result<KeplerState<T>, StartError> {
-        validate::finite("X", initial.X.matrix().as_slice())?;
-        validate::finite("momentum", initial.momentum.0.as_slice())?;
-        Ok(KeplerState {
-            X: initial.X,
-            momentum: initial.momentum,
-            place_rest: SMatrix::zeros(),
-            momentum_rest: SMatrix::zeros(),
-            node: 0,
-        })
-    }
     /// What steps of `h` from `state` begin with.
     fn prepared(
         &self,
@@ -146,9 +128,15 @@ impl<T: Real> Kepler<T> {
     }
 }
 ::clebsch::stepper! {
-    [] Kepler, KeplerParameters { m, k }, KeplerInitial { X, momentum }, KeplerState { X,
-    momentum, place_rest, momentum_rest } at node, KeplerWorkspace { h }, tried {}
-    nothing symmetric judged
+    [] Kepler,
+    KeplerParameters { m, k },
+    KeplerInitial { X, momentum },
+    KeplerState { X, momentum, place_rest, momentum_rest } at node,
+    KeplerWorkspace { h },
+    tried {} nothing symmetric judged { (3 * 1) }
+    start { X, momentum = momentum } { place_rest, momentum_rest }
+    observables { state.X, state.momentum }
+    invariants { energy, momentum_angular }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -213,25 +201,17 @@ impl<T: Real> Kepler<T> {
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &KeplerState<T>) -> SMatrix<T, 3, 3> {
         let KeplerParameters { m, .. } = self.parameters;
-        let mut inertia = SMatrix::<T, 3, 3>::zeros();
-        for axis in 0..(3 * 1) {
+        columns(|axis| {
             let ξ: SVector<T, 3> = array_basis::<T, 3, 1>(axis);
-            let along = ξ * m;
-            inertia.set_column(axis, &along);
-        }
-        inertia
+            ξ * m
+        })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &KeplerState<T>) -> (T, T) {
         let KeplerParameters { m, k, .. } = self.parameters;
         let X = state.X.matrix();
         let momentum = state.momentum().0;
-        let velocity = solve_leading_or_nan(
-            &self.inertia_at(state),
-            &momentum,
-            0 + (3 * 1),
-        );
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, (3 * 1));
         (momentum.dot(&velocity) * T::from_f64(0.5), -(m * k / X.dot(&X).sqrt()))
     }
     /// The physical energy at this node.
@@ -272,47 +252,22 @@ impl<T: Real> Kepler<T> {
     }
 }
 impl Kepler<f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &KeplerState<f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.X().matrix()));
-        let out = put(out, rows(state.momentum().0));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &KeplerState<f64>,
-        _: f64,
-        _: Option<&KeplerWorkspace<f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let out = put(out, rows(self.momentum_angular(state)));
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &KeplerState<f64>, h: f64, out: &mut [f64]) {
-        let mut enlarged = *state;
-        {
-            type T = f64;
-            let KeplerParameters { m, k, .. } = self.parameters;
-            let X = state.X.matrix();
-            let t1 = X.dot(&X);
-            let t2 = t1.powi(-1);
-            let t3 = t1.powr(-1, 2);
-            enlarged.momentum = FieldMomentum(
-                not_less(
-                    enlarged.momentum.0,
-                    (0, 3),
-                    (h * h).sqrt() * (m * m).sqrt() * (k * k).sqrt() * (t2 * t2).sqrt()
-                        * (t3 * t3).sqrt() * t1.sqrt(),
-                ),
-            );
-        }
-        let state = &enlarged;
-        type T = f64;
+        let KeplerParameters { m, k, .. } = self.parameters;
         let X = state.X.matrix();
+        let s1 = X.dot(&X);
+        let s2 = s1.powi(-1);
+        let s3 = s1.powr(-1, 2);
+        let impulse = (h * h).sqrt() * (m * m).sqrt() * (k * k).sqrt() * (s2 * s2).sqrt()
+            * (s3 * s3).sqrt() * s1.sqrt();
+        let state = &KeplerState {
+            momentum: FieldMomentum(not_less(state.momentum.0, (0, 3), impulse)),
+            ..*state
+        };
         let p = state.momentum().0;
-        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-        let out = put(out, [p.dot(&p).sqrt() * X.dot(&X).sqrt(); 3 * 1]);
+        let out = put(out, [sum_of_sizes(self.energies(state))]);
+        put(out, [p.dot(&p).sqrt() * X.dot(&X).sqrt(); 3 * 1]);
     }
     /// The model as data.
     pub const CARD: Card = Card {
@@ -323,10 +278,6 @@ impl Kepler<f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  m ΔX_k·ΔX_k/(2 h) + h m k/(2 √(X_k·X_k)) + h m k/(2 √(X_{k+1}·X_{k+1}))\nmomentum of X        m ΔX_k/h\nRiccati form         none; linear, L = m/h, R = 1\ninvariants           energy, momentum_angular\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
         solver: "Explicit: the balance is linear: one division",
-        order: 2u32,
-        orders: &[2, 4, 6, 8],
-        preprocessed: false,
-        reversible: true,
         parameters: &[
             Kind::Scalar.field("m", [1, 1], "mass of the planet"),
             Kind::Scalar
@@ -359,15 +310,6 @@ impl Kepler<f64> {
             "m ΔX_k·ΔX_k/(2 h²) - m k/(2 √(X_k·X_k)) - m k/(2 √(X_{k+1}·X_{k+1}))",
             1,
         ),
-        open: open::<Self>,
-        solvers: &[],
-        dimensions: &[],
-        sized: only_size::<Self>,
+        ..Card::plain(open::<Self>, only_size::<Self>)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(&self, state: &KeplerState<f64>) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 0 + (3 * 1))
-    }
 }

@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`KirchhoffBody`](struct@KirchhoffBody) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`KirchhoffBody`](struct@KirchhoffBody), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,21 +99,6 @@ impl<T: Real> KirchhoffBodyWorkspace<T> {
 }
 type KirchhoffBodyNode<T> = [T; 0];
 impl<T: Real> KirchhoffBody<T> {
-    /// The state at node 0.
-    fn begin(
-        &self,
-        initial: KirchhoffBodyInitial<T>,
-    ) -> Result<KirchhoffBodyState<T>, StartError> {
-        validate::finite("G", initial.G.matrix().as_slice())?;
-        validate::finite("body_momentum", initial.body_momentum.0.as_slice())?;
-        Ok(KirchhoffBodyState {
-            G: initial.G,
-            momentum: initial.body_momentum.carried(&initial.G),
-            place_rest: SMatrix::zeros(),
-            momentum_rest: SMatrix::zeros(),
-            node: 0,
-        })
-    }
     /// What steps of `h` from `state` begin with.
     fn prepared(
         &self,
@@ -576,14 +555,20 @@ impl<T: Real> KirchhoffBody<T> {
     pub fn P(&self, state: &KirchhoffBodyState<T>) -> SVector<T, 4> {
         let KirchhoffBodyParameters { Z, .. } = self.parameters;
         let G = state.G.matrix();
-        let P = G.tr_mul(&Z);
-        P
+        G.tr_mul(&Z)
     }
 }
 ::clebsch::stepper! {
-    [] KirchhoffBody, KirchhoffBodyParameters { J, M, D, b, Z }, KirchhoffBodyInitial {
-    G, body_momentum }, KirchhoffBodyState { G, momentum, place_rest, momentum_rest } at
-    node, KirchhoffBodyWorkspace { h, search }, tried {} nothing symmetric judged
+    [] KirchhoffBody,
+    KirchhoffBodyParameters { J, M, D, b, Z },
+    KirchhoffBodyInitial { G, body_momentum },
+    KirchhoffBodyState { G, momentum, place_rest, momentum_rest } at node,
+    KirchhoffBodyWorkspace { h, search },
+    tried {} nothing symmetric judged { 6 }
+    start { G, momentum = body_momentum.carried } { place_rest, momentum_rest }
+    observables { state.G, state.body_momentum, state.spatial_momentum, P }
+    invariants { energy, P_part_squared, momentum_linear_across_P_part_squared,
+        spatial_momentum_linear_across_Z, spatial_momentum_angular_Z }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -694,13 +679,12 @@ impl<T: Real> KirchhoffBody<T> {
         after: &KirchhoffBodyState<T>,
         h: T,
     ) -> [Residual; 2] {
-        let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+        let KirchhoffBodyParameters { J, M, D, b, .. } = self.parameters;
         let V_matrix = before
             .G
             .velocity_between(&before.place_rest, &after.G, &after.place_rest)
             .matrix();
-        let G_next = after.G.matrix();
-        let P_next = G_next.tr_mul(&Z);
+        let P_next = self.P(after);
         let t1 = h.powi(-1);
         let t2 = motion_rotation(&V_matrix);
         let t3 = t2.transpose();
@@ -772,27 +756,21 @@ impl<T: Real> KirchhoffBody<T> {
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &KirchhoffBodyState<T>) -> SMatrix<T, 6, 6> {
         let KirchhoffBodyParameters { J, M, D, .. } = self.parameters;
-        let mut inertia = SMatrix::<T, 6, 6>::zeros();
-        for axis in 0..6 {
+        columns(|axis| {
             let ξ: SVector<T, 6> = unit::<T, 6>(axis);
-            let along = into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ, 0), 0)
-                * J.trace()
+            into_rows::<T, 6, 3, 1>(&rows_from::<T, 6, 3, 1>(&ξ, 0), 0) * J.trace()
                 - into_rows::<T, 6, 3, 1>(&(J * rows_from::<T, 6, 3, 1>(&ξ, 0)), 0)
                 + into_rows::<T, 6, 3, 1>(&(D * rows_from::<T, 6, 3, 1>(&ξ, 3)), 0)
                 + into_rows::<T, 6, 3, 1>(&D.tr_mul(&rows_from::<T, 6, 3, 1>(&ξ, 0)), 3)
-                + into_rows::<T, 6, 3, 1>(&(M * rows_from::<T, 6, 3, 1>(&ξ, 3)), 3);
-            inertia.set_column(axis, &along);
-        }
-        inertia
+                + into_rows::<T, 6, 3, 1>(&(M * rows_from::<T, 6, 3, 1>(&ξ, 3)), 3)
+        })
     }
-    /// The kinetic and the potential energy at this node: those of the limit of small steps,
-    /// at the node's momentum.
+    /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
     pub fn energies(&self, state: &KirchhoffBodyState<T>) -> (T, T) {
-        let KirchhoffBodyParameters { b, Z, .. } = self.parameters;
-        let G = state.G.matrix();
-        let P = G.tr_mul(&Z);
+        let KirchhoffBodyParameters { b, .. } = self.parameters;
+        let P = self.P(state);
         let momentum = state.body_momentum().0;
-        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 0 + 6);
+        let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, 6);
         (momentum.dot(&velocity) * T::from_f64(0.5), b.dot(&P))
     }
     /// The physical energy at this node.
@@ -802,9 +780,7 @@ impl<T: Real> KirchhoffBody<T> {
     }
     /// `P_k[1:3]·P_k[1:3]`: Casimir: invariant under the group action.
     pub fn P_part_squared(&self, state: &KirchhoffBodyState<T>) -> T {
-        let KirchhoffBodyParameters { Z, .. } = self.parameters;
-        let G = state.G.matrix();
-        let P = G.tr_mul(&Z);
+        let P = self.P(state);
         let t1 = rows_from::<T, 4, 3, 1>(&P, 0);
         t1.dot(&t1)
     }
@@ -813,9 +789,7 @@ impl<T: Real> KirchhoffBody<T> {
         &self,
         state: &KirchhoffBodyState<T>,
     ) -> T {
-        let KirchhoffBodyParameters { Z, .. } = self.parameters;
-        let G = state.G.matrix();
-        let P = G.tr_mul(&Z);
+        let P = self.P(state);
         let μ = state.body_momentum().0;
         let t1 = (rows_from::<T, 6, 3, 1>(&μ, 3))
             .cross(&(rows_from::<T, 4, 3, 1>(&P, 0)));
@@ -849,15 +823,13 @@ impl<T: Real> KirchhoffBody<T> {
         before: &KirchhoffBodyState<T>,
         after: &KirchhoffBodyState<T>,
     ) -> T {
-        let KirchhoffBodyParameters { J, M, D, b, Z, .. } = self.parameters;
+        let KirchhoffBodyParameters { J, M, D, b, .. } = self.parameters;
         let V_matrix = before
             .G
             .velocity_between(&before.place_rest, &after.G, &after.place_rest)
             .matrix();
-        let G = before.G.matrix();
-        let P = G.tr_mul(&Z);
-        let G_next = after.G.matrix();
-        let P_next = G_next.tr_mul(&Z);
+        let P = self.P(before);
+        let P_next = self.P(after);
         let t1 = motion_translation(&V_matrix);
         let t2 = motion_rotation(&V_matrix);
         let t3 = t1 + t2.tr_mul(&t1);
@@ -887,50 +859,23 @@ impl<T: Real> KirchhoffBody<T> {
     }
 }
 impl KirchhoffBody<f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &KirchhoffBodyState<f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.G().matrix()));
-        let out = put(out, rows(state.body_momentum().0));
-        let out = put(out, rows(state.spatial_momentum().0));
-        let out = put(out, rows(self.P(state)));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &KirchhoffBodyState<f64>,
-        _: f64,
-        _: Option<&KirchhoffBodyWorkspace<f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.energy(state)]);
-        let out = put(out, [self.P_part_squared(state)]);
-        let out = put(out, [self.momentum_linear_across_P_part_squared(state)]);
-        let out = put(out, rows(self.spatial_momentum_linear_across_Z(state)));
-        let out = put(out, [self.spatial_momentum_angular_Z(state)]);
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &KirchhoffBodyState<f64>, h: f64, out: &mut [f64]) {
-        let mut enlarged = *state;
-        {
-            type T = f64;
-            let KirchhoffBodyParameters { b, Z, .. } = self.parameters;
-            let G = state.G.matrix();
-            let P = G.tr_mul(&Z);
-            let t1 = (h * h).sqrt();
-            let t2 = P.dot(&P).sqrt();
-            let t3 = b[3];
-            enlarged.momentum = CarriedImpulse(
-                not_less(enlarged.momentum.0, (0, 3), t1 * b.dot(&b).sqrt() * t2),
-            );
-            enlarged.momentum = CarriedImpulse(
-                not_less(enlarged.momentum.0, (3, 3), t1 * (t3 * t3).sqrt() * t2),
-            );
-        }
-        let state = &enlarged;
         type T = f64;
-        let KirchhoffBodyParameters { Z, .. } = self.parameters;
+        let KirchhoffBodyParameters { b, Z, .. } = self.parameters;
         let G = state.G.matrix();
-        let P = G.tr_mul(&Z);
+        let P = self.P(state);
+        let s1 = (h * h).sqrt();
+        let s2 = P.dot(&P).sqrt();
+        let s3 = b[3];
+        let impulse1 = s1 * b.dot(&b).sqrt() * s2;
+        let impulse2 = s1 * (s3 * s3).sqrt() * s2;
+        let state = &KirchhoffBodyState {
+            momentum: CarriedImpulse(
+                not_less(not_less(state.momentum.0, (0, 3), impulse1), (3, 3), impulse2),
+            ),
+            ..*state
+        };
         let μ = state.body_momentum().0;
         let t1 = rows_from::<T, 4, 3, 1>(&P, 0);
         let t2 = t1.dot(&t1).sqrt();
@@ -940,14 +885,12 @@ impl KirchhoffBody<f64> {
         let t6 = t5.dot(&t5).sqrt();
         let t7 = rows_from::<T, 6, 3, 1>(&μ, 0);
         let t8 = motion_translation(&G);
-        let out = put(out, [sum_of_sizes(self.energies(state)); 1usize]);
-        let out = put(out, [t2 * t2; 1usize]);
-        let out = put(out, [(t4 * t2) * (t4 * t2); 1usize]);
-        let out = put(out, [t4 * t6; 3 * 1]);
         let out = put(
             out,
-            [(t7.dot(&t7).sqrt() + t8.dot(&t8).sqrt() * t4) * t6; 1usize],
+            [sum_of_sizes(self.energies(state)), t2 * t2, (t4 * t2) * (t4 * t2)],
         );
+        let out = put(out, [t4 * t6; 3 * 1]);
+        put(out, [(t7.dot(&t7).sqrt() + t8.dot(&t8).sqrt() * t4) * t6]);
     }
     /// The model as data.
     pub const CARD: Card = Card {
@@ -958,10 +901,6 @@ impl KirchhoffBody<f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J rot(V_k))/h + ((½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/(2 h) + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h - ½ h b·P_k - ½ h b·P_{k+1}\nmomentum of G        ((pos(V_k) × (M rot(V_k)ᵀ pos(V_k)))/(4 h) + (pos(V_k) × (M pos(V_k)))/(4 h) + (pos(V_k) × (Dᵀ vee(rot(V_k))))/(2 h) - 2 vee(J rot(V_k)ᵀ)/h + vee(rot(V_k) hat(D rot(V_k)ᵀ pos(V_k)))/(2 h) + vee(rot(V_k) hat(D pos(V_k)))/(2 h), M rot(V_k)ᵀ pos(V_k)/(4 h) + M pos(V_k)/(4 h) + Dᵀ vee(rot(V_k))/(2 h) + rot(V_k) M rot(V_k)ᵀ pos(V_k)/(4 h) + rot(V_k) M pos(V_k)/(4 h) + rot(V_k) Dᵀ vee(rot(V_k))/(2 h))\nRiccati form         none: the group is not SO(n)\ninvariants           energy, P_part_squared, momentum_linear_across_P_part_squared, spatial_momentum_linear_across_Z, spatial_momentum_angular_Z\ntime reversal        symmetric: second order\ncertificate          12 identities proved by normal form, 5 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
         solver: "Newton: the group is not SO(n): Newton on the derived residual",
-        order: 2u32,
-        orders: &[2, 4, 6, 8],
-        preprocessed: false,
-        reversible: true,
         parameters: &[
             Kind::SecondMoments
                 .field(
@@ -1019,18 +958,6 @@ impl KirchhoffBody<f64> {
             "-tr(J rot(V_k))/h² + 2 (½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k)))/(2 h)² + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h² + ½ b·P_k + ½ b·P_{k+1} + tr(J)/h²",
             1,
         ),
-        open: open::<Self>,
-        solvers: &[],
-        dimensions: &[],
-        sized: only_size::<Self>,
+        ..Card::plain(open::<Self>, only_size::<Self>)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(
-        &self,
-        state: &KirchhoffBodyState<f64>,
-    ) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 0 + 6)
-    }
 }

@@ -1,14 +1,8 @@
 // Written by `clebsch derive --write`. Do not edit.
 
 //! The model [`MixedFour`](struct@MixedFour) and what belongs to it.
-#![allow(
-    non_snake_case,
-    uncommon_codepoints,
-    mixed_script_confusables,
-    confusable_idents,
-    unused_variables,
-    clippy::all
-)]
+#![allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+#![allow(confusable_idents, unused_variables, clippy::all)]
 use ::clebsch::emitted::*;
 /// Parameters of [`MixedFour`](struct@MixedFour), as given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,35 +175,6 @@ pub struct MixedFourWorkspace<T = f64> {
 type MixedFourNode2<T> = [T; 0];
 type MixedFourNode4<T> = [T; 0];
 impl<T: Real> MixedFour<T> {
-    /// The state at node 0.
-    fn begin(
-        &self,
-        initial: MixedFourInitial<T>,
-    ) -> Result<MixedFourState<T>, StartError> {
-        validate::finite("R", &initial.R.quaternion())?;
-        validate::finite("body_momentum_R", initial.body_momentum_R.0.as_slice())?;
-        validate::finite("G", initial.G.matrix().as_slice())?;
-        validate::finite("body_momentum_G", initial.body_momentum_G.0.as_slice())?;
-        validate::finite("q", &initial.q.components())?;
-        validate::finite("body_momentum_q", initial.body_momentum_q.0.as_slice())?;
-        validate::finite("X", initial.X.matrix().as_slice())?;
-        validate::finite("momentum_X", initial.momentum_X.0.as_slice())?;
-        Ok(MixedFourState {
-            R: initial.R,
-            momentum_R: initial.body_momentum_R.to_space(&initial.R),
-            G: initial.G,
-            momentum_G: initial.body_momentum_G.carried(&initial.G),
-            place_rest_G: SMatrix::zeros(),
-            momentum_rest_G: SMatrix::zeros(),
-            q: initial.q,
-            momentum_q: initial.body_momentum_q.to_space(&initial.q),
-            X: initial.X,
-            momentum_X: initial.momentum_X,
-            place_rest_X: SMatrix::zeros(),
-            momentum_rest_X: SMatrix::zeros(),
-            node: 0,
-        })
-    }
     /// What steps of `h` from `state` begin with.
     fn prepared(
         &self,
@@ -1013,17 +978,25 @@ impl<T: Real> MixedFour<T> {
     pub fn relative_R_q(&self, state: &MixedFourState<T>) -> SMatrix<T, 3, 3> {
         let R = state.R.matrix();
         let q = state.q.matrix();
-        let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
-        relative_R_q
+        R.tr_mul(&quaternion_rotation(&q))
     }
 }
 ::clebsch::stepper! {
-    [] MixedFour, MixedFourParameters { J, A, M, I, m, b, k, p, s, e, g },
+    [] MixedFour,
+    MixedFourParameters { J, A, M, I, m, b, k, p, s, e, g },
     MixedFourInitial { R, body_momentum_R, G, body_momentum_G, q, body_momentum_q, X,
-    momentum_X }, MixedFourState { R, momentum_R, G, momentum_G, place_rest_G,
-    momentum_rest_G, q, momentum_q, X, momentum_X, place_rest_X, momentum_rest_X } at
-    node, MixedFourWorkspace { h, method, search_2, search_4 }, tried {} solver symmetric
-    judged
+        momentum_X },
+    MixedFourState { R, momentum_R, G, momentum_G, place_rest_G, momentum_rest_G, q,
+        momentum_q, X, momentum_X, place_rest_X, momentum_rest_X } at node,
+    MixedFourWorkspace { h, method, search_2, search_4 },
+    tried {} solver symmetric judged { 3 + 6 + 3 + (3 * 1) }
+    start { R, momentum_R = body_momentum_R.to_space; G, momentum_G =
+        body_momentum_G.carried; q, momentum_q = body_momentum_q.to_space; X, momentum_X
+        = momentum_X } { place_rest_G, momentum_rest_G, place_rest_X, momentum_rest_X }
+    observables { state.R, state.body_momentum_R, state.spatial_momentum_R, state.G,
+        state.body_momentum_G, state.spatial_momentum_G, state.q, state.body_momentum_q,
+        state.spatial_momentum_q, state.X, state.momentum_X, relative_R_q }
+    invariants { total_momentum_angular_g }
 }
 /// A configuration at one node, solution or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -1157,9 +1130,8 @@ impl<T: Real> MixedFour<T> {
             .matrix();
         let R_next = after.R.matrix();
         let G_next = after.G.matrix();
-        let q_next = after.q.matrix();
         let X_next = after.X.matrix();
-        let relative_R_q_next = R_next.tr_mul(&quaternion_rotation(&q_next));
+        let relative_R_q_next = self.relative_R_q(after);
         let t1 = h.powi(-1);
         let t2 = p.cross(&(relative_R_q_next * e_));
         let t3 = motion_rotation(&W_matrix);
@@ -1316,7 +1288,7 @@ impl<T: Real> MixedFour<T> {
                 let _ = rest;
                 all
             };
-            inertia.set_column(0 + 3 + axis, &along);
+            inertia.set_column(3 + axis, &along);
         }
         for axis in 0..3 {
             let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
@@ -1353,7 +1325,7 @@ impl<T: Real> MixedFour<T> {
                 let _ = rest;
                 all
             };
-            inertia.set_column(0 + 3 + 6 + axis, &along);
+            inertia.set_column(3 + 6 + axis, &along);
         }
         for axis in 0..(3 * 1) {
             let ξ1: SMatrix<T, 3, 3> = SMatrix::zeros();
@@ -1390,7 +1362,7 @@ impl<T: Real> MixedFour<T> {
                 let _ = rest;
                 all
             };
-            inertia.set_column(0 + 3 + 6 + 3 + axis, &along);
+            inertia.set_column(3 + 6 + 3 + axis, &along);
         }
         inertia
     }
@@ -1432,14 +1404,12 @@ impl<T: Real> MixedFour<T> {
             .matrix();
         let R = before.R.matrix();
         let G = before.G.matrix();
-        let q = before.q.matrix();
         let X = before.X.matrix();
-        let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
         let R_next = after.R.matrix();
         let G_next = after.G.matrix();
-        let q_next = after.q.matrix();
         let X_next = after.X.matrix();
-        let relative_R_q_next = R_next.tr_mul(&quaternion_rotation(&q_next));
+        let relative_R_q = self.relative_R_q(before);
+        let relative_R_q_next = self.relative_R_q(after);
         let t1 = motion_translation(&W_matrix);
         let t2 = (T::from_f64(2.0) * h) * (T::from_f64(2.0) * h);
         let t3 = quaternion_imaginary(&Y_matrix);
@@ -1482,98 +1452,49 @@ impl<T: Real> MixedFour<T> {
     }
 }
 impl MixedFour<f64> {
-    /// All observables, in the order of the card.
-    fn observe(&self, state: &MixedFourState<f64>, out: &mut [f64]) {
-        let out = put(out, rows(state.R().matrix()));
-        let out = put(out, rows(state.body_momentum_R().0));
-        let out = put(out, rows(state.spatial_momentum_R().0));
-        let out = put(out, rows(state.G().matrix()));
-        let out = put(out, rows(state.body_momentum_G().0));
-        let out = put(out, rows(state.spatial_momentum_G().0));
-        let out = put(out, state.q().components());
-        let out = put(out, rows(state.body_momentum_q().0));
-        let out = put(out, rows(state.spatial_momentum_q().0));
-        let out = put(out, rows(state.X().matrix()));
-        let out = put(out, rows(state.momentum_X().0));
-        let out = put(out, rows(self.relative_R_q(state)));
-    }
-    /// All invariants of steps of `h`, in the order of the card.
-    fn invariants(
-        &self,
-        state: &MixedFourState<f64>,
-        _: f64,
-        _: Option<&MixedFourWorkspace<f64>>,
-        out: &mut [f64],
-    ) {
-        let out = put(out, [self.total_momentum_angular_g(state)]);
-    }
-    /// Their sizes at a state, in steps of `h`.
+    /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &MixedFourState<f64>, h: f64, out: &mut [f64]) {
-        let mut enlarged = *state;
-        {
-            type T = f64;
-            let MixedFourParameters { m, k, p, s, e: e_, g, .. } = self.parameters;
-            let R = state.R.matrix();
-            let G = state.G.matrix();
-            let q = state.q.matrix();
-            let X = state.X.matrix();
-            let relative_R_q = R.tr_mul(&quaternion_rotation(&q));
-            let t1 = (h * h).sqrt();
-            let t2 = (k * k).sqrt();
-            let t3 = p.dot(&p).sqrt();
-            let t4 = (R.tr_mul(&R)).trace().sqrt();
-            let t5 = X.dot(&X).sqrt();
-            let t6 = (relative_R_q.tr_mul(&relative_R_q)).trace().sqrt();
-            let t7 = e_.dot(&e_).sqrt();
-            let t8 = s.dot(&s).sqrt();
-            let t9 = motion_rotation(&G);
-            let t10 = (t9.tr_mul(&t9)).trace().sqrt();
-            let t11 = motion_translation(&G);
-            let t12 = t11 + t9 * s - X;
-            let t13 = t12.dot(&t12).sqrt();
-            let t14 = t11.dot(&t11).sqrt();
-            let t15 = t14 + t10 * t8 + t5;
-            enlarged.momentum_R = SpatialMomentum(
-                not_less(
-                    enlarged.momentum_R.0,
-                    (0, 3),
-                    t1 * t2 * t3 * t4 * t5 + t1 * t2 * t3 * t6 * t7,
-                ),
-            );
-            enlarged.momentum_G = CarriedImpulse(
-                not_less(
-                    enlarged.momentum_G.0,
-                    (0, 3),
-                    t1 * t2 * t8 * t10 * t13 + t1 * t2 * t8 * t10 * t15,
-                ),
-            );
-            enlarged.momentum_G = CarriedImpulse(
-                not_less(
-                    enlarged.momentum_G.0,
-                    (3, 3),
-                    t1 * t2 * t10 * t13 + t1 * t2 * t10 * t15,
-                ),
-            );
-            enlarged.momentum_q = SpatialMomentum(
-                not_less(enlarged.momentum_q.0, (0, 3), t1 * t2 * t6 * t3 * t6 * t7),
-            );
-            enlarged.momentum_X = FieldMomentum(
-                not_less(
-                    enlarged.momentum_X.0,
-                    (0, 3),
-                    t1 * (m * m).sqrt() * g.dot(&g).sqrt() + t1 * t2 * t4 * t3
-                        + T::from_f64(2.0) * t1 * t2 * t5 + t1 * t2 * t10 * t8
-                        + t1 * t2 * t14,
-                ),
-            );
-        }
-        let state = &enlarged;
         type T = f64;
-        let MixedFourParameters { g, .. } = self.parameters;
+        let MixedFourParameters { m, k, p, s, e: e_, g, .. } = self.parameters;
         let R = state.R.matrix();
         let G = state.G.matrix();
         let q = state.q.matrix();
         let X = state.X.matrix();
+        let relative_R_q = self.relative_R_q(state);
+        let s1 = (h * h).sqrt();
+        let s2 = (k * k).sqrt();
+        let s3 = p.dot(&p).sqrt();
+        let s4 = (R.tr_mul(&R)).trace().sqrt();
+        let s5 = X.dot(&X).sqrt();
+        let s6 = (relative_R_q.tr_mul(&relative_R_q)).trace().sqrt();
+        let s7 = e_.dot(&e_).sqrt();
+        let s8 = s.dot(&s).sqrt();
+        let s9 = motion_rotation(&G);
+        let s10 = (s9.tr_mul(&s9)).trace().sqrt();
+        let s11 = motion_translation(&G);
+        let s12 = s11 + s9 * s - X;
+        let s13 = s12.dot(&s12).sqrt();
+        let s14 = s11.dot(&s11).sqrt();
+        let s15 = s14 + s10 * s8 + s5;
+        let impulse1 = s1 * s2 * s3 * s4 * s5 + s1 * s2 * s3 * s6 * s7;
+        let impulse2 = s1 * s2 * s8 * s10 * s13 + s1 * s2 * s8 * s10 * s15;
+        let impulse3 = s1 * s2 * s10 * s13 + s1 * s2 * s10 * s15;
+        let impulse4 = s1 * s2 * s6 * s3 * s6 * s7;
+        let impulse5 = s1 * (m * m).sqrt() * g.dot(&g).sqrt() + s1 * s2 * s4 * s3
+            + T::from_f64(2.0) * s1 * s2 * s5 + s1 * s2 * s10 * s8 + s1 * s2 * s14;
+        let state = &MixedFourState {
+            momentum_R: SpatialMomentum(not_less(state.momentum_R.0, (0, 3), impulse1)),
+            momentum_G: CarriedImpulse(
+                not_less(
+                    not_less(state.momentum_G.0, (0, 3), impulse2),
+                    (3, 3),
+                    impulse3,
+                ),
+            ),
+            momentum_q: SpatialMomentum(not_less(state.momentum_q.0, (0, 3), impulse4)),
+            momentum_X: FieldMomentum(not_less(state.momentum_X.0, (0, 3), impulse5)),
+            ..*state
+        };
         let μ1 = state.body_momentum_R().0;
         let μ2 = state.body_momentum_G().0;
         let μ3 = state.body_momentum_q().0;
@@ -1584,12 +1505,14 @@ impl MixedFour<f64> {
         let t4 = motion_translation(&G);
         let t5 = rows_from::<T, 6, 3, 1>(&μ2, 3);
         let t6 = quaternion_rotation(&q) * μ3;
-        let out = put(
+        put(
             out,
-            [t1.dot(&t1).sqrt() * t2
-                + (t3.dot(&t3).sqrt() + t4.dot(&t4).sqrt() * t5.dot(&t5).sqrt()) * t2
-                + t6.dot(&t6).sqrt() * t2
-                + ϖ4.dot(&ϖ4).sqrt() * X.dot(&X).sqrt() * t2; 1usize],
+            [
+                t1.dot(&t1).sqrt() * t2
+                    + (t3.dot(&t3).sqrt() + t4.dot(&t4).sqrt() * t5.dot(&t5).sqrt()) * t2
+                    + t6.dot(&t6).sqrt() * t2
+                    + ϖ4.dot(&ϖ4).sqrt() * X.dot(&X).sqrt() * t2,
+            ],
         );
     }
     /// The model as data.
@@ -1601,10 +1524,6 @@ impl MixedFour<f64> {
         fingerprint: Self::FINGERPRINT,
         summary: "discrete Lagrangian  -tr(J V_k)/h - tr(A rot(W_k))/h + M pos(W_k)·pos(W_k)/(2 h) + 2 im(Y_k)·(I im(Y_k))/h + m ΔX_k·ΔX_k/(2 h) + b (ΔX_k·ΔX_k)²/h³ + ½ h m g·X_k - ¼ h k (X_k - R_k p)·(X_k - R_k p) - ¼ h k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) - ½ h k e·(relative_{R,q,k}ᵀ p) + ½ h m g·X_{k+1} - ¼ h k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) - ¼ h k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) - ½ h k e·(relative_{R,q,k+1}ᵀ p)\nmomentum of R        -J V_kᵀ/h + V_k J/h\nmomentum of G        (-2 vee(A rot(W_k)ᵀ)/h, M pos(W_k)/h)\nmomentum of q        2 im(Y_k quat(I im(Y_k)))/h\nmomentum of X        4 b (ΔX_k·ΔX_k) ΔX_k/h³ + m ΔX_k/h\nRiccati form         exact, C = J; none: the group is not SO(n); none; in unit quaternions, A = I, β = 0; none: the balance is not linear in ΔX\ninvariants           total_momentum_angular_g\ntime reversal        symmetric: second order\ncertificate          51 identities proved by normal form, 10 (of three dimensions) by exact evaluation at random points modulo 2^61 - 1",
         solver: "Blocks: block by block: V, C is constant: Moser-Veselov; W, the group is not SO(n): Newton; Y, A is constant and symmetric, β constant: one equation for one number; ΔX, the balance is not linear in ΔX: Newton",
-        order: 2u32,
-        orders: &[2, 4, 6, 8],
-        preprocessed: false,
-        reversible: true,
         parameters: &[
             Kind::SecondMoments
                 .field(
@@ -1687,18 +1606,7 @@ impl MixedFour<f64> {
             "-tr(J V_k)/h² - tr(A rot(W_k))/h² + 2 M pos(W_k)·pos(W_k)/(2 h)² + 2 im(Y_k)·(I im(Y_k))/h² + 2 m ΔX_k·ΔX_k/(2 h)² + 3 b (ΔX_k·ΔX_k)² h²/h⁶ - ½ m g·X_k + ¼ k (X_k - R_k p)·(X_k - R_k p) + ¼ k (pos(G_k) + rot(G_k) s - X_k)·(pos(G_k) + rot(G_k) s - X_k) + ½ k e·(relative_{R,q,k}ᵀ p) - ½ m g·X_{k+1} + ¼ k (X_{k+1} - R_{k+1} p)·(X_{k+1} - R_{k+1} p) + ¼ k (pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1})·(pos(G_{k+1}) + rot(G_{k+1}) s - X_{k+1}) + ½ k e·(relative_{R,q,k+1}ᵀ p) + tr(J)/h² + tr(A)/h²",
             1,
         ),
-        open: open::<Self>,
         solvers: &Method::NAMES,
-        dimensions: &[],
-        sized: only_size::<Self>,
+        ..Card::plain(open::<Self>, only_size::<Self>)
     };
-    /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-    /// definite.
-    #[cold]
-    pub fn kinetic_warning(
-        &self,
-        state: &MixedFourState<f64>,
-    ) -> Option<KineticWarning> {
-        KineticWarning::of(&self.inertia_at(state), 0 + 3 + 6 + 3 + (3 * 1))
-    }
 }

@@ -32,6 +32,7 @@ impl<'a> Constants<'a> {
         let read = || {
             let card = fields(self.own("CARD")?)?;
             let get = |name: &str| card.get(name).copied();
+            let plain = Card::plain(open, sized);
             Some(Card {
                 name: self.text(get("name")?)?,
                 kebab: self.text(get("kebab")?)?,
@@ -40,18 +41,24 @@ impl<'a> Constants<'a> {
                 fingerprint: self.fingerprint(get("fingerprint")?)?,
                 summary: self.text(get("summary")?)?,
                 solver: self.text(get("solver")?)?,
-                order: self.number(get("order")?)?,
-                orders: kept(self.list(get("orders")?, |c, e| c.number(e))?),
-                preprocessed: truth(get("preprocessed")?)?,
-                reversible: truth(get("reversible")?)?,
+                order: get("order").map_or(Some(plain.order), |e| self.number(e))?,
+                orders: match get("orders") {
+                    Some(e) => kept(self.list(e, |c, e| c.number(e))?),
+                    None => plain.orders,
+                },
+                preprocessed: get("preprocessed").map_or(Some(plain.preprocessed), truth)?,
+                reversible: get("reversible").map_or(Some(plain.reversible), truth)?,
                 parameters: kept(self.list(get("parameters")?, Self::field)?),
                 initial: kept(self.list(get("initial")?, Self::field)?),
                 observables: kept(self.list(get("observables")?, Self::field)?),
                 invariants: kept(self.list(get("invariants")?, Self::invariant)?),
                 discrete_energy: self.invariant(get("discrete_energy")?)?,
                 open,
-                solvers: self.solvers(get("solvers")?)?,
-                dimensions: kept(self.list(get("dimensions")?, Self::dimension)?),
+                solvers: get("solvers").map_or(Some(plain.solvers), |e| self.solvers(e))?,
+                dimensions: match get("dimensions") {
+                    Some(e) => kept(self.list(e, Self::dimension)?),
+                    None => plain.dimensions,
+                },
                 sized,
             })
         };
@@ -61,7 +68,10 @@ impl<'a> Constants<'a> {
     /// The sizes of the model, as they are declared.
     pub fn dimensions(&self) -> Option<Vec<Dimension>> {
         let card = fields(self.own("CARD")?)?;
-        self.list(card.get("dimensions").copied()?, |c, e| {
+        let Some(dimensions) = card.get("dimensions").copied() else {
+            return Some(Vec::new());
+        };
+        self.list(dimensions, |c, e| {
             let f = fields(e)?;
             let of = |name: &str| constant(f.get(name)?, c.sizes);
             let (from, to) = (of("from")?, of("to")?);
@@ -78,11 +88,12 @@ impl<'a> Constants<'a> {
     /// The names of the sizes in the emitted code, in the same order.
     pub fn size_names(&self) -> Option<Vec<String>> {
         let card = fields(self.own("CARD")?)?;
-        self.list(card.get("dimensions").copied()?, |_, e| {
-            match fields(e)?.get("value")? {
-                syn::Expr::Path(p) => Some(named(&p.path)),
-                _ => None,
-            }
+        let Some(dimensions) = card.get("dimensions").copied() else {
+            return Some(Vec::new());
+        };
+        self.list(dimensions, |_, e| match fields(e)?.get("value")? {
+            syn::Expr::Path(p) => Some(named(&p.path)),
+            _ => None,
         })
     }
 
@@ -134,21 +145,21 @@ impl<'a> Constants<'a> {
         }
     }
 
-    /// `Kind::X.field(name, [rows, cols], doc)`, and the name in ASCII where that is another.
+    /// `Kind::X.field(name, [rows, cols], doc)`, or `spelt` with the name in ASCII where that is another.
     fn field(&self, e: &syn::Expr) -> Option<Field> {
         let syn::Expr::MethodCall(call) = e else {
             return None;
         };
         let mut arguments = call.args.iter();
-        if call.method == "spelt" {
-            let ascii = self.text(arguments.next()?)?;
-            return Some(self.field(&call.receiver)?.spelt(ascii));
-        }
         let name = self.text(arguments.next()?)?;
+        let ascii = match call.method == "spelt" {
+            true => self.text(arguments.next()?)?,
+            false => name,
+        };
         let size = self.list(arguments.next()?, Self::count)?;
         let doc = self.text(arguments.next()?)?;
         let size = <[usize; 2]>::try_from(size).ok()?;
-        Some(kind(&call.receiver)?.field(name, size, doc))
+        Some(kind(&call.receiver)?.spelt(name, ascii, size, doc))
     }
 
     /// `Invariant::exact(name, formula, rows)`, or `bounded`.

@@ -15,6 +15,7 @@ mod newton;
 mod opened;
 mod packed;
 mod program;
+mod protocol;
 mod running;
 mod saved;
 mod signs;

@@ -2,7 +2,8 @@
 //! Takes the tokens that a build would compile; gives tables by name.
 
 use crate::Refused;
-use proc_macro2::{TokenStream, TokenTree};
+use crate::protocol::Protocol;
+use proc_macro2::TokenStream;
 use std::collections::BTreeMap;
 
 /// The items of a model.
@@ -30,16 +31,16 @@ impl Program {
     pub fn read(tokens: TokenStream) -> Result<Self, Refused> {
         let file: syn::File = syn::parse2(tokens).map_err(|e| Refused::Construct(e.to_string()))?;
         let mut program = Program::default();
-        program.take(file.items);
+        program.take(file.items)?;
         Ok(program)
     }
 
-    fn take(&mut self, items: Vec<syn::Item>) {
+    fn take(&mut self, items: Vec<syn::Item>) -> Result<(), Refused> {
         for item in items {
             match item {
                 syn::Item::Mod(module) => {
                     if let Some((_, items)) = module.content {
-                        self.take(items);
+                        self.take(items)?;
                     }
                 }
                 syn::Item::Struct(item) => {
@@ -68,12 +69,24 @@ impl Program {
                 }
                 syn::Item::Impl(item) => self.take_impl(item),
                 syn::Item::Macro(item) if named(&item.mac.path) == "stepper" => {
-                    self.take_protocol(item.mac.tokens);
+                    self.take_protocol(item.mac.tokens)?;
                 }
                 syn::Item::Use(item) => self.take_use(&item.tree, String::new()),
                 _ => {}
             }
         }
+        Ok(())
+    }
+
+    /// What the runtime's protocol adds to a model.
+    fn take_protocol(&mut self, tokens: TokenStream) -> Result<(), Refused> {
+        let protocol: Protocol =
+            syn::parse2(tokens).map_err(|e| Refused::Construct(e.to_string()))?;
+        for (ty, function) in protocol.functions(&self.structs) {
+            let name = function.sig.ident.to_string();
+            self.functions.insert((ty, name), function);
+        }
+        Ok(())
     }
 
     /// A path under another name.
@@ -110,44 +123,6 @@ impl Program {
                 }
                 _ => {}
             }
-        }
-    }
-
-    /// Of what the runtime's protocol adds to a model the two functions that change a value of it: the
-    /// others are the interpreter's own.
-    fn take_protocol(&mut self, tokens: TokenStream) {
-        let names = tokens.into_iter().filter_map(|tree| match tree {
-            TokenTree::Ident(name) => Some(name.to_string()),
-            _ => None,
-        });
-        let names: Vec<String> = names.collect();
-        let [model, _, _, _, _, _, work, form, choice, ..] = names.as_slice() else {
-            return;
-        };
-        let mut add = |ty: &str, function: syn::ImplItemFn| {
-            let name = function.sig.ident.to_string();
-            self.functions.insert((ty.to_owned(), name), function);
-        };
-        if choice != "nothing" {
-            add(
-                model,
-                syn::parse_quote! {
-                    fn with_solver(self, method: Method) -> Self {
-                        Self { method, ..self }
-                    }
-                },
-            );
-        }
-        if form == "free" {
-            add(
-                work,
-                syn::parse_quote! {
-                    fn compensated(mut self) -> Self {
-                        self.solver = self.solver.compensated();
-                        self
-                    }
-                },
-            );
         }
     }
 

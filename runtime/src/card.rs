@@ -42,15 +42,22 @@ pub enum Kind {
 impl Kind {
     /// A quantity of this kind with these rows and columns, whose name is ASCII.
     #[must_use]
-    pub const fn field(
+    pub const fn field(self, name: &'static str, size: [usize; 2], doc: &'static str) -> Field {
+        self.spelt(name, name, size, doc)
+    }
+
+    /// The same whose name in ASCII is another.
+    #[must_use]
+    pub const fn spelt(
         self,
         name: &'static str,
+        ascii: &'static str,
         [rows, cols]: [usize; 2],
         doc: &'static str,
     ) -> Field {
         Field {
             name,
-            ascii: name,
+            ascii,
             rows,
             cols,
             kind: self,
@@ -292,6 +299,34 @@ impl Card {
                 "order {order} by composing {stages} plain steps: symplectic, with the same \
                  invariants"
             )
+        }
+    }
+
+    /// Of a model of one size whose steps are symmetric, of order two and of those that are composed of them, and leave
+    /// no choice of a solver: how it is opened. The rest is for the model to say.
+    #[must_use]
+    pub const fn plain(open: Open, sized: fn(&[usize]) -> Option<Card>) -> Card {
+        Card {
+            name: "",
+            kebab: "",
+            doc: "",
+            source: "",
+            fingerprint: 0,
+            summary: "",
+            solver: "",
+            order: 2,
+            orders: &[2, 4, 6, 8],
+            preprocessed: false,
+            reversible: true,
+            parameters: &[],
+            initial: &[],
+            observables: &[],
+            invariants: &[],
+            discrete_energy: Invariant::bounded("discrete_energy", "", 1),
+            open,
+            solvers: &[],
+            dimensions: &[],
+            sized,
         }
     }
 

@@ -173,6 +173,19 @@ pub fn solve_leading_or_nan<T: Real, const N: usize>(
     solved.unwrap_or_else(|| SVector::repeat(T::from_f64(f64::NAN)))
 }
 
+/// The square matrix of these columns.
+#[inline]
+#[must_use]
+pub fn columns<T: Real, const N: usize>(
+    column: impl Fn(usize) -> SVector<T, N>,
+) -> SMatrix<T, N, N> {
+    let mut all = SMatrix::<T, N, N>::zeros();
+    for at in 0..N {
+        all.set_column(at, &column(at));
+    }
+    all
+}
+
 /// The skew matrix of the coordinate with this index: a basis of the Lie algebra of SO(n), for
 /// `i < j`, row by row, -1 at (i, j) and +1 at (j, i).
 #[inline]
@@ -306,17 +319,34 @@ pub fn length<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> 
     a.iter().fold(T::zero(), |sum, x| sum + *x * *x).sqrt()
 }
 
-/// Whether two matrices are equal, entry by entry.
+/// Whether two quantities are equal, entry by entry.
 #[inline(always)]
 #[must_use]
-pub fn same<T: Real, const R: usize, const C: usize>(
-    a: &SMatrix<T, R, C>,
-    b: &SMatrix<T, R, C>,
-) -> bool {
-    // They nearly always are: no branch before the end.
-    a.iter()
-        .zip(b.iter())
-        .fold(true, |all, (x, y)| all & (x == y))
+pub fn same<V: Compared>(a: &V, b: &V) -> bool {
+    a.same(b)
+}
+
+/// What a state keeps beside elements and momenta: numbers, vectors and matrices.
+pub trait Compared {
+    /// Whether every entry equals that of the other.
+    fn same(&self, other: &Self) -> bool;
+}
+
+impl<T: Real> Compared for T {
+    #[inline(always)]
+    fn same(&self, other: &Self) -> bool {
+        self == other
+    }
+}
+
+impl<T: Real, const R: usize, const C: usize> Compared for SMatrix<T, R, C> {
+    #[inline(always)]
+    fn same(&self, other: &Self) -> bool {
+        // They nearly always are: no branch before the end.
+        self.iter()
+            .zip(other.iter())
+            .fold(true, |all, (x, y)| all & (x == y))
+    }
 }
 
 /// Whether every entry is finite.

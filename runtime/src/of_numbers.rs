@@ -1,8 +1,10 @@
 //! Values from lists of numbers: how the fields of a card become the parameters and the initial data of a
 //! model. Takes the numbers of one field, row by row; gives its value, or says which field they are not.
+//! And back: the numbers of what a model shows.
 
 use crate::StartError;
 use crate::card::{Field, OpenError};
+use crate::emitted::rows;
 use crate::groups::{
     Additive, BodyImpulse, BodyMomentum, BodyMomentumMatrix, BodyPlaneImpulse, FieldMomentum,
     Linear, Orthogonal, PlaneMotion, RigidMotion, Rotation, SpatialImpulse, SpatialMomentum,
@@ -18,6 +20,17 @@ pub trait OfNumbers: Sized {
     /// # Errors
     /// Names the field whose numbers are too few, too many or not admissible.
     fn of_numbers(field: &'static str, values: &[f64]) -> Result<Self, OpenError>;
+}
+
+/// A type whose values are shown as numbers.
+pub trait Shown: Sized {
+    /// The numbers, matrices row by row.
+    fn numbers(self) -> impl Iterator<Item = f64>;
+}
+
+/// Writes the numbers of a value to the front of `out`; gives what is left of it.
+pub fn put(value: impl Shown, out: &mut [f64]) -> &mut [f64] {
+    crate::emitted::put(out, value.numbers())
 }
 
 /// The numbers of several fields, taken one field after the other.
@@ -59,6 +72,18 @@ impl<const R: usize, const C: usize> OfNumbers for SMatrix<f64, R, C> {
     }
 }
 
+impl<const R: usize, const C: usize> Shown for SMatrix<f64, R, C> {
+    fn numbers(self) -> impl Iterator<Item = f64> {
+        rows(self)
+    }
+}
+
+impl Shown for f64 {
+    fn numbers(self) -> impl Iterator<Item = f64> {
+        core::iter::once(self)
+    }
+}
+
 impl OfNumbers for f64 {
     fn of_numbers(field: &'static str, values: &[f64]) -> Result<Self, OpenError> {
         SMatrix::<f64, 1, 1>::of_numbers(field, values).map(|m| m.x)
@@ -75,6 +100,19 @@ impl OfNumbers for PhantomData<f64> {
 impl<const R: usize, const C: usize> OfNumbers for Additive<R, C, f64> {
     fn of_numbers(field: &'static str, values: &[f64]) -> Result<Self, OpenError> {
         SMatrix::of_numbers(field, values).map(Additive::new)
+    }
+}
+
+impl<const R: usize, const C: usize> Shown for Additive<R, C, f64> {
+    fn numbers(self) -> impl Iterator<Item = f64> {
+        rows(self.matrix())
+    }
+}
+
+/// A unit quaternion is shown as it is given.
+impl Shown for UnitQuaternion<f64> {
+    fn numbers(self) -> impl Iterator<Item = f64> {
+        self.components().into_iter()
     }
 }
 
@@ -97,6 +135,12 @@ macro_rules! elements {
                     .map_err(|e| OpenError::Start(StartError::Initial(e.in_field(field))))
             }
         }
+
+        impl $(<const $N: usize>)? Shown for $Element {
+            fn numbers(self) -> impl Iterator<Item = f64> {
+                rows(self.matrix())
+            }
+        }
     )*};
 }
 elements! {
@@ -112,6 +156,12 @@ macro_rules! momenta {
         impl<$(const $N: usize),*> OfNumbers for $Momentum {
             fn of_numbers(field: &'static str, values: &[f64]) -> Result<Self, OpenError> {
                 SMatrix::of_numbers(field, values).map(Self)
+            }
+        }
+
+        impl<$(const $N: usize),*> Shown for $Momentum {
+            fn numbers(self) -> impl Iterator<Item = f64> {
+                rows(self.0)
             }
         }
     )*};

@@ -2,8 +2,10 @@
 //! Takes a name and a value; gives nothing, or a [`ParameterError`] with the offending numbers.
 
 mod constraints;
+mod initial;
 
 pub use constraints::{along_constraint, on_constraint};
+pub use initial::{Initial, initial};
 
 use crate::domain::{Domain, Function};
 use crate::linalg::{

@@ -119,6 +119,19 @@ fn matrix<T: Real>(a: &Value<T>) -> Option<Value<T>> {
     })
 }
 
+/// The numbers of what is shown, matrices row by row.
+fn numbers<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
+    let shown = match a.first()? {
+        Value::Real(x) => return Some(Value::List(vec![Value::Real(*x)])),
+        Value::Quaternion(q) => return Some(list(q.components())),
+        other => matrix(other)
+            .or_else(|| super::inner(other))
+            .unwrap_or_else(|| (*other).clone()),
+    };
+    let rows = shown.dense()?.transpose().data;
+    Some(Value::List(rows.into_iter().map(Value::Real).collect()))
+}
+
 /// The rest of a place as the static type takes it.
 fn way<T: Real, const R: usize>(a: &Value<T>) -> Option<SMatrix<T, R, 1>> {
     Some(a.dense()?.fixed())
@@ -195,6 +208,7 @@ fn inverse<T: Real>(a: &Value<T>) -> Option<Value<T>> {
 pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
     Some(match (name, arguments) {
         ("matrix", 1) => |a, _| matrix(a.first()?),
+        ("numbers", 1) => numbers,
         ("body_velocity", 2) => |a, _| velocity(a.first()?, a.get(1)?),
         ("spatial_velocity", 2) => |a, _| spatial_velocity(a.first()?, a.get(1)?),
         ("inverse", 1) => |a, _| inverse(a.first()?),

@@ -309,6 +309,27 @@ fn from_fn<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     Ok(Value::of(Dense { rows, cols, data }))
 }
 
+/// `columns(|axis| ...)`: a square matrix, whose first column says how many there are.
+fn columns<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
+    let [closure] = a else {
+        return Err(missing());
+    };
+    let mut column = |axis: usize| {
+        let column = closure.call(vec![Value::Int(axis as i64)], places)?;
+        unfit(column.dense())
+    };
+    let first = column(0)?;
+    let (rows, mut data) = (first.rows, first.data);
+    for axis in 1..rows {
+        data.extend(column(axis)?.data);
+    }
+    Ok(Value::of(Dense {
+        rows,
+        cols: rows,
+        data,
+    }))
+}
+
 /// Those that residuals and tangents call.
 pub(super) fn kernel<T: Real>(name: &str) -> Option<Special<T>> {
     Some(match name {
@@ -320,6 +341,7 @@ pub(super) fn kernel<T: Real>(name: &str) -> Option<Special<T>> {
         "set_column" => set_column,
         "map" => map,
         "from_fn" => from_fn,
+        "columns" => columns,
         _ => return None,
     })
 }

@@ -247,7 +247,15 @@ impl<T: Lowered> Lower<'_, '_, T> {
         if let Some(special) = T::special(name)
             && (calls_back || T::native(name, arguments.len()).is_none())
         {
-            return Ok(Some(Code::Special(special, arguments, Known::of(name))));
+            let made = Code::Special(special, arguments, Known::of(name));
+            // An inertia of the model alone is made once.
+            if name == "columns" && self.is_steady(&made, &mut Vec::new()) {
+                let at = self.fresh();
+                self.steady.push(at);
+                let once = Code::Once(at, Box::new(made));
+                return Ok(Some(Code::Block(vec![once, Code::Place(at)])));
+            }
+            return Ok(Some(made));
         }
         Ok(self.native(name, arguments, sizes))
     }

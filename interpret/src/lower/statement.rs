@@ -191,7 +191,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// Whether a value is made of the model alone: then it is made once. `own` are the places within it.
-    fn is_steady(&self, code: &Code<T>, own: &mut Vec<usize>) -> bool {
+    pub(super) fn is_steady(&self, code: &Code<T>, own: &mut Vec<usize>) -> bool {
         match code {
             Code::Constant(_) => true,
             Code::Place(at) => self.steady.contains(at) || own.contains(at),

@@ -1,15 +1,20 @@
 //! The protocol of an emitted model, written once: how a trajectory starts, the traits on which compositions,
 //! ensembles and the command line are written, and that all of its data can be saved.
 //! Takes the names of its types and of their fields, and how it steps; gives the implementations around the
-//! functions `begin`, `prepared` and `step` of the model.
+//! functions `begin`, `prepared` and `step` of the model, where they are more than what is made here from names.
 
 /// The protocol of a model: its types with all their fields, const parameters in brackets, and
 ///
-/// - `forced`, `forced_of_state` (its factor is kept with the trajectory), `free`, `tried` (it has a short
-///   way to try a step) or `explicit`, with the fields of the element and of its momentum;
+/// - `forced` (`forced_untested` where the model tests its steps itself), `free`, `tried` (it has a short way to try
+///   a step) or `explicit`, with the fields of the element, of its momentum and of what else is kept;
 /// - what may be chosen about its steps: `order`, `solver`, `nothing`;
 /// - how orders above its own are reached: `modified` moments, compositions of `symmetric` steps, or `none`;
-/// - whether its kinetic energy is `judged` at the start, or `unjudged`.
+/// - whether its kinetic energy is `judged` at the start, in how many coordinates, or `unjudged`;
+/// - in parentheses how forced steps are solved, `of` which fields the factor is made that is kept with the
+///   trajectory, and the function that `tests` a start of them;
+/// - what of a state at its `start` is an element, and of which momentum given there how its momentum is made; then
+///   the rests of what is kept in two numbers. Nothing where the model has a `begin` of its own;
+/// - what is observed and what is invariant, as `shown!` reads them.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! stepper {
@@ -19,7 +24,11 @@ macro_rules! stepper {
         $initial:ident { $($given:ident),* },
         $state:ident { $($kept:ident),* } at $node:ident,
         $work:ident { $($remembered:ident),* },
-        $form:ident { $($moved:ident),* } $choice:ident $orders:ident $judged:ident
+        $form:ident { $($moved:ident),* } $choice:ident $orders:ident $judged:ident $({ $coordinates:expr })?
+        $(($solved:literal $(, of $($reference:ident)&+)? $(, tests $tests:ident)?))?
+        $(start $start:tt $({ $($rest:ident),* })?)?
+        observables { $($($seen:ident).+ $(as $shape:ident)?),* }
+        invariants { $($($constant:ident).+ $(as $form_of:ident)?),* }
     ) => {
         $crate::of_scalars! { [$($size)*] $parameters { $($parameter),* } }
         $crate::of_scalars! { [$($size)*] $initial { $($given),* } }
@@ -55,6 +64,13 @@ macro_rules! stepper {
             }
 
             $crate::stepper_part! { @started $choice [$($size)*] $initial $state $work T }
+
+            $crate::stepper_part! { @begin [$($start { $($($rest),*)? })?] [$($size)*] $initial $state $node T }
+
+            $crate::stepper_part! {
+                @made $form { $($moved),* } [$($($($reference)&+)?)?] [$($solved $($tests)?)?]
+                [$($size)*] $state $node $work T
+            }
         }
 
         impl<$(const $size: usize,)* T: $crate::Real> $state<$($size,)* T> {
@@ -96,7 +112,7 @@ macro_rules! stepper {
         }
 
         $crate::stepper_part! {
-            @lanes $form { $($moved),* } [$($size)*] $model $parameters { $($parameter),* } $state $node $work
+            @lanes $form [$($($($reference)&+)?)?] { $($moved),* } [$($size)*] $model $parameters { $($parameter),* } $state $node $work
         }
 
         $crate::stepper_part! { @reversible $orders [$($size)*] $model }
@@ -165,7 +181,8 @@ macro_rules! stepper {
             }
 
             fn observe(&self, state: &Self::State, out: &mut [f64]) {
-                Self::observe(self, state, out);
+                $(let out = $crate::shown! { [$($seen).+ $(as $shape)?] out self state };)*
+                let _ = out;
             }
 
             fn invariants(
@@ -175,13 +192,17 @@ macro_rules! stepper {
                 work: Option<&Self::Workspace>,
                 out: &mut [f64],
             ) {
-                Self::invariants(self, state, h, work, out);
+                let _ = (h, work);
+                $(let out = $crate::shown! { [$($constant).+ $(as $form_of)?] out self state h work };)*
+                let _ = out;
             }
 
             fn scales(&self, state: &Self::State, h: f64, out: &mut [f64]) {
                 Self::scales(self, state, h, out);
             }
         }
+
+        $crate::stepper_part! { @warning $judged $({ $coordinates })? [$($size)*] $model $state }
     };
 }
 
@@ -230,6 +251,47 @@ macro_rules! stepper_part {
         }
     };
 
+    (@begin [] $($_:tt)*) => {};
+    (
+        @begin [
+            { $($element:ident, $momentum:ident = $given:ident $(.$way:ident)?);* } { $($rest:ident),* }
+        ]
+        [$($size:ident)*] $initial:ident $state:ident $node:ident $T:ident
+    ) => {
+        /// The state at node 0.
+        fn begin(
+            &self,
+            initial: $initial<$($size,)* $T>,
+        ) -> Result<$state<$($size,)* $T>, $crate::StartError> {
+            $(
+                $crate::validate::initial(stringify!($element), &initial.$element)?;
+                $crate::validate::initial(stringify!($given), &initial.$given)?;
+            )*
+            Ok($state {
+                $(
+                    $element: initial.$element,
+                    $momentum: initial.$given$(.$way(&initial.$element))?,
+                )*
+                $($rest: $crate::emitted::SMatrix::zeros(),)*
+                $node: 0,
+            })
+        }
+    };
+
+    (@made forced $moved:tt [] $($others:tt)*) => {
+        $crate::forced_step! { pub step $moved [] [] $($others)* }
+    };
+    (@made forced $moved:tt $of:tt $($others:tt)*) => {
+        $crate::forced_step! { pub step $moved $of [factor] $($others)* }
+    };
+    (@made forced_untested $moved:tt [] $($others:tt)*) => {
+        $crate::forced_step! { step_untested $moved [] [] $($others)* }
+    };
+    (@made forced_untested $moved:tt $of:tt $($others:tt)*) => {
+        $crate::forced_step! { step_untested $moved $of [factor] $($others)* }
+    };
+    (@made $($_:tt)*) => {};
+
     (@watched free [$($size:ident)*] $work:ident) => {
         impl<$(const $size: usize,)* T: $crate::Real> $work<$($size,)* T> {
             /// The solver: the momentum that it keeps, and what its last projection corrected.
@@ -276,6 +338,7 @@ macro_rules! stepper_part {
         }
     };
     (@many explicit $($_:tt)*) => {};
+    (@many forced_untested $($_:tt)*) => {};
     (@many $forced:ident { $($_:ident),* } $node:ident $T:ident) => {
         #[inline(always)]
         fn advance_many(
@@ -294,8 +357,8 @@ macro_rules! stepper_part {
         }
     };
 
-    (@lanes forced $($others:tt)*) => { $crate::side_by_side! { of_model $($others)* } };
-    (@lanes forced_of_state $($others:tt)*) => { $crate::side_by_side! { of_state $($others)* } };
+    (@lanes forced [] $($others:tt)*) => { $crate::side_by_side! { of_model $($others)* } };
+    (@lanes forced $of:tt $($others:tt)*) => { $crate::side_by_side! { of_state $($others)* } };
     (@lanes $($_:tt)*) => {};
 
     (@reversible none $($_:tt)*) => {};
@@ -309,6 +372,7 @@ macro_rules! stepper_part {
 
     (@side_by_side tried) => { false };
     (@side_by_side explicit) => { false };
+    (@side_by_side forced_untested) => { false };
     (@side_by_side $lanes:ident) => { true };
 
     (@compensated free) => {
@@ -339,6 +403,21 @@ macro_rules! stepper_part {
         }
     };
     (@judged unjudged) => {};
+
+    (@warning judged { $coordinates:expr } [$($size:ident)*] $model:ident $state:ident) => {
+        impl<$(const $size: usize),*> $model<$($size,)* f64> {
+            /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
+            /// definite.
+            #[cold]
+            pub fn kinetic_warning(
+                &self,
+                state: &$state<$($size,)* f64>,
+            ) -> Option<$crate::kinetic::KineticWarning> {
+                $crate::kinetic::KineticWarning::of(&self.inertia_at(state), $coordinates)
+            }
+        }
+    };
+    (@warning unjudged $($_:tt)*) => {};
 }
 
 /// The same step lane by lane, for ensembles of bodies whose forced equation is solved by a factor: that

@@ -6,7 +6,7 @@ use super::declare::Declared;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 
 /// Methods and constants that every model has.
-const MEMBERS: [&str; 46] = [
+const MEMBERS: [&str; 47] = [
     "kinetic_warning",
     "ADMITTED",
     "CARD",
@@ -48,6 +48,7 @@ const MEMBERS: [&str; 46] = [
     "workspace",
     "workspace_with",
     "arrived",
+    "is_defined",
     "principal",
     "residual_at",
     "rounding",

@@ -4,9 +4,10 @@
 use super::element;
 use super::expression::Bindings;
 use super::items::{advanced, letters_of, node_locals, parameter_locals, with_transports};
-use super::names::{Names, own, tagged};
+use super::names::{Names, own, tagged, variable};
 use super::step::at;
 use crate::derive::Derivation;
+use crate::derive::transport::Transport;
 use crate::expr::{self, Expr, Shift};
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -19,8 +20,8 @@ pub(super) struct Edge {
 }
 
 /// Binds the letters of `wanted` to the states named `before` and `after`; velocities are made from the elements of
-/// both.
-pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr]) -> Edge {
+/// both. What is advected is asked of the model, where that is no part of a step.
+pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr], asks: bool) -> Edge {
     let (before, after) = (names.local("before"), names.local("after"));
     let mut needed = letters_of(wanted);
     for a in advanced(d) {
@@ -28,10 +29,27 @@ pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr]) -> Ed
             needed.extend(expr::letters(&a.update));
         }
     }
+    let mut asked = TokenStream::new();
+    let mut bindings = Bindings::new();
+    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
+        for (shift, state) in [(Shift::HERE, &before), (Shift::NEXT, &after)] {
+            let letter = at(a.quantity, shift);
+            if !asks || !needed.contains(&letter) || matches!(t, Transport::Advanced) {
+                continue;
+            }
+            let function = own(d, a.quantity);
+            let local = match shift {
+                Shift::NEXT => tagged(d, names, a.quantity, "next"),
+                _ => variable(&d.letters.symbols, a.quantity),
+            };
+            asked.extend(quote!(let #local = self.#function(#state);));
+            bindings.bind(letter, local);
+            needed.retain(|l| *l != letter);
+        }
+    }
     let mut all = with_transports(d, &needed, 0);
     all.extend(with_transports(d, &needed, 1));
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
-    let mut bindings = Bindings::new();
     let mut locals = TokenStream::new();
     for (i, c) in d.spec.configurations.iter().enumerate() {
         let (own, name) = (own(d, c.element), tagged(d, names, c.velocity, "matrix"));
@@ -66,6 +84,7 @@ pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr]) -> Ed
             &mut bindings,
         ));
     }
+    locals.extend(asked);
     Edge {
         parameters,
         locals,

@@ -3,13 +3,11 @@
 
 use super::element::{self, Family, family};
 use super::formula::formula;
-use super::invariants::Form;
 use super::items::kept;
-use super::names::{Names, item, kebab, own};
+use super::names::{Names, item, kebab};
 use super::sizes::{Generics, size};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
-use crate::derive::invariants::Kind;
 use crate::derive::kinetic::{self, Kinetic};
 use crate::derive::recognise::Method;
 use crate::expr::shape::{Shape, Structure};
@@ -30,8 +28,10 @@ impl FieldOf {
         let ascii = crate::expr::symbol::ascii(name);
         let (rows, cols) = super::expression::dims(s, self.shape);
         let kind = format_ident!("{}", self.kind);
-        let spelt = (ascii != *name).then(|| quote!(.spelt(#ascii)));
-        quote!(Kind::#kind.field(#name, [#rows, #cols], #doc) #spelt)
+        match ascii == *name {
+            true => quote!(Kind::#kind.field(#name, [#rows, #cols], #doc)),
+            false => quote!(Kind::#kind.spelt(#name, #ascii, [#rows, #cols], #doc)),
+        }
     }
 }
 
@@ -135,45 +135,21 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         .collect();
     let mut initial = Vec::new();
     let mut observables = Vec::new();
-    let mut observed = Vec::new();
     for i in 0..count {
         let c = &d.spec.configurations[i];
         initial.push(element_field(d, i));
         initial.push(momentum_field(d, i, c.side));
         observables.push(element_field(d, i));
-        let element = own(d, c.element);
-        let [b, s] = Side::BOTH.map(|side| element::momentum_field(d, i, side));
-        if c.group.is_additive() {
-            observables.push(momentum_field(d, i, c.side));
-            observed.push(quote! {
-                let out = put(out, rows(state.#element().matrix()));
-                let out = put(out, rows(state.#s().0));
-            });
-            continue;
+        match c.group.is_additive() {
+            true => observables.push(momentum_field(d, i, c.side)),
+            false => observables.extend(Side::BOTH.map(|side| momentum_field(d, i, side))),
         }
-        observables.extend(Side::BOTH.map(|side| momentum_field(d, i, side)));
-        let numbers = match family(c) {
-            Family::Quaternion => quote!(state.#element().components()),
-            _ => quote!(rows(state.#element().matrix())),
-        };
-        observed.push(quote! {
-            let out = put(out, #numbers);
-            let out = put(out, rows(state.#b().0));
-            let out = put(out, rows(state.#s().0));
-        });
     }
     for id in kept(d) {
         initial.push(of_symbol(d, id, "value at node 0"));
     }
     for a in &d.spec.advected {
         observables.push(of_symbol(d, a.quantity, ""));
-        let method = own(d, a.quantity);
-        let scalar = d.letters.symbols.get(a.quantity).shape.is_scalar();
-        observed.push(if scalar {
-            quote!(let out = put(out, [self.#method(state)]);)
-        } else {
-            quote!(let out = put(out, rows(self.#method(state)));)
-        });
     }
     for hold in &d.spec.holds {
         observables.push(of_symbol(
@@ -182,8 +158,6 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             "multiplier over the step before",
         ));
     }
-    observed.extend(super::holds::observed(d));
-    let mut values = TokenStream::new();
     let scales = super::invariants::scales(d, names);
     let invariants: Vec<TokenStream> = d
         .invariants
@@ -192,57 +166,6 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
             let (label, text) = (&v.name, formula(d, v));
             let rows = super::invariants::rows(d, v);
             let conserved = format_ident!("{}", if v.exact { "exact" } else { "bounded" });
-            let method = format_ident!("{}", v.name);
-            values.extend(match &v.kind {
-                Kind::SpatialMomentum(i) => {
-                    let m = element::spatial_momentum_field(d, *i);
-                    let element = own(d, d.spec.configurations[*i].element);
-                    // The state keeps the spatial momentum; what shows a drift is the momentum that
-                    // the solver iterates in the body, seen from space.
-                    match d.solve.method {
-                        Method::FreeMoserVeselov => quote! {
-                            let iterated = work.map(|w| w.solver.body_momentum().to_space(&state.#element()));
-                            let out = put(out, rows(iterated.unwrap_or(state.#m()).0));
-                        },
-                        Method::ForcedMoserVeselov
-                        | Method::UnitQuaternions
-                        | Method::LeftFactor
-                        | Method::Davenport
-                        | Method::Linear
-                        | Method::Newton
-                        | Method::Blocks => {
-                            match family(&d.spec.configurations[*i]) {
-                                Family::Rotation
-                                | Family::Linear(_)
-                                | Family::Quaternion
-                                | Family::Field(_)
-                                | Family::Coordinates(_) => {
-                                    quote!(let out = put(out, rows(state.#m().0));)
-                                }
-                                Family::Orthogonal(_) => {
-                                    quote!(let out = put(out, skew_coordinates(&state.#m().0));)
-                                }
-                            }
-                        }
-                    }
-                }
-                Kind::Value
-                | Kind::Energy
-                | Kind::TotalMomentum(_)
-                | Kind::Spectrum
-                | Kind::ConstraintRate(_) => {
-                    let value = match super::invariants::holds_step(d, v) {
-                        true => quote!(self.#method(h, state)),
-                        false => quote!(self.#method(state)),
-                    };
-                    match super::invariants::form(d, v) {
-                        Form::Number => quote!(let out = put(out, [#value]);),
-                        Form::Entries => quote!(let out = put(out, rows(#value));),
-                        Form::Skew => quote!(let out = put(out, skew_coordinates(&#value));),
-                        Form::Spectrum => quote!(let out = put(out, spectrum(#value));),
-                    }
-                }
-            });
             quote!(Invariant::#conserved(#label, #text, #rows))
         })
         .collect();
@@ -271,8 +194,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         d.how_solved()
     );
     // A symmetric one-step action gives an even order; one-sided nodal terms leave order one.
-    let order: u32 = if d.reversible { 2 } else { 1 };
-    let reversible = d.reversible;
+    let irreversible = (!d.reversible).then(|| quote!(order: 1, reversible: false,));
     let discrete_energy = discrete_energy(d);
     let fields = |list: &[FieldOf]| -> Vec<TokenStream> {
         list.iter().map(|f| f.tokens(&d.letters.symbols)).collect()
@@ -280,46 +202,24 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let (p, i, o) = (fields(&parameters), fields(&initial), fields(&observables));
     let g = Generics::of(d);
     let (bound, plain) = (g.sizes_bound(), g.plain());
-    let solvers = super::left_factor::offered(d);
+    let solvers = super::left_factor::offered(d).map(|list| quote!(solvers: #list,));
     let dimensions = dimensions(d);
+    let dimensions = (!dimensions.is_empty()).then(|| quote!(dimensions: &[#(#dimensions),*],));
     let (sized, sized_by) = match d.spec.dimensions.is_empty() {
         true => (TokenStream::new(), quote!(only_size::<Self>)),
         false => (sized(d), quote!(Self::sized)),
     };
-    let kinetic_warning = super::kinetic::kinetic_warning(d);
     let orders = match (preprocessed, super::invariants::composes(d)) {
-        (true, _) => quote!(&[2, 4, 6, 8, 10]),
-        (false, true) => quote!(&[2, 4, 6, 8]),
-        (false, false) if reversible => quote!(&[2]),
-        (false, false) => quote!(&[1]),
+        (true, _) => quote!(orders: &[2, 4, 6, 8, 10], preprocessed: true,),
+        (false, true) => TokenStream::new(),
+        (false, false) if d.reversible => quote!(orders: &[2],),
+        (false, false) => quote!(orders: &[1],),
     };
-    let work = match values.to_string().contains("work") {
-        true => quote!(work),
-        false => quote!(_),
-    };
-    let step = match (d.invariants.iter()).any(|v| super::invariants::holds_step(d, v)) {
-        true => quote!(h),
-        false => quote!(_),
-    };
-    let enlarged = super::impulses::not_less_than_impulses(d, names);
-    let (state, workspace) = (item(d, "State"), item(d, "Workspace"));
+    let state = item(d, "State");
     quote! {
         impl #bound #name #plain {
-            /// All observables, in the order of the card.
-            fn observe(&self, state: &#state #plain, out: &mut [f64]) {
-                #(#observed)*
-            }
-
-            /// All invariants of steps of `h`, in the order of the card.
-            fn invariants(
-                &self, state: &#state #plain, #step: f64, #work: Option<&#workspace #plain>, out: &mut [f64],
-            ) {
-                #values
-            }
-
-            /// Their sizes at a state, in steps of `h`.
+            /// The sizes of all invariants at a state, in steps of `h`.
             fn scales(&self, state: &#state #plain, h: f64, out: &mut [f64]) {
-                #enlarged
                 #scales
             }
 
@@ -332,22 +232,17 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 fingerprint: Self::FINGERPRINT,
                 summary: #summary,
                 solver: #solver,
-                order: #order,
-                orders: #orders,
-                preprocessed: #preprocessed,
-                reversible: #reversible,
+                #irreversible
+                #orders
                 parameters: &[#(#p),*],
                 initial: &[#(#i),*],
                 observables: &[#(#o),*],
                 invariants: &[#(#invariants),*],
                 discrete_energy: #discrete_energy,
-                open: open::<Self>,
-                solvers: #solvers,
-                dimensions: &[#(#dimensions),*],
-                sized: #sized_by,
+                #solvers
+                #dimensions
+                ..Card::plain(open::<Self>, #sized_by)
             };
-
-            #kinetic_warning
 
             #sized
         }

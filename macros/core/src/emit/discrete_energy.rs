@@ -26,7 +26,7 @@ pub fn discrete_energy(d: &Derivation, names: &Names) -> TokenStream {
         parameters,
         locals,
         bindings,
-    } = edge_between(d, names, wanted);
+    } = edge_between(d, names, wanted, true);
     let p = schedule::program(s, wanted, "t");
     let (lets, values) = program(&p, &bindings);
     let (value, step) = (&values[0], variable(s, d.spec.step));

@@ -579,7 +579,7 @@ fn on_edge(d: &Derivation, names: &Names, list: &[Guard]) -> TokenStream {
         parameters,
         locals,
         bindings,
-    } = edge_between(d, names, &wanted);
+    } = edge_between(d, names, &wanted, false);
     let p = schedule::program(s, &wanted, "t");
     let (lets, values) = program(&p, &bindings);
     let tests = list.iter().zip(values.chunks(2)).map(|(g, pair)| {

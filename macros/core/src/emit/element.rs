@@ -95,8 +95,13 @@ pub fn offset(d: &Derivation, i: usize) -> TokenStream {
         let n = Literal::usize_unsuffixed(3 * i);
         return quote!(#n);
     }
-    let before = (0..i).map(|j| coordinates(d, j));
-    quote!(0 #(+ #before)*)
+    match i {
+        0 => quote!(0),
+        _ => {
+            let before = (0..i).map(|j| coordinates(d, j));
+            quote!(#(#before)+*)
+        }
+    }
 }
 
 /// The type of an element over the scalar `T`.

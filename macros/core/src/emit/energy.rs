@@ -3,10 +3,10 @@
 
 use super::element::{self, stacked};
 use super::expression::{Bindings, Writer, program};
-use super::items::{letters_of, parameter_locals, with_transports};
+use super::items::letters_of;
 use super::names::{Names, item, variable};
 use super::sizes::Generics;
-use super::step::{at, here};
+use super::step::{at, seen};
 use crate::derive::Derivation;
 use crate::derive::limit::Limit;
 use crate::expr::{self, Expr, Shift};
@@ -70,14 +70,11 @@ fn part_of(whole: &mut Derivation, d: &Derivation, members: &[usize]) {
 /// `energies` and `energy`, the kinetic energy part by part.
 fn in_parts(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
     let needed = letters_of([&limit.kinetic, &limit.linear, &limit.potential]);
-    let all = with_transports(d, &needed, 0);
-    let parameters = parameter_locals(d, quote!(self.parameters), &all);
     let mut bindings = Bindings::new();
-    let locals = here(d, names, &needed, &mut bindings);
+    let locals = seen(d, names, &needed, &mut bindings);
     let twice = twice_kinetic(d, &bindings, limit, &momenta(d));
     let potential = potential(d, &bindings, limit);
     let body = quote! {
-        #parameters
         #locals
         #twice
         (twice * T::from_f64(0.5), #potential)
@@ -135,8 +132,7 @@ fn both(d: &Derivation, body: TokenStream) -> TokenStream {
     let state = item(d, "State");
     let used = Generics::of(d).used();
     quote! {
-        /// The kinetic and the potential energy at this node: those of the limit of small steps,
-        /// at the node's momentum.
+        /// The kinetic and the potential energy of the limit of small steps, at this node's momentum.
         pub fn energies(&self, state: &#state #used) -> (T, T) {
             #body
         }
@@ -164,15 +160,12 @@ pub(super) fn gradients(d: &Derivation, e: &Expr) -> Vec<Expr> {
 fn whole(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
     let linear = gradients(d, &limit.linear);
     let needed = letters_of(linear.iter().chain([&limit.potential]));
-    let all = with_transports(d, &needed, 0);
-    let parameters = parameter_locals(d, quote!(self.parameters), &all);
     let mut bindings = Bindings::new();
-    let locals = here(d, names, &needed, &mut bindings);
+    let locals = seen(d, names, &needed, &mut bindings);
     let momentum = momentum(d, &bindings, &linear, momenta(d));
     let potential = potential(d, &bindings, limit);
     let coordinates = element::offset(d, d.spec.configurations.len());
     let body = quote! {
-        #parameters
         #locals
         #momentum
         let velocity = solve_leading_or_nan(&self.inertia_at(state), &momentum, #coordinates);
@@ -200,6 +193,28 @@ fn momentum(
     }
     let stacked = stacked(d, &own);
     quote!(let momentum = #stacked;)
+}
+
+/// The inertia at a state, as the last expression of a function.
+pub(super) fn inertia_alone(d: &Derivation, bindings: &Bindings, kinetic: &[Expr]) -> TokenStream {
+    let s = &d.letters.symbols;
+    let fixed = d.spec.dimensions.is_empty();
+    let (true, [xi]) = (fixed, d.letters.variation.as_slice()) else {
+        let inertia = inertia(d, bindings, kinetic);
+        return quote!(#inertia inertia);
+    };
+    let p = schedule::program(s, kinetic, "t");
+    let (lets, values) = program(&p, bindings);
+    let (name, along) = (variable(s, *xi), stacked(d, &values));
+    let direction = element::basis(d, 0, quote!(axis));
+    let t = super::expression::ty(s, s.get(*xi).shape);
+    quote! {
+        columns(|axis| {
+            let #name: #t = #direction;
+            #lets
+            #along
+        })
+    }
 }
 
 /// The inertia column by column, as the local `inertia`: the momentum of each unit velocity is the gradient

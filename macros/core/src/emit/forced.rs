@@ -1,5 +1,6 @@
 //! The step of a forced Moser-Veselov equation, or of its like on SU(2): a number is found, then the node's torques act.
-//! Takes the derivation; gives `step`, the edge momentum and the words of a refusal.
+//! Takes the derivation; gives the edge momentum and what acts on arrival, of which the runtime's protocol makes the
+//! step; on SU(2) `step` and the words of a refusal themselves.
 
 use super::element::{Family, family};
 use super::expression::{Bindings, program};
@@ -41,10 +42,6 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
     let node = names.local("node");
     let begin = begin(d, names, mv);
     let kind = items::factor_type(d);
-    let error = match family(&d.spec.configurations[0]) {
-        Family::Quaternion => quote!(QuaternionError),
-        _ => quote!(MoserVeselovError),
-    };
     let used = Generics::of(d).used();
     let torques = Torques {
         leave: expr::neg(mv.rest.clone()),
@@ -55,6 +52,10 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
             .unwrap_or_else(|| expr::neg(mv.rest.clone())),
         seen: mv.torque.clone(),
     };
+    if super::stepper::is_forced(d) {
+        let arrived = kept(d, names, &torques);
+        return quote!(#begin #arrived);
+    }
     // On SO(3) such a body has a solver of its own.
     let step = match torques.leave.is_zero() && torques.arrive.is_zero() {
         true => super::quaternionic::free(d, names),
@@ -66,7 +67,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
 
         /// Says how far the step is beyond the bound, and which step could be solved.
         #[cold]
-        fn refused(&self, state: #state #used, factor: &#kind, h: T, e: #error) -> StepError {
+        fn refused(&self, state: #state #used, factor: &#kind, h: T, e: QuaternionError) -> StepError {
             let e = e.with_searched_step(factor, h, |trial| self.edge(&state, trial).body());
             StepCause::from(e).at_node(state.#node)
         }
@@ -131,7 +132,8 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     }
 }
 
-/// The step that finds its edge in the workspace and leaves the next one there.
+/// What acts at the node where an edge ends: the function of the next node, on SU(2) the whole step, which finds its
+/// edge in the workspace and leaves the next one there.
 fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     let (leave, arrive) = (&torques.leave, &torques.arrive);
     let s = &d.letters.symbols;
@@ -139,15 +141,8 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     let (element, momentum) = (own(d, c.element), per_configuration(d, "momentum", 0));
     let [moved, mut next] = ["moved", "next"].map(|tag| tagged(d, names, c.element, tag));
     let quaternion = family(c) == Family::Quaternion;
-    let [edge, following, space, momentum_next, node, turned] = [
-        "edge",
-        "edge_next",
-        "space",
-        "momentum_next",
-        "node",
-        "turned",
-    ]
-    .map(|base| names.local(base));
+    let [edge, following, space, momentum_next, node] =
+        ["edge", "edge_next", "space", "momentum_next", "node"].map(|base| names.local(base));
     let step = variable(s, d.spec.step);
     // Everything acts at the new node: what arrives there, and what leaves it on the next edge.
     // Where the two are equal, half their sum is each of them.
@@ -198,36 +193,34 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         None => quote!(#next.tr_mul(&#left)),
     };
     let seen_lets = seen.as_ref().map(|(lets, _)| lets);
-    let act = match values.as_slice() {
+    // What acts, then the momentum at the node, unless it has a name already, and the edge that begins there.
+    let (act, momentum_there, edge_there) = match values.as_slice() {
         [both] if c.side.is_body() => {
             let [torque, kick] = ["torque", "kick"].map(|base| names.local(base));
-            quote! {
-                let #torque = #both;
-                let #kick = #next * #torque;
-                let #momentum_next = #space + #kick * T::from_f64(0.5);
-                let #following = Edge::new(#next.tr_mul(&#space) + #torque, #space + #kick);
-            }
+            (
+                quote!(let #torque = #both; let #kick = #next * #torque;),
+                Some(quote!(#space + #kick * T::from_f64(0.5))),
+                quote!(Edge::new(#next.tr_mul(&#space) + #torque, #space + #kick)),
+            )
         }
         [both] => {
             let [kick, left] = ["kick", "left"].map(|base| names.local(base));
             let body = from_body(quote!(#left));
-            quote! {
-                #seen_lets
-                let #kick = #both;
-                let #momentum_next = #space + #kick * T::from_f64(0.5);
-                let #left = #space + #kick;
-                let #following = Edge::new(#body, #left);
-            }
+            (
+                quote!(#seen_lets let #kick = #both; let #left = #space + #kick;),
+                Some(quote!(#space + #kick * T::from_f64(0.5))),
+                quote!(Edge::new(#body, #left)),
+            )
         }
         [arrived, kick] if c.side.is_spatial() => {
             let left = names.local("left");
             let body = from_body(quote!(#left));
-            quote! {
+            let acted = quote! {
                 #seen_lets
                 let #momentum_next = #space + #arrived;
                 let #left = #momentum_next + #kick;
-                let #following = Edge::new(#body, #left);
-            }
+            };
+            (acted, None, quote!(Edge::new(#body, #left)))
         }
         _ => {
             let acting: Vec<_> = ["arrive", "leave"]
@@ -244,25 +237,12 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
                 Some(quote!(+ #next * #n))
             };
             let (arrived, left) = (space_part(0), space_part(1));
-            quote! {
-                #(#named)*
-                let #momentum_next = #space #arrived;
-                let #following = Edge::new(#next.tr_mul(&#space) #(#body)*, #momentum_next #left);
-            }
+            (
+                quote!(#(#named)* let #momentum_next = #space #arrived;),
+                None,
+                quote!(Edge::new(#next.tr_mul(&#space) #(#body)*, #momentum_next #left)),
+            )
         }
-    };
-    let factor = body(d);
-    // References do not change: what moves is written where it is, and not read back.
-    let follow = follow(d, names);
-    let next_edge = names.local("arrival");
-    let solution = match quaternion {
-        true => quote!(#edge.turn_in_quaternions(#factor, #step, &state.#element)),
-        false => quote! {
-            match work.method {
-                Method::Kappa => #edge.turn(#factor, #step, &state.#element),
-                method => #edge.turn_by(method, #factor, #step, &state.#element),
-            }
-        },
     };
     let at_next = quote! {
         #parameters
@@ -272,64 +252,43 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         let #space = #edge.space();
         #act
     };
-    let there = [
-        quote!(#next_edge.attitude),
-        quote!(#next_edge.momentum),
-        quote!(#next_edge.edge),
-    ];
-    let (follows, arrived, [there, momentum_there, edge_there]) = match quaternion {
-        true => (
-            quote! {
-                #at_next
-                let (#next_edge, #momentum_next) =
-                    (#moved.unit_quaternion(), SpatialMomentum(#momentum_next));
-            },
-            TokenStream::new(),
-            [
-                quote!(#next_edge),
-                quote!(#momentum_next),
-                quote!(#following),
-            ],
-        ),
-        false => (
-            quote!(let #next_edge = self.arrived(state, #edge, #step, #moved);),
-            arrived(
-                d,
-                names,
-                &moved,
-                &quote! {
-                    #at_next
-                    Moving { attitude: #moved.rotation(), momentum: SpatialMomentum(#momentum_next), edge: #following }
-                },
-            ),
-            there,
-        ),
-    };
-    let finite = [quote!(all_finite(&#momentum_there.0))];
+    if !quaternion {
+        let momentum = momentum_there.unwrap_or_else(|| quote!(#momentum_next));
+        let body = quote! {
+            #at_next
+            Moving { attitude: #moved.rotation(), momentum: SpatialMomentum(#momentum), edge: #edge_there }
+        };
+        return arrived(d, names, &moved, &body);
+    }
+    let factor = body(d);
+    // References do not change: what moves is written where it is, and not read back.
+    let follow = follow(d, names);
+    let named = momentum_there.map(|momentum| quote!(let #momentum_next = #momentum;));
+    let [turned, arrival] = ["turned", "arrival"].map(|base| names.local(base));
+    let finite = [quote!(all_finite(&#momentum_next.0))];
     let finite = super::domain::finite_in_step(d, names, &finite);
-    let step_of = step_signature(
+    step_signature(
         d,
         quote! {
             #follow
             let #edge = &work.edge;
-            let #turned = #solution;
+            let #turned = #edge.turn_in_quaternions(#factor, #step, &state.#element);
             let #moved = match #turned {
                 Ok(turned) => turned,
                 Err(e) => return Err(self.refused(*state, #factor, #step, e)),
             };
-            #follows
+            #at_next
+            #named
+            let #following = #edge_there;
+            let (#arrival, #momentum_next) = (#moved.unit_quaternion(), SpatialMomentum(#momentum_next));
             #finite
-            (state.#element, work.here.#element) = (#there, #there);
-            (state.#momentum, work.here.#momentum) = (#momentum_there, #momentum_there);
+            (state.#element, work.here.#element) = (#arrival, #arrival);
+            (state.#momentum, work.here.#momentum) = (#momentum_next, #momentum_next);
             state.#node += 1;
-            work.edge = #edge_there;
+            work.edge = #following;
             Ok(())
         },
-    );
-    quote! {
-        #step_of
-        #arrived
-    }
+    )
 }
 
 /// The step size, and the workspace made anew where it is that of another state.

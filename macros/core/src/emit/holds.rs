@@ -498,18 +498,6 @@ pub(super) fn arrivals(d: &Derivation, after: &Ident, bindings: &mut Bindings) -
     out
 }
 
-/// What a state says of a multiplier, as an observable.
-pub(super) fn observed(d: &Derivation) -> Vec<TokenStream> {
-    let each = d.spec.holds.iter().map(|hold| {
-        let field = multiplier(d, hold);
-        match shape(d, hold).is_scalar() {
-            true => quote!(let out = put(out, [state.#field()]);),
-            false => quote!(let out = put(out, rows(state.#field()));),
-        }
-    });
-    each.collect()
-}
-
 /// Whether what a constraint holds is a number.
 pub(super) fn is_number(d: &Derivation, j: usize) -> bool {
     shape(d, &d.spec.holds[j]).is_scalar()

@@ -3,23 +3,22 @@
 //! Takes the derivation; gives a state whose momenta are not less than the impulses of its node.
 
 use super::expression::{Bindings, program};
-use super::items::{letters_of, parameter_locals, with_transports};
-use super::names::{Names, per_configuration, variable};
+use super::names::{Names, item, per_configuration, variable};
 use super::sizes::size;
-use super::step::{at, here};
+use super::step::at;
 use crate::derive::Derivation;
 use crate::derive::balance::Balance;
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 /// Some rows of a momentum, and the size of the impulse that they get at a node.
-struct Impulse {
+pub(super) struct Impulse {
     configuration: usize,
     rows: TokenStream,
-    size: Expr,
+    pub size: Expr,
 }
 
 /// What has a value at a node whose state is known.
@@ -49,7 +48,7 @@ pub(super) fn at_node(s: &Symbols, rest: &[(Letter, Expr)], b: &Balance) -> Vec<
 }
 
 /// The impulses that what stands at a node gives, where they depend on nothing else.
-fn impulses(d: &Derivation) -> Vec<Impulse> {
+pub(super) fn impulses(d: &Derivation) -> Vec<Impulse> {
     let s = &d.letters.symbols;
     // Reactions of what is held balance the rest: they are as large.
     let multipliers: Vec<(Letter, Expr)> = d
@@ -93,40 +92,46 @@ fn impulses(d: &Derivation) -> Vec<Impulse> {
     all
 }
 
-/// `state`, its momenta not less than such impulses.
-pub(super) fn not_less_than_impulses(d: &Derivation, names: &Names) -> TokenStream {
-    let all = impulses(d);
+/// `state`, its momenta not less than such impulses; what the impulses are made of is bound.
+pub(super) fn not_less_than_impulses(
+    d: &Derivation,
+    names: &Names,
+    all: &[Impulse],
+    bindings: &Bindings,
+) -> TokenStream {
     if all.is_empty() {
         return TokenStream::new();
     }
     let sizes: Vec<Expr> = all.iter().map(|i| i.size.clone()).collect();
-    let needed = letters_of(&sizes);
-    let mut bindings = Bindings::new();
-    let parameters = parameter_locals(d, quote!(self.parameters), &with_transports(d, &needed, 0));
-    let locals = here(d, names, &needed, &mut bindings);
-    let p = schedule::program(&d.letters.symbols, &sizes, "t");
-    let (lets, values) = program(&p, &bindings);
+    let p = schedule::program(&d.letters.symbols, &sizes, "s");
+    let (lets, values) = program(&p, bindings);
     let step = variable(&d.letters.symbols, d.spec.step);
     let step = (step != "h").then(|| quote!(let #step = h;));
-    let enlarged = names.local("enlarged");
-    let taken = all.iter().zip(values).map(|(impulse, value)| {
-        let (field, rows) = (
-            per_configuration(d, "momentum", impulse.configuration),
-            &impulse.rows,
-        );
-        let kept = super::element::kept_name(d, impulse.configuration);
-        quote!(#enlarged.#field = #kept(not_less(#enlarged.#field.0, #rows, #value));)
+    let state = item(d, "State");
+    let named: Vec<Ident> = (1..=all.len())
+        .map(|n| match all {
+            [_] => names.local("impulse"),
+            _ => names.local(&format!("impulse{n}")),
+        })
+        .collect();
+    let of: Vec<(&Impulse, &Ident)> = all.iter().zip(&named).collect();
+    let taken = of.chunk_by(|(a, _), (b, _)| a.configuration == b.configuration);
+    let taken = taken.map(|parts| {
+        let configuration = parts[0].0.configuration;
+        let field = per_configuration(d, "momentum", configuration);
+        let kept = super::element::kept_name(d, configuration);
+        let value = parts
+            .iter()
+            .fold(quote!(state.#field.0), |value, (part, size)| {
+                let rows = &part.rows;
+                quote!(not_less(#value, #rows, #size))
+            });
+        quote!(#field: #kept(#value),)
     });
     quote! {
-        let mut #enlarged = *state;
-        {
-            type T = f64;
-            #step
-            #parameters
-            #locals
-            #lets
-            #(#taken)*
-        }
-        let state = &#enlarged;
+        #step
+        #lets
+        #(let #named = #values;)*
+        let state = &#state { #(#taken)* ..*state };
     }
 }

@@ -3,15 +3,15 @@
 use super::element::{self, Family};
 use super::expression::{Bindings, Writer, dims, program, ty};
 use super::formula::formula;
-use super::items::{letters_of, parameter_locals, with_transports};
+use super::items::{letters_of, with_transports};
 use super::names::{Names, item, variable};
 use super::sizes::{Generics, size};
-use super::step::{at, here};
+use super::step::{at, seen};
 use crate::derive::Derivation;
 use crate::derive::invariants::{Invariant, Kind};
 use crate::expr::{Expr, Letter, Shift};
 use crate::schedule;
-use proc_macro2::TokenStream;
+use proc_macro2::{TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
 /// Locals for the node momenta among the letters.
@@ -95,17 +95,14 @@ fn spectrum_size(d: &Derivation) -> TokenStream {
     group.map_or_else(|| quote!(0), |n| size(&d.letters.symbols, n))
 }
 
-/// The momentum and the square of the factor of a Lax form, with the locals they need; the model's
-/// parameters are found at `source`.
-fn lax_parts(d: &Derivation, names: &Names, source: TokenStream) -> [TokenStream; 3] {
+/// The momentum and the square of the factor of a Lax form, with the locals they need.
+fn lax_parts(d: &Derivation, names: &Names) -> [TokenStream; 3] {
     let (Some(lax), Some(c)) = (&d.integrability.lax, d.spec.configurations.first()) else {
         return Default::default();
     };
     let needed = letters_of([&lax.factor]);
-    let all = with_transports(d, &needed, 0);
-    let parameters = parameter_locals(d, source, &all);
     let mut bindings = Bindings::new();
-    let locals = here(d, names, &needed, &mut bindings);
+    let locals = seen(d, names, &needed, &mut bindings);
     let writer = Writer {
         symbols: &d.letters.symbols,
         bindings: &bindings,
@@ -113,7 +110,7 @@ fn lax_parts(d: &Derivation, names: &Names, source: TokenStream) -> [TokenStream
     let factor = writer.operand(&lax.factor);
     let momentum = element::momentum_field(d, 0, c.side);
     [
-        quote!(#parameters #locals),
+        locals,
         quote!(state.#momentum().0),
         quote!(#factor * #factor),
     ]
@@ -125,7 +122,7 @@ fn spectrum(d: &Derivation, names: &Names, v: &Invariant) -> TokenStream {
     let used = Generics::of(d).used();
     let n = spectrum_size(d);
     let method = format_ident!("{}", v.name);
-    let [locals, momentum, square] = lax_parts(d, names, quote!(self.parameters));
+    let [locals, momentum, square] = lax_parts(d, names);
     let doc = format!(
         " {}: entry `(j - 1, i)` is the coefficient of `ν^i` and of degree `j` in the momentum.",
         v.reason
@@ -142,7 +139,7 @@ fn spectrum(d: &Derivation, names: &Names, v: &Invariant) -> TokenStream {
 /// The scales of the coefficients.
 pub fn spectrum_scales(d: &Derivation, names: &Names) -> TokenStream {
     let n = spectrum_size(d);
-    let [locals, momentum, square] = lax_parts(d, names, quote!(self.parameters));
+    let [locals, momentum, square] = lax_parts(d, names);
     quote!({
         type T = f64;
         #locals
@@ -208,10 +205,8 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
             }
             (_, Some(value), _) => {
                 let needed = letters_of([value]);
-                let all = with_transports(d, &needed, 0);
-                let parameters = parameter_locals(d, quote!(self.parameters), &all);
                 let mut bindings = Bindings::new();
-                let locals = here(d, names, &needed, &mut bindings);
+                let locals = seen(d, names, &needed, &mut bindings);
                 let mu = momenta(d, &needed, &mut bindings);
                 let p = schedule::program(s, std::slice::from_ref(value), "t");
                 let (lets, values) = program(&p, &bindings);
@@ -220,7 +215,6 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
                 functions.extend(quote! {
                     #[doc = #doc]
                     pub fn #method(&self, #step state: &#state #used) -> #t {
-                        #parameters
                         #locals
                         #mu
                         #lets
@@ -243,40 +237,75 @@ pub fn scales(d: &Derivation, names: &Names) -> TokenStream {
         .filter(|v| !matches!(v.kind, Kind::Spectrum))
         .filter_map(|v| v.scale.clone())
         .collect();
-    let needed = letters_of(&list);
-    let all = with_transports(d, &needed, 0);
-    let parameters = parameter_locals(d, quote!(self.parameters), &all);
+    let impulses = super::impulses::impulses(d);
+    let mut needed = letters_of(&list);
     let mut bindings = Bindings::new();
-    let locals = here(d, names, &needed, &mut bindings);
     let mu = momenta(d, &needed, &mut bindings);
+    needed.extend(letters_of(impulses.iter().map(|i| &i.size)));
+    let locals = seen(d, names, &needed, &mut bindings);
+    let enlarged = super::impulses::not_less_than_impulses(d, names, &impulses, &bindings);
     let p = schedule::program(s, &list, "t");
     let (lets, values) = program(&p, &bindings);
     let mut values = list.iter().zip(values);
-    let mut written = TokenStream::new();
+    let mut sizes: Vec<Sizes> = Vec::new();
     for v in &d.invariants {
         let rows = rows(d, v);
-        // Arrays of a length that is computed from a named size are not stable Rust.
-        let alike = |value: TokenStream| match d.spec.dimensions.is_empty() {
-            true => quote!([#value; #rows]),
-            false => quote!(::core::iter::repeat_n(#value, #rows)),
+        let alike = |value: TokenStream| match form(d, v) {
+            Form::Number => Sizes::Number(value),
+            // Arrays of a length that is computed from a named size are not stable Rust.
+            _ if d.spec.dimensions.is_empty() => Sizes::Several(quote!([#value; #rows])),
+            _ => Sizes::Several(quote!(::core::iter::repeat_n(#value, #rows))),
         };
-        let sizes = match (&v.kind, &v.scale) {
-            (Kind::Spectrum, _) => spectrum_scales(d, names),
+        sizes.push(match (&v.kind, &v.scale) {
+            (Kind::Spectrum, _) => Sizes::Several(spectrum_scales(d, names)),
             (Kind::ConstraintRate(j), _) => alike(super::holds::rate_scale(d, *j)),
             (_, None) => alike(quote!(sum_of_sizes(self.energies(state)))),
             (_, Some(_)) => match values.next() {
                 Some((e, value)) if e.shape().is_scalar() => alike(value),
-                Some((_, value)) => quote!(rows(#value)),
+                Some((_, value)) => Sizes::Several(quote!(rows(#value))),
                 None => continue,
             },
-        };
-        written.extend(quote!(let out = put(out, #sizes);));
+        });
     }
+    let together = sizes.chunk_by(|a, b| matches!((a, b), (Sizes::Number(_), Sizes::Number(_))));
+    let together: Vec<TokenStream> = together
+        .map(|list| match list {
+            [Sizes::Several(all)] => all.clone(),
+            list => {
+                let numbers = list.iter().map(|(Sizes::Number(x) | Sizes::Several(x))| x);
+                quote!([#(#numbers),*])
+            }
+        })
+        .collect();
+    let written = together.split_last().map(|(last, first)| {
+        quote! {
+            #(let out = put(out, #first);)*
+            put(out, #last);
+        }
+    });
     // Scales are taken on plain numbers.
-    let scalar = (!list.is_empty()).then(|| {
+    let body = quote!(#locals #enlarged #mu #lets #written);
+    let scalar = names_scalar(&body).then(|| {
         quote!(
             type T = f64;
         )
     });
-    quote!(#scalar #parameters #locals #mu #lets #written)
+    quote!(#scalar #body)
+}
+
+/// The scales of one invariant.
+enum Sizes {
+    /// That of a number.
+    Number(TokenStream),
+    /// Those of several.
+    Several(TokenStream),
+}
+
+/// Whether the scalar `T` stands somewhere.
+fn names_scalar(tokens: &TokenStream) -> bool {
+    tokens.clone().into_iter().any(|tree| match tree {
+        TokenTree::Ident(name) => name == "T",
+        TokenTree::Group(group) => names_scalar(&group.stream()),
+        _ => false,
+    })
 }

@@ -308,39 +308,54 @@ pub fn node_locals(
             continue;
         }
         let name = local(a.quantity);
-        let value = match t {
-            Transport::Defined(e) => {
-                let e = expr::shift_time(s, e, level);
-                Writer {
-                    symbols: s,
-                    bindings,
-                }
-                .write(&e)
-            }
-            Transport::Carried { value, .. } => {
-                let e = expr::shift_time(s, value, level);
-                let start = tagged(d, names, a.quantity, "reference");
-                let source = reference(a.quantity);
-                out.extend(quote!(let #start = #source;));
-                let mut inner = bindings.clone();
-                inner.bind(letter, start);
-                Writer {
-                    symbols: s,
-                    bindings: &inner,
-                }
-                .write(&e)
-            }
-            Transport::Advanced if level == 1 => Writer {
-                symbols: s,
-                bindings,
-            }
-            .write(&a.update),
-            Transport::Advanced => reference(a.quantity),
-        };
+        let (found, value) = advected_value(d, names, a, t, level, reference, bindings);
+        out.extend(found);
         out.extend(quote!(let #name = #value;));
         bindings.bind(letter, name);
     }
     out
+}
+
+/// The value of an advected quantity at a node where everything that it is made of is bound, and what comes before it.
+pub fn advected_value(
+    d: &Derivation,
+    names: &Names,
+    a: &Advected,
+    transport: &Transport,
+    level: i8,
+    reference: &dyn Fn(SymbolId) -> TokenStream,
+    bindings: &Bindings,
+) -> (TokenStream, TokenStream) {
+    let s = &d.letters.symbols;
+    let written = |e: &Expr, bindings: &Bindings| {
+        let writer = Writer {
+            symbols: s,
+            bindings,
+        };
+        writer.write(e)
+    };
+    let value = match transport {
+        Transport::Defined(e) => written(&expr::shift_time(s, e, level), bindings),
+        Transport::Carried { value, .. } => {
+            let start = tagged(d, names, a.quantity, "reference");
+            let source = reference(a.quantity);
+            let shift = Shift {
+                time: level,
+                label: [0, 0],
+            };
+            let letter = Letter {
+                symbol: a.quantity,
+                shift,
+            };
+            let mut inner = bindings.clone();
+            inner.bind(letter, start.clone());
+            let value = written(&expr::shift_time(s, value, level), &inner);
+            return (quote!(let #start = #source;), value);
+        }
+        Transport::Advanced if level == 1 => written(&a.update, bindings),
+        Transport::Advanced => reference(a.quantity),
+    };
+    (TokenStream::new(), value)
 }
 
 fn assumption(d: &Derivation, a: &Assumption) -> TokenStream {

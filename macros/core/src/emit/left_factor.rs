@@ -88,11 +88,11 @@ pub(super) fn of_model(d: &Derivation) -> (TokenStream, TokenStream) {
 }
 
 /// The names of the solvers that can be chosen, the one taken otherwise first.
-pub(super) fn offered(d: &Derivation) -> TokenStream {
+pub(super) fn offered(d: &Derivation) -> Option<TokenStream> {
     let mut exact = d.solve.blocks.iter().filter(|b| b.has_factor());
     let of_space = |i: &usize| family(&d.spec.configurations[*i]) == Family::Rotation;
-    match (chooses(d), family(&d.spec.configurations[0])) {
-        (false, _) => quote!(&[]),
+    Some(match (chooses(d), family(&d.spec.configurations[0])) {
+        (false, _) => return None,
         (true, _) if known_at_nodes(d) => quote!(&Method::DAVENPORT_FIRST),
         (true, _) if matches!(d.solve.method, Method::Blocks) => {
             match exact.all(|b| b.members.iter().all(of_space)) {
@@ -111,10 +111,8 @@ pub(super) fn offered(d: &Derivation) -> TokenStream {
         (
             true,
             Family::Linear(_) | Family::Quaternion | Family::Coordinates(_) | Family::Field(_),
-        ) => {
-            quote!(&[])
-        }
-    }
+        ) => return None,
+    })
 }
 
 /// The advected quantities by whose references the factor is made.

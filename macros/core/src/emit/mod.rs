@@ -223,7 +223,8 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     );
     quote! {
         #[doc = #about]
-        #[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables, confusable_idents, unused_variables, clippy::all)]
+        #[allow(non_snake_case, uncommon_codepoints, mixed_script_confusables)]
+        #[allow(confusable_idents, unused_variables, clippy::all)]
         #visibility mod #module {
             use ::clebsch::emitted::*;
             #given

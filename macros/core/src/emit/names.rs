@@ -168,7 +168,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name besides [`TYPES`], and what they name themselves: a
 /// local of the model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 123] = [
+const INSIDE: [&str; 124] = [
     "all",
     "all_finite",
     "along",
@@ -178,6 +178,7 @@ const INSIDE: [&str; 123] = [
     "basis",
     "body",
     "chosen_solver",
+    "columns",
     "columns_from",
     "count",
     "not_less",

@@ -85,7 +85,7 @@ pub(super) fn residual_of_step(d: &Derivation, names: &Names) -> TokenStream {
         parameters,
         locals,
         mut bindings,
-    } = edge_between(d, names, &all);
+    } = edge_between(d, names, &all, true);
     let arrivals = super::holds::arrivals(d, &after, &mut bindings);
     let p = schedule::program(s, &all, "t");
     let (lets, values) = program(&p, &bindings);

@@ -1,5 +1,6 @@
 //! How a trajectory begins: the state at node 0 from initial data, and the workspace of its steps.
-//! Takes the derivation; gives the two functions of which the runtime's protocol makes `start`.
+//! Takes the derivation; gives the two functions of which the runtime's protocol makes `start`. Of forced steps it makes
+//! the second one itself, around what tests the start.
 
 use super::element::{self, Family, family};
 use super::expression::{Bindings, Writer};
@@ -67,22 +68,65 @@ pub(super) fn start(d: &Derivation, names: &Names) -> TokenStream {
         Choice::Order | Choice::Solver => quote!(choice),
     };
     let choice = choice.ty();
-    let (begin, prepared) = (state_of(d, names), workspace_of(d, names));
+    let begin = plain(d, names).is_none().then(|| {
+        let begin = state_of(d, names);
+        quote! {
+            /// The state at node 0.
+            fn begin(&self, initial: #initial #used) -> Result<#state #used, StartError> {
+                #begin
+            }
+        }
+    });
+    if super::stepper::is_forced(d) {
+        let tests = tests(d, names);
+        let tests = is_tested(d).then(|| {
+            quote! {
+                /// Whether steps of `h` from `state` are defined.
+                fn is_defined(&self, state: &#state #used, h: T) -> Result<(), StartError> {
+                    #tests
+                    Ok(())
+                }
+            }
+        });
+        return quote!(#begin #tests);
+    }
+    let prepared = workspace_of(d, names);
     let from = match prepared.to_string().contains("state") {
         true => quote!(state),
         false => quote!(_),
     };
     quote! {
-        /// The state at node 0.
-        fn begin(&self, initial: #initial #used) -> Result<#state #used, StartError> {
-            #begin
-        }
+        #begin
 
         /// What steps of `h` from `state` begin with.
         fn prepared(&self, #from: &#state #used, h: T, #chosen: #choice) -> Result<#work #used, StartError> {
             #prepared
         }
     }
+}
+
+/// What the protocol makes the state at node 0 of, where that holds elements and momenta alone.
+pub(super) fn plain(d: &Derivation, names: &Names) -> Option<TokenStream> {
+    let list = d.spec.configurations.iter().enumerate();
+    let alone = items::kept(d).is_empty()
+        && items::ticks(d, names).is_empty()
+        && d.spec.holds.is_empty()
+        // The momentum of a rotation of higher dimensions is a skew matrix.
+        && list.clone().all(|(_, c)| !matches!(family(c), Family::Orthogonal(_)));
+    let each = list.clone().map(|(i, c)| {
+        let (element, momentum) = (own(d, c.element), per_configuration(d, "momentum", i));
+        let given = element::momentum_field(d, i, c.side);
+        let way = match c.side.is_body() {
+            _ if element::about_body(c) => quote!(.carried),
+            true => quote!(.to_space),
+            false => TokenStream::new(),
+        };
+        quote!(#element, #momentum = #given #way)
+    });
+    let rests = list.flat_map(|(i, _)| element::rests(d, i).into_iter().flatten());
+    let rests: Vec<_> = rests.collect();
+    let rests = (!rests.is_empty()).then(|| quote!({ #(#rests),* }));
+    alone.then(|| quote!(start { #(#each);* } #rests))
 }
 
 /// The state at node 0, as the body of a function of the initial data.
@@ -185,17 +229,27 @@ fn state_of(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
+/// Whether something is asked of a step or of the state where it starts.
+pub(super) fn is_tested(d: &Derivation) -> bool {
+    !tests(d, &Names::new(d)).is_empty()
+}
+
+/// What is asked of steps of `h`, and of the state that a trajectory starts from.
+fn tests(d: &Derivation, names: &Names) -> TokenStream {
+    let admitted = super::domain::of_step(d);
+    let defined = super::domain::of_start(d, names);
+    quote!(#admitted #defined)
+}
+
 /// The workspace of steps of `h` from a state, as the body of a function of both and of the choice.
 fn workspace_of(d: &Derivation, names: &Names) -> TokenStream {
     let work = item(d, "Workspace");
-    let admitted = super::domain::of_step(d);
-    let defined = super::domain::of_start(d, names);
+    let tests = tests(d, names);
     let fields = fields_of_workspace(d);
     let method = (Choice::of(d) == Choice::Solver)
         .then(|| quote!(let method = choice.unwrap_or(self.method);));
     quote! {
-        #admitted
-        #defined
+        #tests
         #method
         Ok(#work { h, #fields })
     }
@@ -220,11 +274,8 @@ fn fields_of_workspace(d: &Derivation) -> TokenStream {
                 #(#references: state.#references,)*
             }
         }
-        Method::ForcedMoserVeselov => {
-            let factor = (!items::factor_references(d).is_empty())
-                .then(|| quote!(factor: self.factor(state)?,));
-            quote!(method, #factor edge: self.edge(state, h), here: *state)
-        }
+        // Written by the protocol.
+        Method::ForcedMoserVeselov => TokenStream::new(),
         Method::UnitQuaternions => {
             let factor = (!items::factor_references(d).is_empty())
                 .then(|| quote!(factor: self.factor(state)?,));

@@ -13,6 +13,7 @@ use crate::derive::Derivation;
 use crate::derive::carry::Carry;
 use crate::derive::displaced::Displaced;
 use crate::derive::recognise::{Method, Riccati};
+use crate::derive::transport::Transport;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::TokenStream;
@@ -137,6 +138,30 @@ pub(super) fn here(
         quote!(state.#r)
     };
     node_locals(d, names, 0, needed, &element, &reference, bindings)
+}
+
+/// The same for functions of a state that are asked for beside the step, with the parameters that are needed: what is
+/// advected they ask of the model.
+pub(super) fn seen(
+    d: &Derivation,
+    names: &Names,
+    needed: &[Letter],
+    bindings: &mut Bindings,
+) -> TokenStream {
+    let s = &d.letters.symbols;
+    let (mut asked, mut others) = (TokenStream::new(), needed.to_vec());
+    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
+        let letter = at(a.quantity, Shift::HERE);
+        if needed.contains(&letter) && !matches!(t, Transport::Advanced) {
+            let (local, function) = (variable(s, a.quantity), own(d, a.quantity));
+            asked.extend(quote!(let #local = self.#function(state);));
+            bindings.bind(letter, local);
+            others.retain(|l| *l != letter);
+        }
+    }
+    let parameters = parameter_locals(d, quote!(self.parameters), &others);
+    let locals = here(d, names, &others, bindings);
+    quote!(#parameters #locals #asked)
 }
 
 /// The momentum of configuration `i` at the node where the step starts, on a side.
@@ -339,13 +364,19 @@ fn advected_access(d: &Derivation, names: &Names) -> TokenStream {
     let state = item(d, "State");
     let used = Generics::of(d).used();
     let mut out = TokenStream::new();
-    for a in &d.spec.advected {
+    for (a, t) in d.spec.advected.iter().zip(&d.transports) {
         let letter = at(a.quantity, Shift::HERE);
-        let needed = with_transports(d, &[letter], 0);
+        let mut needed = with_transports(d, &[letter], 0);
         let parameters = parameter_locals(d, quote!(self.parameters), &needed);
+        needed.retain(|l| *l != letter);
         let mut bindings = Bindings::new();
-        let locals = here(d, names, &[letter], &mut bindings);
-        let (name, local) = (own(d, a.quantity), variable(s, a.quantity));
+        let locals = here(d, names, &needed, &mut bindings);
+        let reference = |id| {
+            let kept = own(d, id);
+            quote!(state.#kept)
+        };
+        let (found, value) = items::advected_value(d, names, a, t, 0, &reference, &bindings);
+        let name = own(d, a.quantity);
         let t = super::expression::ty(s, s.get(a.quantity).shape);
         let doc = format!(" `{name}` at the node of this state.");
         out.extend(quote! {
@@ -354,7 +385,8 @@ fn advected_access(d: &Derivation, names: &Names) -> TokenStream {
             pub fn #name(&self, state: &#state #used) -> #t {
                 #parameters
                 #locals
-                #local
+                #found
+                #value
             }
         });
     }

@@ -1,10 +1,15 @@
 //! The model as something that steps: the protocol of the runtime around `begin`, `prepared` and `step`.
-//! Takes the derivation; gives the one call that names the model's types, their fields and its way of stepping.
+//! Takes the derivation; gives the one call that names the model's types, their fields, its way of stepping and what
+//! it shows.
 
+use super::element::{self, Family, family};
+use super::invariants::Form;
 use super::items::{factor_references, kept};
 use super::names::{Names, item, own, per_configuration};
 use super::sizes::Generics;
+use crate::check::spec::Side;
 use crate::derive::Derivation;
+use crate::derive::invariants::{Invariant, Kind};
 use crate::derive::recognise::Method;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -30,9 +35,16 @@ pub fn protocol(d: &Derivation, names: &Names) -> TokenStream {
         (false, false) => quote!(none),
     };
     let judged = match d.kinetic {
-        Some(_) => quote!(judged),
+        Some(_) => {
+            let coordinates = element::offset(d, d.spec.configurations.len());
+            quote!(judged { #coordinates })
+        }
         None => quote!(unjudged),
     };
+    let solved = is_forced(d).then(|| forced(d));
+    let start = super::start::plain(d, names);
+    let observables = observables(d);
+    let invariants = d.invariants.iter().map(|v| invariant(d, v));
     quote! {
         ::clebsch::stepper! {
             [#(#sizes)*] #name,
@@ -40,8 +52,72 @@ pub fn protocol(d: &Derivation, names: &Names) -> TokenStream {
             #initial { #(#of_initial),* },
             #state { #(#of_state),* } at #node,
             #work { #(#of_work),* },
-            #form { #(#moved),* } #choice #orders #judged
+            #form { #(#moved),* } #choice #orders #judged #solved #start
+            observables { #(#observables),* }
+            invariants { #(#invariants),* }
         }
+    }
+}
+
+/// Whether the protocol makes its steps, around the model's edges and what acts at nodes.
+pub(super) fn is_forced(d: &Derivation) -> bool {
+    matches!(d.solve.method, Method::ForcedMoserVeselov)
+}
+
+/// How a forced step is solved, what its factor is made of and what a start is tested for.
+fn forced(d: &Derivation) -> TokenStream {
+    let how = d.how_solved();
+    let references = factor_references(d).into_iter().map(|id| own(d, id));
+    let references: Vec<Ident> = references.collect();
+    let of = (!references.is_empty()).then(|| quote!(, of #(#references)&*));
+    let tests = super::start::is_tested(d).then(|| quote!(, tests is_defined));
+    quote!((#how #of #tests))
+}
+
+/// What is observed, in the order of the card.
+fn observables(d: &Derivation) -> Vec<TokenStream> {
+    let mut all = Vec::new();
+    for (i, c) in d.spec.configurations.iter().enumerate() {
+        let element = own(d, c.element);
+        all.push(quote!(state.#element));
+        let sides = match c.group.is_additive() {
+            true => &Side::BOTH[..1],
+            false => &Side::BOTH[..],
+        };
+        let momenta = sides
+            .iter()
+            .map(|side| element::momentum_field(d, i, *side));
+        all.extend(momenta.map(|momentum| quote!(state.#momentum)));
+    }
+    let advected = d.spec.advected.iter().map(|a| own(d, a.quantity));
+    all.extend(advected.map(|quantity| quote!(#quantity)));
+    let multipliers = d.spec.holds.iter().map(|hold| own(d, hold.multiplier));
+    all.extend(multipliers.map(|multiplier| quote!(state.#multiplier)));
+    all
+}
+
+/// Where the numbers of an invariant are found.
+fn invariant(d: &Derivation, v: &Invariant) -> TokenStream {
+    if let Kind::SpatialMomentum(i) = v.kind {
+        let c = &d.spec.configurations[i];
+        let (element, momentum) = (own(d, c.element), element::spatial_momentum_field(d, i));
+        // The state keeps the spatial momentum; what shows a drift is the momentum that the solver iterates in the
+        // body, seen from space.
+        return match (&d.solve.method, family(c)) {
+            (Method::FreeMoserVeselov, _) => quote!(work.#element.#momentum),
+            (_, Family::Orthogonal(_)) => quote!(state.#momentum as skew),
+            _ => quote!(state.#momentum),
+        };
+    }
+    let name = format_ident!("{}", v.name);
+    let shape = match super::invariants::form(d, v) {
+        Form::Number | Form::Entries => TokenStream::new(),
+        Form::Skew => quote!(as skew),
+        Form::Spectrum => quote!(as spectrum),
+    };
+    match super::invariants::holds_step(d, v) {
+        true => quote!(h.#name),
+        false => quote!(#name #shape),
     }
 }
 
@@ -51,15 +127,13 @@ fn form(d: &Derivation) -> (Ident, Vec<Ident>) {
     let moved = [own(d, c.element), per_configuration(d, "momentum", 0)];
     // Lanes side by side pass by what is tested after a step.
     let guarded = super::domain::is_guarded(d);
-    let of_state = !factor_references(d).is_empty();
     let (form, moved) = match d.solve.method {
         Method::FreeMoserVeselov => ("free", moved.to_vec()),
-        Method::ForcedMoserVeselov if !guarded => {
+        Method::ForcedMoserVeselov => {
             let references = kept(d).into_iter().map(|id| own(d, id));
-            let form = if of_state {
-                "forced_of_state"
-            } else {
-                "forced"
+            let form = match guarded {
+                true => "forced_untested",
+                false => "forced",
             };
             (form, moved.into_iter().chain(references).collect())
         }
