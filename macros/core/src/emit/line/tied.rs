@@ -11,7 +11,7 @@ use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr};
 use crate::line::{How, Tie};
 use crate::schedule;
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 /// Whether velocities of neighbours stand in the momenta of a block.
@@ -128,7 +128,12 @@ pub(super) fn solve(l: &Lines, field: &Ident, members: &[Moving]) -> TokenStream
         quote! {
             {
                 #range
-                rows.tie([first, last], |site| #touched, |site, velocities| self.#kernel(h, site, at, velocities));
+                rows.tie(
+                    [first, last],
+                    |site| #touched,
+                    |site, velocities| self.#kernel(h, site, at, velocities).0,
+                    |site, velocities| self.#kernel(h, site, at, velocities),
+                );
             }
         }
     });
@@ -156,6 +161,7 @@ pub(super) fn solve(l: &Lines, field: &Ident, members: &[Moving]) -> TokenStream
             let made = work.band.solve_along(
                 self.#range(),
                 |site| self.#given(site, edges),
+                |site, velocity| self.#own(h, site, at, velocity).0,
                 |site, velocity| self.#own(h, site, at, velocity),
                 |rows| { #(#each)* },
                 &mut work.#field,
@@ -198,6 +204,54 @@ pub(super) fn tied(l: &Lines) -> TokenStream {
     quote!(impl<T: Real> #name<T> { #(#each)* })
 }
 
+/// The derivatives that a term of neighbours adds: those of the momenta of one of its sites by the velocities of another
+/// that are not zero.
+#[derive(Default)]
+pub(super) struct Derivatives {
+    /// The two sites of a block, from the index of the term.
+    pairs: Vec<[usize; 2]>,
+    fill: TokenStream,
+}
+
+impl Derivatives {
+    /// Puts columns into the block of two sites: of so many rows, and where they begin in it.
+    pub(super) fn put(
+        &mut self,
+        pair: [usize; 2],
+        [row, rows, column]: [usize; 3],
+        e: &Expr,
+        value: TokenStream,
+    ) {
+        if e.is_zero() {
+            return;
+        }
+        let place = self.pairs.iter().position(|p| *p == pair);
+        let block = number(place.unwrap_or_else(|| {
+            self.pairs.push(pair);
+            self.pairs.len() - 1
+        }));
+        let [row, rows, column, wide] = [row, rows, column, width(e)].map(number);
+        let value = as_array(e, value);
+        self.fill.extend(
+            quote!(a[#block].fixed_view_mut::<#rows, #wide>(#row, #column).copy_from(&(#value));),
+        );
+    }
+
+    /// The blocks with nothing in them, what fills them, the list of them, and how many there are.
+    pub(super) fn emitted(self, n: usize) -> (TokenStream, TokenStream, TokenStream, Literal) {
+        let (size, count) = (number(n), number(self.pairs.len()));
+        let lets = match self.pairs.is_empty() {
+            true => TokenStream::new(),
+            false => quote!(let mut a = [SMatrix::<T, #size, #size>::zeros(); #count];),
+        };
+        let each = self.pairs.iter().enumerate().map(|(block, pair)| {
+            let ([of, by], block) = (pair.map(number), number(block));
+            quote!((#of, #by, a[#block]))
+        });
+        (lets, self.fill, quote!([#(#each),*]), count)
+    }
+}
+
 /// Where the rows of a field begin in its block, and how many there are.
 pub(super) fn rows_of(members: &[Moving], on: &str) -> (usize, usize) {
     let before = members.iter().take_while(|o| o.mover.name != on);
@@ -224,40 +278,28 @@ fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> Token
     let mut results = values.iter().zip(results);
     let (size, wide) = (number(n), number(tie.width + 1));
     let mut fill = TokenStream::new();
-    for by in &tie.parts {
-        let own = members.iter().find(|m| m.mover.name == by.on);
-        let (site, (row, _)) = (number(by.site), rows_of(members, &by.on));
-        let rate = own.and_then(|m| Some((m, m.rate(&quote!(velocities[#site]), row)?)));
-        if let Some((m, rate)) = rate {
-            let local = m.rate_name(by.site);
-            fill.extend(quote!(let #local = #rate;));
-        }
-    }
+    let mut derivatives = Derivatives::default();
     for of in &tie.parts {
         let (row, rows) = rows_of(members, &of.on);
-        let (at_row, rows, site) = (number(row), number(rows), number(of.site));
+        let (at_row, count, site) = (number(row), number(rows), number(of.site));
         let value = results.next().map(|(e, value)| as_array(e, value));
         fill.extend(
-            quote!(made[#site].fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&(#value));),
+            quote!(made[#site].fixed_view_mut::<#count, 1>(#at_row, 0).copy_from(&(#value));),
         );
         for by in &tie.parts {
             let (column, columns) = rows_of(members, &by.on);
-            let other = number(by.site);
-            let own = members.iter().find(|m| m.mover.name == by.on);
             let mut j = column;
-            while let (true, Some(own)) = (j < column + columns, own) {
+            while j < column + columns {
                 let Some((e, value)) = results.next() else {
                     break;
                 };
-                let (at_column, wide) = (number(j), number(width(e)));
-                let value = own.by_numbers(&as_array(e, value), by.site);
-                fill.extend(
-                    quote!(a[#site][#other].fixed_view_mut::<#rows, #wide>(#at_row, #at_column).copy_from(&(#value));),
-                );
+                derivatives.put([of.site, by.site], [row, rows, j], e, value);
                 j += width(e);
             }
         }
     }
+    let (lets_of_blocks, filled, blocks, count) = derivatives.emitted(n);
+    fill.extend(filled);
     let kernel = format_ident!("tied_{k}");
     let doc = " What a term of neighbours adds to the momenta of its sites at the start of an edge, and the \
                derivatives by their velocities.";
@@ -265,13 +307,13 @@ fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> Token
     quote! {
         #[doc = #doc]
         #[inline(always)]
-        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, velocities: [SVector<T, #size>; #wide]) -> ([SVector<T, #size>; #wide], [[SMatrix<T, #size, #size>; #wide]; #wide]) {
+        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, velocities: [SVector<T, #size>; #wide]) -> ([SVector<T, #size>; #wide], [(usize, usize, SMatrix<T, #size, #size>); #count]) {
             let _ = (#h, site, at, &velocities);
             #lets
             let mut made = [SVector::<T, #size>::zeros(); #wide];
-            let mut a = [[SMatrix::<T, #size, #size>::zeros(); #wide]; #wide];
+            #lets_of_blocks
             #fill
-            (made, a)
+            (made, #blocks)
         }
         #added
     }
