@@ -3,7 +3,7 @@
 //! derivatives; gives the velocities, or the site at which they cannot be followed.
 
 use super::blocks::{Blocks, Fixed, Read, Size};
-use super::root::{Lists, Momenta, NoRoot, follow, of_vectors, scales_of};
+use super::root::{Lists, Momenta, NoRoot, begins, follow, of_vector, scales_of};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -135,13 +135,12 @@ impl<T: Real, F, S: Size> Line<'_, T, F, S> {
     /// Changes of rotations as those of their vectors.
     #[inline(always)]
     fn turned(&self, x: &mut [T]) {
-        if self.turns.is_empty() {
-            return;
-        }
         let n = self.n.rows();
-        let at = self.factored.chunks_exact(n);
-        for (at, x) in at.zip(x.chunks_exact_mut(n)) {
-            of_vectors(self.turns, at, x);
+        for k in begins(self.turns) {
+            let at = self.factored.chunks_exact(n);
+            for (at, x) in at.zip(x.chunks_exact_mut(n)) {
+                of_vector(&at[k..k + 3], &mut x[k..k + 3]);
+            }
         }
     }
 }
@@ -427,7 +426,7 @@ impl<T: Real, const N: usize> Band<T, N> {
         }
         band.solve_by(Fixed::<N>, moving, |sums| {
             let mut rows = Rows(sums);
-            rows.own(&momenta, &whole);
+            rows.own(|site, v| momenta(site, v), |site, v| whole(site, v));
             between(&mut rows);
         })?;
         for (out, found) in out.iter_mut().zip(band.velocity.as_chunks::<N>().0) {

@@ -85,28 +85,22 @@ pub(super) trait Momenta<T: Real> {
     fn solve(&mut self, x: &mut [T]);
 }
 
-/// From changes of momenta turned into changes of rotations `Ω hat(η)` those of their vectors, at the velocities at which the
-/// derivative was taken.
+/// Where the vectors of rotations begin among the components of a velocity.
+pub(super) fn begins(turns: &[bool]) -> impl Iterator<Item = usize> {
+    let mut next = 0;
+    turns.iter().enumerate().filter_map(move |(k, turns)| {
+        let begins = *turns && k >= next;
+        next = if begins { k + 3 } else { next };
+        begins.then_some(k)
+    })
+}
+
+/// The change of rotations `Ω hat(η)` as that of their vector, at that at which the derivative was taken.
 #[inline(always)]
-pub(super) fn of_vectors<T: Real>(turns: &[bool], velocity: &[T], changes: &mut [T]) {
-    let mut k = 0;
-    while k < turns.len() {
-        let three = k..k + 3;
-        match (
-            turns[k],
-            velocity.get(three.clone()),
-            changes.get_mut(three),
-        ) {
-            (true, Some(v), Some(change)) => {
-                let (v, eta) = (
-                    Vector3::from_column_slice(v),
-                    Vector3::from_column_slice(change),
-                );
-                change.copy_from_slice(vector_change(&v, &eta).as_slice());
-                k += 3;
-            }
-            _ => k += 1,
-        }
+pub(super) fn of_vector<T: Real>(velocity: &[T], change: &mut [T]) {
+    if let (&[x, y, z], [a, b, c]) = (velocity, change) {
+        let change = vector_change(&Vector3::new(x, y, z), &Vector3::new(*a, *b, *c));
+        [*a, *b, *c] = change.data.0[0];
     }
 }
 
@@ -129,18 +123,33 @@ pub(super) struct Lists<'a, T> {
 /// The largest entry in units of scales; NaN if any is.
 #[inline(always)]
 fn largest<T: Real>(x: &[T], scales: &[f64]) -> f64 {
-    let mut most = 0.0;
-    for (x, scale) in x.iter().zip(scales) {
-        let size = x.greatest().abs().max(x.least().abs()) * scale;
-        // NaN is kept, and larger than all.
-        if size.is_nan() || size > most {
-            most = size;
-        }
-        if x.magnitude().is_nan() {
-            return f64::NAN;
+    const SIDE_BY_SIDE: usize = 4;
+    let size = |x: T, scale: f64| {
+        (
+            x.greatest().abs().max(x.least().abs()) * scale,
+            x.magnitude(),
+        )
+    };
+    // Several maxima side by side, which do not wait for one another.
+    let (mut most, mut lost) = ([0.0_f64; SIDE_BY_SIDE], false);
+    let mut see = |k: usize, (size, magnitude): (f64, f64)| {
+        lost |= size.is_nan() | magnitude.is_nan();
+        most[k] = if size > most[k] { size } else { most[k] };
+    };
+    let (x, x_left) = x.as_chunks::<SIDE_BY_SIDE>();
+    let (scales, scales_left) = scales.as_chunks::<SIDE_BY_SIDE>();
+    for (x, scales) in x.iter().zip(scales) {
+        for k in 0..SIDE_BY_SIDE {
+            see(k, size(x[k], scales[k]));
         }
     }
-    most
+    for (x, scale) in x_left.iter().zip(scales_left) {
+        see(0, size(*x, *scale));
+    }
+    match lost {
+        true => f64::NAN,
+        false => most.into_iter().fold(0.0, f64::max),
+    }
 }
 
 /// What is aimed at in a component at the end of a stage: `known - (1 - end) whole`, near rest from there.
@@ -402,7 +411,9 @@ impl<T: Real, F: FnMut(&[T], &mut [T], Option<&mut [T]>)> Momenta<T> for Site<'_
     #[inline(always)]
     fn solve(&mut self, x: &mut [T]) {
         pivots::solve(self.n, self.factors, self.pivots, x);
-        of_vectors(self.turns, self.factored, x);
+        for k in begins(self.turns) {
+            of_vector(&self.factored[k..k + 3], &mut x[k..k + 3]);
+        }
     }
 }
 

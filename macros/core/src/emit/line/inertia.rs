@@ -72,7 +72,7 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
                 [p.site, row, rows]
             })
             .collect();
-        let mut derivatives = Derivatives::default();
+        let mut derivatives = Derivatives::new(n);
         let body = filled(
             l,
             s,
@@ -84,14 +84,13 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
                 TokenStream::new()
             },
         );
-        let (lets, fill, blocks, count_of_blocks) = derivatives.emitted(n);
+        let ((fill, blocks), count_of_blocks) = (derivatives.emitted(), derivatives.count());
         let (kernel, wide) = (format_ident!("inertia_{}", k + 1), number(tie.width + 1));
         kernels.extend(quote! {
             /// What a term of neighbours adds to them.
             fn #kernel(&self, site: usize, at: &#places<T>) -> ([SVector<T, #size>; #wide], [(usize, usize, SMatrix<T, #size, #size>); #count_of_blocks]) {
                 let _ = (site, at);
                 let mut made = [SVector::<T, #size>::zeros(); #wide];
-                #lets
                 #body
                 #fill
                 (made, #blocks)

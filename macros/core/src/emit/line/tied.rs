@@ -206,15 +206,29 @@ pub(super) fn tied(l: &Lines) -> TokenStream {
 
 /// The derivatives that a term of neighbours adds: those of the momenta of one of its sites by the velocities of another
 /// that are not zero.
-#[derive(Default)]
 pub(super) struct Derivatives {
-    /// The two sites of a block, from the index of the term.
-    pairs: Vec<[usize; 2]>,
-    fill: TokenStream,
+    n: usize,
+    /// The two sites of a block, from the index of the term, and what is put into it.
+    blocks: Vec<([usize; 2], Vec<Columns>)>,
+}
+
+/// Columns of a block.
+struct Columns {
+    row: usize,
+    rows: usize,
+    column: usize,
+    wide: usize,
+    value: TokenStream,
 }
 
 impl Derivatives {
-    /// Puts columns into the block of two sites: of so many rows, and where they begin in it.
+    /// None yet, of velocities with `n` components.
+    pub(super) fn new(n: usize) -> Self {
+        let blocks = Vec::new();
+        Self { n, blocks }
+    }
+
+    /// Puts columns into the block of two sites: where their rows begin in it, how many they are, and the first column.
     pub(super) fn put(
         &mut self,
         pair: [usize; 2],
@@ -225,30 +239,49 @@ impl Derivatives {
         if e.is_zero() {
             return;
         }
-        let place = self.pairs.iter().position(|p| *p == pair);
-        let block = number(place.unwrap_or_else(|| {
-            self.pairs.push(pair);
-            self.pairs.len() - 1
-        }));
-        let [row, rows, column, wide] = [row, rows, column, width(e)].map(number);
-        let value = as_array(e, value);
-        self.fill.extend(
-            quote!(a[#block].fixed_view_mut::<#rows, #wide>(#row, #column).copy_from(&(#value));),
-        );
+        let columns = Columns {
+            row,
+            rows,
+            column,
+            wide: width(e),
+            value: as_array(e, value),
+        };
+        match self.blocks.iter_mut().find(|(known, _)| *known == pair) {
+            Some((_, list)) => list.push(columns),
+            None => self.blocks.push((pair, vec![columns])),
+        }
     }
 
-    /// The blocks with nothing in them, what fills them, the list of them, and how many there are.
-    pub(super) fn emitted(self, n: usize) -> (TokenStream, TokenStream, TokenStream, Literal) {
-        let (size, count) = (number(n), number(self.pairs.len()));
-        let lets = match self.pairs.is_empty() {
-            true => TokenStream::new(),
-            false => quote!(let mut a = [SMatrix::<T, #size, #size>::zeros(); #count];),
-        };
-        let each = self.pairs.iter().enumerate().map(|(block, pair)| {
-            let ([of, by], block) = (pair.map(number), number(block));
-            quote!((#of, #by, a[#block]))
-        });
-        (lets, self.fill, quote!([#(#each),*]), count)
+    /// What makes the blocks, and the list of them.
+    pub(super) fn emitted(&self) -> (TokenStream, TokenStream) {
+        let size = number(self.n);
+        let (mut lets, mut list) = (TokenStream::new(), TokenStream::new());
+        for ([of, by], all) in &self.blocks {
+            let name = format_ident!("derivative_{of}_{by}");
+            let ([of, by], whole) = ([*of, *by].map(number), [self.n, self.n]);
+            list.extend(quote!((#of, #by, #name),));
+            match all.as_slice() {
+                [one] if [one.rows, one.wide] == whole => {
+                    let value = &one.value;
+                    lets.extend(quote!(let #name = #value;));
+                }
+                parts => {
+                    lets.extend(quote!(let mut #name = SMatrix::<T, #size, #size>::zeros();));
+                    for part in parts {
+                        let place = [part.row, part.rows, part.column, part.wide];
+                        let [row, rows, column, wide] = place.map(number);
+                        let value = &part.value;
+                        lets.extend(quote!(#name.fixed_view_mut::<#rows, #wide>(#row, #column).copy_from(&(#value));));
+                    }
+                }
+            }
+        }
+        (lets, quote!([#list]))
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> Literal {
+        number(self.blocks.len())
     }
 }
 
@@ -278,7 +311,7 @@ fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> Token
     let mut results = values.iter().zip(results);
     let (size, wide) = (number(n), number(tie.width + 1));
     let mut fill = TokenStream::new();
-    let mut derivatives = Derivatives::default();
+    let mut derivatives = Derivatives::new(n);
     for of in &tie.parts {
         let (row, rows) = rows_of(members, &of.on);
         let (at_row, count, site) = (number(row), number(rows), number(of.site));
@@ -298,8 +331,7 @@ fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> Token
             }
         }
     }
-    let (lets_of_blocks, filled, blocks, count) = derivatives.emitted(n);
-    fill.extend(filled);
+    let ((made, blocks), count) = (derivatives.emitted(), derivatives.count());
     let kernel = format_ident!("tied_{k}");
     let doc = " What a term of neighbours adds to the momenta of its sites at the start of an edge, and the \
                derivatives by their velocities.";
@@ -311,8 +343,8 @@ fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> Token
             let _ = (#h, site, at, &velocities);
             #lets
             let mut made = [SVector::<T, #size>::zeros(); #wide];
-            #lets_of_blocks
             #fill
+            #made
             (made, #blocks)
         }
         #added
