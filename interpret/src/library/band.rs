@@ -33,10 +33,6 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             Value::Vector(v) => Some(Value::Matrix(line::turn_of(v))),
             _ => None,
         },
-        ("line::rate_of", 1) => |a, _| match a.first()? {
-            Value::Vector(v) => Some(Value::Matrix(line::rate_of(v))),
-            _ => None,
-        },
         ("moved", 2) => |a, _| match a {
             [Value::Attitude(from), Value::Vector(v)] => {
                 let moved: Attitude<T> = from.moved(v);
@@ -81,10 +77,10 @@ fn numbers<T: Real>(value: &Value<T>, count: usize) -> Option<Vec<T>> {
     (all.len() == count).then_some(all)
 }
 
-/// `rows.tie([first, last], |site| [...], |site, velocities| ...)`: the velocities stand in the place of the rows, to which
-/// the sites of each term and what it gives are put.
+/// `rows.tie([first, last], |site| [...], |site, velocities| ..., |site, velocities| (..., ...))`: the velocities stand in the
+/// place of the rows, to which the sites of each term and what it gives are put. Momenta alone are part of that.
 fn tie<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
-    let [rows, ends, sites, term] = a else {
+    let [rows, ends, sites, _, term] = a else {
         return Err(missing());
     };
     let [first, last] = range(places, ends)?;
@@ -135,8 +131,8 @@ impl<T: Real> Terms<'_, T> {
             let [p, derivative] = both.as_slice() else {
                 return Err(missing());
             };
-            sums.add(n, i, &unfit(numbers(p, n))?);
-            sums.add_derivative(i, i, &unfit(numbers(derivative, n * n))?);
+            sums.put(n, i, &unfit(numbers(p, n))?);
+            sums.put_derivative(i, &unfit(numbers(derivative, n * n))?);
         }
         let Code::Closure(parameters, _) = self.between else {
             return Err(missing());
@@ -165,14 +161,16 @@ impl<T: Real> Terms<'_, T> {
         let [Value::List(momenta), Value::List(derivatives)] = made.as_slice() else {
             return None;
         };
-        for (i, row) in sites.iter().enumerate() {
-            sums.add(n, *row, &numbers(momenta.get(i)?, n)?);
-            let Value::List(of_row) = derivatives.get(i)? else {
+        for (row, momenta) in sites.iter().zip(momenta) {
+            sums.add(n, *row, &numbers(momenta, n)?);
+        }
+        for one in derivatives {
+            let Value::List(one) = one else { return None };
+            let [of, by, block] = one.as_slice() else {
                 return None;
             };
-            for (j, column) in sites.iter().enumerate() {
-                sums.add_derivative(*row, *column, &numbers(of_row.get(j)?, n * n)?);
-            }
+            let (row, column) = (sites.get(of.count()?)?, sites.get(by.count()?)?);
+            sums.add_derivative(*row, *column, &numbers(block, n * n)?);
         }
         Some(())
     }
@@ -207,9 +205,9 @@ impl<T: Real> Terms<'_, T> {
     }
 }
 
-/// `band.solve_along([first, last], |site| known, |site, velocity| (...), |rows| { ... }, &mut out)`
+/// `band.solve_along([first, last], |site| known, |site, velocity| ..., |site, velocity| (..., ...), |rows| { ... }, &mut out)`
 fn solve_along<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
-    let [band, moving, known, own, between, out] = a else {
+    let [band, moving, known, _, own, between, out] = a else {
         return Err(missing());
     };
     let moving = range(places, moving)?;

@@ -307,9 +307,9 @@ pub(super) fn flags<T: Real>(list: &Value<T>) -> Option<Vec<bool>> {
     each.collect()
 }
 
-/// `line::root(&known, [turns, ...], |velocity| ...)`
+/// `line::root(&known, [turns, ...], |velocity| ..., |velocity| (..., ...))`, of which the first gives part of the second.
 fn root<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
-    let [known, turns, closure] = a else {
+    let [known, turns, _, closure] = a else {
         return Err(missing());
     };
     let known = unfit(known.run(places)?.dense())?;
@@ -325,18 +325,18 @@ fn root<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
             },
             _ => None,
         };
-        let fits = |(p, a): &(Dense<T>, Dense<T>)| {
-            (p.data.len(), a.data.len()) == (momenta.len(), derivative.len())
-        };
+        let n = momenta.len();
+        let fits = |(p, a): &(Dense<T>, Dense<T>)| (p.data.len(), a.data.len()) == (n, n * n);
         match told.filter(fits) {
             Some((p, a)) => {
                 momenta.copy_from_slice(&p.data);
-                derivative.copy_from_slice(&a.data);
+                if let Some(derivative) = derivative {
+                    derivative.copy_from_slice(&a.data);
+                }
             }
             None => {
                 // No number is any more.
                 momenta.fill(T::from_f64(f64::NAN));
-                derivative.fill(T::from_f64(f64::NAN));
                 stopped.get_or_insert(both.err().unwrap_or_else(missing));
             }
         }

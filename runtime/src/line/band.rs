@@ -2,8 +2,8 @@
 //! with block-tridiagonal derivatives. Takes the momenta of sites and of terms of neighbours, with their
 //! derivatives; gives the velocities, or the site at which they cannot be followed.
 
-use super::blocks::Blocks;
-use super::root::{Lists, Momenta, NoRoot, follow, scales_of};
+use super::blocks::{Blocks, Fixed, Read, Size};
+use super::root::{Lists, Momenta, NoRoot, begins, follow, of_vector, scales_of};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -12,7 +12,7 @@ use nalgebra::{SMatrix, SVector};
 pub struct Sums<'a, T> {
     velocities: &'a [T],
     momenta: &'a mut [T],
-    /// None where derivatives are known.
+    /// None where derivatives are not wanted.
     blocks: Option<&'a mut Blocks<T>>,
 }
 
@@ -21,6 +21,20 @@ impl<T: Real> Sums<'_, T> {
     #[inline(always)]
     pub fn velocity(&self, n: usize, site: usize) -> &[T] {
         &self.velocities[n * site..n * (site + 1)]
+    }
+
+    /// Gives the momenta of a site, to which terms of neighbours are added.
+    #[inline(always)]
+    pub fn put(&mut self, n: usize, site: usize, momenta: &[T]) {
+        self.momenta[n * site..n * (site + 1)].copy_from_slice(momenta);
+    }
+
+    /// Gives their derivative by the velocities of the site, column after column.
+    #[inline(always)]
+    pub fn put_derivative(&mut self, site: usize, derivative: &[T]) {
+        if let Some(blocks) = &mut self.blocks {
+            blocks.put_own(site, derivative);
+        }
     }
 
     /// Adds to the momenta of a site.
@@ -42,63 +56,92 @@ impl<T: Real> Sums<'_, T> {
 }
 
 /// The equations of a line.
-struct Line<'a, T, F> {
-    n: usize,
+struct Line<'a, T, F, S> {
+    n: S,
     turns: &'a [bool],
     blocks: &'a mut Blocks<T>,
     moving: [usize; 2],
     all: F,
-    /// Whether derivatives are known.
-    known: bool,
+    /// The velocities at which the derivative was taken that is factored.
+    factored: &'a mut [T],
 }
 
-impl<T: Real, F: FnMut(&mut Sums<'_, T>)> Momenta<T> for Line<'_, T, F> {
+impl<T: Real, F: FnMut(&mut Sums<'_, T>), S: Size> Line<'_, T, F, S> {
     #[inline(always)]
-    fn at(&mut self, velocities: &[T], momenta: &mut [T]) {
-        let n = self.n;
-        if !self.known {
-            self.blocks.clear();
+    fn evaluate(&mut self, velocities: &[T], momenta: &mut [T], derivatives: bool) {
+        let n = self.n.rows();
+        if derivatives {
+            self.blocks.clear_neighbours();
         }
-        momenta.fill(T::zero());
         let mut sums = Sums {
             velocities,
             momenta,
-            blocks: match self.known {
-                true => None,
-                false => Some(&mut *self.blocks),
-            },
+            blocks: derivatives.then_some(&mut *self.blocks),
         };
         (self.all)(&mut sums);
         let [first, last] = self.moving;
         let sites = velocities.len() / n.max(1);
         for site in (0..first).chain(last..sites) {
             momenta[n * site..n * (site + 1)].fill(T::zero());
-            if !self.known {
+            if derivatives {
                 self.blocks.hold(site);
             }
         }
     }
+}
+
+impl<T: Real, F: FnMut(&mut Sums<'_, T>), S: Size> Momenta<T> for Line<'_, T, F, S> {
+    #[inline(always)]
+    fn at(&mut self, velocities: &[T], momenta: &mut [T]) {
+        self.evaluate(velocities, momenta, true);
+    }
+
+    #[inline(always)]
+    fn momenta_at(&mut self, velocities: &[T], momenta: &mut [T]) {
+        self.evaluate(velocities, momenta, false);
+    }
 
     fn turns(&self, component: usize) -> bool {
         self.turns
-            .get(component % self.n.max(1))
+            .get(component % self.n.rows().max(1))
             .is_some_and(|turns| *turns)
     }
 
     fn scales(&self, scales: &mut [f64]) {
-        for (site, own) in scales.chunks_exact_mut(self.n).enumerate() {
-            scales_of(self.n, self.blocks.own(site), own);
+        let n = self.n.rows();
+        for (site, own) in scales.chunks_exact_mut(n).enumerate() {
+            scales_of(n, self.blocks.own(site), own);
         }
     }
 
     #[inline(always)]
-    fn factor(&mut self) -> bool {
-        self.blocks.factor(self.n, 0.0).is_ok()
+    fn factor_and_solve(&mut self, velocities: &[T], x: &mut [T]) -> bool {
+        if !self.turns.is_empty() {
+            self.factored.copy_from_slice(velocities);
+        }
+        let done = self.blocks.factor_and_solve(self.n, 0.0, x).is_ok();
+        self.turned(x);
+        done
     }
 
     #[inline(always)]
     fn solve(&mut self, x: &mut [T]) {
         self.blocks.solve(self.n, x);
+        self.turned(x);
+    }
+}
+
+impl<T: Real, F, S: Size> Line<'_, T, F, S> {
+    /// Changes of rotations as those of their vectors.
+    #[inline(always)]
+    fn turned(&self, x: &mut [T]) {
+        let n = self.n.rows();
+        for k in begins(self.turns) {
+            let at = self.factored.chunks_exact(n);
+            for (at, x) in at.zip(x.chunks_exact_mut(n)) {
+                of_vector(&at[k..k + 3], &mut x[k..k + 3]);
+            }
+        }
     }
 }
 
@@ -119,6 +162,8 @@ pub struct AnyBand<T> {
     correction: Vec<T>,
     known: Vec<T>,
     scales: Vec<f64>,
+    /// The velocities at which the derivative was taken that is factored.
+    factored_at: Vec<T>,
 }
 
 impl<T: Real> AnyBand<T> {
@@ -140,6 +185,7 @@ impl<T: Real> AnyBand<T> {
             correction: list(),
             known: list(),
             scales: vec![0.0; n * sites],
+            factored_at: list(),
         }
     }
 
@@ -173,43 +219,56 @@ impl<T: Real> AnyBand<T> {
         sum * T::from_f64(0.5)
     }
 
-    /// The velocities of sites with `n` components whose momenta are known, those outside `moving` zero: `all` adds the
-    /// momenta of sites and of terms of neighbours, with their derivatives.
+    /// The velocities of sites with `n` components whose momenta are known, those outside `moving` zero: `all` puts the
+    /// momenta of sites and adds those of terms of neighbours, with their derivatives, by rotations `Ω` along `Ω hat(η)`.
     ///
     /// # Errors
     /// [`NoRoot`] where none follow from rest, and the site where that shows most.
-    #[inline(always)]
     pub fn solve(
         &mut self,
         n: usize,
         moving: [usize; 2],
         all: impl FnMut(&mut Sums<'_, T>),
     ) -> Result<(), (usize, NoRoot)> {
+        self.solve_by(Read(n), moving, all)
+    }
+
+    /// The same with a size of blocks that may be known when a model is built.
+    #[inline(always)]
+    fn solve_by(
+        &mut self,
+        size: impl Size,
+        moving: [usize; 2],
+        all: impl FnMut(&mut Sums<'_, T>),
+    ) -> Result<(), (usize, NoRoot)> {
+        let n = size.rows();
         for site in (0..moving[0]).chain(moving[1]..self.sites) {
             self.known[n * site..n * (site + 1)].fill(T::zero());
         }
         let mut line = Line {
-            n,
+            n: size,
             blocks: &mut self.blocks,
             turns: &self.turns,
             moving,
             all,
-            known: self.factored,
+            factored: &mut self.factored_at,
         };
         if self.constant {
             // Linear: from rest in one step.
             self.velocity.fill(T::zero());
-            line.at(&self.velocity, &mut self.momenta);
+            line.evaluate(&self.velocity, &mut self.momenta, !self.factored);
             line.scales(&mut self.scales);
-            self.factored = self.factored || line.factor();
             for i in 0..self.known.len() {
-                self.velocity[i] = self.known[i] - self.momenta[i];
+                self.correction[i] = self.known[i] - self.momenta[i];
             }
-            if self.factored {
-                line.solve(&mut self.velocity);
+            match self.factored {
+                true => line.solve(&mut self.correction),
+                false => {
+                    self.factored = line.factor_and_solve(&self.velocity, &mut self.correction);
+                }
             }
+            self.velocity.copy_from_slice(&self.correction);
             let found = self.factored && self.velocity.iter().all(|x| x.is_finite());
-            self.correction.copy_from_slice(&self.velocity);
             return match found {
                 true => Ok(()),
                 false => Err((self.worst(n), NoRoot { share: 0.0 })),
@@ -255,29 +314,76 @@ pub struct Band<T, const N: usize>(AnyBand<T>);
 #[derive(Debug)]
 pub struct Rows<'a, 'b, T, const N: usize>(&'a mut Sums<'b, T>);
 
-/// Momenta of the sites of a term, and their derivatives, of the first index by the velocity of the second.
-pub type Added<T, const N: usize, const K: usize> =
-    ([SVector<T, N>; K], [[SMatrix<T, N, N>; K]; K]);
+/// Momenta of the sites of a term, and those of their derivatives that are not zero: of the site of the first index by the
+/// velocity of that of the second.
+pub type Added<T, const N: usize, const K: usize, const M: usize> =
+    ([SVector<T, N>; K], [(usize, usize, SMatrix<T, N, N>); M]);
 
 impl<T: Real, const N: usize> Rows<'_, '_, T, N> {
-    /// Adds what terms of neighbours give to the sites that they touch, for each index from the first to the one before
-    /// the last.
+    /// Gives the momenta of all sites, or momenta and their derivatives.
     #[inline(always)]
-    pub fn tie<const K: usize>(
+    fn own(
+        &mut self,
+        momenta: impl Fn(usize, &SVector<T, N>) -> SVector<T, N>,
+        whole: impl Fn(usize, &SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
+    ) {
+        let Self(sums) = self;
+        let velocities = sums.velocities.as_chunks::<N>().0;
+        let out = sums.momenta.as_chunks_mut::<N>().0;
+        let all = velocities.iter().zip(out).enumerate();
+        match &mut sums.blocks {
+            None => {
+                for (site, (velocity, out)) in all {
+                    *out = momenta(site, &SVector::from(*velocity)).data.0[0];
+                }
+            }
+            Some(blocks) => {
+                for ((site, (velocity, out)), block) in all.zip(blocks.own_mut::<N>()) {
+                    let (momenta, derivative) = whole(site, &SVector::from(*velocity));
+                    *out = momenta.data.0[0];
+                    *block = derivative.data.0;
+                }
+            }
+        }
+    }
+
+    /// Adds what terms of neighbours give to the sites that they touch, for each index from the first to the one before
+    /// the last: momenta, or momenta and their derivatives.
+    #[inline(always)]
+    pub fn tie<const K: usize, const M: usize>(
         &mut self,
         [first, last]: [usize; 2],
         sites: impl Fn(usize) -> [usize; K],
-        term: impl Fn(usize, [SVector<T, N>; K]) -> Added<T, N, K>,
+        momenta: impl Fn(usize, [SVector<T, N>; K]) -> [SVector<T, N>; K],
+        whole: impl Fn(usize, [SVector<T, N>; K]) -> Added<T, N, K, M>,
     ) {
-        for index in first..last {
-            let sites = sites(index);
-            let velocities = sites.map(|i| SVector::from_column_slice(self.0.velocity(N, i)));
-            let (momenta, derivatives) = term(index, velocities);
-            for (i, row) in sites.into_iter().enumerate() {
-                self.0.add(N, row, momenta[i].as_slice());
-                for (j, column) in sites.into_iter().enumerate() {
-                    self.0
-                        .add_derivative(row, column, derivatives[i][j].as_slice());
+        let Self(sums) = self;
+        let velocities = sums.velocities.as_chunks::<N>().0;
+        let out = sums.momenta.as_chunks_mut::<N>().0;
+        let add = |out: &mut [[T; N]], sites: &[usize; K], momenta: &[SVector<T, N>; K]| {
+            for (site, momenta) in sites.iter().zip(momenta) {
+                for (x, y) in out[*site].iter_mut().zip(momenta.iter()) {
+                    *x += *y;
+                }
+            }
+        };
+        match &mut sums.blocks {
+            None => {
+                for index in first..last {
+                    let sites = sites(index);
+                    let at = sites.map(|i| SVector::from(velocities[i]));
+                    add(out, &sites, &momenta(index, at));
+                }
+            }
+            Some(blocks) => {
+                for index in first..last {
+                    let sites = sites(index);
+                    let at = sites.map(|i| SVector::from(velocities[i]));
+                    let (momenta, derivatives) = whole(index, at);
+                    add(out, &sites, &momenta);
+                    for (of, by, derivative) in derivatives {
+                        blocks.add_block(sites[of], sites[by], &derivative.data.0);
+                    }
                 }
             }
         }
@@ -298,8 +404,9 @@ impl<T: Real, const N: usize> Band<T, N> {
         Self(self.0.with_turns(&turns))
     }
 
-    /// The velocities of sites whose momenta are `known`, those outside `moving` zero: `own` gives momenta and
-    /// their derivative by the velocity of one site, `between` adds those of terms of neighbours.
+    /// The velocities of sites whose momenta are `known`, those outside `moving` zero: `momenta` gives those of one site at
+    /// its velocity, `whole` the same with their derivative, by rotations `Ω` along `Ω hat(η)`; `between` adds those of
+    /// terms of neighbours.
     ///
     /// # Errors
     /// [`NoRoot`] where none follow from rest, and the site where that shows most.
@@ -307,26 +414,23 @@ impl<T: Real, const N: usize> Band<T, N> {
         &mut self,
         moving: [usize; 2],
         known: impl Fn(usize) -> SVector<T, N>,
-        own: impl Fn(usize, &SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
+        momenta: impl Fn(usize, &SVector<T, N>) -> SVector<T, N>,
+        whole: impl Fn(usize, &SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
         between: impl Fn(&mut Rows<'_, '_, T, N>),
         out: &mut [SVector<T, N>],
     ) -> Result<(), (usize, NoRoot)> {
         let Self(band) = self;
-        let sites = band.sites;
+        let aims = band.known.as_chunks_mut::<N>().0;
         for site in moving[0]..moving[1] {
-            band.known[N * site..N * (site + 1)].copy_from_slice(known(site).as_slice());
+            aims[site] = known(site).data.0[0];
         }
-        band.solve(N, moving, |sums| {
-            for site in 0..sites {
-                let velocity = SVector::from_column_slice(sums.velocity(N, site));
-                let (momenta, derivative) = own(site, &velocity);
-                sums.add(N, site, momenta.as_slice());
-                sums.add_derivative(site, site, derivative.as_slice());
-            }
-            between(&mut Rows(sums));
+        band.solve_by(Fixed::<N>, moving, |sums| {
+            let mut rows = Rows(sums);
+            rows.own(|site, v| momenta(site, v), |site, v| whole(site, v));
+            between(&mut rows);
         })?;
-        for (site, out) in out.iter_mut().enumerate().take(sites) {
-            *out = SVector::from_column_slice(&band.velocity[N * site..N * (site + 1)]);
+        for (out, found) in out.iter_mut().zip(band.velocity.as_chunks::<N>().0) {
+            *out = SVector::from(*found);
         }
         Ok(())
     }
@@ -341,8 +445,9 @@ impl<T: Real, const N: usize> Band<T, N> {
         between: impl Fn(&mut Rows<'_, '_, T, N>),
     ) -> T {
         let mut band = Self::new(sites, ring, true);
-        let own = |site: usize, _: &SVector<T, N>| own(site);
-        match band.solve_along([first, last], known, own, between, &mut []) {
+        let momenta = |site: usize, _: &SVector<T, N>| own(site).0;
+        let whole = |site: usize, _: &SVector<T, N>| own(site);
+        match band.solve_along([first, last], known, momenta, whole, between, &mut []) {
             Ok(()) => band.0.half_product(),
             Err(_) => T::from_f64(f64::NAN),
         }

@@ -5,11 +5,105 @@
 //! A ring is solved by bordering: its last site is taken out, the others are an open line, what they do to
 //! the last one is one block. Pivots are chosen within blocks.
 
-// Rows and columns of one list.
-#![allow(clippy::needless_range_loop)]
+mod lists;
+mod small;
 
-use super::pivots;
 use crate::Real;
+use small::Block;
+
+/// The size of blocks: the same operations whether it is known when a model is built or when it is read.
+pub(super) trait Size: Copy {
+    /// The number of rows.
+    fn rows(self) -> usize;
+    /// [`Blocks::factor_and_solve`].
+    fn factor_and_solve<T: Real>(
+        self,
+        blocks: &mut Blocks<T>,
+        floor: f64,
+        x: &mut [T],
+    ) -> Result<(), usize>;
+    /// [`Blocks::solve`].
+    fn solve<T: Real>(self, blocks: &mut Blocks<T>, x: &mut [T]);
+}
+
+/// Blocks of up to so many rows are arrays.
+const SMALL: usize = 6;
+
+/// Known when a model is built.
+#[derive(Clone, Copy)]
+pub(super) struct Fixed<const N: usize>;
+
+impl<const N: usize> Size for Fixed<N> {
+    #[inline(always)]
+    fn rows(self) -> usize {
+        N
+    }
+
+    fn factor_and_solve<T: Real>(
+        self,
+        blocks: &mut Blocks<T>,
+        floor: f64,
+        x: &mut [T],
+    ) -> Result<(), usize> {
+        if (1..=SMALL).contains(&N) {
+            return small::factor_and_solve::<T, N>(blocks, floor, x);
+        }
+        blocks.factor_lists(N, floor)?;
+        blocks.solve_lists(N, x);
+        Ok(())
+    }
+
+    fn solve<T: Real>(self, blocks: &mut Blocks<T>, x: &mut [T]) {
+        match (1..=SMALL).contains(&N) {
+            true => small::solve::<T, N>(blocks, x),
+            false => blocks.solve_lists(N, x),
+        }
+    }
+}
+
+/// Known when a model is read.
+#[derive(Clone, Copy)]
+pub(super) struct Read(pub usize);
+
+impl Size for Read {
+    #[inline(always)]
+    fn rows(self) -> usize {
+        self.0
+    }
+
+    fn factor_and_solve<T: Real>(
+        self,
+        blocks: &mut Blocks<T>,
+        floor: f64,
+        x: &mut [T],
+    ) -> Result<(), usize> {
+        match self.0 {
+            1 => Fixed::<1>.factor_and_solve(blocks, floor, x),
+            2 => Fixed::<2>.factor_and_solve(blocks, floor, x),
+            3 => Fixed::<3>.factor_and_solve(blocks, floor, x),
+            4 => Fixed::<4>.factor_and_solve(blocks, floor, x),
+            5 => Fixed::<5>.factor_and_solve(blocks, floor, x),
+            6 => Fixed::<6>.factor_and_solve(blocks, floor, x),
+            n => {
+                blocks.factor_lists(n, floor)?;
+                blocks.solve_lists(n, x);
+                Ok(())
+            }
+        }
+    }
+
+    fn solve<T: Real>(self, blocks: &mut Blocks<T>, x: &mut [T]) {
+        match self.0 {
+            1 => Fixed::<1>.solve(blocks, x),
+            2 => Fixed::<2>.solve(blocks, x),
+            3 => Fixed::<3>.solve(blocks, x),
+            4 => Fixed::<4>.solve(blocks, x),
+            5 => Fixed::<5>.solve(blocks, x),
+            6 => Fixed::<6>.solve(blocks, x),
+            n => blocks.solve_lists(n, x),
+        }
+    }
+}
 
 /// A matrix of blocks of size `n`, each column after column, and its factors.
 #[derive(Clone, Debug)]
@@ -22,8 +116,10 @@ pub(super) struct Blocks<T> {
     own: Vec<T>,
     before: Vec<T>,
     after: Vec<T>,
-    /// Of each site what is left of its block when those before are eliminated, factored; and that times `after`.
+    /// Of each site what is left of its block when those before are eliminated, inverted or factored; and its inverse
+    /// times `after`.
     left: Vec<T>,
+    inverted: Vec<bool>,
     pivots: Vec<usize>,
     onward: Vec<T>,
     /// Of a ring: what the last site does to each other one.
@@ -31,19 +127,6 @@ pub(super) struct Blocks<T> {
     scratch: Vec<T>,
     /// The site whose block had no pivot.
     without_pivot: Option<usize>,
-}
-
-/// `out -= a x`, matrices of `n` rows, `x` and `out` of as many columns as they have.
-#[inline(always)]
-fn take<T: Real>(n: usize, a: &[T], x: &[T], out: &mut [T]) {
-    for (x, out) in x.chunks_exact(n).zip(out.chunks_exact_mut(n)) {
-        for k in 0..n {
-            let factor = x[k];
-            for i in 0..n {
-                out[i] -= a[n * k + i] * factor;
-            }
-        }
-    }
 }
 
 impl<T: Real> Blocks<T> {
@@ -60,6 +143,7 @@ impl<T: Real> Blocks<T> {
             before: list(),
             after: list(),
             left: list(),
+            inverted: vec![false; sites],
             pivots: vec![0; n * sites],
             onward: list(),
             border: if closed { list() } else { Vec::new() },
@@ -68,12 +152,43 @@ impl<T: Real> Blocks<T> {
         }
     }
 
+    /// The blocks of sites with themselves.
+    #[inline(always)]
+    pub fn own_mut<const N: usize>(&mut self) -> &mut [Block<T, N>] {
+        small::blocks_mut(&mut self.own)
+    }
+
+    /// Adds to the block of a site and of a neighbour.
+    #[inline(always)]
+    pub fn add_block<const N: usize>(&mut self, row: usize, column: usize, block: &Block<T, N>) {
+        let (list, _) = self.place(row, column);
+        let own: &mut Block<T, N> = &mut small::blocks_mut(list)[row];
+        for (column, added) in own.iter_mut().zip(block) {
+            for (x, y) in column.iter_mut().zip(added) {
+                *x += *y;
+            }
+        }
+    }
+
+    /// Gives the block of a site with itself.
+    #[inline(always)]
+    pub fn put_own(&mut self, site: usize, block: &[T]) {
+        let size = self.n * self.n;
+        self.own[size * site..size * (site + 1)].copy_from_slice(block);
+    }
+
+    /// Those of neighbours back to zeros.
+    #[inline(always)]
+    pub fn clear_neighbours(&mut self) {
+        self.before.fill(T::zero());
+        self.after.fill(T::zero());
+    }
+
     /// Back to zeros.
     #[inline(always)]
     pub fn clear(&mut self) {
         self.own.fill(T::zero());
-        self.before.fill(T::zero());
-        self.after.fill(T::zero());
+        self.clear_neighbours();
     }
 
     /// Where a block begins.
@@ -149,156 +264,22 @@ impl<T: Real> Blocks<T> {
         self.sites - usize::from(self.closed)
     }
 
-    /// Whether the pivots of a site are more than this part of the columns of its own block.
+    /// Factors, and `x = A^-1 x`; where a block has no pivot, or none above `floor` times its own columns, the site.
     #[inline(always)]
-    fn is_above(&self, n: usize, site: usize, floor: f64) -> bool {
-        let size = n * n;
-        let (own, left) = (
-            &self.own[size * site..size * (site + 1)],
-            &self.left[size * site..size * (site + 1)],
-        );
-        let mut columns = (0..n).map(|k| (k, &own[n * k..n * (k + 1)]));
-        columns.all(|(k, column)| {
-            let largest = crate::scalar::largest(column.iter().map(|x| x.magnitude()));
-            left[n * k + k].magnitude() > floor * largest
-        })
-    }
-
-    /// Factors; where a block has no pivot, or none above `floor` times its own columns, the site.
-    #[inline(always)]
-    pub fn factor(&mut self, n: usize, floor: f64) -> Result<(), usize> {
-        let done = self.factor_all(n, floor);
+    pub fn factor_and_solve(
+        &mut self,
+        size: impl Size,
+        floor: f64,
+        x: &mut [T],
+    ) -> Result<(), usize> {
+        let done = size.factor_and_solve(self, floor, x);
         self.without_pivot = done.err();
         done
     }
 
-    #[inline(always)]
-    fn factor_all(&mut self, n: usize, floor: f64) -> Result<(), usize> {
-        let size = n * n;
-        let open = self.open();
-        self.left.copy_from_slice(&self.own);
-        for i in 0..open {
-            let here = size * i..size * (i + 1);
-            if i > 0 {
-                let there = size * (i - 1)..size * i;
-                take(
-                    n,
-                    &self.before[here.clone()],
-                    &self.onward[there],
-                    &mut self.left[here.clone()],
-                );
-            }
-            let (left, own) = (
-                &mut self.left[here.clone()],
-                &mut self.pivots[n * i..n * (i + 1)],
-            );
-            if !pivots::factor(n, left, own) {
-                return Err(i);
-            }
-            if i + 1 < open {
-                self.onward[here.clone()].copy_from_slice(&self.after[here.clone()]);
-                for column in self.onward[here].chunks_exact_mut(n) {
-                    pivots::solve(n, left, own, column);
-                }
-            }
-            if floor > 0.0 && !self.is_above(n, i, floor) {
-                return Err(i);
-            }
-        }
-        match !self.closed || self.factor_border(n) {
-            true if floor <= 0.0 || self.is_above(n, self.sites - 1, floor) => Ok(()),
-            _ => Err(self.sites - 1),
-        }
-    }
-
-    /// What the last site of a ring and the others do to one another.
-    #[inline(always)]
-    fn factor_border(&mut self, n: usize) -> bool {
-        let size = n * n;
-        let (open, last) = (self.open(), self.sites - 1);
-        let mut border = core::mem::take(&mut self.border);
-        border.fill(T::zero());
-        border[..size].copy_from_slice(&self.before[..size]);
-        let end = size * (open - 1)..size * open;
-        for (x, y) in border[end.clone()].iter_mut().zip(&self.after[end.clone()]) {
-            *x += *y;
-        }
-        for k in 0..n {
-            self.eliminate(n, &mut border, |i| size * i + n * k..size * i + n * (k + 1));
-        }
-        let here = size * last..size * (last + 1);
-        take(
-            n,
-            &self.before[here.clone()],
-            &border[end],
-            &mut self.left[here.clone()],
-        );
-        take(
-            n,
-            &self.after[here.clone()],
-            &border[..size],
-            &mut self.left[here.clone()],
-        );
-        self.border = border;
-        pivots::factor(
-            n,
-            &mut self.left[here],
-            &mut self.pivots[n * last..n * (last + 1)],
-        )
-    }
-
-    /// The solution on the open line; `at` is where the part of a site stands.
-    #[inline(always)]
-    fn eliminate(&mut self, n: usize, x: &mut [T], at: impl Fn(usize) -> core::ops::Range<usize>) {
-        let size = n * n;
-        let open = self.open();
-        for i in 0..open {
-            let here = size * i..size * (i + 1);
-            if i > 0 {
-                self.scratch.copy_from_slice(&x[at(i - 1)]);
-                take(n, &self.before[here.clone()], &self.scratch, &mut x[at(i)]);
-            }
-            let own = &self.pivots[n * i..n * (i + 1)];
-            pivots::solve(n, &self.left[here], own, &mut x[at(i)]);
-        }
-        for i in (0..open.saturating_sub(1)).rev() {
-            self.scratch.copy_from_slice(&x[at(i + 1)]);
-            take(
-                n,
-                &self.onward[size * i..size * (i + 1)],
-                &self.scratch,
-                &mut x[at(i)],
-            );
-        }
-    }
-
     /// `x = A^-1 x` of the matrix that was factored last.
     #[inline(always)]
-    pub fn solve(&mut self, n: usize, x: &mut [T]) {
-        self.eliminate(n, x, |i| n * i..n * (i + 1));
-        if !self.closed {
-            return;
-        }
-        let size = n * n;
-        let (open, last) = (self.open(), self.sites - 1);
-        let here = size * last..size * (last + 1);
-        let (others, own) = x.split_at_mut(n * last);
-        take(
-            n,
-            &self.before[here.clone()],
-            &others[n * (open - 1)..],
-            own,
-        );
-        take(n, &self.after[here.clone()], &others[..n], own);
-        let chosen = &self.pivots[n * last..n * (last + 1)];
-        pivots::solve(n, &self.left[here], chosen, own);
-        for i in 0..open {
-            take(
-                n,
-                &self.border[size * i..size * (i + 1)],
-                own,
-                &mut others[n * i..n * (i + 1)],
-            );
-        }
+    pub fn solve(&mut self, size: impl Size, x: &mut [T]) {
+        size.solve(self, x);
     }
 }

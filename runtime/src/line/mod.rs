@@ -24,4 +24,4 @@ pub use root::{NoRoot, root, root_of};
 pub use signs::{agree, closes, turn_towards};
 pub use stamp::Stamp;
 pub use sweep::{Threads, fill, sum, total, try_each, try_fill, update};
-pub use turn::{rate_of, turn_of};
+pub use turn::turn_of;

@@ -11,7 +11,7 @@
 // Several lists run along one index.
 #![allow(clippy::needless_range_loop)]
 
-use super::blocks::Blocks;
+use super::blocks::{Blocks, Fixed, Read, Size};
 use super::error::Place;
 use super::root::scales_of;
 use crate::Real;
@@ -211,7 +211,7 @@ impl<T: Real> Multipliers<T> {
         held: &[SMatrix<T, N, 2>],
         out: &mut [SVector<T, N>],
     ) -> bool {
-        let wants = self.wants(N, |site| held[site].as_slice());
+        let wants = self.wants_by(Fixed::<N>, |site| held[site].as_slice());
         if self.corrected {
             put(self, out);
         }
@@ -219,11 +219,19 @@ impl<T: Real> Multipliers<T> {
     }
 
     /// The same, by the numbers of a site: values, then sizes.
-    #[inline(always)]
     pub fn wants<'a>(&mut self, n: usize, held: impl Fn(usize) -> &'a [T]) -> bool
     where
         T: 'a,
     {
+        self.wants_by(Read(n), held)
+    }
+
+    #[inline(always)]
+    fn wants_by<'a>(&mut self, size: impl Size, held: impl Fn(usize) -> &'a [T]) -> bool
+    where
+        T: 'a,
+    {
+        let n = size.rows();
         self.corrected = false;
         if self.phase == Phase::Last {
             self.phase = Phase::Found;
@@ -274,7 +282,7 @@ impl<T: Real> Multipliers<T> {
         let falls = worst * (worst / before) <= ROUNDINGS;
         let again = matches!(self.phase, Phase::Second | Phase::Later);
         if again && falls && left == 0.0 && self.further == 0 {
-            self.blocks.solve(n, &mut self.correction);
+            self.blocks.solve(size, &mut self.correction);
             for (x, d) in self.impulses.iter_mut().zip(&self.correction) {
                 *x += *d;
             }
@@ -308,16 +316,24 @@ impl<T: Real> Multipliers<T> {
         rows: &[SMatrix<T, N, W>],
         out: &mut [SVector<T, N>],
     ) {
-        self.correct_by(N, |site| rows[site].as_slice());
+        self.corrected_by(Fixed::<N>, |site| rows[site].as_slice());
         put(self, out);
     }
 
     /// The same, by the numbers of a site, column after column.
-    #[inline(always)]
     pub fn correct_by<'a>(&mut self, n: usize, rows: impl Fn(usize) -> &'a [T])
     where
         T: 'a,
     {
+        self.corrected_by(Read(n), rows);
+    }
+
+    #[inline(always)]
+    fn corrected_by<'a>(&mut self, size: impl Size, rows: impl Fn(usize) -> &'a [T])
+    where
+        T: 'a,
+    {
+        let n = size.rows();
         self.load(n, rows);
         if self.phase == Phase::Begin {
             for site in 0..self.sites {
@@ -328,13 +344,13 @@ impl<T: Real> Multipliers<T> {
                 );
             }
         }
-        if self.blocks.factor(n, FLOOR).is_err() {
+        let solved = (self.blocks).factor_and_solve(size, FLOOR, &mut self.correction);
+        if solved.is_err() {
             return match self.phase {
                 Phase::Begin => self.phase = Phase::Lost,
                 _ => self.shorter(WORSE),
             };
         }
-        self.blocks.solve(n, &mut self.correction);
         let own = self.largest(&self.correction);
         if !own.is_finite() {
             return self.shorter(WORSE);
@@ -471,8 +487,8 @@ impl<T: Real> Multipliers<T> {
         rates: &[SVector<T, N>],
         out: &mut [SVector<T, N>],
     ) -> Result<(), (usize, NoReaction)> {
-        self.project(
-            N,
+        self.projected_by(
+            Fixed::<N>,
             |site| rows[site].as_slice(),
             |site| rates[site].as_slice(),
         )?;
@@ -484,7 +500,6 @@ impl<T: Real> Multipliers<T> {
     ///
     /// # Errors
     /// As [`Multipliers::projected`].
-    #[inline(always)]
     pub fn project<'a>(
         &mut self,
         n: usize,
@@ -494,6 +509,20 @@ impl<T: Real> Multipliers<T> {
     where
         T: 'a,
     {
+        self.projected_by(Read(n), rows, rates)
+    }
+
+    #[inline(always)]
+    fn projected_by<'a>(
+        &mut self,
+        size: impl Size,
+        rows: impl Fn(usize) -> &'a [T],
+        rates: impl Fn(usize) -> &'a [T],
+    ) -> Result<(), (usize, NoReaction)>
+    where
+        T: 'a,
+    {
+        let n = size.rows();
         self.load(n, rows);
         for site in 0..self.sites {
             let own = rates(site);
@@ -505,9 +534,8 @@ impl<T: Real> Multipliers<T> {
             }
         }
         let none = NoReaction { share: 1.0 };
-        let factored = self.blocks.factor(n, FLOOR);
+        let factored = (self.blocks).factor_and_solve(size, FLOOR, &mut self.impulses);
         factored.map_err(|site| (self.place(site), none))?;
-        self.blocks.solve(n, &mut self.impulses);
         let lost = self.impulses.iter().position(|x| !x.is_finite());
         match lost {
             None => Ok(()),

@@ -1,6 +1,6 @@
 //! Small square matrices in lists, column after column, factored in place with partial pivoting: of a
 //! size that is known when a model is built, or when it is read, in the same operations.
-//! Takes a matrix; gives its factors, solutions, transposed solutions of rows.
+//! Takes a matrix; gives its factors, with the reciprocals of pivots, and solutions.
 
 // Rows and columns of one list.
 #![allow(clippy::needless_range_loop)]
@@ -34,6 +34,7 @@ pub(super) fn factor<T: Real>(n: usize, a: &mut [T], pivots: &mut [usize]) -> bo
             }
         }
         let reciprocal = T::one() / a[n * k + k];
+        a[n * k + k] = reciprocal;
         for i in k + 1..n {
             a[n * k + i] *= reciprocal;
         }
@@ -63,10 +64,21 @@ pub(super) fn solve<T: Real>(n: usize, a: &[T], pivots: &[usize], x: &mut [T]) {
         }
     }
     for k in (0..n).rev() {
-        x[k] /= a[n * k + k];
+        x[k] *= a[n * k + k];
         for i in 0..k {
             let below = x[k];
             x[i] -= a[n * k + i] * below;
         }
     }
+}
+
+/// Whether the pivots of a matrix that is factored are more than this part of the columns of another.
+pub(super) fn are_above<T: Real>(n: usize, a: &[T], of: &[T], floor: f64) -> bool {
+    (0..n).all(|k| {
+        let column = &of[n * k..n * (k + 1)];
+        let largest = crate::scalar::largest(column.iter().map(|x| x.magnitude()));
+        let reciprocal = a[n * k + k];
+        let part = floor * largest;
+        part * part * (reciprocal * reciprocal).greatest() < 1.0
+    })
 }

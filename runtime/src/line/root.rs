@@ -5,15 +5,17 @@
 //! The curve `P(v) = (1 - τ) P(0) + τ m` begins at rest and ends at the principal root. It is followed in
 //! stages, mostly one, by Newton's method: a stage is taken where its first two corrections by one tangent
 //! fall by a factor of four, which bounds how the tangent changes along it (Deuflhard, Newton Methods for
-//! Nonlinear Problems, 2011, sections 2.1 and 5.1). That is a test at points, not a proof.
+//! Nonlinear Problems, 2011, sections 2.1 and 5.1). That is a test at points, not a proof. The same two say what is
+//! left after another correction.
 
 // Several lists run along one index.
 #![allow(clippy::needless_range_loop)]
 
 use super::pivots;
+use super::turn::vector_change;
 use crate::Real;
 use core::fmt;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{SMatrix, SVector, Vector3};
 
 /// By how much the second correction of a stage is smaller than the first.
 const FALLS: f64 = 0.25;
@@ -30,6 +32,9 @@ const MOST_CORRECTIONS: usize = 20;
 
 /// A correction so small, of the velocity, leaves rounding when the next would be its square.
 const LAST: f64 = 1e-8;
+
+/// What is left of a velocity is nothing: so many of its roundings, by an estimate from corrections.
+const NOTHING: f64 = 1.0 / 16.0;
 
 /// The part of a stage that is tried where corrections do not fall.
 const WORSE: f64 = 0.2;
@@ -62,18 +67,41 @@ impl fmt::Display for NoRoot {
 
 impl std::error::Error for NoRoot {}
 
-/// Momenta as functions of velocities, with a derivative that is factored where it is wanted.
+/// Momenta as functions of velocities, with a derivative that is factored where it is wanted: that by the vector `v` of a
+/// rotation `Ω` is given along `Ω hat(η)`.
 pub(super) trait Momenta<T: Real> {
     /// The momenta of velocities, and the derivative there.
     fn at(&mut self, velocity: &[T], momenta: &mut [T]);
+    /// The momenta alone.
+    fn momenta_at(&mut self, velocity: &[T], momenta: &mut [T]);
     /// A scale of each velocity, by the diagonal of the derivative.
     fn scales(&self, scales: &mut [f64]);
     /// Whether a component of a velocity is of the vector of a rotation, which is rounded as numbers of the size of 1.
     fn turns(&self, component: usize) -> bool;
-    /// Factors the derivative; false where it is singular or not finite.
-    fn factor(&mut self) -> bool;
-    /// `x = A^-1 x` of the derivative that was factored last.
+    /// Factors the derivative, which was taken at these velocities, and gives the change of velocities by which momenta
+    /// change by `x`; false where it is singular or not finite.
+    fn factor_and_solve(&mut self, velocity: &[T], x: &mut [T]) -> bool;
+    /// The same by the derivative that was factored last.
     fn solve(&mut self, x: &mut [T]);
+}
+
+/// Where the vectors of rotations begin among the components of a velocity.
+pub(super) fn begins(turns: &[bool]) -> impl Iterator<Item = usize> {
+    let mut next = 0;
+    turns.iter().enumerate().filter_map(move |(k, turns)| {
+        let begins = *turns && k >= next;
+        next = if begins { k + 3 } else { next };
+        begins.then_some(k)
+    })
+}
+
+/// The change of rotations `Ω hat(η)` as that of their vector, at that at which the derivative was taken.
+#[inline(always)]
+pub(super) fn of_vector<T: Real>(velocity: &[T], change: &mut [T]) {
+    if let (&[x, y, z], [a, b, c]) = (velocity, change) {
+        let change = vector_change(&Vector3::new(x, y, z), &Vector3::new(*a, *b, *c));
+        [*a, *b, *c] = change.data.0[0];
+    }
 }
 
 /// Lists of the length of a velocity.
@@ -95,18 +123,33 @@ pub(super) struct Lists<'a, T> {
 /// The largest entry in units of scales; NaN if any is.
 #[inline(always)]
 fn largest<T: Real>(x: &[T], scales: &[f64]) -> f64 {
-    let mut most = 0.0;
-    for (x, scale) in x.iter().zip(scales) {
-        let size = x.greatest().abs().max(x.least().abs()) * scale;
-        // NaN is kept, and larger than all.
-        if size.is_nan() || size > most {
-            most = size;
-        }
-        if x.magnitude().is_nan() {
-            return f64::NAN;
+    const SIDE_BY_SIDE: usize = 4;
+    let size = |x: T, scale: f64| {
+        (
+            x.greatest().abs().max(x.least().abs()) * scale,
+            x.magnitude(),
+        )
+    };
+    // Several maxima side by side, which do not wait for one another.
+    let (mut most, mut lost) = ([0.0_f64; SIDE_BY_SIDE], false);
+    let mut see = |k: usize, (size, magnitude): (f64, f64)| {
+        lost |= size.is_nan() | magnitude.is_nan();
+        most[k] = if size > most[k] { size } else { most[k] };
+    };
+    let (x, x_left) = x.as_chunks::<SIDE_BY_SIDE>();
+    let (scales, scales_left) = scales.as_chunks::<SIDE_BY_SIDE>();
+    for (x, scales) in x.iter().zip(scales) {
+        for k in 0..SIDE_BY_SIDE {
+            see(k, size(x[k], scales[k]));
         }
     }
-    most
+    for (x, scale) in x_left.iter().zip(scales_left) {
+        see(0, size(*x, *scale));
+    }
+    match lost {
+        true => f64::NAN,
+        false => most.into_iter().fold(0.0, f64::max),
+    }
 }
 
 /// What is aimed at in a component at the end of a stage: `known - (1 - end) whole`, near rest from there.
@@ -175,9 +218,6 @@ pub(super) fn follow<T: Real>(
     let (mut share, mut length) = (0.0_f64, 1.0_f64);
     for _ in 0..MOST_STAGES {
         // Here the trial is the beginning of a stage, with its momenta and their derivative.
-        if !equations.factor() {
-            break;
-        }
         length = length.min(1.0 - share);
         if length < SHORTEST {
             break;
@@ -190,6 +230,10 @@ pub(super) fn follow<T: Real>(
             break;
         }
         lists.from.copy_from_slice(lists.velocity);
+        residual(known, end, lists);
+        if !equations.factor_and_solve(lists.velocity, lists.correction) {
+            break;
+        }
         match stage(known, end, equations, lists) {
             None if end >= 1.0 => return Ok(()),
             None => {
@@ -219,7 +263,8 @@ fn of_turns<T: Real>(equations: &impl Momenta<T>, scales: &[f64]) -> f64 {
     ROUNDINGS * T::EPSILON * most
 }
 
-/// Goes to the end of a stage: by what part of it another one should be shorter, if it is too long.
+/// Goes to the end of a stage, of which the first correction is known: by what part of it another one should be shorter, if
+/// it is too long. Each derivative serves for two corrections.
 #[inline(always)]
 fn stage<T: Real>(
     known: &[T],
@@ -229,15 +274,10 @@ fn stage<T: Real>(
 ) -> Option<f64> {
     let last = end >= 1.0;
     let turned = of_turns(equations, lists.scales);
-    residual(known, end, lists);
-    equations.solve(lists.correction);
     let first = largest(lists.correction, lists.scales);
     corrected(lists.velocity, lists.correction);
-    equations.at(lists.velocity, lists.momenta);
     // By the derivative at the beginning.
-    let rounded = residual(known, end, lists);
-    equations.solve(lists.correction);
-    let second = largest(lists.correction, lists.scales);
+    let (rounded, second) = again(known, end, equations, lists);
     if !(first.is_finite() && second.is_finite()) {
         return Some(WORSE);
     }
@@ -245,49 +285,84 @@ fn stage<T: Real>(
     {
         return Some((0.8 * FALLS * first / second).clamp(0.1, 0.8));
     }
-    let small = |own: f64, velocity: &[T], scales: &[f64]| {
-        own <= LAST * largest(velocity, scales) || (!last && own <= NEAR * first)
-    };
-    // That correction was by an older derivative: the next falls by as much as this one did.
-    let linear = second <= LAST * first;
-    let mut done = rounded || linear && small(second, lists.velocity, lists.scales);
-    if done || !last && second <= NEAR * first {
-        corrected(lists.velocity, lists.correction);
-        done = true;
-    }
+    corrected(lists.velocity, lists.correction);
+    // What is left after a correction `d` by a derivative that was taken before it is `bend d^2`, and `2 bend d e` after
+    // another one, `e`, by the same.
+    let mut bend = second / (first * first);
+    let nothing = |left: f64, size: f64| left <= NOTHING * T::EPSILON * size;
+    let size = largest(lists.velocity, lists.scales);
+    let mut done =
+        rounded || nothing(2.0 * bend * first * second, size) || !last && second <= NEAR * first;
     let mut before = first;
-    // Derivatives of the solution are exact to one order more after each further correction.
-    let mut further = if last { T::ORDER } else { 0 };
     for _ in 0..MOST_CORRECTIONS {
-        if done && further == 0 {
-            return None;
-        }
         if done {
-            further -= 1;
-            equations.at(lists.velocity, lists.momenta);
-        }
-        let rounded = residual(known, end, lists);
-        if !equations.factor() {
             break;
         }
-        equations.solve(lists.correction);
+        equations.at(lists.velocity, lists.momenta);
+        let rounded = residual(known, end, lists);
+        if !equations.factor_and_solve(lists.velocity, lists.correction) {
+            return Some(WORSE);
+        }
         let own = largest(lists.correction, lists.scales);
         corrected(lists.velocity, lists.correction);
         // Corrections fall at least by half until they are rounding.
+        let noise = |own: f64, rounded: bool, lists: &Lists<'_, T>| {
+            own.is_finite() && (rounded || own <= turned || rounded_together(known, end, lists))
+        };
         let falls = own <= 0.5 * before;
-        let noise = |lists: &Lists<'_, T>| own <= turned || rounded_together(known, end, lists);
-        if !(falls || own.is_finite() && (rounded || done || noise(lists))) {
-            break;
+        if !falls && !noise(own, rounded, lists) {
+            return Some(WORSE);
         }
         before = own;
-        if !done {
-            done = rounded || !falls || small(own, lists.velocity, lists.scales);
-            if !done {
-                equations.at(lists.velocity, lists.momenta);
-            }
+        let size = largest(lists.velocity, lists.scales);
+        done = rounded
+            || !falls
+            || own <= LAST * size
+            || nothing(bend * own * own, size)
+            || !last && own <= NEAR * first;
+        if done {
+            break;
         }
+        let (rounded, other) = again(known, end, equations, lists);
+        corrected(lists.velocity, lists.correction);
+        let falls = other <= 0.5 * own;
+        if !falls && !noise(other, rounded, lists) {
+            return Some(WORSE);
+        }
+        bend = bend.max(other / (own * own));
+        done = rounded || !falls || nothing(2.0 * bend * own * other, size);
     }
-    Some(WORSE)
+    if !done {
+        return Some(WORSE);
+    }
+    // Derivatives of the solution are exact to one order more after each further correction.
+    let further = if last { T::ORDER } else { 0 };
+    for _ in 0..further {
+        equations.at(lists.velocity, lists.momenta);
+        residual(known, end, lists);
+        if !equations.factor_and_solve(lists.velocity, lists.correction) {
+            return Some(WORSE);
+        }
+        if !largest(lists.correction, lists.scales).is_finite() {
+            return Some(WORSE);
+        }
+        corrected(lists.velocity, lists.correction);
+    }
+    None
+}
+
+/// A correction by the derivative that was factored last: whether what it takes away is rounding, and its size.
+#[inline(always)]
+fn again<T: Real>(
+    known: &[T],
+    end: f64,
+    equations: &mut impl Momenta<T>,
+    lists: &mut Lists<'_, T>,
+) -> (bool, f64) {
+    equations.momenta_at(lists.velocity, lists.momenta);
+    let rounded = residual(known, end, lists);
+    equations.solve(lists.correction);
+    (rounded, largest(lists.correction, lists.scales))
 }
 
 /// The equations of one site.
@@ -298,12 +373,14 @@ struct Site<'a, T, F> {
     tangent: &'a mut [T],
     factors: &'a mut [T],
     pivots: &'a mut [usize],
+    /// Where the derivative was taken that is factored.
+    factored: &'a mut [T],
 }
 
-impl<T: Real, F: FnMut(&[T], &mut [T], &mut [T])> Momenta<T> for Site<'_, T, F> {
+impl<T: Real, F: FnMut(&[T], &mut [T], Option<&mut [T]>)> Momenta<T> for Site<'_, T, F> {
     #[inline(always)]
     fn at(&mut self, velocity: &[T], momenta: &mut [T]) {
-        (self.momenta)(velocity, momenta, self.tangent);
+        (self.momenta)(velocity, momenta, Some(self.tangent));
     }
 
     #[inline(always)]
@@ -316,14 +393,27 @@ impl<T: Real, F: FnMut(&[T], &mut [T], &mut [T])> Momenta<T> for Site<'_, T, F> 
     }
 
     #[inline(always)]
-    fn factor(&mut self) -> bool {
+    fn momenta_at(&mut self, velocity: &[T], momenta: &mut [T]) {
+        (self.momenta)(velocity, momenta, None);
+    }
+
+    #[inline(always)]
+    fn factor_and_solve(&mut self, velocity: &[T], x: &mut [T]) -> bool {
         self.factors.copy_from_slice(self.tangent);
-        pivots::factor(self.n, self.factors, self.pivots)
+        self.factored.copy_from_slice(velocity);
+        let factored = pivots::factor(self.n, self.factors, self.pivots);
+        if factored {
+            self.solve(x);
+        }
+        factored
     }
 
     #[inline(always)]
     fn solve(&mut self, x: &mut [T]) {
         pivots::solve(self.n, self.factors, self.pivots, x);
+        for k in begins(self.turns) {
+            of_vector(&self.factored[k..k + 3], &mut x[k..k + 3]);
+        }
     }
 }
 
@@ -338,8 +428,8 @@ pub(super) fn scales_of<T: Real>(n: usize, tangent: &[T], scales: &mut [f64]) {
     }
 }
 
-/// The velocity of a site whose momentum is `known`; `turns` says which components are those of the vector of a rotation,
-/// `momenta` gives momentum and derivative at a velocity.
+/// The velocity of a site whose momentum is `known`; `turns` says which components are those of the vector `v` of a rotation
+/// `Ω`, `momentum` gives that at a velocity, `whole` the same with its derivative, that by `v` along `Ω hat(η)`.
 ///
 /// # Errors
 /// [`NoRoot`] where no velocity follows from rest.
@@ -347,30 +437,38 @@ pub(super) fn scales_of<T: Real>(n: usize, tangent: &[T], scales: &mut [f64]) {
 pub fn root<T: Real, const N: usize>(
     known: &SVector<T, N>,
     turns: [bool; N],
-    momenta: impl Fn(&SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
+    momentum: impl Fn(&SVector<T, N>) -> SVector<T, N>,
+    whole: impl Fn(&SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
 ) -> Result<SVector<T, N>, NoRoot> {
-    let mut lists = [SVector::<T, N>::zeros(); 5];
-    let [velocity, from, at, whole, correction] = &mut lists;
+    let mut lists = [SVector::<T, N>::zeros(); 6];
+    let [velocity, from, at, way, correction, factored] = &mut lists;
     let mut matrices = [SMatrix::<T, N, N>::zeros(); 2];
     let [tangent, factors] = &mut matrices;
     let (mut scales, mut pivots) = ([0.0; N], [0; N]);
     let mut site = Site {
         n: N,
         turns: &turns,
-        momenta: |v: &[T], p: &mut [T], tangent: &mut [T]| {
-            let (found, derivative) = momenta(&SVector::from_column_slice(v));
-            p.copy_from_slice(found.as_slice());
-            tangent.copy_from_slice(derivative.as_slice());
+        momenta: |v: &[T], p: &mut [T], tangent: Option<&mut [T]>| {
+            let v = SVector::from_column_slice(v);
+            match tangent {
+                None => p.copy_from_slice(momentum(&v).as_slice()),
+                Some(tangent) => {
+                    let (found, derivative) = whole(&v);
+                    p.copy_from_slice(found.as_slice());
+                    tangent.copy_from_slice(derivative.as_slice());
+                }
+            }
         },
         tangent: tangent.as_mut_slice(),
         factors: factors.as_mut_slice(),
         pivots: &mut pivots,
+        factored: factored.as_mut_slice(),
     };
     let mut lists = Lists {
         velocity: velocity.as_mut_slice(),
         from: from.as_mut_slice(),
         momenta: at.as_mut_slice(),
-        whole: whole.as_mut_slice(),
+        whole: way.as_mut_slice(),
         correction: correction.as_mut_slice(),
         scales: &mut scales,
     };
@@ -378,20 +476,20 @@ pub fn root<T: Real, const N: usize>(
     Ok(*velocity)
 }
 
-/// The same for a number of components that is known when a model is read: `momenta` writes momenta, and their
-/// derivative column after column.
+/// The same for a number of components that is known when a model is read: `momenta` writes momenta, and where it is wanted
+/// their derivative column after column.
 ///
 /// # Errors
 /// As [`root`].
 pub fn root_of<T: Real>(
     known: &[T],
     turns: &[bool],
-    momenta: impl FnMut(&[T], &mut [T], &mut [T]),
+    momenta: impl FnMut(&[T], &mut [T], Option<&mut [T]>),
 ) -> Result<Vec<T>, NoRoot> {
     let n = known.len();
     let list = || vec![T::zero(); n];
-    let (mut velocity, mut from, mut at, mut whole, mut correction) =
-        (list(), list(), list(), list(), list());
+    let (mut velocity, mut from, mut at, mut whole, mut correction, mut factored) =
+        (list(), list(), list(), list(), list(), list());
     let (mut tangent, mut factors) = (vec![T::zero(); n * n], vec![T::zero(); n * n]);
     let (mut scales, mut pivots) = (vec![0.0; n], vec![0; n]);
     let mut site = Site {
@@ -401,6 +499,7 @@ pub fn root_of<T: Real>(
         tangent: &mut tangent,
         factors: &mut factors,
         pivots: &mut pivots,
+        factored: &mut factored,
     };
     let mut lists = Lists {
         velocity: &mut velocity,
@@ -427,7 +526,7 @@ mod tests {
                 SMatrix::from([[m + 3.0 * b * v * v]]),
             )
         };
-        root(&SVector::from([p]), [false], momenta).map(|v| v[0])
+        root(&SVector::from([p]), [false], |v| momenta(v).0, momenta).map(|v| v[0])
     }
 
     /// However stiff: the derivative is nowhere below m, so that the root is the only one.
@@ -480,7 +579,7 @@ mod tests {
             let size = 10.0_f64.powf(-18.0 + 6.0 * drawn());
             let moving = SVector::from([drawn() - 0.5, 1e-2 * (drawn() - 0.5)]) * size;
             let known = momenta(&SVector::zeros()).0 + moving;
-            let found = root(&known, [false; 2], momenta)
+            let found = root(&known, [false; 2], |v| momenta(v).0, momenta)
                 .unwrap_or_else(|e| panic!("{place} {moving}: {e}"));
             // Rounding of the place in the potential, and some of the larger component.
             let off = (known - momenta(&found).0).norm();

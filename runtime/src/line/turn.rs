@@ -29,29 +29,21 @@ pub fn turn_of<T: Real>(v: &Vector3<T>) -> Matrix3<T> {
     turn
 }
 
-/// The matrix from a change of `v` to the vector `η` of `Ω hat(η)`, the change of the rotation.
+/// The change of `v` with which its rotation changes by `Ω hat(η)`.
 #[inline(always)]
-#[must_use]
-pub fn rate_of<T: Real>(v: &Vector3<T>) -> Matrix3<T> {
-    let factor = factor(v);
-    let [x, y, z] = (v * (factor * T::from_f64(0.5))).data.0[0];
-    #[rustfmt::skip]
-    let rate = Matrix3::new(
-        factor, z, -y,
-        -z, factor, x,
-        y, -x, factor,
-    );
-    rate
+pub(super) fn vector_change<T: Real>(v: &Vector3<T>, eta: &Vector3<T>) -> Vector3<T> {
+    let half = v * T::from_f64(0.5);
+    eta + half.cross(eta) + half * half.dot(eta)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{rate_of, turn_of};
+    use super::{turn_of, vector_change};
     use nalgebra::{Matrix3, Vector3};
 
     /// Against the quotient that defines it, and central differences, whose error is of the square of their step.
     #[test]
-    fn a_turn_is_its_cayley_transform_and_its_rate_the_derivative() {
+    fn a_turn_is_its_cayley_transform_and_changes_with_its_vector() {
         let v = Vector3::new(0.7, -1.3, 0.4);
         let hat = |v: Vector3<f64>| v.cross_matrix() * 0.5;
         let cayley = |v: Vector3<f64>| {
@@ -63,10 +55,10 @@ mod tests {
         assert!((turn_of(&v) - cayley(v)).norm() < 8.0 * f64::EPSILON);
         let h = 1e-5;
         for axis in 0..3 {
-            let mut along = Vector3::zeros();
-            along[axis] = h;
+            let mut eta = Vector3::zeros();
+            eta[axis] = 1.0;
+            let along = vector_change(&v, &eta) * h;
             let change = (turn_of(&(v + along)) - turn_of(&(v - along))) / (2.0 * h);
-            let eta = rate_of(&v).column(axis).into_owned();
             let own = turn_of(&v) * eta.cross_matrix();
             assert!((change - own).norm() < 1e-9, "{change} {own}");
         }

@@ -4,7 +4,7 @@
 use super::locals::{Known, Places};
 use super::pulls::{known, range_of};
 use super::step::range_name;
-use super::tied::rows_of;
+use super::tied::{Derivatives, rows_of};
 use super::velocities::as_array;
 use super::{Lines, number};
 use crate::emit::element;
@@ -37,17 +37,26 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
             .map(|list| list.iter().map(|e| d.defined(e)).collect())
             .collect(),
     };
-    let body = filled(l, &d.letters.symbols, &own, &sites, &|values| {
-        l.of_site(d, values)
-    });
+    let body = filled(
+        l,
+        &d.letters.symbols,
+        &own,
+        &sites,
+        &|values| l.of_site(d, values),
+        &mut |_, [row, rows, column], e, value| {
+            let (value, [row, rows, column]) =
+                (as_array(e, value), [row, rows, column].map(number));
+            quote!(a.fixed_view_mut::<#rows, 1>(#row, #column).copy_from(&(#value));)
+        },
+    );
     let mut kernels = quote! {
         /// The momenta of one site where nothing moves, and their derivatives by velocities, in the limit of small steps.
         fn inertia(&self, site: usize, at: &#places<T>) -> (SVector<T, #size>, SMatrix<T, #size, #size>) {
             let _ = (site, at);
             let mut made = [SVector::<T, #size>::zeros(); 1];
-            let mut a = [[SMatrix::<T, #size, #size>::zeros(); 1]; 1];
+            let mut a = SMatrix::<T, #size, #size>::zeros();
             #body
-            (made[0], a[0][0])
+            (made[0], a)
         }
     };
     let s = &l.line.representative.d.letters.symbols;
@@ -63,23 +72,40 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
                 [p.site, row, rows]
             })
             .collect();
-        let body = filled(l, s, of_tie, &sites, &|values| known(l, values));
+        let mut derivatives = Derivatives::new(n);
+        let body = filled(
+            l,
+            s,
+            of_tie,
+            &sites,
+            &|values| known(l, values),
+            &mut |pair, place, e, value| {
+                derivatives.put(pair, place, e, value);
+                TokenStream::new()
+            },
+        );
+        let ((fill, blocks), count_of_blocks) = (derivatives.emitted(), derivatives.count());
         let (kernel, wide) = (format_ident!("inertia_{}", k + 1), number(tie.width + 1));
         kernels.extend(quote! {
             /// What a term of neighbours adds to them.
-            fn #kernel(&self, site: usize, at: &#places<T>) -> ([SVector<T, #size>; #wide], [[SMatrix<T, #size, #size>; #wide]; #wide]) {
+            fn #kernel(&self, site: usize, at: &#places<T>) -> ([SVector<T, #size>; #wide], [(usize, usize, SMatrix<T, #size, #size>); #count_of_blocks]) {
                 let _ = (site, at);
                 let mut made = [SVector::<T, #size>::zeros(); #wide];
-                let mut a = [[SMatrix::<T, #size, #size>::zeros(); #wide]; #wide];
                 #body
-                (made, a)
+                #fill
+                (made, #blocks)
             }
         });
         let range = range_of(l, tie.label, tie.from, tie.to);
         let touched = super::tied::touched(l, tie, &count);
         each.push(quote! {{
             #range
-            rows.tie([first, last], |site| #touched, |site, _| self.#kernel(site, at));
+            rows.tie(
+                [first, last],
+                |site| #touched,
+                |site, _| self.#kernel(site, at).0,
+                |site, _| self.#kernel(site, at),
+            );
         }});
     }
     let given = members.iter().map(|m| {
@@ -108,13 +134,15 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
     Some((kernels, energy))
 }
 
-/// Fills `made` and `a` by configurations with their site in the kernel, first row and number of rows.
+/// Fills `made` by configurations with their site in the kernel, first row and number of rows, and puts derivatives: the
+/// sites of a block, the first row of a column of it, the number of rows, and which column it is.
 fn filled(
     l: &Lines,
     s: &Symbols,
     inertia: &Inertia,
     sites: &[[usize; 3]],
     known: &dyn Fn(&[Expr]) -> Vec<Known>,
+    put: &mut dyn FnMut([usize; 2], [usize; 3], &Expr, TokenStream) -> TokenStream,
 ) -> TokenStream {
     let mut values = Vec::new();
     for (rest, columns) in inertia.at_rest.iter().zip(&inertia.columns) {
@@ -125,18 +153,15 @@ fn filled(
     let (lets, results) = l.program(s, &values, &bindings);
     let mut out = quote!(#locals #lets);
     let mut results = values.iter().zip(results);
-    for of in sites {
-        let [site, row, rows] = of.map(number);
+    for [site, row, rows] in sites {
+        let (at, from, count) = (number(*site), number(*row), number(*rows));
         let value = results.next().map(|(e, value)| as_array(e, value));
-        out.extend(quote!(made[#site].fixed_view_mut::<#rows, 1>(#row, 0).copy_from(&(#value));));
-        for [by, from, count] in sites {
-            let by = number(*by);
-            for j in *from..from + count {
-                let j = number(j);
-                let value = results.next().map(|(e, value)| as_array(e, value));
-                out.extend(
-                    quote!(a[#site][#by].fixed_view_mut::<#rows, 1>(#row, #j).copy_from(&(#value));),
-                );
+        out.extend(quote!(made[#at].fixed_view_mut::<#count, 1>(#from, 0).copy_from(&(#value));));
+        for [by, first, columns] in sites {
+            for j in *first..first + columns {
+                if let Some((e, value)) = results.next() {
+                    out.extend(put([*site, *by], [*row, *rows, j], e, value));
+                }
             }
         }
     }

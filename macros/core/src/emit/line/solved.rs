@@ -226,17 +226,13 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
         let (rows, at_row, name) = (number(count), number(row), m.name());
         let mut column = 0;
         for by in members {
-            if let (Some(rate), 0) = (by.rate(&quote!(velocity), column), row) {
-                let local = by.rate_name(0);
-                fill.extend(quote!(let #local = #rate;));
-            }
             let end = column + by.components();
             while column < end {
                 let Some((e, value)) = results.next() else {
                     return TokenStream::new();
                 };
                 let (at_column, wide) = (number(column), number(width(e)));
-                let value = by.by_numbers(&as_array(e, value), 0);
+                let value = as_array(e, value);
                 fill.extend(
                     quote!(a.fixed_view_mut::<#rows, #wide>(#at_row, #at_column).copy_from(&(#value));),
                 );
@@ -278,7 +274,12 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
             fn #kernel(&self, #h: T, site: usize, at: &#places<T>, edges: &#edges<T>) -> Result<SVector<T, #size>, StepCause> {
                 let mut known = SVector::<T, #size>::zeros();
                 #given
-                line::root(&known, #turns, |velocity| self.#momenta(#h, site, at, velocity)).map_err(StepCause::NoRoot)
+                line::root(
+                    &known,
+                    #turns,
+                    |velocity| self.#momenta(#h, site, at, velocity).0,
+                    |velocity| self.#momenta(#h, site, at, velocity),
+                ).map_err(StepCause::NoRoot)
             }
         },
     };

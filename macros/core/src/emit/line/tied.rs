@@ -11,7 +11,7 @@ use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr};
 use crate::line::{How, Tie};
 use crate::schedule;
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 /// Whether velocities of neighbours stand in the momenta of a block.
@@ -128,7 +128,12 @@ pub(super) fn solve(l: &Lines, field: &Ident, members: &[Moving]) -> TokenStream
         quote! {
             {
                 #range
-                rows.tie([first, last], |site| #touched, |site, velocities| self.#kernel(h, site, at, velocities));
+                rows.tie(
+                    [first, last],
+                    |site| #touched,
+                    |site, velocities| self.#kernel(h, site, at, velocities).0,
+                    |site, velocities| self.#kernel(h, site, at, velocities),
+                );
             }
         }
     });
@@ -156,6 +161,7 @@ pub(super) fn solve(l: &Lines, field: &Ident, members: &[Moving]) -> TokenStream
             let made = work.band.solve_along(
                 self.#range(),
                 |site| self.#given(site, edges),
+                |site, velocity| self.#own(h, site, at, velocity).0,
                 |site, velocity| self.#own(h, site, at, velocity),
                 |rows| { #(#each)* },
                 &mut work.#field,
@@ -198,6 +204,87 @@ pub(super) fn tied(l: &Lines) -> TokenStream {
     quote!(impl<T: Real> #name<T> { #(#each)* })
 }
 
+/// The derivatives that a term of neighbours adds: those of the momenta of one of its sites by the velocities of another
+/// that are not zero.
+pub(super) struct Derivatives {
+    n: usize,
+    /// The two sites of a block, from the index of the term, and what is put into it.
+    blocks: Vec<([usize; 2], Vec<Columns>)>,
+}
+
+/// Columns of a block.
+struct Columns {
+    row: usize,
+    rows: usize,
+    column: usize,
+    wide: usize,
+    value: TokenStream,
+}
+
+impl Derivatives {
+    /// None yet, of velocities with `n` components.
+    pub(super) fn new(n: usize) -> Self {
+        let blocks = Vec::new();
+        Self { n, blocks }
+    }
+
+    /// Puts columns into the block of two sites: where their rows begin in it, how many they are, and the first column.
+    pub(super) fn put(
+        &mut self,
+        pair: [usize; 2],
+        [row, rows, column]: [usize; 3],
+        e: &Expr,
+        value: TokenStream,
+    ) {
+        if e.is_zero() {
+            return;
+        }
+        let columns = Columns {
+            row,
+            rows,
+            column,
+            wide: width(e),
+            value: as_array(e, value),
+        };
+        match self.blocks.iter_mut().find(|(known, _)| *known == pair) {
+            Some((_, list)) => list.push(columns),
+            None => self.blocks.push((pair, vec![columns])),
+        }
+    }
+
+    /// What makes the blocks, and the list of them.
+    pub(super) fn emitted(&self) -> (TokenStream, TokenStream) {
+        let size = number(self.n);
+        let (mut lets, mut list) = (TokenStream::new(), TokenStream::new());
+        for ([of, by], all) in &self.blocks {
+            let name = format_ident!("derivative_{of}_{by}");
+            let ([of, by], whole) = ([*of, *by].map(number), [self.n, self.n]);
+            list.extend(quote!((#of, #by, #name),));
+            match all.as_slice() {
+                [one] if [one.rows, one.wide] == whole => {
+                    let value = &one.value;
+                    lets.extend(quote!(let #name = #value;));
+                }
+                parts => {
+                    lets.extend(quote!(let mut #name = SMatrix::<T, #size, #size>::zeros();));
+                    for part in parts {
+                        let place = [part.row, part.rows, part.column, part.wide];
+                        let [row, rows, column, wide] = place.map(number);
+                        let value = &part.value;
+                        lets.extend(quote!(#name.fixed_view_mut::<#rows, #wide>(#row, #column).copy_from(&(#value));));
+                    }
+                }
+            }
+        }
+        (lets, quote!([#list]))
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> Literal {
+        number(self.blocks.len())
+    }
+}
+
 /// Where the rows of a field begin in its block, and how many there are.
 pub(super) fn rows_of(members: &[Moving], on: &str) -> (usize, usize) {
     let before = members.iter().take_while(|o| o.mover.name != on);
@@ -224,40 +311,27 @@ fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> Token
     let mut results = values.iter().zip(results);
     let (size, wide) = (number(n), number(tie.width + 1));
     let mut fill = TokenStream::new();
-    for by in &tie.parts {
-        let own = members.iter().find(|m| m.mover.name == by.on);
-        let (site, (row, _)) = (number(by.site), rows_of(members, &by.on));
-        let rate = own.and_then(|m| Some((m, m.rate(&quote!(velocities[#site]), row)?)));
-        if let Some((m, rate)) = rate {
-            let local = m.rate_name(by.site);
-            fill.extend(quote!(let #local = #rate;));
-        }
-    }
+    let mut derivatives = Derivatives::new(n);
     for of in &tie.parts {
         let (row, rows) = rows_of(members, &of.on);
-        let (at_row, rows, site) = (number(row), number(rows), number(of.site));
+        let (at_row, count, site) = (number(row), number(rows), number(of.site));
         let value = results.next().map(|(e, value)| as_array(e, value));
         fill.extend(
-            quote!(made[#site].fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&(#value));),
+            quote!(made[#site].fixed_view_mut::<#count, 1>(#at_row, 0).copy_from(&(#value));),
         );
         for by in &tie.parts {
             let (column, columns) = rows_of(members, &by.on);
-            let other = number(by.site);
-            let own = members.iter().find(|m| m.mover.name == by.on);
             let mut j = column;
-            while let (true, Some(own)) = (j < column + columns, own) {
+            while j < column + columns {
                 let Some((e, value)) = results.next() else {
                     break;
                 };
-                let (at_column, wide) = (number(j), number(width(e)));
-                let value = own.by_numbers(&as_array(e, value), by.site);
-                fill.extend(
-                    quote!(a[#site][#other].fixed_view_mut::<#rows, #wide>(#at_row, #at_column).copy_from(&(#value));),
-                );
+                derivatives.put([of.site, by.site], [row, rows, j], e, value);
                 j += width(e);
             }
         }
     }
+    let ((made, blocks), count) = (derivatives.emitted(), derivatives.count());
     let kernel = format_ident!("tied_{k}");
     let doc = " What a term of neighbours adds to the momenta of its sites at the start of an edge, and the \
                derivatives by their velocities.";
@@ -265,13 +339,13 @@ fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> Token
     quote! {
         #[doc = #doc]
         #[inline(always)]
-        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, velocities: [SVector<T, #size>; #wide]) -> ([SVector<T, #size>; #wide], [[SMatrix<T, #size, #size>; #wide]; #wide]) {
+        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, velocities: [SVector<T, #size>; #wide]) -> ([SVector<T, #size>; #wide], [(usize, usize, SMatrix<T, #size, #size>); #count]) {
             let _ = (#h, site, at, &velocities);
             #lets
             let mut made = [SVector::<T, #size>::zeros(); #wide];
-            let mut a = [[SMatrix::<T, #size, #size>::zeros(); #wide]; #wide];
             #fill
-            (made, a)
+            #made
+            (made, #blocks)
         }
         #added
     }

@@ -1,13 +1,14 @@
 //! Velocities of a block as they are found: numbers one below the other, a rotation by the vector `v` of its Cayley
-//! transform `Ω = (Id - hat(v)/2)^-1 (Id + hat(v)/2)`. What is derived along `Ω hat(η)` is turned into derivatives by `v`.
+//! transform `Ω = (Id - hat(v)/2)^-1 (Id + hat(v)/2)`. Derivatives are along `Ω hat(η)`: the runtime turns `η` into
+//! changes of `v`.
 
 use super::locals::Known;
 use super::{Moving, number};
 use crate::emit::expression::Bindings;
 use crate::expr::shape::Dim;
 use crate::expr::{self, Expr};
-use proc_macro2::{Ident, TokenStream};
-use quote::{format_ident, quote};
+use proc_macro2::TokenStream;
+use quote::quote;
 
 impl Moving<'_> {
     /// Its velocity in the stacked numbers `all`, where its own begin at `row`.
@@ -17,27 +18,6 @@ impl Moving<'_> {
             (true, _) => quote!(#all[#row]),
             (_, true) => quote!(line::turn_of(&#all.fixed_rows::<3>(#row).into_owned())),
             _ => quote!(#all.fixed_rows::<#rows>(#row).into_owned()),
-        }
-    }
-
-    /// Of a rotation the matrix from changes of `v` to `η`.
-    pub(super) fn rate(&self, all: &TokenStream, row: usize) -> Option<TokenStream> {
-        let row = number(row);
-        self.is_rotation()
-            .then(|| quote!(line::rate_of(&#all.fixed_rows::<3>(#row).into_owned())))
-    }
-
-    /// The name of that matrix, of a site of the kernel.
-    pub(super) fn rate_name(&self, site: usize) -> Ident {
-        format_ident!("__rate_{}_{}", self.mover.name, site)
-    }
-
-    /// A block of derivatives by its velocity at a site, as it is put into those by the numbers found.
-    pub(super) fn by_numbers(&self, value: &TokenStream, site: usize) -> TokenStream {
-        let rate = self.rate_name(site);
-        match self.is_rotation() {
-            true => quote!((#value) * #rate),
-            false => value.clone(),
         }
     }
 }

@@ -1,0 +1,153 @@
+//! Elimination where the size of blocks is known when a model is read, or is large: blocks are parts of lists, factored
+//! with pivots.
+
+use super::Blocks;
+use crate::Real;
+use crate::line::pivots;
+
+/// `out -= a x`, matrices of `n` rows, `x` and `out` of as many columns as they have.
+#[inline(always)]
+fn take<T: Real>(n: usize, a: &[T], x: &[T], out: &mut [T]) {
+    for (x, out) in x.chunks_exact(n).zip(out.chunks_exact_mut(n)) {
+        for (a, x) in a.chunks_exact(n).zip(x) {
+            for (out, a) in out.iter_mut().zip(a) {
+                *out -= *a * *x;
+            }
+        }
+    }
+}
+
+impl<T: Real> Blocks<T> {
+    /// Whether the pivots of a site are more than this part of the columns of its own block.
+    fn is_above(&self, n: usize, site: usize, floor: f64) -> bool {
+        let here = n * n * site..n * n * (site + 1);
+        floor <= 0.0 || pivots::are_above(n, &self.left[here.clone()], &self.own[here], floor)
+    }
+
+    /// Factors; where a block has no pivot, or none above `floor` times its own columns, the site.
+    pub(super) fn factor_lists(&mut self, n: usize, floor: f64) -> Result<(), usize> {
+        let size = n * n;
+        let open = self.open();
+        self.left.copy_from_slice(&self.own);
+        for i in 0..open {
+            let here = size * i..size * (i + 1);
+            if i > 0 {
+                let there = size * (i - 1)..size * i;
+                take(
+                    n,
+                    &self.before[here.clone()],
+                    &self.onward[there],
+                    &mut self.left[here.clone()],
+                );
+            }
+            let (left, own) = (
+                &mut self.left[here.clone()],
+                &mut self.pivots[n * i..n * (i + 1)],
+            );
+            if !pivots::factor(n, left, own) {
+                return Err(i);
+            }
+            if i + 1 < open {
+                self.onward[here.clone()].copy_from_slice(&self.after[here.clone()]);
+                for column in self.onward[here].chunks_exact_mut(n) {
+                    pivots::solve(n, left, own, column);
+                }
+            }
+            if !self.is_above(n, i, floor) {
+                return Err(i);
+            }
+        }
+        match !self.closed || self.factor_border(n) {
+            true if self.is_above(n, self.sites - 1, floor) => Ok(()),
+            _ => Err(self.sites - 1),
+        }
+    }
+
+    /// What the last site of a ring and the others do to one another.
+    fn factor_border(&mut self, n: usize) -> bool {
+        let size = n * n;
+        let (open, last) = (self.open(), self.sites - 1);
+        let mut border = core::mem::take(&mut self.border);
+        border.fill(T::zero());
+        border[..size].copy_from_slice(&self.before[..size]);
+        let end = size * (open - 1)..size * open;
+        for (x, y) in border[end.clone()].iter_mut().zip(&self.after[end.clone()]) {
+            *x += *y;
+        }
+        for k in 0..n {
+            self.eliminate(n, &mut border, |i| size * i + n * k..size * i + n * (k + 1));
+        }
+        let here = size * last..size * (last + 1);
+        take(
+            n,
+            &self.before[here.clone()],
+            &border[end],
+            &mut self.left[here.clone()],
+        );
+        take(
+            n,
+            &self.after[here.clone()],
+            &border[..size],
+            &mut self.left[here.clone()],
+        );
+        self.border = border;
+        pivots::factor(
+            n,
+            &mut self.left[here],
+            &mut self.pivots[n * last..n * (last + 1)],
+        )
+    }
+
+    /// The solution on the open line; `at` is where the part of a site stands.
+    fn eliminate(&mut self, n: usize, x: &mut [T], at: impl Fn(usize) -> core::ops::Range<usize>) {
+        let size = n * n;
+        let open = self.open();
+        for i in 0..open {
+            let here = size * i..size * (i + 1);
+            if i > 0 {
+                self.scratch.copy_from_slice(&x[at(i - 1)]);
+                take(n, &self.before[here.clone()], &self.scratch, &mut x[at(i)]);
+            }
+            let own = &self.pivots[n * i..n * (i + 1)];
+            pivots::solve(n, &self.left[here], own, &mut x[at(i)]);
+        }
+        for i in (0..open.saturating_sub(1)).rev() {
+            self.scratch.copy_from_slice(&x[at(i + 1)]);
+            take(
+                n,
+                &self.onward[size * i..size * (i + 1)],
+                &self.scratch,
+                &mut x[at(i)],
+            );
+        }
+    }
+
+    /// `x = A^-1 x` of the matrix that was factored last.
+    pub(super) fn solve_lists(&mut self, n: usize, x: &mut [T]) {
+        self.eliminate(n, x, |i| n * i..n * (i + 1));
+        if !self.closed {
+            return;
+        }
+        let size = n * n;
+        let (open, last) = (self.open(), self.sites - 1);
+        let here = size * last..size * (last + 1);
+        let (others, own) = x.split_at_mut(n * last);
+        take(
+            n,
+            &self.before[here.clone()],
+            &others[n * (open - 1)..],
+            own,
+        );
+        take(n, &self.after[here.clone()], &others[..n], own);
+        let chosen = &self.pivots[n * last..n * (last + 1)];
+        pivots::solve(n, &self.left[here], chosen, own);
+        for i in 0..open {
+            take(
+                n,
+                &self.border[size * i..size * (i + 1)],
+                own,
+                &mut others[n * i..n * (i + 1)],
+            );
+        }
+    }
+}

@@ -1,0 +1,346 @@
+//! Elimination where the size of blocks is known when it is built. A block is an array; one of up to three rows is inverted
+//! in closed form where its columns are far from dependent, any other is factored with pivots.
+
+// Rows and columns of arrays.
+#![allow(clippy::needless_range_loop)]
+
+use super::Blocks;
+use crate::Real;
+use crate::line::pivots;
+
+/// Column after column.
+pub(in crate::line) type Block<T, const N: usize> = [[T; N]; N];
+
+/// A closed form multiplies roundings by the volume of a box over that of the columns of a block, which are as long as
+/// the edges of the box: at least this part, squared.
+const VOLUME: f64 = 1.0 / 64.0;
+
+/// What is left of a column, as a part of what it was, squared: far more than what rounding leaves of nothing.
+const LEFT: f64 = 1e-12;
+
+#[inline(always)]
+fn blocks<T, const N: usize>(list: &[T]) -> &[Block<T, N>] {
+    list.as_chunks::<N>().0.as_chunks::<N>().0
+}
+
+#[inline(always)]
+pub(super) fn blocks_mut<T, const N: usize>(list: &mut [T]) -> &mut [Block<T, N>] {
+    list.as_chunks_mut::<N>().0.as_chunks_mut::<N>().0
+}
+
+/// `a x`.
+#[inline(always)]
+fn times<T: Real, const N: usize>(a: &Block<T, N>, x: &[T; N]) -> [T; N] {
+    let mut out = a[0].map(|entry| entry * x[0]);
+    for k in 1..N {
+        for i in 0..N {
+            out[i] += a[k][i] * x[k];
+        }
+    }
+    out
+}
+
+/// `out -= a x`.
+#[inline(always)]
+fn take<T: Real, const N: usize>(a: &Block<T, N>, x: &[T; N], out: &mut [T; N]) {
+    for k in 0..N {
+        for i in 0..N {
+            out[i] -= a[k][i] * x[k];
+        }
+    }
+}
+
+#[inline(always)]
+fn dot<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
+    let mut sum = a[0] * b[0];
+    for k in 1..N {
+        sum += a[k] * b[k];
+    }
+    sum
+}
+
+/// The inverse of a block of up to three rows in closed form: of one whose columns span a large part of the volume that
+/// they could, in every lane, and are not what rounding leaves of those of `own`, if that is given.
+#[inline(always)]
+fn inverse<T: Real, const N: usize>(
+    a: &Block<T, N>,
+    own: Option<&Block<T, N>>,
+) -> Option<Block<T, N>> {
+    let (rows, volume): (Block<T, N>, T) = match N {
+        1 => ([[T::one(); N]; N], a[0][0]),
+        2 => {
+            let mut rows = [[T::zero(); N]; N];
+            (rows[0][0], rows[0][1]) = (a[1][1], -a[1][0]);
+            (rows[1][0], rows[1][1]) = (-a[0][1], a[0][0]);
+            (rows, a[0][0] * a[1][1] - a[1][0] * a[0][1])
+        }
+        3 => {
+            let cross = |x: &[T; N], y: &[T; N]| {
+                let mut out = [T::zero(); N];
+                out[0] = x[1] * y[2] - x[2] * y[1];
+                out[1] = x[2] * y[0] - x[0] * y[2];
+                out[2] = x[0] * y[1] - x[1] * y[0];
+                out
+            };
+            let mut rows = [[T::zero(); N]; N];
+            rows[0] = cross(&a[1], &a[2]);
+            rows[1] = cross(&a[2], &a[0]);
+            rows[2] = cross(&a[0], &a[1]);
+            (rows, dot(&a[0], &rows[0]))
+        }
+        _ => return None,
+    };
+    let squares = a.map(|column| dot(&column, &column));
+    let mut largest = squares[0];
+    for square in &squares[1..] {
+        largest *= *square;
+    }
+    // Not so where a number is none, or too large or small to be squared.
+    let mut far = (volume * volume - largest * T::from_f64(VOLUME)).least() > 0.0;
+    if let Some(own) = own {
+        for k in 0..N {
+            let before = dot(&own[k], &own[k]);
+            far &= (squares[k] - before * T::from_f64(LEFT)).least() > 0.0;
+        }
+    }
+    if !far {
+        return None;
+    }
+    let reciprocal = T::one() / volume;
+    let mut out = [[T::zero(); N]; N];
+    for i in 0..N {
+        for j in 0..N {
+            out[j][i] = rows[i][j] * reciprocal;
+        }
+    }
+    Some(out)
+}
+
+/// What is factored.
+struct Factors<'a, T, const N: usize> {
+    before: &'a [Block<T, N>],
+    left: &'a [Block<T, N>],
+    inverted: &'a [bool],
+    pivots: &'a [[usize; N]],
+    onward: &'a [Block<T, N>],
+}
+
+impl<'a, T: Real, const N: usize> Factors<'a, T, N> {
+    #[inline(always)]
+    fn of(all: &'a Blocks<T>) -> Self {
+        Self {
+            before: blocks(&all.before),
+            left: blocks(&all.left),
+            inverted: &all.inverted,
+            pivots: all.pivots.as_chunks::<N>().0,
+            onward: blocks(&all.onward),
+        }
+    }
+
+    /// `x` by the inverse of what is left at a site.
+    #[inline(always)]
+    fn undo(&self, site: usize, x: &mut [T; N]) {
+        match self.inverted[site] {
+            true => *x = times(&self.left[site], x),
+            false => pivots::solve(N, self.left[site].as_flattened(), &self.pivots[site], x),
+        }
+    }
+
+    /// The first half of a solution on the open line, of several right sides side by side.
+    #[inline(always)]
+    fn forward<const K: usize>(&self, x: &mut [[[T; N]; K]]) {
+        let mut last = [[T::zero(); N]; K];
+        for (i, x) in x.iter_mut().enumerate() {
+            for k in 0..K {
+                if i > 0 {
+                    take(&self.before[i], &last[k], &mut x[k]);
+                }
+                self.undo(i, &mut x[k]);
+            }
+            last = *x;
+        }
+    }
+
+    /// The second half.
+    #[inline(always)]
+    fn backward<const K: usize>(&self, x: &mut [[[T; N]; K]]) {
+        let Some((last, before)) = x.split_last_mut() else {
+            return;
+        };
+        let mut last = *last;
+        for (x, onward) in before.iter_mut().zip(self.onward).rev() {
+            for k in 0..K {
+                take(onward, &last[k], &mut x[k]);
+            }
+            last = *x;
+        }
+    }
+}
+
+/// Factors what is left at a site, and solves with it for some columns.
+#[inline(always)]
+fn settle<T: Real, const N: usize>(
+    left: &mut Block<T, N>,
+    own: Option<&Block<T, N>>,
+    (floor, inverted, chosen): (f64, &mut bool, &mut [usize; N]),
+    onward: Option<&mut Block<T, N>>,
+    x: Option<&mut [T; N]>,
+) -> bool {
+    if let Some(found) = inverse(left, own) {
+        (*left, *inverted) = (found, true);
+        if let Some(onward) = onward {
+            *onward = onward.map(|column| times(&found, &column));
+        }
+        if let Some(x) = x {
+            *x = times(&found, x);
+        }
+        return true;
+    }
+    *inverted = false;
+    pivoted(left, own, (floor, chosen), onward, x)
+}
+
+/// The same with pivots.
+#[cold]
+#[inline(never)]
+fn pivoted<T: Real, const N: usize>(
+    left: &mut Block<T, N>,
+    own: Option<&Block<T, N>>,
+    (floor, chosen): (f64, &mut [usize; N]),
+    onward: Option<&mut Block<T, N>>,
+    x: Option<&mut [T; N]>,
+) -> bool {
+    if !pivots::factor(N, left.as_flattened_mut(), chosen) {
+        return false;
+    }
+    if let Some(own) = own
+        && !pivots::are_above(N, left.as_flattened(), own.as_flattened(), floor)
+    {
+        return false;
+    }
+    let columns = onward.into_iter().flatten().chain(x);
+    for column in columns {
+        pivots::solve(N, left.as_flattened(), chosen, column);
+    }
+    true
+}
+
+/// Factors and solves; where a block has no pivot, or none above `floor` times its own columns, the site.
+pub(super) fn factor_and_solve<T: Real, const N: usize>(
+    all: &mut Blocks<T>,
+    floor: f64,
+    x: &mut [T],
+) -> Result<(), usize> {
+    let (open, closed) = (all.open(), all.closed);
+    let x = x.as_chunks_mut::<N>().0;
+    {
+        let (own, before, after) = (
+            blocks::<T, N>(&all.own),
+            blocks::<T, N>(&all.before),
+            blocks::<T, N>(&all.after),
+        );
+        let (left, onward) = (
+            blocks_mut::<T, N>(&mut all.left),
+            blocks_mut::<T, N>(&mut all.onward),
+        );
+        let chosen = all.pivots.as_chunks_mut::<N>().0;
+        let (mut earlier, mut found) = ([[T::zero(); N]; N], [T::zero(); N]);
+        for i in 0..open {
+            let (mut block, mut value) = (own[i], x[i]);
+            if i > 0 {
+                for k in 0..N {
+                    take(&before[i], &earlier[k], &mut block[k]);
+                }
+                take(&before[i], &found, &mut value);
+            }
+            earlier = after[i];
+            let of_own = (floor > 0.0).then_some(&own[i]);
+            let how = (floor, &mut all.inverted[i], &mut chosen[i]);
+            if !settle(
+                &mut block,
+                of_own,
+                how,
+                Some(&mut earlier),
+                Some(&mut value),
+            ) {
+                return Err(i);
+            }
+            (left[i], onward[i], x[i]) = (block, earlier, value);
+            found = value;
+        }
+    }
+    if !closed {
+        Factors::<T, N>::of(all).backward(x[..open].as_chunks_mut::<1>().0);
+        return Ok(());
+    }
+    border::<T, N>(all, floor)?;
+    close::<T, N>(all, x, true);
+    Ok(())
+}
+
+/// What the last site of a ring and the others do to one another.
+fn border<T: Real, const N: usize>(all: &mut Blocks<T>, floor: f64) -> Result<(), usize> {
+    let (open, last) = (all.open(), all.sites - 1);
+    let mut list = core::mem::take(&mut all.border);
+    list.fill(T::zero());
+    let columns = blocks_mut::<T, N>(&mut list);
+    columns[0] = blocks(&all.before)[0];
+    let end: &Block<T, N> = &blocks(&all.after)[open - 1];
+    for k in 0..N {
+        for i in 0..N {
+            columns[open - 1][k][i] += end[k][i];
+        }
+    }
+    let factors = Factors::<T, N>::of(all);
+    factors.forward(&mut columns[..open]);
+    factors.backward(&mut columns[..open]);
+    let own: Block<T, N> = blocks(&all.own)[last];
+    let mut left = own;
+    for k in 0..N {
+        take(
+            &blocks(&all.before)[last],
+            &columns[open - 1][k],
+            &mut left[k],
+        );
+        take(&blocks(&all.after)[last], &columns[0][k], &mut left[k]);
+    }
+    all.border = list;
+    let chosen = &mut all.pivots.as_chunks_mut::<N>().0[last];
+    let of_own = (floor > 0.0).then_some(&own);
+    let how = (floor, &mut all.inverted[last], chosen);
+    let done = settle(&mut left, of_own, how, None, None);
+    blocks_mut(&mut all.left)[last] = left;
+    if done { Ok(()) } else { Err(last) }
+}
+
+/// The solution around a ring; `begun` where the first half is done.
+fn close<T: Real, const N: usize>(all: &Blocks<T>, x: &mut [[T; N]], begun: bool) {
+    let (open, last) = (all.open(), all.sites - 1);
+    let factors = Factors::<T, N>::of(all);
+    let (others, own) = x.split_at_mut(last);
+    let others = &mut others[..open];
+    if !begun {
+        factors.forward(others.as_chunks_mut::<1>().0);
+    }
+    factors.backward(others.as_chunks_mut::<1>().0);
+    let own = &mut own[0];
+    take(&factors.before[last], &others[open - 1], own);
+    take(&blocks(&all.after)[last], &others[0], own);
+    factors.undo(last, own);
+    for (x, border) in others.iter_mut().zip(blocks(&all.border)) {
+        take(border, own, x);
+    }
+}
+
+/// `x = A^-1 x` of the matrix that was factored last.
+pub(super) fn solve<T: Real, const N: usize>(all: &Blocks<T>, x: &mut [T]) {
+    let open = all.open();
+    let x = x.as_chunks_mut::<N>().0;
+    if all.closed {
+        return close::<T, N>(all, x, false);
+    }
+    let factors = Factors::<T, N>::of(all);
+    let columns = x[..open].as_chunks_mut::<1>().0;
+    factors.forward(columns);
+    factors.backward(columns);
+}
