@@ -272,6 +272,7 @@ impl BodyInQuadraticField<f64> {
     fn scales(&self, state: &BodyInQuadraticFieldState<f64>, h: f64, out: &mut [f64]) {
         let BodyInQuadraticFieldParameters { K, .. } = self.parameters;
         let Γ = self.Γ(state);
+        let energies = self.energies(state);
         let s1 = Γ.dot(&Γ).sqrt();
         let impulse = (h * h).sqrt() * (K * K).trace().sqrt() * s1 * s1;
         let state = &BodyInQuadraticFieldState {
@@ -280,7 +281,14 @@ impl BodyInQuadraticField<f64> {
         };
         let μ = state.body_momentum().0;
         let t1 = Γ.dot(&Γ).sqrt();
-        put(out, [sum_of_sizes(self.energies(state)), μ.dot(&μ).sqrt() * t1, t1 * t1]);
+        put(
+            out,
+            [
+                size_of_energy(energies, self.energies(state)),
+                μ.dot(&μ).sqrt() * t1,
+                t1 * t1,
+            ],
+        );
     }
     /// The model as data.
     pub const CARD: Card = Card {

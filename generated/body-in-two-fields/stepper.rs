@@ -274,6 +274,7 @@ impl BodyInTwoFields<f64> {
         let BodyInTwoFieldsParameters { gU, p, .. } = self.parameters;
         let Γ = self.Γ(state);
         let B = self.B(state);
+        let energies = self.energies(state);
         let s1 = (h * h).sqrt();
         let impulse = s1 * gU.dot(&gU).sqrt() * Γ.dot(&Γ).sqrt()
             + s1 * p.dot(&p).sqrt() * B.dot(&B).sqrt();
@@ -283,7 +284,10 @@ impl BodyInTwoFields<f64> {
         };
         let t1 = Γ.dot(&Γ).sqrt();
         let t2 = B.dot(&B).sqrt();
-        put(out, [sum_of_sizes(self.energies(state)), t1 * t1, t1 * t2, t2 * t2]);
+        put(
+            out,
+            [size_of_energy(energies, self.energies(state)), t1 * t1, t1 * t2, t2 * t2],
+        );
     }
     /// The model as data.
     pub const CARD: Card = Card {

@@ -258,6 +258,7 @@ impl ChargedParticle<f64> {
         type T = f64;
         let ChargedParticleParameters { q, B, E, .. } = self.parameters;
         let X = state.X.matrix();
+        let energies = self.energies(state);
         let impulse = T::from_f64(0.5) * (h * h).sqrt() * (q * q).sqrt()
             * E.dot(&E).sqrt();
         let state = &ChargedParticleState {
@@ -266,7 +267,7 @@ impl ChargedParticle<f64> {
         };
         let p = state.momentum().0;
         let t1 = E.cross(&X.cross(&(B * (T::from_f64(0.5) * q))));
-        let out = put(out, [sum_of_sizes(self.energies(state))]);
+        let out = put(out, [size_of_energy(energies, self.energies(state))]);
         put(out, [t1.dot(&t1).sqrt() + p.dot(&p).sqrt() * E.dot(&E).sqrt(); 3 * 1]);
     }
     /// The model as data.

@@ -463,6 +463,7 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
         let EllipsoidConvectiveParameters { C0, a, b, c, d, .. } = self.parameters;
         let Q = state.Q.matrix();
         let C = self.C(state);
+        let energies = self.energies(state);
         let s1 = (h * h).sqrt();
         let s2 = (C * C).trace().sqrt();
         let s3 = determinant(&(C));
@@ -481,7 +482,10 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
             * (t2 * t2).trace().sqrt();
         let t4 = inverse_or_nan(&(Q));
         let t5 = inverse_or_nan(&(C0));
-        let out = put(out, [sum_of_sizes(self.energies(state)), t3 * t3, t3.powi(4)]);
+        let out = put(
+            out,
+            [size_of_energy(energies, self.energies(state)), t3 * t3, t3.powi(4)],
+        );
         put(
             out,
             ::core::iter::repeat_n(

@@ -461,6 +461,7 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
         let EllipsoidSpatialParameters { I0, a, b, c, d, .. } = self.parameters;
         let Q = state.Q.matrix();
         let S = self.S(state);
+        let energies = self.energies(state);
         let s1 = (h * h).sqrt();
         let s2 = (S * S).trace().sqrt();
         let s3 = determinant(&(S));
@@ -479,7 +480,10 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
             * (t2 * t2).trace().sqrt();
         let t4 = inverse_or_nan(&(Q));
         let t5 = inverse_or_nan(&(I0));
-        let out = put(out, [sum_of_sizes(self.energies(state)), t3 * t3, t3.powi(4)]);
+        let out = put(
+            out,
+            [size_of_energy(energies, self.energies(state)), t3 * t3, t3.powi(4)],
+        );
         put(
             out,
             ::core::iter::repeat_n(

@@ -328,6 +328,7 @@ impl HeavyTopSpatial<f64> {
         let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
         let J = self.J(state);
         let χ = self.χ(state);
+        let energies = self.energies(state);
         let impulse = T::from_f64(0.5) * (h * h).sqrt() * (w * w).sqrt()
             * z.dot(&z).sqrt() * χ.dot(&χ).sqrt();
         let state = &HeavyTopSpatialState {
@@ -340,7 +341,7 @@ impl HeavyTopSpatial<f64> {
         put(
             out,
             [
-                sum_of_sizes(self.energies(state)),
+                size_of_energy(energies, self.energies(state)),
                 t1 * t1,
                 T::from_f64(3.0).sqrt() * t2,
                 t2 * t2,

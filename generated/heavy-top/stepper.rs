@@ -240,6 +240,7 @@ impl HeavyTop<f64> {
     fn scales(&self, state: &HeavyTopState<f64>, h: f64, out: &mut [f64]) {
         let HeavyTopParameters { gU, .. } = self.parameters;
         let Γ = self.Γ(state);
+        let energies = self.energies(state);
         let impulse = (h * h).sqrt() * gU.dot(&gU).sqrt() * Γ.dot(&Γ).sqrt();
         let state = &HeavyTopState {
             momentum: SpatialMomentum(not_less(state.momentum.0, (0, 3), impulse)),
@@ -247,7 +248,14 @@ impl HeavyTop<f64> {
         };
         let μ = state.body_momentum().0;
         let t1 = Γ.dot(&Γ).sqrt();
-        put(out, [sum_of_sizes(self.energies(state)), μ.dot(&μ).sqrt() * t1, t1 * t1]);
+        put(
+            out,
+            [
+                size_of_energy(energies, self.energies(state)),
+                μ.dot(&μ).sqrt() * t1,
+                t1 * t1,
+            ],
+        );
     }
     /// The model as data.
     pub const CARD: Card = Card {

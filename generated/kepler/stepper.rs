@@ -256,6 +256,7 @@ impl Kepler<f64> {
     fn scales(&self, state: &KeplerState<f64>, h: f64, out: &mut [f64]) {
         let KeplerParameters { m, k, .. } = self.parameters;
         let X = state.X.matrix();
+        let energies = self.energies(state);
         let s1 = X.dot(&X);
         let s2 = s1.powi(-1);
         let s3 = s1.powr(-1, 2);
@@ -266,7 +267,7 @@ impl Kepler<f64> {
             ..*state
         };
         let p = state.momentum().0;
-        let out = put(out, [sum_of_sizes(self.energies(state))]);
+        let out = put(out, [size_of_energy(energies, self.energies(state))]);
         put(out, [p.dot(&p).sqrt() * X.dot(&X).sqrt(); 3 * 1]);
     }
     /// The model as data.

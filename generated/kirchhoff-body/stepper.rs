@@ -865,6 +865,7 @@ impl KirchhoffBody<f64> {
         let KirchhoffBodyParameters { b, Z, .. } = self.parameters;
         let G = state.G.matrix();
         let P = self.P(state);
+        let energies = self.energies(state);
         let s1 = (h * h).sqrt();
         let s2 = P.dot(&P).sqrt();
         let s3 = b[3];
@@ -887,7 +888,11 @@ impl KirchhoffBody<f64> {
         let t8 = motion_translation(&G);
         let out = put(
             out,
-            [sum_of_sizes(self.energies(state)), t2 * t2, (t4 * t2) * (t4 * t2)],
+            [
+                size_of_energy(energies, self.energies(state)),
+                t2 * t2,
+                (t4 * t2) * (t4 * t2),
+            ],
         );
         let out = put(out, [t4 * t6; 3 * 1]);
         put(out, [(t7.dot(&t7).sqrt() + t8.dot(&t8).sqrt() * t4) * t6]);

@@ -67,6 +67,18 @@ pub fn sum_of_sizes((kinetic, potential): (f64, f64)) -> f64 {
     kinetic.abs() + potential.abs()
 }
 
+/// Of the kinetic energy that impulses which cancel at a node would give, so much is the rounding of an energy at most: it changes a
+/// velocity by its own part of them, and what they are derived from in proportion to them.
+const CANCELLED: f64 = 1e-12;
+
+/// The size of a kinetic and a potential energy, beside those of momenta not less than the impulses of the node: of a body at
+/// equilibrium its energies may be rounding, which is no scale.
+#[inline]
+#[must_use]
+pub fn size_of_energy((kinetic, potential): (f64, f64), (enlarged, _): (f64, f64)) -> f64 {
+    kinetic.abs().max(CANCELLED * enlarged.abs()) + potential.abs()
+}
+
 /// The coefficients of a pencil that do not vanish, row by row.
 pub fn spectrum<const N: usize>(coefficients: SMatrix<f64, N, N>) -> impl Iterator<Item = f64> {
     crate::linalg::even_degrees(N).map(move |at| coefficients[at])

@@ -332,6 +332,19 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             }
             _ => None,
         },
+        ("size_of_energy", 2) => |a, _| match (a.first()?, a.get(1)?) {
+            (Value::List(plain), Value::List(enlarged)) => {
+                let both = |list: &[Value<T>]| -> Option<(f64, f64)> {
+                    Some((
+                        number(list.first()?)?.value(),
+                        number(list.get(1)?)?.value(),
+                    ))
+                };
+                let size = e::size_of_energy(both(plain)?, both(enlarged)?);
+                Some(Value::Real(T::from_f64(size)))
+            }
+            _ => None,
+        },
         ("size_of", 1) => |a, _| {
             let all = numbers(a.first()?)?;
             Some(Value::Double(

@@ -248,6 +248,8 @@ pub fn scales(d: &Derivation, names: &Names) -> TokenStream {
     let (lets, values) = program(&p, &bindings);
     let mut values = list.iter().zip(values);
     let mut sizes: Vec<Sizes> = Vec::new();
+    let [plain, size] = ["energies", "energy"].map(|name| names.local(name));
+    let (mut energies, mut measured) = (TokenStream::new(), TokenStream::new());
     for v in &d.invariants {
         let rows = rows(d, v);
         let alike = |value: TokenStream| match form(d, v) {
@@ -259,7 +261,12 @@ pub fn scales(d: &Derivation, names: &Names) -> TokenStream {
         sizes.push(match (&v.kind, &v.scale) {
             (Kind::Spectrum, _) => Sizes::Several(spectrum_scales(d, names)),
             (Kind::ConstraintRate(j), _) => alike(super::holds::rate_scale(d, *j)),
-            (_, None) => alike(quote!(sum_of_sizes(self.energies(state)))),
+            (_, None) if impulses.is_empty() => alike(quote!(sum_of_sizes(self.energies(state)))),
+            (_, None) => {
+                energies = quote!(let #plain = self.energies(state););
+                measured = quote!(let #size = size_of_energy(#plain, self.energies(state)););
+                alike(quote!(#size))
+            }
             (_, Some(_)) => match values.next() {
                 Some((e, value)) if e.shape().is_scalar() => alike(value),
                 Some((_, value)) => Sizes::Several(quote!(rows(#value))),
@@ -284,7 +291,7 @@ pub fn scales(d: &Derivation, names: &Names) -> TokenStream {
         }
     });
     // Scales are taken on plain numbers.
-    let body = quote!(#locals #enlarged #mu #lets #written);
+    let body = quote!(#locals #energies #enlarged #measured #mu #lets #written);
     let scalar = names_scalar(&body).then(|| {
         quote!(
             type T = f64;

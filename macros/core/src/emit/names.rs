@@ -168,7 +168,7 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
 
 /// What emitted functions call by a plain name besides [`TYPES`], and what they name themselves: a
 /// local of the model under such a name would hide it. The test of hygiene states a model with all of them.
-const INSIDE: [&str; 124] = [
+const INSIDE: [&str; 126] = [
     "all",
     "all_finite",
     "along",
@@ -183,6 +183,8 @@ const INSIDE: [&str; 124] = [
     "count",
     "not_less",
     "size_of",
+    "size_of_energy",
+    "sum_of_sizes",
     "crossed",
     "crossing",
     "trace_complement",
