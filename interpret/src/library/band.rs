@@ -8,6 +8,7 @@ use crate::value::Value;
 use clebsch::Real;
 use clebsch::linalg::Dense;
 use clebsch::line::{self, AnyBand, Attitude, Sums};
+use clebsch::nalgebra::Vector3;
 
 type Done<T> = Result<Value<T>, Exit<T>>;
 
@@ -31,6 +32,16 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         ("line::turn_of", 1) => |a, _| match a.first()? {
             Value::Vector(v) => Some(Value::Matrix(line::turn_of(v))),
+            _ => None,
+        },
+        ("turn", 2) => |a, _| match a {
+            [velocity, row] => {
+                let (all, row) = (velocity.dense()?.data, row.count()?);
+                match all.get(row..row + 3)? {
+                    &[x, y, z] => Some(Value::Matrix(line::turn_of(&Vector3::new(x, y, z)))),
+                    _ => None,
+                }
+            }
             _ => None,
         },
         ("moved", 2) => |a, _| match a {

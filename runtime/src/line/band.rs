@@ -4,8 +4,10 @@
 
 use super::blocks::{Blocks, Fixed, Read, Size};
 use super::root::{Lists, Momenta, NoRoot, begins, follow, of_vector, scales_of};
+use super::turn::turn_of;
 use crate::Real;
-use nalgebra::{SMatrix, SVector};
+use core::ops::Deref;
+use nalgebra::{Matrix3, SMatrix, SVector};
 
 /// Momenta of all sites and their derivatives at some velocities, to which sites and terms of neighbours add.
 #[derive(Debug)]
@@ -196,6 +198,11 @@ impl<T: Real> AnyBand<T> {
         Self { turns, ..self }
     }
 
+    /// Which components of a site are those of the vector of a rotation.
+    fn rotating<const N: usize>(&self) -> [bool; N] {
+        core::array::from_fn(|k| self.turns.get(k).is_some_and(|turns| *turns))
+    }
+
     /// How many sites there are.
     pub fn sites(&self) -> usize {
         self.sites
@@ -306,40 +313,70 @@ impl<T: Real> AnyBand<T> {
     }
 }
 
-/// The same for `N` components of each site.
+/// The velocities of a site as they are tried: their numbers, and `R` rotations beside them.
+#[derive(Clone, Copy, Debug)]
+pub struct Velocity<T, const N: usize, const R: usize> {
+    numbers: SVector<T, N>,
+    /// By a third of the component at which the vector of one begins.
+    turns: [Matrix3<T>; R],
+}
+
+impl<T: Real, const N: usize, const R: usize> Velocity<T, N, R> {
+    /// The rotation whose vector begins at this component.
+    #[inline(always)]
+    pub fn turn(&self, row: usize) -> Matrix3<T> {
+        self.turns[row / 3]
+    }
+}
+
+impl<T, const N: usize, const R: usize> Deref for Velocity<T, N, R> {
+    type Target = SVector<T, N>;
+
+    #[inline(always)]
+    fn deref(&self) -> &SVector<T, N> {
+        &self.numbers
+    }
+}
+
+/// The same for `N` components of each site, which have up to `R` rotations.
 #[derive(Clone, Debug)]
-pub struct Band<T, const N: usize>(AnyBand<T>);
+pub struct Band<T, const N: usize, const R: usize> {
+    all: AnyBand<T>,
+    velocities: Vec<Velocity<T, N, R>>,
+}
 
 /// What sites and terms of neighbours add.
 #[derive(Debug)]
-pub struct Rows<'a, 'b, T, const N: usize>(&'a mut Sums<'b, T>);
+pub struct Rows<'a, 'b, T, const N: usize, const R: usize> {
+    sums: &'a mut Sums<'b, T>,
+    velocities: &'a [Velocity<T, N, R>],
+}
 
 /// Momenta of the sites of a term, and those of their derivatives that are not zero: of the site of the first index by the
 /// velocity of that of the second.
 pub type Added<T, const N: usize, const K: usize, const M: usize> =
     ([SVector<T, N>; K], [(usize, usize, SMatrix<T, N, N>); M]);
 
-impl<T: Real, const N: usize> Rows<'_, '_, T, N> {
+impl<T: Real, const N: usize, const R: usize> Rows<'_, '_, T, N, R> {
     /// Gives the momenta of all sites, or momenta and their derivatives.
     #[inline(always)]
     fn own(
         &mut self,
-        momenta: impl Fn(usize, &SVector<T, N>) -> SVector<T, N>,
-        whole: impl Fn(usize, &SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
+        momenta: impl Fn(usize, &Velocity<T, N, R>) -> SVector<T, N>,
+        whole: impl Fn(usize, &Velocity<T, N, R>) -> (SVector<T, N>, SMatrix<T, N, N>),
     ) {
-        let Self(sums) = self;
-        let velocities = sums.velocities.as_chunks::<N>().0;
+        let Self { sums, velocities } = self;
         let out = sums.momenta.as_chunks_mut::<N>().0;
         let all = velocities.iter().zip(out).enumerate();
         match &mut sums.blocks {
             None => {
                 for (site, (velocity, out)) in all {
-                    *out = momenta(site, &SVector::from(*velocity)).data.0[0];
+                    *out = momenta(site, velocity).data.0[0];
                 }
             }
             Some(blocks) => {
                 for ((site, (velocity, out)), block) in all.zip(blocks.own_mut::<N>()) {
-                    let (momenta, derivative) = whole(site, &SVector::from(*velocity));
+                    let (momenta, derivative) = whole(site, velocity);
                     *out = momenta.data.0[0];
                     *block = derivative.data.0;
                 }
@@ -354,11 +391,10 @@ impl<T: Real, const N: usize> Rows<'_, '_, T, N> {
         &mut self,
         [first, last]: [usize; 2],
         sites: impl Fn(usize) -> [usize; K],
-        momenta: impl Fn(usize, [SVector<T, N>; K]) -> [SVector<T, N>; K],
-        whole: impl Fn(usize, [SVector<T, N>; K]) -> Added<T, N, K, M>,
+        momenta: impl Fn(usize, [&Velocity<T, N, R>; K]) -> [SVector<T, N>; K],
+        whole: impl Fn(usize, [&Velocity<T, N, R>; K]) -> Added<T, N, K, M>,
     ) {
-        let Self(sums) = self;
-        let velocities = sums.velocities.as_chunks::<N>().0;
+        let Self { sums, velocities } = self;
         let out = sums.momenta.as_chunks_mut::<N>().0;
         let add = |out: &mut [[T; N]], sites: &[usize; K], momenta: &[SVector<T, N>; K]| {
             for (site, momenta) in sites.iter().zip(momenta) {
@@ -371,14 +407,14 @@ impl<T: Real, const N: usize> Rows<'_, '_, T, N> {
             None => {
                 for index in first..last {
                     let sites = sites(index);
-                    let at = sites.map(|i| SVector::from(velocities[i]));
+                    let at = sites.map(|i| &velocities[i]);
                     add(out, &sites, &momenta(index, at));
                 }
             }
             Some(blocks) => {
                 for index in first..last {
                     let sites = sites(index);
-                    let at = sites.map(|i| SVector::from(velocities[i]));
+                    let at = sites.map(|i| &velocities[i]);
                     let (momenta, derivatives) = whole(index, at);
                     add(out, &sites, &momenta);
                     for (of, by, derivative) in derivatives {
@@ -390,18 +426,27 @@ impl<T: Real, const N: usize> Rows<'_, '_, T, N> {
     }
 }
 
-impl<T: Real, const N: usize> Band<T, N> {
+impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
     /// Room for so many sites, of a ring or of an open line; `constant` where derivatives are the same at all
     /// places and velocities, for one model and step.
     #[must_use]
     pub fn new(sites: usize, ring: bool, constant: bool) -> Self {
-        Self(AnyBand::new(N, sites, ring, constant))
+        let none = Velocity {
+            numbers: SVector::zeros(),
+            turns: [Matrix3::identity(); R],
+        };
+        Self {
+            all: AnyBand::new(N, sites, ring, constant),
+            velocities: vec![none; sites],
+        }
     }
 
     /// The same with velocities of rotations: which components of a site are those of the vector of one.
     #[must_use]
     pub fn with_turns(self, turns: [bool; N]) -> Self {
-        Self(self.0.with_turns(&turns))
+        let Self { all, velocities } = self;
+        let all = all.with_turns(&turns);
+        Self { all, velocities }
     }
 
     /// The velocities of sites whose momenta are `known`, those outside `moving` zero: `momenta` gives those of one site at
@@ -414,18 +459,35 @@ impl<T: Real, const N: usize> Band<T, N> {
         &mut self,
         moving: [usize; 2],
         known: impl Fn(usize) -> SVector<T, N>,
-        momenta: impl Fn(usize, &SVector<T, N>) -> SVector<T, N>,
-        whole: impl Fn(usize, &SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>),
-        between: impl Fn(&mut Rows<'_, '_, T, N>),
+        momenta: impl Fn(usize, &Velocity<T, N, R>) -> SVector<T, N>,
+        whole: impl Fn(usize, &Velocity<T, N, R>) -> (SVector<T, N>, SMatrix<T, N, N>),
+        between: impl Fn(&mut Rows<'_, '_, T, N, R>),
         out: &mut [SVector<T, N>],
     ) -> Result<(), (usize, NoRoot)> {
-        let Self(band) = self;
+        let Self {
+            all: band,
+            velocities,
+        } = self;
         let aims = band.known.as_chunks_mut::<N>().0;
         for site in moving[0]..moving[1] {
             aims[site] = known(site).data.0[0];
         }
+        let turns = band.rotating::<N>();
         band.solve_by(Fixed::<N>, moving, |sums| {
-            let mut rows = Rows(sums);
+            let numbers = sums.velocities.as_chunks::<N>().0;
+            for (velocity, numbers) in velocities.iter_mut().zip(numbers) {
+                velocity.numbers = SVector::from(*numbers);
+            }
+            for k in begins(&turns) {
+                for velocity in &mut *velocities {
+                    let v = velocity.numbers.fixed_rows::<3>(k).into_owned();
+                    velocity.turns[k / 3] = turn_of(&v);
+                }
+            }
+            let mut rows = Rows {
+                sums,
+                velocities: &*velocities,
+            };
             rows.own(|site, v| momenta(site, v), |site, v| whole(site, v));
             between(&mut rows);
         })?;
@@ -442,13 +504,13 @@ impl<T: Real, const N: usize> Band<T, N> {
         ring: bool,
         known: impl Fn(usize) -> SVector<T, N>,
         own: impl Fn(usize) -> (SVector<T, N>, SMatrix<T, N, N>),
-        between: impl Fn(&mut Rows<'_, '_, T, N>),
+        between: impl Fn(&mut Rows<'_, '_, T, N, R>),
     ) -> T {
         let mut band = Self::new(sites, ring, true);
-        let momenta = |site: usize, _: &SVector<T, N>| own(site).0;
-        let whole = |site: usize, _: &SVector<T, N>| own(site);
+        let momenta = |site: usize, _: &Velocity<T, N, R>| own(site).0;
+        let whole = |site: usize, _: &Velocity<T, N, R>| own(site);
         match band.solve_along([first, last], known, momenta, whole, between, &mut []) {
-            Ok(()) => band.0.half_product(),
+            Ok(()) => band.all.half_product(),
             Err(_) => T::from_f64(f64::NAN),
         }
     }

@@ -7,6 +7,8 @@
 
 mod lists;
 mod small;
+#[cfg(test)]
+mod tests;
 
 use crate::Real;
 use small::Block;

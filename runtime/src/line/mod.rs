@@ -16,7 +16,7 @@ mod sweep;
 mod turn;
 
 pub use attitude::{Attitude, between, turned_by};
-pub use band::{Added, AnyBand, Band, Rows, Sums, spread};
+pub use band::{Added, AnyBand, Band, Rows, Sums, Velocity, spread};
 pub use check::{count_of, each, length_of, repeated, shorter};
 pub use error::{LineError, Place};
 pub use multipliers::{Multipliers, NoReaction};

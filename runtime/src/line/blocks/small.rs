@@ -177,52 +177,58 @@ impl<'a, T: Real, const N: usize> Factors<'a, T, N> {
     }
 }
 
-/// Factors what is left at a site, and solves with it for some columns.
-#[inline(always)]
-fn settle<T: Real, const N: usize>(
-    left: &mut Block<T, N>,
-    own: Option<&Block<T, N>>,
-    (floor, inverted, chosen): (f64, &mut bool, &mut [usize; N]),
-    onward: Option<&mut Block<T, N>>,
-    x: Option<&mut [T; N]>,
-) -> bool {
-    if let Some(found) = inverse(left, own) {
-        (*left, *inverted) = (found, true);
-        if let Some(onward) = onward {
-            *onward = onward.map(|column| times(&found, &column));
-        }
-        if let Some(x) = x {
-            *x = times(&found, x);
-        }
-        return true;
-    }
-    *inverted = false;
-    pivoted(left, own, (floor, chosen), onward, x)
+/// What is left at a site, inverted or factored, and its inverse times what it is asked for.
+struct Settled<T, const N: usize> {
+    left: Block<T, N>,
+    inverted: bool,
+    onward: Block<T, N>,
+    value: [T; N],
 }
 
-/// The same with pivots.
-#[cold]
-#[inline(never)]
-fn pivoted<T: Real, const N: usize>(
-    left: &mut Block<T, N>,
+/// Inverts or factors what is left at a site; `own` is given where that must not be rounding of it.
+#[inline(always)]
+fn settle<T: Real, const N: usize>(
+    left: Block<T, N>,
     own: Option<&Block<T, N>>,
     (floor, chosen): (f64, &mut [usize; N]),
-    onward: Option<&mut Block<T, N>>,
-    x: Option<&mut [T; N]>,
-) -> bool {
+    (onward, value): (&Block<T, N>, [T; N]),
+) -> Option<Settled<T, N>> {
+    match inverse(&left, own) {
+        Some(left) => Some(Settled {
+            left,
+            inverted: true,
+            onward: onward.map(|column| times(&left, &column)),
+            value: times(&left, &value),
+        }),
+        None => pivoted(left, own, (floor, chosen), (*onward, value)),
+    }
+}
+
+/// The same with pivots, apart from what is mostly done, whose numbers stay in registers.
+#[inline(never)]
+fn pivoted<T: Real, const N: usize>(
+    mut left: Block<T, N>,
+    own: Option<&Block<T, N>>,
+    (floor, chosen): (f64, &mut [usize; N]),
+    (mut onward, mut value): (Block<T, N>, [T; N]),
+) -> Option<Settled<T, N>> {
     if !pivots::factor(N, left.as_flattened_mut(), chosen) {
-        return false;
+        return None;
     }
     if let Some(own) = own
         && !pivots::are_above(N, left.as_flattened(), own.as_flattened(), floor)
     {
-        return false;
+        return None;
     }
-    let columns = onward.into_iter().flatten().chain(x);
-    for column in columns {
+    for column in onward.iter_mut().chain([&mut value]) {
         pivots::solve(N, left.as_flattened(), chosen, column);
     }
-    true
+    Some(Settled {
+        left,
+        inverted: false,
+        onward,
+        value,
+    })
 }
 
 /// Factors and solves; where a block has no pivot, or none above `floor` times its own columns, the site.
@@ -253,20 +259,12 @@ pub(super) fn factor_and_solve<T: Real, const N: usize>(
                 }
                 take(&before[i], &found, &mut value);
             }
-            earlier = after[i];
             let of_own = (floor > 0.0).then_some(&own[i]);
-            let how = (floor, &mut all.inverted[i], &mut chosen[i]);
-            if !settle(
-                &mut block,
-                of_own,
-                how,
-                Some(&mut earlier),
-                Some(&mut value),
-            ) {
-                return Err(i);
-            }
-            (left[i], onward[i], x[i]) = (block, earlier, value);
-            found = value;
+            let how = (floor, &mut chosen[i]);
+            let settled = settle(block, of_own, how, (&after[i], value)).ok_or(i)?;
+            (left[i], onward[i], x[i]) = (settled.left, settled.onward, settled.value);
+            all.inverted[i] = settled.inverted;
+            (earlier, found) = (settled.onward, settled.value);
         }
     }
     if !closed {
@@ -307,10 +305,11 @@ fn border<T: Real, const N: usize>(all: &mut Blocks<T>, floor: f64) -> Result<()
     all.border = list;
     let chosen = &mut all.pivots.as_chunks_mut::<N>().0[last];
     let of_own = (floor > 0.0).then_some(&own);
-    let how = (floor, &mut all.inverted[last], chosen);
-    let done = settle(&mut left, of_own, how, None, None);
-    blocks_mut(&mut all.left)[last] = left;
-    if done { Ok(()) } else { Err(last) }
+    let none = ([[T::zero(); N]; N], [T::zero(); N]);
+    let settled = settle(left, of_own, (floor, chosen), (&none.0, none.1)).ok_or(last)?;
+    blocks_mut(&mut all.left)[last] = settled.left;
+    all.inverted[last] = settled.inverted;
+    Ok(())
 }
 
 /// The solution around a ring; `begun` where the first half is done.

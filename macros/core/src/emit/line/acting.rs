@@ -187,7 +187,7 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
     else {
         return TokenStream::new();
     };
-    let velocities = taken_apart(members, &letters, &mut bindings);
+    let velocities = taken_apart(members, &letters, &mut bindings, false);
     let (lets, results) = l.program(s, &wanted, &bindings);
     let value = match (wanted.as_slice(), results.as_slice()) {
         ([_], [value]) => m.array(value.clone()),

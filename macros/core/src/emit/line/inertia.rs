@@ -119,7 +119,7 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
     let (range, ring) = (range_name(first), super::tied::ring(l));
     let energy = quote! {{
         let [first, last] = self.#range();
-        line::Band::<T, #size>::kinetic(
+        line::Band::<T, #size, 0>::kinetic(
             [#count, first, last],
             #ring,
             |site| {

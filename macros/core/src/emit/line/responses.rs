@@ -125,7 +125,7 @@ fn inverse(l: &Lines, b: &Bodies, list: &[Matrix], with_velocities: bool) -> Tok
     let letters = l.of_site(d, &values);
     let (locals, mut bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
     let velocities = match with_velocities {
-        true => super::velocities::taken_apart(&b.members, &letters, &mut bindings),
+        true => super::velocities::taken_apart(&b.members, &letters, &mut bindings, false),
         false => TokenStream::new(),
     };
     let (lets, results) = l.program(s, &values, &bindings);

@@ -215,7 +215,8 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     }
     let letters = l.of_site(d, &values);
     let (locals, mut bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
-    let velocities = taken_apart(members, &letters, &mut bindings);
+    let tied = super::tied::is_tied(l, members);
+    let velocities = taken_apart(members, &letters, &mut bindings, tied);
     let (lets, results) = l.program(s, &values, &bindings);
     let (size, turns) = (number(n), super::tied::turns(members));
     let (mut fill, mut given) = (TokenStream::new(), TokenStream::new());
@@ -254,7 +255,7 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     let of_momenta = format!(
         " The momenta of {names} at the start of an edge with these velocities, and their derivative by them."
     );
-    let solved = match super::tied::is_tied(l, members) {
+    let solved = match tied {
         true => {
             let given_of = format_ident!("given_{}", first.mover.name);
             let doc = format!(" The momenta of {names}, of the edge that leaves a site.");
@@ -283,12 +284,16 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
             }
         },
     };
+    let velocity = match tied {
+        true => super::tied::velocity(n, members),
+        false => quote!(SVector<T, #size>),
+    };
     quote! {
         #solved
 
         #[doc = #of_momenta]
         #[inline(always)]
-        fn #momenta(&self, #h: T, site: usize, at: &#places<T>, velocity: &SVector<T, #size>) -> (SVector<T, #size>, SMatrix<T, #size, #size>) {
+        fn #momenta(&self, #h: T, site: usize, at: &#places<T>, velocity: &#velocity) -> (SVector<T, #size>, SMatrix<T, #size, #size>) {
             let _ = (#h, site, at);
             #locals
             #velocities

@@ -33,10 +33,11 @@ fn adds(l: &Lines) -> bool {
 
 /// The fields of the workspace.
 pub(super) fn band_field(l: &Lines) -> Option<TokenStream> {
-    let (_, n, _) = block(l)?;
+    let (_, n, members) = block(l)?;
     let n = number(n);
     let tied = adds(l).then(|| quote!(tied: Vec<SVector<T, #n>>,));
-    Some(quote!(band: line::Band<T, #n>, #tied))
+    let rotations = rotations(&members);
+    Some(quote!(band: line::Band<T, #n, #rotations>, #tied))
 }
 
 /// Their values.
@@ -52,7 +53,23 @@ pub(super) fn band_value(l: &Lines) -> Option<TokenStream> {
         let turns = turns(&members);
         quote!(.with_turns(#turns))
     });
-    Some(quote!(band: line::Band::<T, #n>::new(#count, #ring, #constant)#turns, #tied))
+    let rotations = rotations(&members);
+    Some(quote!(band: line::Band::<T, #n, #rotations>::new(#count, #ring, #constant)#turns, #tied))
+}
+
+/// Room for the rotations of a velocity, by a third of the component at which their vectors begin.
+fn rotations(members: &[Moving]) -> Literal {
+    let rows = members.iter().filter(|m| m.is_rotation()).map(|m| {
+        let (row, _) = rows_of(members, &m.mover.name);
+        row / 3 + 1
+    });
+    number(rows.max().unwrap_or(0))
+}
+
+/// The type of the velocities of a site.
+pub(super) fn velocity(n: usize, members: &[Moving]) -> TokenStream {
+    let (n, rotations) = (number(n), rotations(members));
+    quote!(line::Velocity<T, #n, #rotations>)
 }
 
 /// Which components of a velocity are those of the vector of a rotation.
@@ -307,8 +324,9 @@ fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> Token
             values.extend(tie.columns(part, of, by).iter().map(formed));
         }
     }
-    let (lets, results) = computed(l, tie, members, &values);
+    let (lets, results) = computed(l, tie, members, &values, true);
     let mut results = values.iter().zip(results);
+    let velocity = velocity(n, members);
     let (size, wide) = (number(n), number(tie.width + 1));
     let mut fill = TokenStream::new();
     let mut derivatives = Derivatives::new(n);
@@ -339,7 +357,7 @@ fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> Token
     quote! {
         #[doc = #doc]
         #[inline(always)]
-        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, velocities: [SVector<T, #size>; #wide]) -> ([SVector<T, #size>; #wide], [(usize, usize, SMatrix<T, #size, #size>); #count]) {
+        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, velocities: [&#velocity; #wide]) -> ([SVector<T, #size>; #wide], [(usize, usize, SMatrix<T, #size, #size>); #count]) {
             let _ = (#h, site, at, &velocities);
             #lets
             let mut made = [SVector::<T, #size>::zeros(); #wide];
@@ -351,12 +369,13 @@ fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> Token
     }
 }
 
-/// Values in places and velocities of the sites of a term.
+/// Values in places and velocities of the sites of a term; rotations may be known beside those.
 fn computed(
     l: &Lines,
     tie: &Tie,
     members: &[Moving],
     values: &[Expr],
+    known_turns: bool,
 ) -> (TokenStream, Vec<TokenStream>) {
     let part = &l.line.representative;
     let s = &part.d.letters.symbols;
@@ -374,7 +393,7 @@ fn computed(
         let (row, _) = rows_of(members, &own.on);
         let site = number(own.site);
         let of = members.iter().find(|m| m.mover.name == own.on);
-        let value = of.map(|m| m.velocity(&quote!(velocities[#site]), row));
+        let value = of.map(|m| m.velocity(&quote!(velocities[#site]), row, known_turns));
         lets.extend(quote!(let #local = #value;));
         bindings.bind(own.velocity, local);
     }
@@ -387,7 +406,7 @@ fn added_kernel(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) ->
     let part = &l.line.representative;
     let (places, h) = (l.item("Places"), step(&part.d));
     let values: Vec<Expr> = tie.parts.iter().map(|p| p.added.clone()).collect();
-    let (lets, results) = computed(l, tie, members, &values);
+    let (lets, results) = computed(l, tie, members, &values, false);
     let (size, wide) = (number(n), number(tie.width + 1));
     let fill = tie.parts.iter().zip(results).map(|(own, value)| {
         let (row, rows) = rows_of(members, &own.on);

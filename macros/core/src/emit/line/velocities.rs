@@ -11,11 +11,13 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 impl Moving<'_> {
-    /// Its velocity in the stacked numbers `all`, where its own begin at `row`.
-    pub(super) fn velocity(&self, all: &TokenStream, row: usize) -> TokenStream {
+    /// Its velocity in the stacked numbers `all`, where its own begin at `row`; of a line whose velocities are found together
+    /// rotations are `known` beside them.
+    pub(super) fn velocity(&self, all: &TokenStream, row: usize, known: bool) -> TokenStream {
         let (row, rows) = (number(row), number(self.components()));
         match (self.is_number(), self.is_rotation()) {
             (true, _) => quote!(#all[#row]),
+            (_, true) if known => quote!(#all.turn(#row)),
             (_, true) => quote!(line::turn_of(&#all.fixed_rows::<3>(#row).into_owned())),
             _ => quote!(#all.fixed_rows::<#rows>(#row).into_owned()),
         }
@@ -43,6 +45,7 @@ pub(super) fn taken_apart(
     members: &[Moving],
     letters: &[Known],
     bindings: &mut Bindings,
+    known: bool,
 ) -> TokenStream {
     let mut row = 0;
     let mut out = TokenStream::new();
@@ -53,7 +56,7 @@ pub(super) fn taken_apart(
             symbol: c.velocity,
             shift: expr::Shift::HERE,
         };
-        let value = o.velocity(&quote!(velocity), row);
+        let value = o.velocity(&quote!(velocity), row, known);
         row += o.components();
         if !letters.iter().any(|k| k.letter == letter) {
             continue;
