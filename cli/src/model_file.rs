@@ -108,7 +108,7 @@ pub(crate) fn read(
 fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>, Failure> {
     match case {
         None => Ok(stated.default_choice()),
-        Some((file, text)) => labels::choice(file, text, stated),
+        Some((file, text)) => case_file::choice(file, text, stated),
     }
 }
 

@@ -198,7 +198,12 @@ impl Plan {
             let field = fields.iter().find(named)?;
             Some(format!("{table}.{}", field.ascii))
         };
-        let key = of("parameters", card.parameters)
+        // What an end holds may stand among the initial values.
+        let lines = self.origin.as_ref().map(|(_, lines)| lines);
+        let among_initial = |key: &String| lines.is_some_and(|l| l.contains_key(key));
+        let held = of("initial", card.parameters).filter(among_initial);
+        let key = held
+            .or_else(|| of("parameters", card.parameters))
             .or_else(|| of("initial", card.initial))
             .unwrap_or_else(|| wrong.field.to_owned());
         match &self.origin {

@@ -17,16 +17,7 @@ pub(super) fn at(
     value: &DeValue<'_>,
     of: &Numbers<'_>,
 ) -> Option<String> {
-    let is_held = base.given && !base.is_momentum;
-    let kindred = group(stated, base).filter(|_| is_held || base.end)?;
-    let size = match kindred.name.text.as_str() {
-        "SU" => 4,
-        "SO" => 3,
-        _ => return None,
-    };
-    if (site.field.rows, site.field.cols) != (size, size) {
-        return None;
-    }
+    let size = size(stated, base, site.field)?;
     // Lists of sites are told from the numbers of one by the shape of a quaternion.
     let four = Field {
         rows: 4,
@@ -69,6 +60,18 @@ pub(super) fn at(
     };
     let rows: Vec<String> = rows.iter().map(row).collect();
     Some(format!("[{}]", rows.join(", ")))
+}
+
+/// The rows of the matrix that four numbers at a site stand for; `None` where they stand for none.
+pub(super) fn size(stated: &Stated, base: &Base, field: &Field) -> Option<usize> {
+    let is_held = base.given && !base.is_momentum;
+    let kindred = group(stated, base).filter(|_| is_held || base.end)?;
+    let size = match kindred.name.text.as_str() {
+        "SU" => 4,
+        "SO" => 3,
+        _ => return None,
+    };
+    ((field.rows, field.cols) == (size, size)).then_some(size)
 }
 
 /// The group of a configuration, or that a parameter of an end condition is an element of.

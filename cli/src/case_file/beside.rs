@@ -1,7 +1,7 @@
 //! Values of a case that need no reading: those of the particles and nodes of a fluid, computed from what the case says of all of
 //! them. Takes them by table and field; gives them back where the fields of a card are read, and the lines that they came from.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Such values.
 #[derive(Clone, Debug, Default)]
@@ -10,6 +10,8 @@ pub(crate) struct Beside {
     tables: BTreeMap<&'static str, Vec<Option<Vec<f64>>>>,
     /// Lines of the file by table and quantity, such as `parameters.m`.
     lines: BTreeMap<String, usize>,
+    /// Parameters, values that an end holds, whose values stand among the initial ones.
+    initial: BTreeSet<String>,
 }
 
 impl Beside {
@@ -27,6 +29,21 @@ impl Beside {
     /// Keeps the line of the file in which a quantity of a table is given.
     pub fn stands(&mut self, table: &str, quantity: &str, line: usize) {
         self.lines.insert(format!("{table}.{quantity}"), line);
+    }
+
+    /// Says that the value of a parameter stands among the initial ones.
+    pub fn is_initial(&mut self, parameter: &str) {
+        self.initial.insert(parameter.to_owned());
+    }
+
+    /// Whether it does.
+    pub fn initial(&self, parameter: &str) -> bool {
+        self.initial.contains(parameter)
+    }
+
+    /// The parameters of which it does.
+    pub fn all_initial(&self) -> impl Iterator<Item = &str> {
+        self.initial.iter().map(String::as_str)
     }
 
     /// The numbers of a field.

@@ -4,6 +4,7 @@
 mod expressions;
 mod meshes;
 
+use super::from_npz::{self, Arrays, Fault};
 use super::labels::{Stated, table};
 use super::location::File;
 use super::sites;
@@ -58,6 +59,7 @@ struct Reader<'a> {
     nodes: (Vec<Vec<f64>>, Vec<f64>),
     /// Meshes at the particles, by number, once an expression takes them.
     meshes: RefCell<BTreeMap<usize, Rc<AtParticles>>>,
+    arrays: Arrays,
     fluid: Fluid,
 }
 
@@ -70,6 +72,15 @@ struct Wrong {
 impl From<String> for Wrong {
     fn from(why: String) -> Self {
         Wrong { why, at: None }
+    }
+}
+
+impl From<Fault> for Wrong {
+    fn from(fault: Fault) -> Self {
+        Wrong {
+            why: fault.why,
+            at: Some(fault.at),
+        }
     }
 }
 
@@ -102,6 +113,7 @@ impl Fluid {
             numbers: sites::numbers(top, parameters),
             nodes,
             meshes: RefCell::default(),
+            arrays: Arrays::of(file),
             fluid: Fluid::default(),
         };
         reader.whole();
@@ -232,8 +244,9 @@ impl Reader<'_> {
             return Err(self.wrong(&named, value, message));
         };
         let read = match given.get_ref() {
+            own if from_npz::is_meant(own) => self.read(q, &key, given),
             DeValue::Table(table) => places(table, self.space, self.count(q)).map_err(Wrong::from),
-            _ => self.read(q, given),
+            _ => self.read(q, &key, given),
         };
         let numbers = read.map_err(|wrong| self.wrong_part(&named, value, &wrong))?;
         self.keep(&key, numbers, size(q), value);
@@ -246,7 +259,7 @@ impl Reader<'_> {
             return Ok(());
         };
         let key = ascii(&q.name.text);
-        let numbers = self.read(q, given);
+        let numbers = self.read(q, &key, given);
         let numbers =
             numbers.map_err(|wrong| self.wrong_part(&format!("initial.{key}"), value, &wrong))?;
         self.keep(&key, numbers, size(q), value);
@@ -265,13 +278,14 @@ impl Reader<'_> {
                                site, or { depth = \"...\" }";
                 return Err(self.wrong(&named, value, message));
             }
+            Some(own) if from_npz::is_meant(own.get_ref()) => self.read(q, &key, own),
             Some(own) if let DeValue::Table(table) = own.get_ref() => match (table.get("depth"), table.get("share")) {
                 (Some(depth), share)
                     if !self.is_grid(q)
                         && size(q) == 1
                         && table.len() == 1 + usize::from(share.is_some()) =>
                 {
-                    let depths = self.read(q, depth).and_then(|all| Ok(positive(all)?));
+                    let depths = self.read(q, &key, depth).and_then(|all| Ok(positive(all)?));
                     let shares = self.shares(q, share.map(Spanned::get_ref));
                     depths.and_then(|all| {
                         let each = all.into_iter().zip(shares?);
@@ -285,7 +299,7 @@ impl Reader<'_> {
                         .into(),
                 ),
             },
-            Some(own) => self.read(q, own),
+            Some(own) => self.read(q, &key, own),
         };
         let numbers = read.map_err(|wrong| self.wrong_part(&named, value, &wrong))?;
         self.keep(&key, numbers, size(q), value);
@@ -341,7 +355,7 @@ impl Reader<'_> {
         };
         let Some(given) = value else { return Ok(()) };
         let named = format!("initial.{key}");
-        let numbers = self.read(q, given);
+        let numbers = self.read(q, key, given);
         let mut numbers = numbers.map_err(|wrong| self.wrong_part(&named, value, &wrong))?;
         if v.is_some() {
             let own = self.of_velocities(q, &numbers, source);

@@ -82,12 +82,17 @@ pub(super) fn words(field: &Field) -> &'static str {
     }
 }
 
-/// J of an inertia given by its principal moments or in full: `tr(I)/2 Id - I`.
-pub(super) fn second_moments(field: &Field, value: &DeValue<'_>) -> Result<Vec<f64>, String> {
-    let inertia = Field {
+/// The inertia in the place of a field of second moments: a matrix, or its diagonal.
+pub(super) fn field(field: &Field) -> Field {
+    Field {
         kind: Kind::Diagonal,
         ..*field
-    };
+    }
+}
+
+/// J of an inertia given by its principal moments or in full: `tr(I)/2 Id - I`.
+pub(super) fn second_moments(field: &Field, value: &DeValue<'_>) -> Result<Vec<f64>, String> {
+    let inertia = self::field(field);
     let wanted = "expected the principal moments of inertia [a, b, c] or the matrix [[..], ..]";
     let entries = numbers(&inertia, value).map_err(|message| {
         // What is said of one entry stands; of the whole, it is the inertia that was asked for.

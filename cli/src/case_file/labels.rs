@@ -4,8 +4,10 @@
 
 use super::attitudes;
 use super::beside::Beside;
+use super::chosen::choice;
 use super::copies::Copies;
 use super::fluid::Fluid;
+use super::from_npz::{self, Arrays, Fault, Wanted};
 use super::inertia::{self, Taken};
 use super::location::File;
 use super::sites::{self, Site};
@@ -25,7 +27,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Number of sites where no case says one.
-const SITES: usize = 8;
+pub(super) const SITES: usize = 8;
 
 /// Number of particles of a fluid where no case says one.
 pub(super) const PARTICLES: usize = 64;
@@ -63,7 +65,7 @@ impl Stated {
     }
 
     /// Whether a key belongs to an end condition or a ring that is not chosen: a case keeps it.
-    fn of_other_ends(&self, key: &str) -> bool {
+    pub(super) fn of_other_ends(&self, key: &str) -> bool {
         let ends = self.lattice.ends.iter().flatten();
         let mut names = ends
             .flat_map(|a| &a.params)
@@ -80,109 +82,6 @@ impl Stated {
     /// The copies of quantities at the sites of a choice.
     pub(crate) fn copies(&self, choice: &Choice) -> Option<Copies> {
         Copies::of(self, choice)
-    }
-}
-
-/// The choice that a case makes in its tables `[labels]` and `[ends]`; none for a model that cannot be written out, which its
-/// derivation tells of, with the place in its text.
-///
-/// # Errors
-/// Usage: no TOML, an unknown label or end condition, a number of sites that is none.
-pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<Choice>, Failure> {
-    let file = File::new(name, text);
-    let lattice = &stated.lattice;
-    let Some(mut choice) = stated.default_choice() else {
-        return Ok(None);
-    };
-    let document = file.document()?;
-    let top = document.get_ref();
-    let Some(labels) = table(&file, top, "labels")? else {
-        let keys: Vec<String> = lattice
-            .labels
-            .iter()
-            .map(|l| format!("{} = {SITES}", l.index.text))
-            .collect();
-        let message = format!(
-            "missing table [labels], how many sites there are: for example {}",
-            keys.join(", ")
-        );
-        return Err(file.wrong(None, &message));
-    };
-    let space = Space::read(&file, top, stated)?;
-    for (key, value) in labels {
-        let asked = key.get_ref().as_ref();
-        let own = lattice
-            .labels
-            .iter()
-            .find(|l| l.index.text == asked || l.count.text == asked);
-        let label = own.map_or(asked, |l| l.index.text.as_str());
-        let count = match value.get_ref() {
-            // Of a grid its cells are given.
-            _ if own.is_some_and(|l| l.grid) => space.as_ref().map(Space::count),
-            DeValue::Integer(n) => usize::from_str_radix(n.as_str(), n.radix()).ok(),
-            _ => None,
-        };
-        let wrong =
-            |message: &str| file.wrong(Some(&value.span()), &format!("labels.{asked}: {message}"));
-        let count = count.ok_or_else(|| wrong("expected a whole number of sites, at least 1"))?;
-        choice = choice
-            .with_count(lattice, label, count)
-            .map_err(|refusal| wrong(&refusal.to_string()))?;
-    }
-    if let Some(missing) = lattice.labels.iter().find(|l| {
-        !labels.contains_key(l.index.text.as_str()) && !labels.contains_key(l.count.text.as_str())
-    }) {
-        let index = &missing.index.text;
-        let message = format!("missing key `labels.{index}`: how many sites there are");
-        return Err(file.wrong(None, &message));
-    }
-    if let Some(ends) = table(&file, top, "ends")? {
-        for (key, value) in ends {
-            choice = ended(&file, lattice, choice, key.get_ref().as_ref(), value)?;
-        }
-    }
-    Ok(Some(choice))
-}
-
-/// `i = "periodic"`, `i = "pinned"` at both ends, or `i = ["clamped", "free"]`.
-fn ended(
-    file: &File<'_>,
-    lattice: &Lattice,
-    choice: Choice,
-    key: &str,
-    value: &Spanned<DeValue<'_>>,
-) -> Result<Choice, Failure> {
-    let wrong = |message: &str| {
-        file.wrong(
-            Some(&value.span()),
-            &format!("ends.{}: {message}", shown(key)),
-        )
-    };
-    let line = lattice.line_label().map(|l| l.index.text.as_str());
-    if line != Some(key) {
-        return Err(wrong(&match line {
-            Some(line) => format!("the line is `{line}`"),
-            None => "the model has no line that could have ends".to_owned(),
-        }));
-    }
-    let names: Option<Vec<&str>> = match value.get_ref() {
-        DeValue::String(name) => Some(vec![name.as_ref(), name.as_ref()]),
-        DeValue::Array(list) => list.iter().map(|v| v.get_ref().as_str()).collect(),
-        _ => None,
-    };
-    match names.as_deref() {
-        Some(["periodic", _]) => choice
-            .with_ring(lattice)
-            .map_err(|refusal| wrong(&refusal.to_string())),
-        Some([first, last]) => {
-            let choice = choice.with_end(lattice, false, first);
-            choice
-                .and_then(|c| c.with_end(lattice, true, last))
-                .map_err(|refusal| wrong(&refusal.to_string()))
-        }
-        _ => Err(wrong(
-            "expected \"periodic\", the name of an end condition, or two of them, [\"free\", \"free\"]",
-        )),
     }
 }
 
@@ -279,6 +178,7 @@ pub(crate) fn written_out(
         choice: &choice,
         copies: &copies,
         numbers: sites::numbers(top, parameters),
+        arrays: Arrays::of(&file),
     };
     writer.fields(&mut out, "parameters", card.parameters, parameters, initial)?;
     writer.fields(&mut out, "initial", card.initial, initial, None)?;
@@ -367,6 +267,7 @@ struct Writer<'a> {
     choice: &'a Choice,
     copies: &'a Copies,
     numbers: Vec<(String, f64)>,
+    arrays: Arrays,
 }
 
 type Table<'a, 'i> = Option<&'a DeTable<'i>>;
@@ -411,6 +312,9 @@ impl Writer<'_> {
                 used.insert(own.clone());
                 if let Some(value) = value.or(other) {
                     found = Some((own, site, value));
+                    if other.is_some_and(|o| std::ptr::eq(o, value)) {
+                        out.beside.is_initial(field.ascii);
+                    }
                     break;
                 }
             }
@@ -421,25 +325,40 @@ impl Writer<'_> {
                 continue;
             };
             let line = self.file.line(&value.span());
+            let table = match out.beside.initial(field.ascii) {
+                true => "initial",
+                false => name,
+            };
+            let wrong = |why: &str, at: &Range<usize>| {
+                let message = format!("{table}.{}: {why}", shown(&own));
+                self.file.wrong(Some(at), &message)
+            };
+            let of_inertia = own.starts_with('I') && field.ascii.starts_with('J');
             let text = match (&base, site) {
+                _ if from_npz::is_meant(value.get_ref()) => {
+                    let place = base.as_ref().map(|b| (b, site));
+                    let asked = match of_inertia {
+                        true => inertia::field(field),
+                        false => *field,
+                    };
+                    let text = self.of_array(&asked, place, &own, value);
+                    Ok(text.map_err(|fault| wrong(&fault.why, &fault.at))?)
+                }
                 (Some(base), true) => self.at_site(field, base, value),
                 (Some(base), false) => self.by_own_name(field, base, value),
                 _ => sites::plain(value.get_ref(), &|n| self.number(n, None)),
             };
-            let text = text.map_err(|message| {
-                let key = format!("{name}.{}: {message}", shown(&own));
-                self.file.wrong(Some(&value.span()), &key)
-            })?;
+            let text = text.map_err(|why| wrong(&why, &value.span()))?;
             // The inertia of a copy stands under the key of its own.
             let inertial = inertia::key(field, &taken);
-            let written = match (
-                &inertial,
-                own.starts_with('I') && field.ascii.starts_with('J'),
-            ) {
+            let written = match (&inertial, of_inertia) {
                 (Some(key), true) => key.as_str(),
                 _ => field.ascii,
             };
             out.push(&format!("{written} = {text}"), line);
+        }
+        if name == "initial" {
+            used.extend(out.beside.all_initial().map(str::to_owned));
         }
         self.unknown(name, values, &used)
     }
@@ -505,6 +424,38 @@ impl Writer<'_> {
         let numbers = |n: &str| self.number(n, Some(base));
         let held = attitudes::at(self.stated, base, &at, value.get_ref(), &numbers);
         held.map_or_else(|| sites::at(&at, value.get_ref(), &numbers), Ok)
+    }
+
+    /// The value of a copy, or of what belongs to no site, from an array of a file.
+    fn of_array(
+        &self,
+        field: &Field,
+        place: Option<(&Base, bool)>,
+        named: &str,
+        value: &Spanned<DeValue<'_>>,
+    ) -> Result<String, Fault> {
+        let mut values = from_npz::shapes(field);
+        let four = place.and_then(|(base, _)| attitudes::size(self.stated, base, field));
+        values.extend(four.map(|_| vec![4]).filter(|own| !values.contains(own)));
+        let base = place.filter(|(b, site)| *site && !b.end).map(|(b, _)| b);
+        let group = base.and_then(|b| self.copies.groups.iter().find(|g| g.of == b.of));
+        let may_move = base.is_some_and(|b| b.is_momentum);
+        let wanted = Wanted {
+            values: &values,
+            sites: group.map(|g| &g.sites[..]),
+            moving: group.filter(|_| may_move).map(|g| &g.moving[..]),
+        };
+        let taken = self.arrays.take(value, named, wanted)?;
+        let whole = |why: String| Fault {
+            why,
+            at: value.span(),
+        };
+        let text = taken.text(base.map_or(0, |b| b.site)).map_err(whole)?;
+        let Some((base, _)) = place else {
+            return Ok(text);
+        };
+        let own = DeValue::parse(&text).map_err(|e| whole(e.message().to_owned()))?;
+        self.by_own_name(field, base, &own).map_err(whole)
     }
 
     /// A value under the name with its site.

@@ -23,7 +23,8 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
         "# A case of the model {}; run it with\n#   clebsch run {named} --case THIS-FILE.toml\n\
          # Units: any consistent system. The model fixes none.\n\
          # Site data: a number for all sites, a text with an expression in the label, in its number and in the\n\
-         # numbers below, or a list with an element for each site.\n{held}\
+         # numbers below, a list with an element for each site, or an array [site, component] of a file beside this\n\
+         # one, {{ npz = \"n.npz\", key = \"q\" }}, where that of a run's end is {{ npz = \"out/trajectory.npz\" }}.\n{held}\
          model = \"{}\"\nname = \"sample\"\ndoc = \"sample values, to start a case of your own from\"\n\
          h = 0.01     # time step, positive\nsteps = 1000     # number of steps, at least 1\n\n[labels]\n",
         card.kebab, card.kebab

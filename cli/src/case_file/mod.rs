@@ -2,10 +2,13 @@
 //! Keys: `model`, `name`, `doc`, `h`, `steps`, tables `[parameters]`, `[initial]`, `[bounds]`,
 //! and of models with labels `[labels]` and `[ends]`.
 
+mod archive;
 mod attitudes;
 mod beside;
+mod chosen;
 mod copies;
 mod fluid;
+mod from_npz;
 pub(crate) mod functions;
 mod inertia;
 pub(crate) mod labels;
@@ -20,6 +23,7 @@ mod value;
 mod write;
 
 pub(crate) use beside::{line_of, quantity_of};
+pub(crate) use chosen::choice;
 pub(crate) use lattice::write_lattice;
 pub use location::Located;
 pub use read::read;

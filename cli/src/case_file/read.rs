@@ -2,6 +2,7 @@
 //! Takes the text; gives the case with the lines of its keys, or the first thing wrong with it.
 
 use super::beside::Beside;
+use super::from_npz::{self, Arrays};
 use super::inertia::{self, Given, Taken};
 use super::labels::WrittenOut;
 use super::location::{File, Located};
@@ -30,6 +31,9 @@ const KEYS: [&str; 8] = [
 ];
 
 type Lines = BTreeMap<String, usize>;
+
+/// Reads the numbers of a field from a value.
+type Numbers = fn(&Field, &DeValue<'_>) -> Result<Vec<f64>, String>;
 
 /// Reads the case in `text`, which came from the file `name`, for the model of `card`.
 ///
@@ -254,6 +258,7 @@ fn fields(
         };
     };
     let taken = Taken::of(fields);
+    let arrays = Arrays::of(file);
     let inertias: Vec<String> = fields
         .iter()
         .filter_map(|field| inertia::key(field, &taken))
@@ -269,10 +274,30 @@ fn fields(
             values.push(numbers.to_vec());
             continue;
         }
-        let key = format!("{name}.{}", field.ascii);
+        let stands = match beside.initial(field.ascii) {
+            true => "initial",
+            false => name,
+        };
+        let key = format!("{stands}.{}", field.ascii);
+        let read = |own: &Field, value: &Spanned<DeValue<'_>>, of: Numbers| {
+            if !from_npz::is_meant(value.get_ref()) {
+                return Ok::<_, Failure>(of(field, value.get_ref()));
+            }
+            let shown = inertia::shown_key(table, field, &taken);
+            let text = arrays.whole(own, value, shown.trim_end_matches(".I"));
+            let text = text.map_err(|fault| {
+                file.wrong(Some(&fault.at), &format!("{stands}.{shown}: {}", fault.why))
+            })?;
+            let one = DeValue::parse(&text);
+            let one = one.map_err(|e| file.wrong(Some(&value.span()), e.message()))?;
+            Ok(of(field, one.get_ref()))
+        };
         let (value, found) = match inertia::given(table, field, &taken) {
-            Given::Own(value) => (value, numbers(field, value.get_ref())),
-            Given::Inertia(value) => (value, inertia::second_moments(field, value.get_ref())),
+            Given::Own(value) => (value, read(field, value, numbers)?),
+            Given::Inertia(value) => {
+                let inertia = inertia::field(field);
+                (value, read(&inertia, value, inertia::second_moments)?)
+            }
             Given::Twice(value) => (
                 value,
                 Err("is given twice, by itself and by its inertia".to_owned()),
@@ -284,7 +309,7 @@ fn fields(
         };
         let found = found.map_err(|message| {
             let shown = inertia::shown_key(table, field, &taken);
-            file.wrong(Some(&value.span()), &format!("{name}.{shown}: {message}"))
+            file.wrong(Some(&value.span()), &format!("{stands}.{shown}: {message}"))
         })?;
         lines.insert(key, file.line(&value.span()));
         values.push(found);

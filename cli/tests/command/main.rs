@@ -12,6 +12,7 @@ mod exit_codes;
 mod figures;
 mod fluid_starts;
 mod fluids;
+mod from_npz;
 mod functions;
 mod groups;
 mod halved;

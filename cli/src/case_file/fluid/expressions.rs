@@ -3,6 +3,7 @@
 
 use super::meshes::Meshes;
 use super::{Reader, Wrong, size};
+use crate::case_file::from_npz::{self, Wanted};
 use crate::case_file::space::Space;
 use crate::case_file::value::number;
 use clebsch_core::expr::symbol::ascii;
@@ -61,13 +62,29 @@ impl Reader<'_> {
         all.get(d).copied()
     }
 
-    /// Numbers, expressions, a list of either for each component, or a list with an element for each site.
+    /// Numbers, expressions, a list of either for each component, a list with an element for each site, or an array of a file,
+    /// that of this name where none is named.
     pub(super) fn read(
         &self,
         q: &Quantity,
+        named: &str,
         value: &Spanned<DeValue<'_>>,
     ) -> Result<Vec<f64>, Wrong> {
         let (size, count) = (size(q), self.count(q));
+        if from_npz::is_meant(value.get_ref()) {
+            let sites: Vec<usize> = (0..count).collect();
+            let wanted = Wanted {
+                values: &[if size == 1 { vec![] } else { vec![size] }],
+                sites: Some(&sites),
+                moving: None,
+            };
+            let taken = self.arrays.take(value, named, wanted)?;
+            let mut out = Vec::with_capacity(count * size);
+            for site in sites {
+                out.extend(taken.at(site)?);
+            }
+            return Ok(out);
+        }
         let list = match value.get_ref() {
             DeValue::Array(list) => list,
             _ if size == 1 => return self.component(q, value),

@@ -1,0 +1,187 @@
+//! How many sites a case has and how its line ends: its tables `[labels]` and `[ends]`. Takes the text; gives the choice, or what
+//! is wrong with it.
+
+use super::labels::{SITES, Stated, table};
+use super::location::File;
+use super::space::Space;
+use crate::failure::Failure;
+use crate::plain::shown;
+use clebsch_core::expr::symbol::ascii;
+use clebsch_core::lattice::{Choice, Lattice};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// The choice that a case makes in its tables `[labels]` and `[ends]`; none for a model that cannot be written out, which its
+/// derivation tells of, with the place in its text.
+///
+/// # Errors
+/// Usage: no TOML, an unknown label or end condition, a number of sites that is none.
+pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<Choice>, Failure> {
+    let file = File::new(name, text);
+    let lattice = &stated.lattice;
+    let Some(mut choice) = stated.default_choice() else {
+        return Ok(None);
+    };
+    let document = file.document()?;
+    let top = document.get_ref();
+    let Some(labels) = table(&file, top, "labels")? else {
+        let keys: Vec<String> = lattice
+            .labels
+            .iter()
+            .map(|l| format!("{} = {SITES}", l.index.text))
+            .collect();
+        let message = format!(
+            "missing table [labels], how many sites there are: for example {}",
+            keys.join(", ")
+        );
+        return Err(file.wrong(None, &message));
+    };
+    let space = Space::read(&file, top, stated)?;
+    for (key, value) in labels {
+        let asked = key.get_ref().as_ref();
+        let own = lattice
+            .labels
+            .iter()
+            .find(|l| l.index.text == asked || l.count.text == asked);
+        let label = own.map_or(asked, |l| l.index.text.as_str());
+        let count = match value.get_ref() {
+            // Of a grid its cells are given.
+            _ if own.is_some_and(|l| l.grid) => space.as_ref().map(Space::count),
+            DeValue::Integer(n) => usize::from_str_radix(n.as_str(), n.radix()).ok(),
+            _ => None,
+        };
+        let wrong =
+            |message: &str| file.wrong(Some(&value.span()), &format!("labels.{asked}: {message}"));
+        let count = count.ok_or_else(|| wrong("expected a whole number of sites, at least 1"))?;
+        choice = choice
+            .with_count(lattice, label, count)
+            .map_err(|refusal| wrong(&refusal.to_string()))?;
+    }
+    if let Some(missing) = lattice.labels.iter().find(|l| {
+        !labels.contains_key(l.index.text.as_str()) && !labels.contains_key(l.count.text.as_str())
+    }) {
+        let index = &missing.index.text;
+        let message = format!("missing key `labels.{index}`: how many sites there are");
+        return Err(file.wrong(None, &message));
+    }
+    let ends = table(&file, top, "ends")?;
+    for (key, value) in ends.into_iter().flatten() {
+        choice = ended(&file, lattice, choice, key.get_ref().as_ref(), value)?;
+    }
+    if ends.is_none_or(DeTable::is_empty) {
+        let parameters = table(&file, top, "parameters")?;
+        ends_unchosen(&file, stated, &choice, parameters)?;
+    }
+    Ok(Some(choice))
+}
+
+/// Refuses a case that does not say how the line ends and gives a parameter of an end condition, or of the ring, that is no
+/// default: it would be left aside.
+fn ends_unchosen(
+    file: &File<'_>,
+    stated: &Stated,
+    choice: &Choice,
+    parameters: Option<&DeTable<'_>>,
+) -> Result<(), Failure> {
+    let lattice = &stated.lattice;
+    let Some(line) = lattice.line_label() else {
+        return Ok(());
+    };
+    let [first, last] = [false, true].map(|end| lattice.alternatives(end));
+    for key in parameters.into_iter().flat_map(|t| t.keys()) {
+        let asked = key.get_ref().as_ref();
+        if !stated.of_other_ends(asked) {
+            continue;
+        }
+        let bare = asked.rsplit_once('_').map_or(asked, |(base, _)| base);
+        let owners: Vec<(usize, usize)> = [0, 1]
+            .into_iter()
+            .flat_map(|end| {
+                let all = lattice.ends.get(end).into_iter().flatten().enumerate();
+                let own = all.filter(|(_, a)| {
+                    let mut names = a.params.iter().flat_map(|(names, _)| names);
+                    names.any(|n| [asked, bare].contains(&ascii(&n.text).as_str()))
+                });
+                own.map(move |(which, _)| (end, which)).collect::<Vec<_>>()
+            })
+            .collect();
+        if choice.periodic
+            || owners
+                .iter()
+                .any(|(end, which)| choice.ends[*end] == *which)
+        {
+            continue;
+        }
+        let mut names = choice.ends;
+        let owner = match owners.first() {
+            Some((end, which)) => {
+                names[*end] = *which;
+                let own = [&first, &last][*end].get(*which);
+                format!("of the end condition `{}`", own.map_or("", String::as_str))
+            }
+            None => "of the ring".to_owned(),
+        };
+        let index = &line.index.text;
+        let [a, b] = [(&first, names[0]), (&last, names[1])]
+            .map(|(l, k)| l.get(k).map_or("", String::as_str));
+        let example = match owners.is_empty() {
+            true => format!("{index} = \"periodic\""),
+            false => format!("{index} = [\"{a}\", \"{b}\"]"),
+        };
+        let ring = match lattice.periodic.is_some() {
+            true => "; or \"periodic\"",
+            false => "",
+        };
+        let message = format!(
+            "parameters.{}: is {owner}, and the case does not say how the line ends: add [ends] with {example} (the first end: \
+             {}; the last one: {}{ring})",
+            shown(asked),
+            first.join(", "),
+            last.join(", "),
+        );
+        return Err(file.wrong(Some(&key.span()), &message));
+    }
+    Ok(())
+}
+
+/// `i = "periodic"`, `i = "pinned"` at both ends, or `i = ["clamped", "free"]`.
+fn ended(
+    file: &File<'_>,
+    lattice: &Lattice,
+    choice: Choice,
+    key: &str,
+    value: &Spanned<DeValue<'_>>,
+) -> Result<Choice, Failure> {
+    let wrong = |message: &str| {
+        file.wrong(
+            Some(&value.span()),
+            &format!("ends.{}: {message}", shown(key)),
+        )
+    };
+    let line = lattice.line_label().map(|l| l.index.text.as_str());
+    if line != Some(key) {
+        return Err(wrong(&match line {
+            Some(line) => format!("the line is `{line}`"),
+            None => "the model has no line that could have ends".to_owned(),
+        }));
+    }
+    let names: Option<Vec<&str>> = match value.get_ref() {
+        DeValue::String(name) => Some(vec![name.as_ref(), name.as_ref()]),
+        DeValue::Array(list) => list.iter().map(|v| v.get_ref().as_str()).collect(),
+        _ => None,
+    };
+    match names.as_deref() {
+        Some(["periodic", _]) => choice
+            .with_ring(lattice)
+            .map_err(|refusal| wrong(&refusal.to_string())),
+        Some([first, last]) => {
+            let choice = choice.with_end(lattice, false, first);
+            choice
+                .and_then(|c| c.with_end(lattice, true, last))
+                .map_err(|refusal| wrong(&refusal.to_string()))
+        }
+        _ => Err(wrong(
+            "expected \"periodic\", the name of an end condition, or two of them, [\"free\", \"free\"]",
+        )),
+    }
+}
