@@ -187,11 +187,9 @@ impl<T: Real> BodyInQuadraticField<T> {
         axial_of_difference(&(J * Ω_before)) * t1 - (K * Γ).cross(&Γ) * h
             + axial_of_difference(&(J * Ω.transpose())) * t1
     }
-    /// What the step of size `h` from one state to the next leaves of its equations: the
-    /// momentum that is carried to the second state, less the one that the motion between
-    /// them brings there. One part a configuration, angular and linear ones of a rigid
-    /// motion apart, each with the size of the terms it is made of: those of a spatial
-    /// velocity are the two elements it is made from, as they are stored.
+    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
+    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
+    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
     pub fn residual(
         &self,
         before: &BodyInQuadraticFieldState<T>,
@@ -279,16 +277,10 @@ impl BodyInQuadraticField<f64> {
             momentum: SpatialMomentum(not_less(state.momentum.0, (0, 3), impulse)),
             ..*state
         };
+        let energy = size_of_energy(energies, self.energies(state));
         let μ = state.body_momentum().0;
         let t1 = Γ.dot(&Γ).sqrt();
-        put(
-            out,
-            [
-                size_of_energy(energies, self.energies(state)),
-                μ.dot(&μ).sqrt() * t1,
-                t1 * t1,
-            ],
-        );
+        put(out, [energy, μ.dot(&μ).sqrt() * t1, t1 * t1]);
     }
     /// The model as data.
     pub const CARD: Card = Card {

@@ -179,11 +179,9 @@ impl<T: Real> BodyInTwoFields<T> {
         axial_of_difference(&(J * Ω_before)) * t1 - gU.cross(&Γ) * h + p.cross(&B) * h
             + axial_of_difference(&(J * Ω.transpose())) * t1
     }
-    /// What the step of size `h` from one state to the next leaves of its equations: the
-    /// momentum that is carried to the second state, less the one that the motion between
-    /// them brings there. One part a configuration, angular and linear ones of a rigid
-    /// motion apart, each with the size of the terms it is made of: those of a spatial
-    /// velocity are the two elements it is made from, as they are stored.
+    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
+    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
+    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
     pub fn residual(
         &self,
         before: &BodyInTwoFieldsState<T>,
@@ -282,12 +280,10 @@ impl BodyInTwoFields<f64> {
             momentum: SpatialMomentum(not_less(state.momentum.0, (0, 3), impulse)),
             ..*state
         };
+        let energy = size_of_energy(energies, self.energies(state));
         let t1 = Γ.dot(&Γ).sqrt();
         let t2 = B.dot(&B).sqrt();
-        put(
-            out,
-            [size_of_energy(energies, self.energies(state)), t1 * t1, t1 * t2, t2 * t2],
-        );
+        put(out, [energy, t1 * t1, t1 * t2, t2 * t2]);
     }
     /// The model as data.
     pub const CARD: Card = Card {

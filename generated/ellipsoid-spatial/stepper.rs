@@ -306,11 +306,9 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
             all
         }
     }
-    /// What the step of size `h` from one state to the next leaves of its equations: the
-    /// momentum that is carried to the second state, less the one that the motion between
-    /// them brings there. One part a configuration, angular and linear ones of a rigid
-    /// motion apart, each with the size of the terms it is made of: those of a spatial
-    /// velocity are the two elements it is made from, as they are stored.
+    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
+    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
+    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
     pub fn residual(
         &self,
         before: &EllipsoidSpatialState<N, T>,
@@ -473,6 +471,7 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
             momentum: SpatialMomentumMatrix(not_less(state.momentum.0, (0, N), impulse)),
             ..*state
         };
+        let energy = size_of_energy(energies, self.energies(state));
         let m = state.spatial_momentum().0;
         let t1 = m.tr_mul(&Q);
         let t2 = inverse_or_nan(&(S));
@@ -480,10 +479,7 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
             * (t2 * t2).trace().sqrt();
         let t4 = inverse_or_nan(&(Q));
         let t5 = inverse_or_nan(&(I0));
-        let out = put(
-            out,
-            [size_of_energy(energies, self.energies(state)), t3 * t3, t3.powi(4)],
-        );
+        let out = put(out, [energy, t3 * t3, t3.powi(4)]);
         put(
             out,
             ::core::iter::repeat_n(

@@ -197,11 +197,9 @@ impl<T: Real> FreeBodySpatial<T> {
         axial_of_difference(&(ω_before * J_before)) * t1
             - axial_of_difference(&(ω * J)) * t1
     }
-    /// What the step of size `h` from one state to the next leaves of its equations: the
-    /// momentum that is carried to the second state, less the one that the motion between
-    /// them brings there. One part a configuration, angular and linear ones of a rigid
-    /// motion apart, each with the size of the terms it is made of: those of a spatial
-    /// velocity are the two elements it is made from, as they are stored.
+    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
+    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
+    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
     pub fn residual(
         &self,
         before: &FreeBodySpatialState<T>,

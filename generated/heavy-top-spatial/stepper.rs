@@ -216,11 +216,9 @@ impl<T: Real> HeavyTopSpatial<T> {
         axial_of_difference(&(ω_before * J_before)) * t1 + z.cross(&χ) * (h * w)
             - axial_of_difference(&(ω * J)) * t1
     }
-    /// What the step of size `h` from one state to the next leaves of its equations: the
-    /// momentum that is carried to the second state, less the one that the motion between
-    /// them brings there. One part a configuration, angular and linear ones of a rigid
-    /// motion apart, each with the size of the terms it is made of: those of a spatial
-    /// velocity are the two elements it is made from, as they are stored.
+    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
+    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
+    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
     pub fn residual(
         &self,
         before: &HeavyTopSpatialState<T>,
@@ -335,13 +333,14 @@ impl HeavyTopSpatial<f64> {
             momentum: SpatialMomentum(not_less(state.momentum.0, (0, 3), impulse)),
             ..*state
         };
+        let energy = size_of_energy(energies, self.energies(state));
         let m = state.spatial_momentum().0;
         let t1 = χ.dot(&χ).sqrt();
         let t2 = (J * J).trace().sqrt();
         put(
             out,
             [
-                size_of_energy(energies, self.energies(state)),
+                energy,
                 t1 * t1,
                 T::from_f64(3.0).sqrt() * t2,
                 t2 * t2,

@@ -165,11 +165,9 @@ impl<T: Real> Kepler<T> {
         let t2 = X.dot(&X);
         ΔX_before * (t1 * m) - X * (h * m * k / (t2 * t2.sqrt())) - ΔX * (t1 * m)
     }
-    /// What the step of size `h` from one state to the next leaves of its equations: the
-    /// momentum that is carried to the second state, less the one that the motion between
-    /// them brings there. One part a configuration, angular and linear ones of a rigid
-    /// motion apart, each with the size of the terms it is made of: those of a spatial
-    /// velocity are the two elements it is made from, as they are stored.
+    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
+    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
+    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
     pub fn residual(
         &self,
         before: &KeplerState<T>,
@@ -266,8 +264,9 @@ impl Kepler<f64> {
             momentum: FieldMomentum(not_less(state.momentum.0, (0, 3), impulse)),
             ..*state
         };
+        let energy = size_of_energy(energies, self.energies(state));
         let p = state.momentum().0;
-        let out = put(out, [size_of_energy(energies, self.energies(state))]);
+        let out = put(out, [energy]);
         put(out, [p.dot(&p).sqrt() * X.dot(&X).sqrt(); 3 * 1]);
     }
     /// The model as data.

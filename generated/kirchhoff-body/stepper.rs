@@ -668,11 +668,9 @@ impl<T: Real> KirchhoffBody<T> {
                 3,
             )
     }
-    /// What the step of size `h` from one state to the next leaves of its equations: the
-    /// momentum that is carried to the second state, less the one that the motion between
-    /// them brings there. One part a configuration, angular and linear ones of a rigid
-    /// motion apart, each with the size of the terms it is made of: those of a spatial
-    /// velocity are the two elements it is made from, as they are stored.
+    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
+    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
+    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
     pub fn residual(
         &self,
         before: &KirchhoffBodyState<T>,
@@ -877,6 +875,7 @@ impl KirchhoffBody<f64> {
             ),
             ..*state
         };
+        let energy = size_of_energy(energies, self.energies(state));
         let μ = state.body_momentum().0;
         let t1 = rows_from::<T, 4, 3, 1>(&P, 0);
         let t2 = t1.dot(&t1).sqrt();
@@ -886,14 +885,7 @@ impl KirchhoffBody<f64> {
         let t6 = t5.dot(&t5).sqrt();
         let t7 = rows_from::<T, 6, 3, 1>(&μ, 0);
         let t8 = motion_translation(&G);
-        let out = put(
-            out,
-            [
-                size_of_energy(energies, self.energies(state)),
-                t2 * t2,
-                (t4 * t2) * (t4 * t2),
-            ],
-        );
+        let out = put(out, [energy, t2 * t2, (t4 * t2) * (t4 * t2)]);
         let out = put(out, [t4 * t6; 3 * 1]);
         put(out, [(t7.dot(&t7).sqrt() + t8.dot(&t8).sqrt() * t4) * t6]);
     }
