@@ -134,15 +134,17 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
     Some((kernels, energy))
 }
 
-/// Fills `made` by configurations with their site in the kernel, first row and number of rows, and puts derivatives: the
-/// sites of a block, the first row of a column of it, the number of rows, and which column it is.
+/// Puts a column of derivatives: the sites of its block, the first row, the number of rows and which column it is.
+type Put<'a> = dyn FnMut([usize; 2], [usize; 3], &Expr, TokenStream) -> TokenStream + 'a;
+
+/// Fills `made` by configurations with their site in the kernel, first row and number of rows, and puts their derivatives.
 fn filled(
     l: &Lines,
     s: &Symbols,
     inertia: &Inertia,
     sites: &[[usize; 3]],
     known: &dyn Fn(&[Expr]) -> Vec<Known>,
-    put: &mut dyn FnMut([usize; 2], [usize; 3], &Expr, TokenStream) -> TokenStream,
+    put: &mut Put,
 ) -> TokenStream {
     let mut values = Vec::new();
     for (rest, columns) in inertia.at_rest.iter().zip(&inertia.columns) {
