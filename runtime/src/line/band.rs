@@ -469,8 +469,9 @@ impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
             velocities,
         } = self;
         let aims = band.known.as_chunks_mut::<N>().0;
-        for site in moving[0]..moving[1] {
-            aims[site] = known(site).data.0[0];
+        let all = aims.iter_mut().enumerate();
+        for (site, aim) in all.take(moving[1]).skip(moving[0]) {
+            *aim = known(site).data.0[0];
         }
         let turns = band.rotating::<N>();
         band.solve_by(Fixed::<N>, moving, |sums| {
