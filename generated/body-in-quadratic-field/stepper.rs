@@ -197,8 +197,8 @@ impl<T: Real> BodyInQuadraticField<T> {
         h: T,
     ) -> [Residual; 1] {
         let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
-        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         let Γ_next = self.Γ(after);
+        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         let t1 = h.powi(-1);
         let t2 = Γ_next.dot(&Γ_next).sqrt();
         [
@@ -257,9 +257,9 @@ impl<T: Real> BodyInQuadraticField<T> {
         after: &BodyInQuadraticFieldState<T>,
     ) -> T {
         let BodyInQuadraticFieldParameters { J, K, .. } = self.parameters;
-        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         let Γ = self.Γ(before);
         let Γ_next = self.Γ(after);
+        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         T::from_f64(0.25) * Γ.dot(&(K * Γ))
             + T::from_f64(0.25) * Γ_next.dot(&(K * Γ_next))
             - (J * less_identity(&Ω_matrix)).trace() / (h * h)

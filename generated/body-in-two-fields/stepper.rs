@@ -189,9 +189,9 @@ impl<T: Real> BodyInTwoFields<T> {
         h: T,
     ) -> [Residual; 1] {
         let BodyInTwoFieldsParameters { J, gU, p, .. } = self.parameters;
-        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         let Γ_next = self.Γ(after);
         let B_next = self.B(after);
+        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         let t1 = h.powi(-1);
         let t2 = (h * h).sqrt();
         [
@@ -256,11 +256,11 @@ impl<T: Real> BodyInTwoFields<T> {
         after: &BodyInTwoFieldsState<T>,
     ) -> T {
         let BodyInTwoFieldsParameters { J, gU, p, .. } = self.parameters;
-        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         let Γ = self.Γ(before);
         let Γ_next = self.Γ(after);
         let B = self.B(before);
         let B_next = self.B(after);
+        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
             - T::from_f64(0.5) * p.dot(&B) - T::from_f64(0.5) * p.dot(&B_next)
             - (J * less_identity(&Ω_matrix)).trace() / (h * h)

@@ -237,8 +237,8 @@ impl<T: Real> CayleyKleinSpatial<T> {
         h: T,
     ) -> [Residual; 1] {
         let CayleyKleinSpatialParameters { c, .. } = self.parameters;
-        let w_matrix = before.q.spatial_velocity(&after.q).matrix();
         let I = self.I(before);
+        let w_matrix = before.q.spatial_velocity(&after.q).matrix();
         let t1 = h.powi(-1);
         let t2 = quaternion_imaginary(&w_matrix);
         let t3 = quaternion_imaginary(&(w_matrix * w_matrix));
@@ -301,8 +301,8 @@ impl<T: Real> CayleyKleinSpatial<T> {
         after: &CayleyKleinSpatialState<T>,
     ) -> T {
         let CayleyKleinSpatialParameters { c, .. } = self.parameters;
-        let w_matrix = before.q.spatial_velocity(&after.q).matrix();
         let I = self.I(before);
+        let w_matrix = before.q.spatial_velocity(&after.q).matrix();
         let t1 = quaternion_imaginary(&w_matrix);
         (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
             / (h * h)

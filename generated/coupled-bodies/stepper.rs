@@ -532,9 +532,9 @@ impl<T: Real> CoupledBodies<T> {
         h: T,
     ) -> [Residual; 2] {
         let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+        let R = self.R(before);
         let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
         let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
-        let R = self.R(before);
         let t1 = (Ω1_matrix.tr_mul(&Ω1_matrix)).trace().sqrt();
         let t2 = (h * h).sqrt();
         let t3 = (eps * eps).sqrt();
@@ -654,9 +654,9 @@ impl<T: Real> CoupledBodies<T> {
         after: &CoupledBodiesState<T>,
     ) -> T {
         let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
+        let R = self.R(before);
         let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
         let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
-        let R = self.R(before);
         let t1 = less_identity(&Ω1_matrix);
         let t2 = less_identity(&Ω2_matrix);
         (-((eps * (t1 * d1).dot(&(R * (t2 * d2)))) / (h * h)))

@@ -318,9 +318,9 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         h: T,
     ) -> [Residual; 1] {
         let EllipsoidConvectiveParameters { I0, a, b, c, d, .. } = self.parameters;
-        let G_matrix = before.Q.body_velocity(&after.Q).matrix();
         let C = self.C(before);
         let C_next = self.C(after);
+        let G_matrix = before.Q.body_velocity(&after.Q).matrix();
         let t1 = G_matrix.tr_mul(&C);
         let t2 = C_next * C_next;
         let t3 = h.powi(-1);
@@ -423,9 +423,9 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         after: &EllipsoidConvectiveState<N, T>,
     ) -> T {
         let EllipsoidConvectiveParameters { I0, a, b, c, d, .. } = self.parameters;
-        let G_matrix = before.Q.body_velocity(&after.Q).matrix();
         let C = self.C(before);
         let C_next = self.C(after);
+        let G_matrix = before.Q.body_velocity(&after.Q).matrix();
         let t1 = C.trace();
         let t2 = determinant(&(C));
         let t3 = C_next.trace();
@@ -459,8 +459,8 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
     fn scales(&self, state: &EllipsoidConvectiveState<N, f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let EllipsoidConvectiveParameters { C0, a, b, c, d, .. } = self.parameters;
-        let Q = state.Q.matrix();
         let C = self.C(state);
+        let Q = state.Q.matrix();
         let energies = self.energies(state);
         let s1 = (h * h).sqrt();
         let s2 = (C * C).trace().sqrt();

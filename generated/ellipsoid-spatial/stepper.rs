@@ -316,9 +316,9 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         h: T,
     ) -> [Residual; 1] {
         let EllipsoidSpatialParameters { C0, a, b, c, d, .. } = self.parameters;
-        let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
         let S = self.S(before);
         let S_next = self.S(after);
+        let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
         let t1 = g_matrix * S;
         let t2 = S_next * S_next;
         let t3 = h.powi(-1);
@@ -421,9 +421,9 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         after: &EllipsoidSpatialState<N, T>,
     ) -> T {
         let EllipsoidSpatialParameters { C0, a, b, c, d, .. } = self.parameters;
-        let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
         let S = self.S(before);
         let S_next = self.S(after);
+        let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
         let t1 = S.trace();
         let t2 = determinant(&(S));
         let t3 = S_next.trace();
@@ -457,8 +457,8 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
     fn scales(&self, state: &EllipsoidSpatialState<N, f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let EllipsoidSpatialParameters { I0, a, b, c, d, .. } = self.parameters;
-        let Q = state.Q.matrix();
         let S = self.S(state);
+        let Q = state.Q.matrix();
         let energies = self.energies(state);
         let s1 = (h * h).sqrt();
         let s2 = (S * S).trace().sqrt();

@@ -206,8 +206,8 @@ impl<T: Real> FreeBodySpatial<T> {
         after: &FreeBodySpatialState<T>,
         h: T,
     ) -> [Residual; 1] {
-        let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
         let J = self.J(before);
+        let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
         let t1 = h.powi(-1);
         [
             Residual::between(
@@ -267,8 +267,8 @@ impl<T: Real> FreeBodySpatial<T> {
         before: &FreeBodySpatialState<T>,
         after: &FreeBodySpatialState<T>,
     ) -> T {
-        let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
         let J = self.J(before);
+        let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
         -((less_identity(&ω_matrix) * J).trace() / (h * h))
     }
 }

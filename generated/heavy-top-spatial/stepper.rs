@@ -226,9 +226,9 @@ impl<T: Real> HeavyTopSpatial<T> {
         h: T,
     ) -> [Residual; 1] {
         let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-        let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
         let J = self.J(before);
         let χ_next = self.χ(after);
+        let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
         let t1 = h.powi(-1);
         [
             Residual::between(
@@ -311,10 +311,10 @@ impl<T: Real> HeavyTopSpatial<T> {
         after: &HeavyTopSpatialState<T>,
     ) -> T {
         let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-        let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
         let J = self.J(before);
         let χ = self.χ(before);
         let χ_next = self.χ(after);
+        let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
         T::from_f64(0.5) * w * z.dot(&χ) + T::from_f64(0.5) * w * z.dot(&χ_next)
             - (less_identity(&ω_matrix) * J).trace() / (h * h)
     }

@@ -170,8 +170,8 @@ impl<T: Real> HeavyTop<T> {
         h: T,
     ) -> [Residual; 1] {
         let HeavyTopParameters { J, gU, .. } = self.parameters;
-        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         let Γ_next = self.Γ(after);
+        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         let t1 = h.powi(-1);
         [
             Residual::between(
@@ -226,9 +226,9 @@ impl<T: Real> HeavyTop<T> {
         after: &HeavyTopState<T>,
     ) -> T {
         let HeavyTopParameters { J, gU, .. } = self.parameters;
-        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         let Γ = self.Γ(before);
         let Γ_next = self.Γ(after);
+        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
         T::from_f64(0.5) * gU.dot(&Γ) + T::from_f64(0.5) * gU.dot(&Γ_next)
             - (J * less_identity(&Ω_matrix)).trace() / (h * h)
     }

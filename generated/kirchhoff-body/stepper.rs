@@ -678,11 +678,11 @@ impl<T: Real> KirchhoffBody<T> {
         h: T,
     ) -> [Residual; 2] {
         let KirchhoffBodyParameters { J, M, D, b, .. } = self.parameters;
+        let P_next = self.P(after);
         let V_matrix = before
             .G
             .velocity_between(&before.place_rest, &after.G, &after.place_rest)
             .matrix();
-        let P_next = self.P(after);
         let t1 = h.powi(-1);
         let t2 = motion_rotation(&V_matrix);
         let t3 = t2.transpose();
@@ -822,12 +822,12 @@ impl<T: Real> KirchhoffBody<T> {
         after: &KirchhoffBodyState<T>,
     ) -> T {
         let KirchhoffBodyParameters { J, M, D, b, .. } = self.parameters;
+        let P = self.P(before);
+        let P_next = self.P(after);
         let V_matrix = before
             .G
             .velocity_between(&before.place_rest, &after.G, &after.place_rest)
             .matrix();
-        let P = self.P(before);
-        let P_next = self.P(after);
         let t1 = motion_translation(&V_matrix);
         let t2 = motion_rotation(&V_matrix);
         let t3 = t1 + t2.tr_mul(&t1);
@@ -861,8 +861,8 @@ impl KirchhoffBody<f64> {
     fn scales(&self, state: &KirchhoffBodyState<f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let KirchhoffBodyParameters { b, Z, .. } = self.parameters;
-        let G = state.G.matrix();
         let P = self.P(state);
+        let G = state.G.matrix();
         let energies = self.energies(state);
         let s1 = (h * h).sqrt();
         let s2 = P.dot(&P).sqrt();

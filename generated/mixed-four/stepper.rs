@@ -1116,6 +1116,7 @@ impl<T: Real> MixedFour<T> {
     ) -> [Residual; 5] {
         let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = self
             .parameters;
+        let relative_R_q_next = self.relative_R_q(after);
         let V_matrix = before.R.body_velocity(&after.R).matrix();
         let W_matrix = before
             .G
@@ -1129,7 +1130,6 @@ impl<T: Real> MixedFour<T> {
         let R_next = after.R.matrix();
         let G_next = after.G.matrix();
         let X_next = after.X.matrix();
-        let relative_R_q_next = self.relative_R_q(after);
         let t1 = h.powi(-1);
         let t2 = p.cross(&(relative_R_q_next * e_));
         let t3 = motion_rotation(&W_matrix);
@@ -1390,6 +1390,8 @@ impl<T: Real> MixedFour<T> {
     ) -> T {
         let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = self
             .parameters;
+        let relative_R_q = self.relative_R_q(before);
+        let relative_R_q_next = self.relative_R_q(after);
         let V_matrix = before.R.body_velocity(&after.R).matrix();
         let W_matrix = before
             .G
@@ -1406,8 +1408,6 @@ impl<T: Real> MixedFour<T> {
         let R_next = after.R.matrix();
         let G_next = after.G.matrix();
         let X_next = after.X.matrix();
-        let relative_R_q = self.relative_R_q(before);
-        let relative_R_q_next = self.relative_R_q(after);
         let t1 = motion_translation(&W_matrix);
         let t2 = (T::from_f64(2.0) * h) * (T::from_f64(2.0) * h);
         let t3 = quaternion_imaginary(&Y_matrix);
@@ -1454,11 +1454,11 @@ impl MixedFour<f64> {
     fn scales(&self, state: &MixedFourState<f64>, h: f64, out: &mut [f64]) {
         type T = f64;
         let MixedFourParameters { m, k, p, s, e: e_, g, .. } = self.parameters;
+        let relative_R_q = self.relative_R_q(state);
         let R = state.R.matrix();
         let G = state.G.matrix();
         let q = state.q.matrix();
         let X = state.X.matrix();
-        let relative_R_q = self.relative_R_q(state);
         let s1 = (h * h).sqrt();
         let s2 = (k * k).sqrt();
         let s3 = p.dot(&p).sqrt();

@@ -50,7 +50,8 @@ pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr], asks:
     let mut all = with_transports(d, &needed, 0);
     all.extend(with_transports(d, &needed, 1));
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
-    let mut locals = TokenStream::new();
+    // What advances by its constraint may be made of them.
+    let mut locals = asked;
     for (i, c) in d.spec.configurations.iter().enumerate() {
         let (own, name) = (own(d, c.element), tagged(d, names, c.velocity, "matrix"));
         let velocity = element::velocity_between(c);
@@ -84,7 +85,6 @@ pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr], asks:
             &mut bindings,
         ));
     }
-    locals.extend(asked);
     Edge {
         parameters,
         locals,

@@ -161,7 +161,8 @@ pub(super) fn seen(
     }
     let parameters = parameter_locals(d, quote!(self.parameters), &others);
     let locals = here(d, names, &others, bindings);
-    quote!(#parameters #locals #asked)
+    // What advances by its constraint may be made of what was asked for.
+    quote!(#parameters #asked #locals)
 }
 
 /// The momentum of configuration `i` at the node where the step starts, on a side.
