@@ -101,7 +101,7 @@ fn difference(one: &[(String, f64)], other: &[(String, f64)]) -> f64 {
         assert_eq!(name, own);
         (a - b).abs() / scale
     });
-    differences.fold(0.0, f64::max)
+    clebsch::scalar::largest(differences)
 }
 
 /// Runs a case for 60 steps, and the same from its middle, whose state is sample 1 of the first, by these lines of `[initial]`;

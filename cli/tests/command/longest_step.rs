@@ -125,7 +125,8 @@ fn rows_of_springs_have_one_limit_in_all_groups() {
     let maps = "group Q: GL<2> at nodes velocity W; constraint next(Q) = Q*W; \
         lagrangian = m*tr((next(Q) - Q)^T*(next(Q) - Q))/(2*h) - h*k*tr((next(Q, i) - Q)^T*(next(Q, i) - Q))/2;";
     let motions = "group G: SE<3> at nodes velocity U; constraint next(G) = G*U; \
-        lagrangian = m*tr((next(G) - G)^T*(next(G) - G))/(2*h) - h*k*tr((next(G, i) - G)^T*(next(G, i) - G))/2;";
+        let d = pos(next(G)) - pos(G); let e = pos(next(G, i)) - pos(G); \
+        lagrangian = m*dot(d, d)/(2*h) - m*tr(rot(U))/h - h*k*dot(e, e)/2 + h*k*tr(rot(G)^T*rot(next(G, i)));";
     let zero = "[0.0, 0.0]";
     let cases = [
         ("field", field, format!("q = {zero}\nmomentum_q = {zero}\n")),

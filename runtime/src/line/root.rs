@@ -14,6 +14,7 @@
 use super::pivots;
 use super::turn::vector_change;
 use crate::Real;
+use crate::scalar::larger;
 use core::fmt;
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -148,7 +149,7 @@ fn largest<T: Real>(x: &[T], scales: &[f64]) -> f64 {
     }
     match lost {
         true => f64::NAN,
-        false => most.into_iter().fold(0.0, f64::max),
+        false => most.into_iter().fold(0.0, larger),
     }
 }
 

@@ -168,13 +168,18 @@ impl<'a> Probe<'a> {
 
     /// Momenta less what would move the start off its constraints; the same where none are held.
     fn projected(&self, p: &[f64]) -> Option<Vec<f64>> {
-        // A state that is at rest but for these is refused for their size alone.
-        let scale = 1.0 / largest(p.iter().copied());
+        // A state that is at rest but for these is refused for their size alone: of a mass that is small beside one.
+        let mut scale = 1.0 / largest(p.iter().copied());
         if !scale.is_finite() {
             return Some(p.to_vec());
         }
-        let start = self.observed(&self.thrown(p, scale)?, self.h, 0)?;
-        Some(self.momenta(&start).map(|x| x / scale).collect())
+        for _ in 0..SCALES {
+            if let Some(start) = self.observed(&self.thrown(p, scale)?, self.h, 0) {
+                return Some(self.momenta(&start).map(|x| x / scale).collect());
+            }
+            scale *= SLOWER;
+        }
+        None
     }
 
     /// The same, which changes nothing where none are held.
