@@ -45,7 +45,7 @@ impl StepLimit {
             };
             match found {
                 Ok(limit) if has_sites || near(&limit) => return Self::Known(limit),
-                Err(why) if has_sites || is_held => why.to_string(),
+                Err(why) if has_sites => why.to_string(),
                 Ok(_) | Err(_) => return Self::Silent,
             }
         };

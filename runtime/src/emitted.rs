@@ -76,7 +76,7 @@ const CANCELLED: f64 = 1e-12;
 #[inline]
 #[must_use]
 pub fn size_of_energy((kinetic, potential): (f64, f64), (enlarged, _): (f64, f64)) -> f64 {
-    kinetic.abs().max(CANCELLED * enlarged.abs()) + potential.abs()
+    crate::scalar::larger(kinetic.abs(), CANCELLED * enlarged.abs()) + potential.abs()
 }
 
 /// The coefficients of a pencil that do not vanish, row by row.

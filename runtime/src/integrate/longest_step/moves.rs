@@ -5,7 +5,7 @@ use crate::Rotation;
 use crate::card::{Card, Field, Kind};
 use crate::groups::so3::hamilton;
 use crate::scalar::largest;
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Vector3};
 use std::ops::Range;
 
 /// A configuration and its momentum among the initial values and among what is observed.
@@ -141,8 +141,8 @@ fn angles(count: usize) -> usize {
 
 /// Attitude and place of a rigid motion, from its homogeneous matrix, row-major.
 fn rigid(value: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
-    let n = value.len().isqrt();
-    let all = DMatrix::from_row_slice(n, n, value);
+    let all = square(value);
+    let n = all.nrows();
     let attitude = all.view((0, 0), (n - 1, n - 1)).into_owned();
     let place = all.view((0, n - 1), (n - 1, 1)).column(0).into_owned();
     (attitude, place)
@@ -168,37 +168,60 @@ fn turn_by(angles: &[f64], is_whole: bool) -> DMatrix<f64> {
     }
 }
 
-/// A rigid motion moved by a small velocity, angular then linear, in the frame of the momentum.
-fn rigid_moved(value: &[f64], spatial: bool, by: &[f64]) -> Vec<f64> {
-    let (attitude, place) = rigid(value);
-    let (turn, along) = by.split_at(angles(by.len()));
-    let along = DVector::from_column_slice(along);
-    let (next, moved) = if spatial {
-        let carried = turn_by(turn, false) * &place;
-        (turn_by(turn, true) * attitude, place + carried + along)
-    } else {
-        let along = &attitude * along;
-        (attitude * turn_by(turn, true), place + along)
-    };
-    let n = moved.len();
-    let mut all = DMatrix::identity(n + 1, n + 1);
-    all.view_mut((0, 0), (n, n)).copy_from(&next);
-    all.view_mut((0, n), (n, 1)).copy_from(&moved);
-    all.transpose().as_slice().to_vec()
+/// An attitude, of the plane or of space, turned by small angles in the frame of the momentum.
+fn turned(attitude: DMatrix<f64>, spatial: bool, angles: &[f64]) -> DMatrix<f64> {
+    let turn = turn_by(angles, true);
+    match spatial {
+        true => turn * attitude,
+        false => attitude * turn,
+    }
 }
 
-/// The small velocity from one rigid motion to another.
-fn rigid_difference(a: &[f64], b: &[f64], spatial: bool) -> Vec<f64> {
-    let ((from, here), (to, there)) = (rigid(a), rigid(b));
+/// The small angles from one attitude to another.
+fn turn_between(from: &DMatrix<f64>, to: &DMatrix<f64>, spatial: bool) -> Vec<f64> {
     let turn = match spatial {
         true => to * from.transpose(),
         false => from.transpose() * to,
     };
     let half = |i: usize, j: usize| 0.5 * (turn[(i, j)] - turn[(j, i)]);
-    let mut all = match here.len() {
+    match turn.nrows() {
         2 => vec![half(1, 0)],
         _ => vec![half(2, 1), half(0, 2), half(1, 0)],
+    }
+}
+
+/// The square matrix of these numbers, row-major.
+fn square(numbers: &[f64]) -> DMatrix<f64> {
+    let n = numbers.len().isqrt();
+    DMatrix::from_row_slice(n, n, numbers)
+}
+
+/// The numbers of a matrix, row-major.
+fn row_major(matrix: &DMatrix<f64>) -> Vec<f64> {
+    matrix.transpose().as_slice().to_vec()
+}
+
+/// A rigid motion moved by a small velocity, angular then linear, in the frame of the momentum.
+fn rigid_moved(value: &[f64], spatial: bool, by: &[f64]) -> Vec<f64> {
+    let (attitude, place) = rigid(value);
+    let (turn, along) = by.split_at(angles(by.len()));
+    let along = DVector::from_column_slice(along);
+    let moved = match spatial {
+        true => turn_by(turn, false) * &place + &place + along,
+        false => &attitude * along + place,
     };
+    let next = turned(attitude, spatial, turn);
+    let n = moved.len();
+    let mut all = DMatrix::identity(n + 1, n + 1);
+    all.view_mut((0, 0), (n, n)).copy_from(&next);
+    all.view_mut((0, n), (n, 1)).copy_from(&moved);
+    row_major(&all)
+}
+
+/// The small velocity from one rigid motion to another.
+fn rigid_difference(a: &[f64], b: &[f64], spatial: bool) -> Vec<f64> {
+    let ((from, here), (to, there)) = (rigid(a), rigid(b));
+    let mut all = turn_between(&from, &to, spatial);
     let moved = there - &here;
     let along = match spatial {
         true => moved - turn_by(&all, false) * here,
@@ -212,23 +235,12 @@ fn rigid_difference(a: &[f64], b: &[f64], spatial: bool) -> Vec<f64> {
 pub(super) fn disturb(value: &mut Vec<f64>, body: &Moves, by: &[f64]) -> Option<()> {
     match body.kind {
         Kind::FieldMomentum => value.iter_mut().zip(by).for_each(|(x, by)| *x += by),
-        // Of the plane all turns commute.
-        Kind::Rotation if body.count() == 1 => {
-            let own = DMatrix::from_row_slice(2, 2, value);
-            *value = (own * turn_by(by, true)).transpose().as_slice().to_vec();
-        }
-        Kind::Rotation => {
-            let own = Matrix3::from_row_slice(value.get(..9)?);
-            let turn = Rotation::exp(&Vector3::new(by[0], by[1], by[2])).matrix();
-            let next = if body.spatial { turn * own } else { own * turn };
-            *value = next.transpose().as_slice().to_vec();
-        }
+        Kind::Rotation => *value = row_major(&turned(square(value), body.spatial, by)),
         Kind::RigidMotion => *value = rigid_moved(value, body.spatial, by),
         Kind::Matrix => {
-            let n = value.len().isqrt();
-            let [own, by] = [value.as_slice(), by].map(|x| DMatrix::from_row_slice(n, n, x));
+            let [own, by] = [value.as_slice(), by].map(square);
             let change = if body.spatial { by * &own } else { &own * by };
-            *value = (own + change).transpose().as_slice().to_vec();
+            *value = row_major(&(own + change));
         }
         _ => {
             let turn = Rotation::exp(&Vector3::new(by[0], by[1], by[2]));
@@ -248,30 +260,18 @@ pub(super) fn disturb(value: &mut Vec<f64>, body: &Moves, by: &[f64]) -> Option<
 pub(super) fn difference(body: &Moves, a: &[f64], b: &[f64]) -> Vec<f64> {
     match body.kind {
         Kind::FieldMomentum => a.iter().zip(b).map(|(a, b)| b - a).collect(),
-        Kind::Rotation if body.count() == 1 => vec![a[0] * b[2] - a[2] * b[0]],
-        Kind::Rotation => {
-            let [a, b] = [a, b].map(Matrix3::from_row_slice);
-            let turn = if body.spatial {
-                b * a.transpose()
-            } else {
-                a.transpose() * b
-            };
-            let half = |i: usize, j: usize| 0.5 * (turn[(i, j)] - turn[(j, i)]);
-            vec![half(2, 1), half(0, 2), half(1, 0)]
-        }
+        Kind::Rotation => turn_between(&square(a), &square(b), body.spatial),
         Kind::RigidMotion => rigid_difference(a, b, body.spatial),
         Kind::Matrix => {
-            let n = a.len().isqrt();
-            let [a, b] = [a, b].map(|x| DMatrix::from_row_slice(n, n, x));
-            let Some(inverse) = a.clone().try_inverse() else {
-                return vec![f64::NAN; n * n];
+            let [a, b] = [a, b].map(square);
+            let moved = b - &a;
+            let Some(inverse) = a.try_inverse() else {
+                return vec![f64::NAN; moved.len()];
             };
-            let change = if body.spatial {
-                (b - a) * inverse
-            } else {
-                inverse * (b - a)
-            };
-            change.transpose().as_slice().to_vec()
+            row_major(&match body.spatial {
+                true => moved * inverse,
+                false => inverse * moved,
+            })
         }
         _ => {
             let of = |q: &[f64]| [q[0], q[1], q[2], q[3]];

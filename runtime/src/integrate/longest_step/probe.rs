@@ -207,10 +207,12 @@ impl<'a> Probe<'a> {
         if !scale.is_finite() {
             return None;
         }
+        let mut refused = false;
         for _ in 0..SCALES {
             // What is too fast for the model may be refused: of a mass that is small beside one.
             let thrown = self.thrown(p, scale)?;
             let Some(after) = self.observed(&thrown, self.h, 1) else {
+                refused = true;
                 scale *= SLOWER;
                 continue;
             };
@@ -221,7 +223,7 @@ impl<'a> Probe<'a> {
             }
             scale *= if most > 0.0 { self.part / most } else { 1e6 };
         }
-        self.refused.set(true);
+        self.refused.set(self.refused.get() || refused);
         None
     }
 
