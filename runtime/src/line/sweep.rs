@@ -1,5 +1,6 @@
 //! Loops over sites. Each site's value is computed from what stood before the loop, so that the order
-//! of sites, and how threads share them, changes no bit. Threads need the feature `rayon`.
+//! of sites, and how threads share them, changes no bit. Threads need the feature `rayon`. What is done at a site is copied
+//! into the loop: behind a reference that threads share, the compiler would read everything anew at each site.
 
 use crate::Real;
 use nalgebra::SMatrix;
@@ -28,19 +29,21 @@ impl Threads {
 
 /// `out[i] = value(i)` for every site.
 #[inline]
-pub fn fill<S: Send>(threads: Threads, out: &mut [S], value: impl Fn(usize) -> S + Sync) {
-    let one = |first: usize, part: &mut [S]| {
-        for (i, place) in part.iter_mut().enumerate() {
-            *place = value(first + i);
-        }
-    };
+pub fn fill<S: Send>(threads: Threads, out: &mut [S], value: impl Fn(usize) -> S + Sync + Copy) {
     #[cfg(feature = "rayon")]
     if let Some(share) = threads.share(out.len()) {
         let parts = out.par_chunks_mut(share).enumerate();
-        return parts.for_each(|(k, part)| one(k * share, part));
+        return parts.for_each(|(k, part)| fill_part(k * share, part, value));
     }
     let _ = threads;
-    one(0, out);
+    fill_part(0, out, value);
+}
+
+#[inline(always)]
+fn fill_part<S>(first: usize, out: &mut [S], value: impl Fn(usize) -> S) {
+    for (i, place) in out.iter_mut().enumerate() {
+        *place = value(first + i);
+    }
 }
 
 /// The same where a site may fail: the first one that does, and why. Others may be filled or not.
@@ -51,25 +54,33 @@ pub fn fill<S: Send>(threads: Threads, out: &mut [S], value: impl Fn(usize) -> S
 pub fn try_fill<S: Send, E: Send>(
     threads: Threads,
     out: &mut [S],
-    value: impl Fn(usize) -> Result<S, E> + Sync,
+    value: impl Fn(usize) -> Result<S, E> + Sync + Copy,
 ) -> Result<(), (usize, E)> {
-    let one = |first: usize, part: &mut [S]| {
-        for (i, place) in part.iter_mut().enumerate() {
-            match value(first + i) {
-                Ok(found) => *place = found,
-                Err(e) => return Err((first + i, e)),
-            }
-        }
-        Ok(())
-    };
     #[cfg(feature = "rayon")]
     if let Some(share) = threads.share(out.len()) {
         let parts = out.par_chunks_mut(share).enumerate();
-        let all: Vec<_> = parts.map(|(k, part)| one(k * share, part)).collect();
+        let all: Vec<_> = parts
+            .map(|(k, part)| try_fill_part(k * share, part, value))
+            .collect();
         return all.into_iter().collect();
     }
     let _ = threads;
-    one(0, out)
+    try_fill_part(0, out, value)
+}
+
+#[inline(always)]
+fn try_fill_part<S, E>(
+    first: usize,
+    out: &mut [S],
+    value: impl Fn(usize) -> Result<S, E>,
+) -> Result<(), (usize, E)> {
+    for (i, place) in out.iter_mut().enumerate() {
+        match value(first + i) {
+            Ok(found) => *place = found,
+            Err(e) => return Err((first + i, e)),
+        }
+    }
+    Ok(())
 }
 
 /// The first of the sites from `first` to the one before `last` at which a test fails, and why.
@@ -90,32 +101,47 @@ pub fn try_each<E>(
 /// # Errors
 /// The number of that site.
 #[inline]
-pub fn update<S: Send, K: Copy + Send>(
+pub fn update<S: Copy + Send, K: Copy + Send>(
     threads: Threads,
     out: &mut [S],
     kept: &mut [K],
-    change: impl Fn(usize, K) -> Option<(S, K)> + Sync,
+    change: impl Fn(usize, K) -> Option<(S, K)> + Sync + Copy,
 ) -> Result<(), usize> {
-    let one = |first: usize, out: &mut [S], kept: &mut [K]| {
-        for (i, (place, keep)) in out.iter_mut().zip(kept).enumerate() {
-            match change(first + i, *keep) {
-                Some(both) => (*place, *keep) = both,
-                None => return Err(first + i),
-            }
-        }
-        Ok(())
-    };
     #[cfg(feature = "rayon")]
     if let Some(share) = threads.share(out.len()) {
         let parts = out.par_chunks_mut(share).zip(kept.par_chunks_mut(share));
         let all: Vec<_> = parts
             .enumerate()
-            .map(|(k, (out, kept))| one(k * share, out, kept))
+            .map(|(k, (out, kept))| update_part(k * share, out, kept, change))
             .collect();
         return all.into_iter().collect();
     }
     let _ = threads;
-    one(0, out, kept)
+    update_part(0, out, kept, change)
+}
+
+/// The loop goes on behind a site that does not change, of which the smallest number is kept: sites can then be changed
+/// several at a time.
+#[inline(always)]
+fn update_part<S: Copy, K: Copy>(
+    first: usize,
+    out: &mut [S],
+    kept: &mut [K],
+    change: impl Fn(usize, K) -> Option<(S, K)>,
+) -> Result<(), usize> {
+    let mut none = u64::MAX;
+    for (i, (place, keep)) in out.iter_mut().zip(kept).enumerate() {
+        let made = change(first + i, *keep);
+        none = none.min(match made.is_some() {
+            true => u64::MAX,
+            false => i as u64,
+        });
+        (*place, *keep) = made.unwrap_or((*place, *keep));
+    }
+    match none {
+        u64::MAX => Ok(()),
+        i => Err(first + i as usize),
+    }
 }
 
 /// The sum of the values of sites, in the order of sites and in two numbers (Neumaier).

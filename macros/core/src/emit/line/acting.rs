@@ -1,5 +1,5 @@
 //! Kernels of what acts on a site at a node: its own potential and what neighbours add, before the node
-//! and after it; of blocks of fields, what the edge adds.
+//! and after it; of blocks of fields, what the edge adds. The loop over sites that puts it all to the momenta.
 
 use super::locals::{Places, step};
 use super::pulls::{field, front};
@@ -83,7 +83,9 @@ pub(super) fn acting(l: &Lines) -> TokenStream {
     let each: Vec<TokenStream> = each.collect();
     let added = l.moving().map(|m| added(l, m));
     let added: Vec<TokenStream> = added.collect();
-    quote!(impl<T: Real> #name<T> { #(#each)* #(#added)* })
+    let arrivals = l.moving().filter_map(|m| arrival(l, m));
+    let arrivals: Vec<TokenStream> = arrivals.collect();
+    quote!(impl<T: Real> #name<T> { #(#each)* #(#added)* #(#arrivals)* })
 }
 
 fn one(l: &Lines, m: Moving) -> TokenStream {
@@ -224,6 +226,134 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
             #velocities
             #lets
             #value
+        }
+    }
+}
+
+/// What is done with what acts: the momentum at the node and that of the edge that leaves, given that
+/// of the edge that came.
+fn arrived(l: &Lines, m: &Moving) -> TokenStream {
+    let name = m.name();
+    match (m.is_rotation(), l.acting(m)) {
+        (true, Acting::Halves) => quote! {
+            let turn = at.#name[site].matrix();
+            let space = edge.space();
+            let kick = turn * acting;
+            let momentum = space + kick * T::from_f64(0.5);
+            let edge = Edge::new(turn.tr_mul(&space) + acting, space + kick);
+            all_finite(&edge.space()).then_some((momentum, edge))
+        },
+        (true, Acting::Both) => quote! {
+            let [before, after] = acting;
+            let turn = at.#name[site].matrix();
+            let space = edge.space();
+            let momentum = space + turn * before;
+            let edge = Edge::new(turn.tr_mul(&space) + before + after, momentum + turn * after);
+            all_finite(&edge.space()).then_some((momentum, edge))
+        },
+        (false, Acting::Halves) => quote! {
+            let momentum = edge + acting * T::from_f64(0.5);
+            let edge = edge + acting;
+            all_finite(&edge).then_some((momentum, edge))
+        },
+        (false, Acting::Both) => quote! {
+            let [before, after] = acting;
+            let momentum = edge + before;
+            let edge = momentum + after;
+            all_finite(&edge).then_some((momentum, edge))
+        },
+    }
+}
+
+/// The name of the loop over the sites at which a momentum arrives.
+fn arriving(m: &Moving) -> Ident {
+    format_ident!("arrive_{}", m.mover.name)
+}
+
+/// The loop, of a configuration whose velocity is found site by site. A method of its own: what it reads is told apart from
+/// what it writes, so that it can be made several sites at a time.
+fn arrival(l: &Lines, m: Moving) -> Option<TokenStream> {
+    if m.system().is_some() {
+        return None;
+    }
+    let (name, arriving, kernel) = (m.name(), arriving(&m), kernel(&m));
+    let [places, pulls, momenta, edges] =
+        ["Places", "Pulls", "Momenta", "Edges"].map(|n| l.item(n));
+    let (range, arrived) = (super::step::range_name(&m), arrived(l, &m));
+    let doc = format!(
+        " The momenta of `{}` at the node, and those of the edges that leave, from those of the edges that came. Says at \
+         which site they are not finite.",
+        m.mover.name
+    );
+    Some(quote! {
+        #[doc = #doc]
+        #[inline]
+        fn #arriving(
+            &self, h: T, at: &#places<T>, pulls: &#pulls<T>, momenta: &mut #momenta<T>, edges: &mut #edges<T>,
+        ) -> Result<(), usize> {
+            let [first, last] = self.#range();
+            line::update(self.threads, &mut momenta.#name[first..last], &mut edges.#name[first..last], |i, edge| {
+                let site = first + i;
+                let acting = self.#kernel(h, site, at, pulls);
+                #arrived
+            })
+        }
+    })
+}
+
+/// The momenta of one configuration at the next node, and those of the edges that leave it.
+pub(super) fn arrive(l: &Lines, m: &Moving) -> TokenStream {
+    let (name, text, range, kernel) = (
+        m.name(),
+        &m.mover.name,
+        super::step::range_name(m),
+        kernel(m),
+    );
+    let refused = quote! {
+        let cause = StepCause::not_finite("momentum");
+        return Err(self.refused(state, h, line::Place { quantity: #text, site: first + i }, cause));
+    };
+    let systems = l.systems();
+    let own = systems
+        .iter()
+        .find(|(.., members)| members.iter().any(|o| o.mover.name == *text));
+    let (Some(_), Some((field, ..))) = (m.system(), own) else {
+        let arriving = arriving(m);
+        return quote! {
+            {
+                let [first, _] = self.#range();
+                let made = self.#arriving(h, &work.places, &work.pulls, &mut work.momenta, &mut work.edges);
+                if let Err(i) = made {
+                    #refused
+                }
+            }
+        };
+    };
+    let (edge_kernel, tied) = (edge_kernel(m), super::tied::added(l, m));
+    let of_edge = quote!(self.#edge_kernel(h, site, &state.places, at, &work.#field[site])#tied);
+    let added = match m.is_rotation() {
+        true => quote!(let edge = Edge::new(edge.body(), edge.space() + #of_edge);),
+        false => quote!(let edge = edge + #of_edge;),
+    };
+    let arrived = arrived(l, m);
+    quote! {
+        {
+            let [first, last] = self.#range();
+            let (at, pulls) = (&work.places, &work.pulls);
+            let made = line::update(
+                self.threads,
+                &mut work.momenta.#name[first..last],
+                &mut work.edges.#name[first..last],
+                |i, edge| {
+                    let site = first + i;
+                    #added
+                    let acting = self.#kernel(h, site, at, pulls);
+                    #arrived
+                },
+            );
+            if let Err(i) = made {
+                #refused
+            }
         }
     }
 }

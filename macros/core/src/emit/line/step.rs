@@ -65,7 +65,7 @@ pub(super) fn step(
         }
     });
     let once = reactions::once(l);
-    let arrivals = moving.iter().map(|m| arrive(l, m));
+    let arrivals = moving.iter().map(|m| acting::arrive(l, m));
     let beginnings = moving.iter().map(|m| begin(l, m));
     let count_fields: Vec<_> = moving
         .iter()
@@ -475,81 +475,6 @@ fn solve_system(field: &Ident, members: &[Moving], edges: &Ident) -> TokenStream
                 self.#kernel(h, first + i, at, edges)
             });
             if let Err((i, cause)) = made {
-                return Err(self.refused(state, h, line::Place { quantity: #text, site: first + i }, cause));
-            }
-        }
-    }
-}
-
-/// What is done with what acts: the momentum at the node and that of the edge that leaves, given that
-/// of the edge that came.
-fn arrived(l: &Lines, m: &Moving) -> TokenStream {
-    let name = m.name();
-    match (m.is_rotation(), l.acting(m)) {
-        (true, Acting::Halves) => quote! {
-            let turn = at.#name[site].matrix();
-            let space = edge.space();
-            let kick = turn * acting;
-            let momentum = space + kick * T::from_f64(0.5);
-            let edge = Edge::new(turn.tr_mul(&space) + acting, space + kick);
-            all_finite(&edge.space()).then_some((momentum, edge))
-        },
-        (true, Acting::Both) => quote! {
-            let [before, after] = acting;
-            let turn = at.#name[site].matrix();
-            let space = edge.space();
-            let momentum = space + turn * before;
-            let edge = Edge::new(turn.tr_mul(&space) + before + after, momentum + turn * after);
-            all_finite(&edge.space()).then_some((momentum, edge))
-        },
-        (false, Acting::Halves) => quote! {
-            let momentum = edge + acting * T::from_f64(0.5);
-            let edge = edge + acting;
-            all_finite(&edge).then_some((momentum, edge))
-        },
-        (false, Acting::Both) => quote! {
-            let [before, after] = acting;
-            let momentum = edge + before;
-            let edge = momentum + after;
-            all_finite(&edge).then_some((momentum, edge))
-        },
-    }
-}
-
-fn arrive(l: &Lines, m: &Moving) -> TokenStream {
-    let (name, text, range, kernel) = (m.name(), &m.mover.name, range_name(m), acting::kernel(m));
-    let added = m.system().map(|_| {
-        let systems = l.systems();
-        let own = systems
-            .iter()
-            .find(|(.., members)| members.iter().any(|o| o.mover.name == *text));
-        let field = own.map(|(field, ..)| field.clone());
-        let kernel = acting::edge_kernel(m);
-        let tied = tied::added(l, m);
-        let of_edge = quote!(self.#kernel(h, site, &state.places, at, &work.#field[site])#tied);
-        match m.is_rotation() {
-            true => quote!(let edge = Edge::new(edge.body(), edge.space() + #of_edge);),
-            false => quote!(let edge = edge + #of_edge;),
-        }
-    });
-    let arrived = arrived(l, m);
-    quote! {
-        {
-            let [first, last] = self.#range();
-            let (at, pulls) = (&work.places, &work.pulls);
-            let made = line::update(
-                self.threads,
-                &mut work.momenta.#name[first..last],
-                &mut work.edges.#name[first..last],
-                |i, edge| {
-                    let site = first + i;
-                    #added
-                    let acting = self.#kernel(h, site, at, pulls);
-                    #arrived
-                },
-            );
-            if let Err(i) = made {
-                let cause = StepCause::not_finite("momentum");
                 return Err(self.refused(state, h, line::Place { quantity: #text, site: first + i }, cause));
             }
         }
