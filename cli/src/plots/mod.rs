@@ -1,6 +1,7 @@
 //! Plots of a run as SVG: momenta, drift of the invariants, advected vectors, fields.
 //! Takes a finished run and its samples; gives SVG text, or nothing when there is nothing to show.
 
+mod angles;
 pub(crate) mod attitude;
 pub mod axis;
 mod cells;
@@ -15,7 +16,8 @@ mod snapshots;
 mod sphere;
 pub(crate) mod window;
 
-pub(crate) use attitude::{angles, attitude};
+pub(crate) use angles::angles;
+pub(crate) use attitude::attitude;
 pub(crate) use comparison::comparison;
 pub(crate) use particles::{particles, vorticity};
 pub(crate) use snapshots::snapshots;
