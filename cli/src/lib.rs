@@ -8,6 +8,7 @@
 pub mod arguments;
 mod asked;
 mod beside;
+mod blamed;
 pub mod case_file;
 mod checkpoint;
 mod columns;

@@ -1,6 +1,7 @@
 //! What is to be run: a case of the gallery or of a file, with the options that override it.
 //! Takes the matches of `clebsch run`; gives the plan, and places error messages in its file.
 
+use crate::blamed::{Origin, blamed};
 use crate::case_file::labels::{self, Stated};
 use crate::case_file::{self, Located};
 use crate::failure::Failure;
@@ -13,7 +14,6 @@ use clebsch::solvers::Method;
 use clebsch::{ParameterError, StartError};
 use clebsch_core::lattice::Choice;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
 
 /// Most nodes written by default: a plot shows no more, and the files stay at a few megabytes.
 const SAMPLES: u64 = 10_000;
@@ -40,7 +40,7 @@ pub struct Plan {
     /// How many sites a model with labels has, and how its line ends.
     pub choice: Option<Choice>,
     /// For a case read from a file: its name, and the line of each key.
-    origin: Option<(String, BTreeMap<String, usize>)>,
+    origin: Option<Origin>,
 }
 
 impl Plan {
@@ -188,7 +188,7 @@ impl Plan {
         })
     }
 
-    /// Where the value that is wrong was given: `top.toml:7: parameters.J`.
+    /// Where the value that is wrong was given: `top.toml:7: parameters.J`; what is made of parameters is told by them.
     fn place(&self, card: &Card, wrong: &ParameterError) -> String {
         if wrong.field == "h" && self.arguments.get("h").is_some_and(Value::is_number) {
             return "--h".to_owned();
@@ -204,8 +204,12 @@ impl Plan {
         let held = of("initial", card.parameters).filter(among_initial);
         let key = held
             .or_else(|| of("parameters", card.parameters))
-            .or_else(|| of("initial", card.initial))
-            .unwrap_or_else(|| wrong.field.to_owned());
+            .or_else(|| of("initial", card.initial));
+        let made = || blamed(card, &self.case, self.origin.as_ref(), wrong.field);
+        if let Some(place) = key.is_none().then(made).flatten() {
+            return place;
+        }
+        let key = key.unwrap_or_else(|| wrong.field.to_owned());
         match &self.origin {
             None => format!("case `{}`: {key}", shown(&self.case.name)),
             Some((file, lines)) => match case_file::line_of(lines, &key) {

@@ -52,6 +52,9 @@ pub struct Outcome {
     pub bound: Option<f64>,
     /// Whether the bound was kept.
     pub verdict: Verdict,
+    /// The parameters that are zero in this case and stand in the formula, where that makes it zero in every term at every
+    /// node, as the momentum across a vertical that is no direction: nothing is tested then. Else none.
+    pub zero_by: Vec<&'static str>,
 }
 
 /// Judges the drifts of all components, in the order of the card.
@@ -62,6 +65,11 @@ pub fn judge(card: &Card, case: &Case, drifts: &[Drift]) -> Vec<Outcome> {
         let components: Vec<Drift> = drifts.by_ref().take(invariant.rows).copied().collect();
         let worst = components.iter().map(|drift| drift.worst).fold(0.0, larger);
         let bound = bound(case, invariant);
+        let zero = |drift: &Drift| drift.scale == 0.0 && drift.worst == 0.0;
+        let zero_by = match components.iter().all(zero) {
+            true => zero_parameters(card, case, invariant.formula),
+            false => Vec::new(),
+        };
         Outcome {
             invariant,
             scale: components.iter().map(|drift| drift.scale).fold(0.0, larger),
@@ -74,10 +82,21 @@ pub fn judge(card: &Card, case: &Case, drifts: &[Drift]) -> Vec<Outcome> {
                 None if worst.is_finite() => Verdict::Bounded,
                 _ => Verdict::Left,
             },
+            zero_by,
             components,
         }
     };
     card.invariants.iter().map(one).collect()
+}
+
+/// The parameters of which the formula has one and that are zero.
+fn zero_parameters(card: &Card, case: &Case, formula: &str) -> Vec<&'static str> {
+    let words: Vec<&str> = formula.split(|c: char| !c.is_alphanumeric()).collect();
+    let all = card.parameters.iter().zip(&case.parameters);
+    let own = all.filter(|(field, numbers)| {
+        words.contains(&field.name) && numbers.iter().all(|number| *number == 0.0)
+    });
+    own.map(|(field, _)| field.name).collect()
 }
 
 /// The number farther from zero; NaN wins.
@@ -118,6 +137,7 @@ impl Outcome {
             "worst_drift": self.worst,
             "last_drift": self.last,
             "bound": self.bound,
+            "zero_by": self.zero_by,
             "verdict": match self.verdict {
                 Verdict::Kept => "kept",
                 Verdict::Left => "left",
@@ -127,8 +147,20 @@ impl Outcome {
         })
     }
 
+    /// The word of its verdict, or that it is zero for every motion.
+    #[must_use]
+    pub const fn word(&self) -> &'static str {
+        match self.zero_by.is_empty() {
+            true => self.verdict.word(),
+            false => "zero",
+        }
+    }
+
     /// The name, with the components where only some have no scale, if drift and bound are absolute.
     fn absolute(&self) -> Option<String> {
+        if !self.zero_by.is_empty() {
+            return None;
+        }
         let name = self.invariant.name;
         let components = self.components.iter().enumerate();
         let without: Vec<String> = components
@@ -157,7 +189,7 @@ impl Outcome {
             number(self.last),
             self.bound
                 .map_or_else(|| "-".to_owned(), |bound| format!("{bound:e}")),
-            self.verdict.word().to_owned(),
+            self.word().to_owned(),
             shortened(self.invariant.formula),
         ]
     }
@@ -176,6 +208,28 @@ fn shortened(formula: &str) -> String {
         .rsplit_once(' ')
         .map_or(start.as_str(), |(words, _)| words);
     format!("{whole_words} ...: see `clebsch derive`")
+}
+
+/// Sentences on what is zero for every motion of this case, one for each list of parameters that are zero.
+#[must_use]
+pub fn zeros(outcomes: &[Outcome]) -> Vec<String> {
+    let mut all: Vec<(&[&str], Vec<&str>)> = Vec::new();
+    for outcome in outcomes.iter().filter(|o| !o.zero_by.is_empty()) {
+        let by = outcome.zero_by.as_slice();
+        match all.iter_mut().find(|(known, _)| *known == by) {
+            Some((_, names)) => names.push(outcome.invariant.name),
+            None => all.push((by, vec![outcome.invariant.name])),
+        }
+    }
+    let sentence = |(by, names): (&[&str], Vec<&str>)| {
+        let by: Vec<String> = by.iter().map(|name| format!("{name} = 0")).collect();
+        let names = names.join(", ");
+        format!(
+            "zero in every term with {}, so that nothing is tested: {names}",
+            by.join(", ")
+        )
+    };
+    all.into_iter().map(sentence).collect()
 }
 
 /// The table of all outcomes, and a line on those that are measured absolutely; drifts are relative to
@@ -198,6 +252,10 @@ pub fn table(outcomes: &[Outcome], width: Option<usize>) -> String {
     let absolute: Vec<String> = outcomes.iter().filter_map(Outcome::absolute).collect();
     if !absolute.is_empty() {
         let said = format!("absolute, as the scale is zero: {}", absolute.join(", "));
+        text.push('\n');
+        text.push_str(&paragraph(&said, width, 2));
+    }
+    for said in zeros(outcomes) {
         text.push('\n');
         text.push_str(&paragraph(&said, width, 2));
     }

@@ -7,6 +7,7 @@ mod scene;
 use crate::output::Finished;
 use crate::plain::steps;
 use crate::record::Samples;
+use crate::verdict::zeros;
 use std::fmt::Write as _;
 
 /// The page.
@@ -84,11 +85,15 @@ fn invariants(run: &Finished<'_>, out: &mut String) {
             escaped(outcome.invariant.name),
             outcome.scale,
             outcome.worst,
-            outcome.verdict.word(),
+            outcome.word(),
             escaped(outcome.invariant.formula)
         );
     }
     out.push_str("</table>\n</div>\n");
+    for said in zeros(run.outcomes) {
+        let rest = said.strip_prefix("zero").unwrap_or(&said);
+        let _ = writeln!(out, "<p>Zero{}.</p>", escaped(rest));
+    }
     if let Some(worst) = run.residual {
         let _ = writeln!(
             out,

@@ -1,13 +1,11 @@
-//! Attitudes: the axes of bodies and the vectors they carry on spheres, Euler angles against time.
+//! Attitudes: the axes of bodies and the vectors they carry on spheres; of many sites some.
 //! Takes the samples of a run; gives what is drawn of each rotation, of each vector and of each body momentum.
 
-use super::axis::Axis;
-use super::curve::{Curve, Stroke};
-use super::figure::Panel;
 use super::sphere::{Course, Sphere, sheet};
 use super::window::{Window, window};
-use super::{Plot, caption, figure, letter, reduce};
+use super::{Plot, letter, subscript};
 use crate::output::Finished;
+use crate::output::sites::at_sites;
 use crate::record::Samples;
 use clebsch::card::{Field, Kind};
 use clebsch::nalgebra::{Matrix3, Vector3};
@@ -19,6 +17,101 @@ const MOST: usize = 9;
 
 /// A momentum whose length changes by less than this part of it stays on its sphere.
 const SAME_LENGTH: f64 = 1e-9;
+
+/// An observable with its columns.
+pub(super) type Placed = (&'static Field, Range<usize>);
+
+/// One quantity: at its sites, or alone.
+pub(super) struct Kin {
+    /// Its name without its site.
+    pub(super) name: String,
+    /// Its letter in print: its name, or that of momenta.
+    pub(super) letter: String,
+    /// The letter of its sites.
+    pub(super) index: String,
+    /// What is observed of it, with the site; alone it has none.
+    pub(super) members: Vec<(Option<usize>, Placed)>,
+}
+
+/// These observables with those of one quantity together, in the order of the first of each.
+pub(super) fn grouped(run: &Finished<'_>, all: Vec<Placed>) -> Vec<Kin> {
+    let at_sites = at_sites(run.card);
+    let mut keys: Vec<&str> = Vec::new();
+    let mut kin: Vec<Kin> = Vec::new();
+    for (field, columns) in all {
+        let own = at_sites.iter().find_map(|q| {
+            let mut members = q.members.iter();
+            let site = members.find(|(_, own)| *own == columns)?.0;
+            Some((q, site))
+        });
+        let key = own.map_or(field.ascii, |(q, _)| q.key.as_str());
+        let member = (own.map(|(_, site)| site), (field, columns));
+        match keys.iter().position(|known| *known == key) {
+            Some(at) => kin[at].members.push(member),
+            None => {
+                keys.push(key);
+                let name = own.map_or(field.name, |(q, _)| q.name.as_str());
+                let (name, letter) = match letter(field) {
+                    own if own == field.name => (name.to_owned(), name),
+                    letter => (format!("{letter} of {name}"), letter),
+                };
+                kin.push(Kin {
+                    name,
+                    letter: letter.to_owned(),
+                    index: own.map_or_else(String::new, |(q, _)| q.index.clone()),
+                    members: vec![member],
+                });
+            }
+        }
+    }
+    kin
+}
+
+/// As many of each quantity as there is room for in all, from its first site to its last at equal distances, and the
+/// sentence that says so where some are left out.
+fn chosen(kin: Vec<Kin>, room: usize) -> (Vec<Kin>, Option<String>) {
+    let taken = |each: usize| kin.iter().map(|k| k.members.len().min(each)).sum::<usize>();
+    let all = taken(usize::MAX);
+    if all <= room {
+        return (kin, None);
+    }
+    let most = (1..=room).rev().find(|each| taken(*each) <= room);
+    // Whole rows of each.
+    let each = match most.unwrap_or(1) {
+        some @ 3.. => some / 3 * 3,
+        few => few,
+    };
+    let shown = taken(each).min(room);
+    let mut told = Vec::new();
+    let mut some = Vec::new();
+    for mut own in kin.into_iter().take(room) {
+        let count = own.members.len();
+        if count > each {
+            let last = each.saturating_sub(1).max(1);
+            let picked = |k: usize| {
+                own.members
+                    .get((k * (count - 1) + last / 2) / last)
+                    .cloned()
+            };
+            own.members = (0..each).filter_map(picked).collect();
+            let sites = own.members.iter().filter_map(|(site, _)| *site);
+            let sites: Vec<String> = sites.map(|site| site.to_string()).collect();
+            told.push(format!(
+                "{} at {} = {}",
+                own.name,
+                own.index,
+                sites.join(", ")
+            ));
+        }
+        some.push(own);
+    }
+    let which = if told.is_empty() { "" } else { ": " };
+    let sentence = format!(
+        "{shown} of {all} spheres are shown{which}{}",
+        told.join("; ")
+    );
+    (some, Some(sentence))
+}
 
 /// Observables with their columns.
 pub(crate) fn placed(
@@ -33,7 +126,7 @@ pub(crate) fn placed(
 }
 
 /// The rotations among the observables.
-fn rotations(run: &Finished<'_>) -> Vec<(&'static Field, Range<usize>)> {
+pub(super) fn rotations(run: &Finished<'_>) -> Vec<Placed> {
     let turns = |field: &Field| {
         field.kind == Kind::UnitQuaternion || (field.kind == Kind::Rotation && field.count() == 9)
     };
@@ -62,7 +155,10 @@ pub(crate) fn matrix(numbers: &[f64]) -> Option<Matrix3<f64>> {
 }
 
 /// The rows of the samples shown, these columns of each.
-fn rows<'a>(shown: Window<'a>, columns: &Range<usize>) -> impl Iterator<Item = &'a [f64]> {
+pub(super) fn rows<'a>(
+    shown: Window<'a>,
+    columns: &Range<usize>,
+) -> impl Iterator<Item = &'a [f64]> {
     let columns = columns.clone();
     let rows = shown.record.observables.rows().take(shown.count);
     rows.filter_map(move |row| row.get(columns.clone()))
@@ -78,69 +174,104 @@ pub(crate) fn attitude(run: &Finished<'_>, samples: &Samples) -> Plot {
     let moves = |field: &Field| {
         [Kind::Vector, Kind::BodyMomentum].contains(&field.kind) && field.count() == 3
     };
-    let moving = placed(run.card.observables).filter(|(field, _)| moves(field));
-    let moving: Vec<(&Field, Range<usize>)> = moving.collect();
-    let all: Vec<Range<usize>> = turning
+    // Places along a line are no directions: their picture is its shape.
+    let at_sites = at_sites(run.card);
+    let places: Vec<&Range<usize>> = at_sites
         .iter()
-        .chain(&moving)
-        .map(|(_, c)| c.clone())
+        .filter(|q| q.moves)
+        .flat_map(|q| q.members.iter().map(|(_, columns)| columns))
         .collect();
+    let moving = placed(run.card.observables)
+        .filter(|(field, columns)| moves(field) && !places.contains(&columns));
+    let moving: Vec<Placed> = moving.collect();
+    let all = turning.iter().chain(&moving);
+    let all: Vec<Range<usize>> = all.map(|(_, columns)| columns.clone()).collect();
     let shown = window(samples, &all);
+    // What is zero throughout, or no number, has no sphere.
+    let has_length = |(_, columns): &Placed| {
+        let lengths = rows(shown, columns).map(|row| Vector3::from_row_slice(row).norm());
+        largest(lengths.filter(|x| x.is_finite())) > 0.0
+    };
+    let drawn = turning
+        .iter()
+        .chain(moving.iter().filter(|own| has_length(own)));
+    let (kin, sentence) = chosen(grouped(run, drawn.cloned().collect()), MOST);
+    let letters: Vec<&str> = kin.iter().map(|own| own.letter.as_str()).collect();
     let mut spheres = Vec::new();
-    for (field, columns) in &turning {
-        let axes = rows(shown, columns).filter_map(matrix);
-        let name = field.name;
-        let times = match field.kind {
-            Kind::UnitQuaternion => format!("{name} e₃ {name}̄"),
-            _ => format!("{name} e₃"),
-        };
-        spheres.push(Sphere {
-            caption: format!("{times}: the body axis e₃ in space"),
-            radius: 1.0,
-            courses: vec![Course::of(axes.map(|turn| turn.column(2).into()))],
-            contours: Vec::new(),
-        });
-    }
-    for (field, columns) in &moving {
-        let vectors: Vec<Vector3<f64>> =
-            rows(shown, columns).map(Vector3::from_row_slice).collect();
-        let lengths = || vectors.iter().map(Vector3::norm).filter(|x| x.is_finite());
-        let longest = largest(lengths());
-        let shortest = lengths().fold(f64::INFINITY, f64::min);
-        if longest == 0.0 || !shortest.is_finite() {
-            continue;
+    for own in &kin {
+        let alike = letters.iter().filter(|l| **l == own.letter).count() > 1;
+        for (site, (field, columns)) in &own.members {
+            let mark = site.map_or_else(String::new, subscript);
+            let name = format!("{}{mark}", own.letter);
+            let rows = rows(shown, columns);
+            spheres.push(match field.kind {
+                Kind::Vector | Kind::BodyMomentum => {
+                    let of = match alike {
+                        false => String::new(),
+                        true => format!(" ({})", field.name.replace('_', " ")),
+                    };
+                    let vectors = rows.map(Vector3::from_row_slice).collect();
+                    of_vectors(run, field, vectors, (&name, &of))
+                }
+                _ => of_axis(field, rows.filter_map(matrix), (&own.letter, &mark)),
+            });
         }
-        let name = letter(field);
-        let on = longest - shortest <= SAME_LENGTH * longest;
-        let length = super::axis::plain(rounded(longest));
-        let contours = match field.kind {
-            Kind::BodyMomentum if on => inverse_inertia(run).map_or_else(Vec::new, |inverse| {
-                super::sphere::contours(longest, &|m| 0.5 * m.dot(&(inverse * m)))
-            }),
-            _ => Vec::new(),
-        };
-        let of = match moving.iter().filter(|(f, _)| letter(f) == name).count() {
-            1 => String::new(),
-            _ => format!(" ({})", field.name.replace('_', " ")),
-        };
-        let lines = if contours.is_empty() {
-            ""
-        } else {
-            "; lines of equal kinetic energy"
-        };
-        spheres.push(Sphere {
-            caption: match on {
-                true => format!("{name}{of} on |{name}| = {length}{lines}"),
-                false => format!("{name}{of} in the ball |{name}| ≤ {length}"),
-            },
-            radius: longest,
-            courses: vec![Course::of(vectors.into_iter())],
-            contours,
-        });
     }
-    spheres.truncate(MOST);
     let (title, subtitle) = super::titles(run, shown, "attitude");
-    Ok(Some(sheet(&spheres, &title, &subtitle, run.plan.paper)))
+    let words = [&title, &subtitle, sentence.as_deref().unwrap_or_default()];
+    Ok(Some(sheet(&spheres, words, run.plan.paper)))
+}
+
+/// The sphere of the body axis e₃ of a rotation, seen from space.
+fn of_axis(
+    field: &Field,
+    turns: impl Iterator<Item = Matrix3<f64>>,
+    (letter, mark): (&str, &str),
+) -> Sphere {
+    let times = match field.kind {
+        Kind::UnitQuaternion => format!("{letter}{mark} e₃ {letter}̄{mark}"),
+        _ => format!("{letter}{mark} e₃"),
+    };
+    Sphere {
+        caption: format!("{times}: the body axis e₃ in space"),
+        radius: 1.0,
+        courses: vec![Course::of(turns.map(|turn| turn.column(2).into()))],
+        contours: Vec::new(),
+    }
+}
+
+/// The sphere of a vector or a body momentum that is not zero throughout, by its name and what tells it from others of that name.
+fn of_vectors(
+    run: &Finished<'_>,
+    field: &Field,
+    vectors: Vec<Vector3<f64>>,
+    (name, of): (&str, &str),
+) -> Sphere {
+    let lengths = || vectors.iter().map(Vector3::norm).filter(|x| x.is_finite());
+    let longest = largest(lengths());
+    let shortest = lengths().fold(f64::INFINITY, f64::min);
+    let on = longest - shortest <= SAME_LENGTH * longest;
+    let length = super::axis::plain(rounded(longest));
+    let contours = match field.kind {
+        Kind::BodyMomentum if on => inverse_inertia(run).map_or_else(Vec::new, |inverse| {
+            super::sphere::contours(longest, &|m| 0.5 * m.dot(&(inverse * m)))
+        }),
+        _ => Vec::new(),
+    };
+    let lines = if contours.is_empty() {
+        ""
+    } else {
+        "; lines of equal kinetic energy"
+    };
+    Sphere {
+        caption: match on {
+            true => format!("{name}{of} on |{name}| = {length}{lines}"),
+            false => format!("{name}{of} in the ball |{name}| ≤ {length}"),
+        },
+        radius: longest,
+        courses: vec![Course::of(vectors.into_iter())],
+        contours,
+    }
 }
 
 /// Four digits.
@@ -161,115 +292,4 @@ fn inverse_inertia(run: &Finished<'_>) -> Option<Matrix3<f64>> {
     }
     let j = Matrix3::from_row_slice(numbers.get(..9)?);
     (Matrix3::identity() * j.trace() - j).try_inverse()
-}
-
-/// Euler angles of each rotation, Λ = R₃(φ) R₁(θ) R₃(ψ) about space and body axes: precession and spin followed continuously, and nutation.
-pub(crate) fn angles(run: &Finished<'_>, samples: &Samples) -> Plot {
-    let turning = rotations(run);
-    if turning.is_empty() {
-        return Ok(None);
-    }
-    let all: Vec<Range<usize>> = turning.iter().map(|(_, columns)| columns.clone()).collect();
-    let shown = window(samples, &all);
-    let times = shown.record.times.get(..shown.count).unwrap_or_default();
-    let mut panels = Vec::new();
-    for (field, columns) in &turning {
-        let turns = rows(shown, columns).filter_map(matrix);
-        let (mut precession, mut nutation, mut spin) = (Vec::new(), Vec::new(), Vec::new());
-        for turn in turns {
-            let [phi, theta, psi] = euler(&turn);
-            precession.push(followed(precession.last().copied(), phi));
-            nutation.push(theta);
-            spin.push(followed(spin.last().copied(), psi));
-        }
-        let curve = |label: &str, number: usize, values: Vec<f64>| Curve {
-            label: label.to_owned(),
-            note: None,
-            points: reduce::extremes(times, values.into_iter()),
-            stroke: Stroke::number(number),
-        };
-        let name = field.name;
-        let what = caption(field);
-        let groups = [
-            (
-                format!("{what}; {name} = R₃(φ) R₁(θ) R₃(ψ)"),
-                "angle (rad)",
-                vec![
-                    curve("φ precession", 0, precession),
-                    curve("ψ spin", 1, spin),
-                ],
-            ),
-            (
-                format!("{name}: nutation"),
-                "angle (rad)",
-                vec![curve("θ nutation", 2, nutation)],
-            ),
-        ];
-        for (caption, y_label, curves) in groups {
-            panels.push(Panel {
-                caption,
-                y_label: y_label.to_owned(),
-                y: Axis::around(&curves),
-                curves,
-                map: None,
-                height: 200,
-            });
-        }
-    }
-    figure(run, shown, "Euler angles", panels)
-}
-
-/// φ, θ, ψ; θ from its sine and cosine, since the cosine alone loses half of the digits near 0 and π.
-fn euler(r: &Matrix3<f64>) -> [f64; 3] {
-    let sine = r[(0, 2)].hypot(r[(1, 2)]);
-    // Upright, only the sum of both turns about the axis is known: the first has it.
-    if sine < 1e-14 {
-        return [r[(1, 0)].atan2(r[(0, 0)]), sine.atan2(r[(2, 2)]), 0.0];
-    }
-    [
-        r[(0, 2)].atan2(-r[(1, 2)]),
-        sine.atan2(r[(2, 2)]),
-        r[(2, 0)].atan2(r[(2, 1)]),
-    ]
-}
-
-/// The angle nearest to the one before.
-fn followed(before: Option<f64>, angle: f64) -> f64 {
-    let full = std::f64::consts::TAU;
-    match before {
-        Some(before) if before.is_finite() && angle.is_finite() => {
-            angle + full * ((before - angle) / full).round()
-        }
-        _ => angle,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{euler, followed, matrix};
-    use clebsch::nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
-
-    #[test]
-    fn angles_give_the_rotation_back() {
-        let upright = [(0.0, 0.0, 0.0), (0.4, 0.0, 0.0)];
-        let others = [(0.3, 1.1, -2.0), (-3.0, 0.001, 0.5), (2.0, 3.1, 3.0)];
-        for (phi, theta, psi) in upright.into_iter().chain(others) {
-            let about = |axis: Vector3<f64>, angle: f64| {
-                Rotation3::from_scaled_axis(axis * angle).into_inner()
-            };
-            let turn: Matrix3<f64> =
-                about(Vector3::z(), phi) * about(Vector3::x(), theta) * about(Vector3::z(), psi);
-            let found = euler(&turn);
-            for (x, y) in found.into_iter().zip([phi, theta, psi]) {
-                // Angles of a small nutation lose its digits.
-                assert!((x - y).abs() < 1e-12, "{found:?}");
-            }
-            let q = UnitQuaternion::from_matrix(&turn);
-            let Quaternion { coords } = *q.quaternion();
-            let again = matrix(&[coords.w, coords.x, coords.y, coords.z]).expect("four numbers");
-            assert!((again - turn).norm() < 1e-12, "{again}");
-        }
-        assert_eq!(followed(Some(6.0), -0.2), -0.2 + std::f64::consts::TAU);
-        assert_eq!(followed(None, -0.2), -0.2);
-    }
 }

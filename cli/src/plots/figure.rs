@@ -27,6 +27,8 @@ const LETTER: u32 = 73;
 const LEFT: u32 = 24;
 /// Width of a column of a paper.
 const COLUMN: u32 = 430;
+/// Of it, for a scale of colours beside a chart.
+const SCALE: u32 = 88;
 /// Most letters of a caption there.
 const CAPTION: usize = 60;
 
@@ -113,6 +115,11 @@ impl Figure {
             .map(Panel::legend_width)
             .max()
             .unwrap_or(0);
+        // Charts of one figure share their axis of time: all leave room where one has a scale of colours.
+        let scale = match self.panels.iter().any(Panel::has_scale) {
+            true => SCALE,
+            false => 0,
+        };
         let last = self.panels.len().saturating_sub(1);
         for (index, panel) in self.panels.iter().enumerate() {
             let foot = if index == last { FOOT } else { 0 };
@@ -120,7 +127,11 @@ impl Figure {
             rest = below;
             if self.paper {
                 let x_label = (index == last).then_some(self.x_label.as_str());
-                panel.chart(&area, &self.x, x_label)?;
+                let (chart, scale) = area.split_horizontally(fine(COLUMN - scale));
+                panel.chart(&chart, &self.x, x_label)?;
+                if let Some(map) = &panel.map {
+                    map.legend(&scale)?;
+                }
                 let caption: String = match panel.caption.chars().count() {
                     ..=CAPTION => panel.caption.clone(),
                     _ => panel
@@ -214,6 +225,11 @@ impl Panel {
         Ok(())
     }
 
+    /// Whether a scale of colours stands beside it.
+    fn has_scale(&self) -> bool {
+        self.map.as_ref().is_some_and(|map| map.said.is_none())
+    }
+
     /// Its height: on paper that of its chart alone, with no legend beside it.
     fn height(&self, paper: bool) -> u32 {
         match paper {
@@ -244,19 +260,15 @@ impl Panel {
         all
     }
 
-    /// Of such a legend.
+    /// Of such a legend; the scale of a map stands beside its chart.
     fn legend_height(&self) -> u32 {
-        match (&self.map, self.lines().last()) {
-            (Some(_), _) => 160,
-            (None, Some((line, ..))) => 18 * (line + 1) + 8,
-            (None, None) => 0,
+        match self.lines().last() {
+            Some((line, ..)) => 18 * (line + 1) + 8,
+            None => 0,
         }
     }
 
     fn legend_in_lines(&self, area: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {
-        if let Some(map) = &self.map {
-            return map.legend(area);
-        }
         for (line, at, words, stroke) in self.lines() {
             let (x, y) = (at.cast_signed(), (2 + 18 * line).cast_signed());
             sample(area, stroke, (x, y))?;
@@ -267,7 +279,7 @@ impl Panel {
 
     /// Room for the longest text of the legend, at 7.3 pixels a letter: as wide as the widest of the usual fonts.
     fn legend_width(&self) -> u32 {
-        if self.map.is_some() {
+        if self.has_scale() {
             return 100;
         }
         let notes = self.curves.iter().filter_map(|curve| curve.note.as_ref());
@@ -360,6 +372,14 @@ fn style(size: u32, color: RGBColor) -> TextStyle<'static> {
         font: ("sans-serif", size).into_font(),
         color: color.to_backend_color(),
         pos: Pos::new(HPos::Left, VPos::Top),
+    }
+}
+
+/// The same in the middle of its place.
+pub(super) fn centred(size: u32) -> TextStyle<'static> {
+    TextStyle {
+        pos: Pos::new(HPos::Center, VPos::Center),
+        ..style(size, INK)
     }
 }
 

@@ -1,10 +1,10 @@
 //! A map: values over time and sites as colours, with their scale beside it.
 
-use super::figure::{Area, fine, text};
+use super::figure::{Area, centred, fine, text};
 use plotters::chart::ChartContext;
 use plotters::coord::cartesian::Cartesian2d;
 use plotters::coord::ranged1d::Ranged;
-use plotters::prelude::{Color, RGBColor, Rectangle, SVGBackend, WHITE};
+use plotters::prelude::{Color, RGBColor, Rectangle, SVGBackend, Text, WHITE};
 
 /// Values at sites and times.
 #[derive(Clone, Debug)]
@@ -15,6 +15,8 @@ pub struct Map {
     pub end: f64,
     /// The sites with a value at each time.
     pub rows: Vec<(usize, Vec<f64>)>,
+    /// What is said instead of drawn, where one sentence holds at all sites and times: `zero throughout`.
+    pub said: Option<String>,
 }
 
 /// From low to high: five colours of the scale "viridis", which readers with any colour vision order
@@ -61,6 +63,13 @@ impl Map {
         X: Ranged<ValueType = f64>,
         Y: Ranged<ValueType = f64>,
     {
+        if let Some(words) = &self.said {
+            let (x, y) = (chart.x_range(), chart.y_range());
+            let middle = (0.5 * (x.start + x.end), 0.5 * (y.start + y.end));
+            let words = Text::new(words.clone(), middle, centred(13));
+            chart.draw_series(std::iter::once(words))?;
+            return Ok(());
+        }
         let (low, high) = self.range();
         let top = self.rows.last().map_or(0.5, |(site, _)| *site as f64 + 0.5);
         for (site, row) in &self.rows {
@@ -79,8 +88,11 @@ impl Map {
         Ok(())
     }
 
-    /// The scale of colours, from high to low, with three numbers.
+    /// The scale of colours, from high to low, with three numbers; none where nothing is coloured.
     pub(super) fn legend(&self, area: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {
+        if self.said.is_some() {
+            return Ok(());
+        }
         let (low, high) = self.range();
         const STEPS: i32 = 40;
         const TOP: i32 = 30;

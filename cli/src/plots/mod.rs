@@ -1,6 +1,7 @@
 //! Plots of a run as SVG: momenta, drift of the invariants, advected vectors, fields.
 //! Takes a finished run and its samples; gives SVG text, or nothing when there is nothing to show.
 
+mod angles;
 pub(crate) mod attitude;
 pub mod axis;
 mod cells;
@@ -15,7 +16,8 @@ mod snapshots;
 mod sphere;
 pub(crate) mod window;
 
-pub(crate) use attitude::{angles, attitude};
+pub(crate) use angles::angles;
+pub(crate) use attitude::attitude;
 pub(crate) use comparison::comparison;
 pub(crate) use particles::{particles, vorticity};
 pub(crate) use snapshots::snapshots;
@@ -87,6 +89,16 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
     for (index, outcome) in run.outcomes.iter().enumerate() {
         let drift = reduce::drift(record, from, &outcome.components);
         from += outcome.components.len();
+        // What is zero for every motion has no drift to show.
+        if !outcome.zero_by.is_empty() {
+            curves.push(Curve {
+                label: outcome.invariant.name.to_owned(),
+                note: Some(format!("zero with {} = 0", outcome.zero_by.join(" = "))),
+                points: Vec::new(),
+                stroke: Stroke::number(index),
+            });
+            continue;
+        }
         let points = reduce::envelope(&drift);
         let logarithm = |(time, drift): (f64, f64)| (time, drift.max(FLOOR).log10());
         let absolute = match outcome.components.iter().any(Drift::is_absolute) {
@@ -122,7 +134,8 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
             },
         });
     }
-    let mut components = run.outcomes.iter().flat_map(|outcome| &outcome.components);
+    let shown = run.outcomes.iter().filter(|o| o.zero_by.is_empty());
+    let mut components = shown.flat_map(|outcome| &outcome.components);
     let relative = match components.any(Drift::is_absolute) {
         true => "",
         false => "relative ",

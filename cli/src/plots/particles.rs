@@ -293,6 +293,7 @@ fn draw(
         times: Vec::new(),
         end: 0.0,
         rows: vec![(0, values.collect())],
+        said: None,
     };
     let (low, high) = map.range();
     let (bottom, top, side) = match space.lengths.as_slice() {

@@ -12,6 +12,7 @@ use crate::plots::window::Window;
 use crate::record::Samples;
 use clebsch::card::{Field, Kind};
 use clebsch::record::Record;
+use clebsch::scalar::largest;
 use std::ops::Range;
 
 /// Most columns of a map: more are not told apart across a page.
@@ -19,6 +20,9 @@ const COLUMNS: usize = 160;
 
 /// Most sites that have rows of their own: of more, some are shown.
 const ROWS: usize = 240;
+
+/// Height of a panel with a sentence.
+const SENTENCE: u32 = 84;
 
 /// Most components that have maps of their own: the entries of a rotation are no picture of it.
 const COMPONENTS: usize = 3;
@@ -34,12 +38,10 @@ pub(super) fn maps(
     if all.is_empty() {
         return None;
     }
-    let shown = all
+    let own = all
         .iter()
         .filter(|q| wanted(q.field, q.moves) && q.field.count() <= COMPONENTS);
-    let panels: Vec<Panel> = shown
-        .flat_map(|q| of_quantity(q, &samples.record))
-        .collect();
+    let panels: Vec<Panel> = own.flat_map(|q| of_quantity(q, &samples.record)).collect();
     if panels.is_empty() {
         return Some(Ok(None));
     }
@@ -52,34 +54,31 @@ pub(super) fn maps(
 }
 
 fn of_quantity(q: &AtSites<'_>, record: &Record) -> Vec<Panel> {
+    // Components of one quantity have one unit: what is rounding beside another one is zero.
+    let columns = q.members.iter().flat_map(|(_, columns)| columns.clone());
+    let values = columns.flat_map(|c| record.observables.column(c));
+    let size = largest(values.filter(|v| v.is_finite()).map(f64::abs));
     let components = 0..q.field.count();
-    components.map(|c| panel(q, c, record)).collect()
+    components.map(|c| panel(q, c, record, size)).collect()
 }
 
-fn panel(q: &AtSites<'_>, component: usize, record: &Record) -> Panel {
-    let count = record.times.len();
-    let group = count.div_ceil(COLUMNS).max(1);
-    let picked: Vec<usize> = (0..count).step_by(group).collect();
-    let momentum = matches!(
-        q.field.kind,
-        Kind::BodyMomentum | Kind::SpatialMomentum | Kind::FieldMomentum
-    );
+fn panel(q: &AtSites<'_>, component: usize, record: &Record, size: f64) -> Panel {
+    let frame = match q.field.kind {
+        Kind::BodyMomentum => Some(", body frame"),
+        Kind::SpatialMomentum => Some(", space frame"),
+        Kind::FieldMomentum => Some(""),
+        _ => None,
+    };
     // Of a place what is seen is how far it has moved.
-    let change = q.moves && !momentum && (q.grows || q.field.count() > 1);
-    let members = q.members.iter();
-    let rows = members.step_by(q.members.len().div_ceil(ROWS).max(1)).map(
-        |(site, columns): &(usize, Range<usize>)| {
-            let column: Vec<f64> = record
-                .observables
-                .column(columns.start + component)
-                .collect();
-            let first = column.first().copied().filter(|_| change).unwrap_or(0.0);
-            let values = picked.iter().filter_map(|i| column.get(*i));
-            (*site, values.map(|v| v - first).collect::<Vec<f64>>())
-        },
-    );
-    let rows: Vec<(usize, Vec<f64>)> = rows.collect();
-    let times = picked.iter().filter_map(|i| record.times.get(*i).copied());
+    let change = q.moves && frame.is_none() && (q.grows || q.field.count() > 1);
+    let column = |columns: &Range<usize>| -> Vec<f64> {
+        let all = record.observables.column(columns.start + component);
+        let mut all: Vec<f64> = all.collect();
+        let first = all.first().copied().filter(|_| change).unwrap_or(0.0);
+        all.iter_mut().for_each(|v| *v -= first);
+        all
+    };
+    let rows = shown(&q.members).map(|(site, columns)| (*site, column(columns)));
     let letter = match letter(q.field) {
         own if own == q.field.name => q.name.as_str(),
         other => other,
@@ -88,33 +87,97 @@ fn panel(q: &AtSites<'_>, component: usize, record: &Record) -> Panel {
         1 => String::new(),
         _ => place(q.field, component),
     };
-    let sites: Vec<f64> = rows
-        .iter()
-        .map(|(site, _)| f64::from(small(*site)))
-        .collect();
-    let (low, high) = (
-        sites.first().copied().unwrap_or(0.0) - 0.5,
-        sites.last().copied().unwrap_or(0.0) + 0.5,
-    );
-    let name = match momentum {
-        true => format!("{letter}{mark}, momentum of {}", q.name),
-        false if change => format!("{letter}{mark}, change since the start"),
-        false => format!("{letter}{mark}"),
+    let caption = match frame {
+        Some(frame) => format!("{letter}{mark}, momentum of {}{frame}", q.name),
+        None if change => format!("{letter}{mark}, change since the start"),
+        None => format!("{letter}{mark}"),
     };
+    mapped(caption, &q.index, &record.times, rows.collect(), size)
+}
+
+/// Those sites that have rows of their own.
+pub(super) fn shown<T>(members: &[T]) -> impl Iterator<Item = &T> {
+    members.iter().step_by(members.len().div_ceil(ROWS).max(1))
+}
+
+/// A map of values at these sites and times, rows in the order of their sites. Where the values are the same throughout, up
+/// to rounding in quantities of this `size`, a sentence stands in its place.
+pub(super) fn mapped(
+    caption: String,
+    index: &str,
+    times: &[f64],
+    rows: Vec<(usize, Vec<f64>)>,
+    size: f64,
+) -> Panel {
+    let said = same(rows.iter().flat_map(|(_, row)| row), size);
+    let group = times.len().div_ceil(COLUMNS).max(1);
+    let picked = |row: Vec<f64>| row.into_iter().step_by(group).collect();
+    let rows: Vec<(usize, Vec<f64>)> = rows.into_iter().map(|(i, row)| (i, picked(row))).collect();
+    let site =
+        |row: Option<&(usize, Vec<f64>)>| row.map_or(0.0, |(site, _)| f64::from(small(*site)));
+    let (low, high) = (site(rows.first()) - 0.5, site(rows.last()) + 0.5);
     Panel {
-        caption: name,
-        y_label: format!("site {}", q.index),
-        y: Axis::whole(low, high, 5),
+        caption,
+        y_label: format!("site {index}"),
+        y: Axis::whole(low, high, if said.is_some() { 2 } else { 5 }),
         curves: Vec::new(),
+        height: if said.is_some() { SENTENCE } else { 210 },
         map: Some(Map {
-            times: times.collect(),
-            end: record.times.last().copied().unwrap_or(1.0),
+            times: times.iter().copied().step_by(group).collect(),
+            end: times.last().copied().unwrap_or(1.0),
             rows,
+            said,
         }),
-        height: 210,
     }
+}
+
+/// What is said of values that are all the same, up to rounding in quantities of this size; nothing where they differ.
+fn same<'a>(values: impl Iterator<Item = &'a f64>, size: f64) -> Option<String> {
+    let mut values = values.copied().filter(|v| v.is_finite()).peekable();
+    if values.peek().is_none() {
+        return Some("not determined throughout".to_owned());
+    }
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
+        (a.min(v), b.max(v))
+    });
+    let most = low.abs().max(high.abs());
+    let of = |value: f64| super::axis::short(value).replace('-', "−");
+    if most == 0.0 {
+        return Some("zero throughout".to_owned());
+    }
+    // A thousand rounding errors: those of many steps.
+    let rounding = 1e-12 * size.max(most);
+    if most <= rounding {
+        return Some(format!(
+            "zero throughout, up to rounding: {} at most",
+            of(most)
+        ));
+    }
+    (high - low <= rounding).then(|| format!("{} throughout", of(low)))
 }
 
 fn small(site: usize) -> u32 {
     u32::try_from(site).unwrap_or(u32::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::same;
+
+    #[test]
+    fn what_is_the_same_throughout_is_said() {
+        let said = |values: &[f64], size: f64| same(values.iter(), size);
+        assert_eq!(said(&[0.0, 0.0], 0.0).as_deref(), Some("zero throughout"));
+        assert_eq!(
+            said(&[0.25, 0.25], 0.25).as_deref(),
+            Some("0.25 throughout")
+        );
+        assert_eq!(
+            said(&[1e-17, -3e-17], 1.0).as_deref(),
+            Some("zero throughout, up to rounding: 3e−17 at most")
+        );
+        // Small beside nothing else: values of their own.
+        assert_eq!(said(&[1e-17, -3e-17], 3e-17), None);
+        assert_eq!(said(&[1.0, 2.0, f64::NAN], 1.0), None);
+    }
 }

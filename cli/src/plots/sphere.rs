@@ -107,8 +107,12 @@ pub(super) fn printed_size(width: f64, height: f64) -> String {
     format!("width=\"{COLUMN_IN_PRINT}mm\" height=\"{tall:.2}mm\"")
 }
 
-/// Several spheres on a sheet, for a paper in a column and without a title.
-pub(super) fn sheet(spheres: &[Sphere], title: &str, subtitle: &str, paper: bool) -> String {
+/// Several spheres on a sheet, for a paper in a column and without a title. A sentence may stand below them.
+pub(super) fn sheet(
+    spheres: &[Sphere],
+    [title, subtitle, sentence]: [&str; 3],
+    paper: bool,
+) -> String {
     let (width, most, head) = match paper {
         true => (COLUMN, 2, 4.0),
         false => (WIDE, 3, 56.0),
@@ -117,7 +121,13 @@ pub(super) fn sheet(spheres: &[Sphere], title: &str, subtitle: &str, paper: bool
     let cell: f64 = width / most as f64;
     let tall = cell + 34.0;
     let lines = spheres.len().div_ceil(columns);
-    let height = head + tall * lines as f64 + 4.0;
+    // Letters of 12 pixels are about 6.6 pixels wide.
+    let below = match sentence {
+        "" => Vec::new(),
+        words => folded(words, ((width - 32.0) / 6.6) as usize),
+    };
+    let foot = head + tall * lines as f64 + 4.0;
+    let height = foot + 16.0 * below.len() as f64 + if below.is_empty() { 0.0 } else { 8.0 };
     let mut svg = String::new();
     let printed = match paper {
         true => printed_size(width, height),
@@ -137,6 +147,10 @@ pub(super) fn sheet(spheres: &[Sphere], title: &str, subtitle: &str, paper: bool
         let left = cell * column as f64;
         let top = head + tall * line as f64;
         sphere.draw(&mut svg, [left + cell / 2.0, top + 30.0 + cell / 2.0], cell);
+    }
+    for (index, line) in below.iter().enumerate() {
+        let at = [16.0, foot + 12.0 + 16.0 * index as f64];
+        write_text(&mut svg, line, at, 12.0, "#1E1E1E", "start");
     }
     svg.push_str("</svg>\n");
     svg

@@ -26,6 +26,59 @@ fn text(file: &str) -> String {
     std::fs::read_to_string(shipped(file)).expect("is shipped")
 }
 
+/// What is made of parameters and cannot be an inertia is told by them, with line, site and expression: of a short line, which is
+/// written out site by site, and of a program with loops over sites.
+#[test]
+fn an_inertia_at_a_site_is_told_by_the_parameters_that_make_it() {
+    let folder = Folder::new("inertia-at-a-site");
+    let short = text("quaternion-rod.toml").replace("i = 16", "i = 4");
+    let (before, rest) = short.split_once("m = [").expect("masses");
+    let (_, after) = rest.split_once("]\n").expect("their end");
+    let short = format!("{before}m = \"s*(1 + 0*i)\"\n{after}");
+    let long = text("kirchhoff-rod.toml");
+    let told = |model: &str, case: &str| {
+        let case = folder.write("case.toml", case);
+        let model = shipped(&format!("{model}.clebsch"));
+        let done = clebsch(&["run", &model, "--case", &case, "--steps", "3"]);
+        assert_eq!(done.code, 2, "{}{}", done.out, done.err);
+        done.err
+    };
+    let line = |text: &str, key: &str| {
+        let at = text.lines().position(|line| line.starts_with(key));
+        at.expect("is given") + 1
+    };
+    for (model, case, own) in [
+        ("quaternion-rod", &short, "I"),
+        ("kirchhoff-rod", &long, "J"),
+    ] {
+        let key = format!("{own} = ");
+        let given = case
+            .lines()
+            .find(|line| line.starts_with(&key))
+            .expect("given");
+        let by = given.replacen("0.001", "\"0.001 - 0.0004*i\"", 1);
+        let falling = case.replace(given, &by);
+        let err = told(model, &falling);
+        let words = format!("case.toml:{}: parameters.s = ", line(&falling, &key));
+        assert!(err.contains(&words), "{err}");
+        let words = format!(" at i = 3 (given by `0.001 - 0.0004*i`) make s {own}₃: ");
+        assert!(err.contains(&words) && !err.contains("initial."), "{err}");
+
+        let spacing = case
+            .lines()
+            .find(|line| line.starts_with("s = "))
+            .expect("given");
+        let negative = case.replace(spacing, "s = -0.0625");
+        let err = told(model, &negative);
+        let at = line(&negative, "s = ");
+        let words = format!("case.toml:{at}: parameters.s = -0.0625 and parameters.{own} = ");
+        assert!(
+            err.contains(&words) && err.contains(" at i = 0 make s "),
+            "{err}"
+        );
+    }
+}
+
 /// A ring stays flat up to sqrt(3) K1/K3 turns of twist (Michell 1889, Zajac 1962), 2.6 of the shipped one: with two a
 /// disturbance stays as small as it was, with three the ring leaves its plane.
 #[test]

@@ -25,6 +25,7 @@ mod npz;
 mod own_models;
 mod page;
 mod pictures;
+mod pictures_of_lines;
 mod rest;
 mod results;
 mod resumed;

@@ -78,6 +78,52 @@ fn absolute_drifts_are_said_and_judged() {
     assert_eq!(json["results"]["invariants"][1]["absolute"], false);
 }
 
+/// Without weight the momentum across its direction is zero whatever the motion, and no test of it.
+#[test]
+fn what_is_zero_by_a_parameter_is_told_and_not_praised() {
+    let folder = Folder::new("zero-by-a-parameter");
+    let file = folder.write(
+        "thrown.clebsch",
+        "/// Thrown.\nmodel Thrown {\n    param m: Real;\n    \
+         param g: Vec<3>;\n    field x: Vec<3>;\n    let v = (next(x) - x)/h;\n    \
+         lagrangian = h*(m*dot(v, v)/2 + m*dot(g, x));\n}\n",
+    );
+    let case = |g: &str| {
+        let text = format!(
+            "model = \"thrown\"\nname = \"one\"\nh = 0.01\nsteps = 20\n[parameters]\nm = 1.0\ng = {g}\n\
+             [initial]\nx = [0.0, 0.0, 1.0]\nmomentum = [1.0, 2.0, 3.0]\n"
+        );
+        folder.write("one.toml", &text)
+    };
+    let out = folder.path("out");
+    let run = |g: &str| {
+        let case = case(g);
+        let run = ["run", &file, "--case", &case, "--force", "--out", &out];
+        let done = clebsch(&run);
+        assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+        done.out
+    };
+    let told = "zero in every term with g = 0, so that nothing is tested: ";
+    let falling = run("[0.0, 0.0, -1.0]");
+    assert!(!falling.contains(told), "{falling}");
+    let free = run("[0.0, 0.0, 0.0]");
+    let line = free.lines().find_map(|line| line.strip_prefix(told));
+    let line = line.unwrap_or_else(|| panic!("{free}"));
+    assert!(line.contains("across_g"), "{line}");
+    let row = free.lines().find(|l| l.starts_with("momentum_across_g"));
+    assert!(
+        row.is_some_and(|row| !row.contains("within bound")),
+        "{free}"
+    );
+    let read = |name: &str| std::fs::read_to_string(format!("{out}/{name}")).expect("is written");
+    assert!(read("invariants.svg").contains("zero with g = 0"));
+    assert!(read("run.html").contains("<p>Zero in every term with g = 0"));
+    let json: serde_json::Value = serde_json::from_str(&read("run.json")).expect("JSON");
+    let all = json["results"]["invariants"].as_array().expect("a list");
+    let own = all.iter().find(|own| own["name"] == "momentum_across_g");
+    assert_eq!(own.expect("is listed")["zero_by"][0], "g");
+}
+
 #[test]
 fn what_is_no_number_stops_the_run_at_its_node() {
     let folder = Folder::new("no_number");

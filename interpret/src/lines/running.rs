@@ -158,6 +158,26 @@ impl Carded {
         self.sites.get(of).copied()
     }
 
+    /// A formula in parameters with the number of the site beside those that have one at each: `s J₅`.
+    fn formula_at(&self, formula: &str, site: usize) -> String {
+        let lowered = |digit: char| char::from_u32(0x2080 + digit.to_digit(10)?);
+        let mark: String = site.to_string().chars().filter_map(lowered).collect();
+        let (mut out, mut word) = (String::new(), String::new());
+        for letter in formula.chars().chain([' ']) {
+            if letter.is_alphanumeric() || letter == '_' {
+                word.push(letter);
+                continue;
+            }
+            out.push_str(&word);
+            if self.sites.contains_key(&ascii(&word)) {
+                out.push_str(&mark);
+            }
+            word.clear();
+            out.push(letter);
+        }
+        out.trim_end().to_owned()
+    }
+
     fn refused(&self, e: Unstarted) -> OpenError {
         let at_start = |e: ParameterError| {
             let own = |f: &&Field| f.name == e.field || f.ascii == e.field;
@@ -169,7 +189,11 @@ impl Carded {
         match e {
             Unstarted::Line(LineError::Parameter(e)) => at_start(e),
             Unstarted::Line(LineError::Site { at, error }) => at_start(ParameterError {
-                field: text(&format!("{}_{}", at.quantity, at.site)),
+                field: text(&match error.field == at.quantity {
+                    true => format!("{}_{}", at.quantity, at.site),
+                    // What is made of parameters is told by its formula, not by what it is the inertia of.
+                    false => self.formula_at(error.field, at.site),
+                }),
                 ..error
             }),
             Unstarted::Line(LineError::Length {

@@ -1,0 +1,241 @@
+//! Euler angles of rotations: against time, of many sites as maps over sites and time.
+//! Takes the samples of a run; gives precession, nutation and spin of each.
+
+use super::attitude::{Kin, Placed, grouped, matrix, rotations, rows};
+use super::axis::Axis;
+use super::curve::{Curve, Stroke};
+use super::figure::Panel;
+use super::window::{Window, window};
+use super::{Plot, caption, figure, reduce, sites};
+use crate::output::Finished;
+use crate::record::Samples;
+use clebsch::nalgebra::Matrix3;
+use std::ops::Range;
+
+/// Most sites with two charts of their own, one above the other.
+const FEW: usize = 3;
+
+/// Sine of the nutation below which rounding shows in precession and spin.
+const UPRIGHT: f64 = 1e-6;
+
+/// Part of a turn within which half a turn one way is as near as the other.
+const HALF: f64 = 1e-3;
+
+/// Euler angles of each rotation, Λ = R₃(φ) R₁(θ) R₃(ψ) about space and body axes: precession and spin followed continuously, and nutation.
+pub(crate) fn angles(run: &Finished<'_>, samples: &Samples) -> Plot {
+    let turning = rotations(run);
+    if turning.is_empty() {
+        return Ok(None);
+    }
+    let all: Vec<Range<usize>> = turning.iter().map(|(_, columns)| columns.clone()).collect();
+    let shown = window(samples, &all);
+    let mut panels = Vec::new();
+    for kin in grouped(run, turning) {
+        match kin.members.len() {
+            ..=FEW => panels.extend(kin.members.iter().flat_map(|(_, own)| curves(own, shown))),
+            _ => panels.extend(maps(&kin, shown)),
+        }
+    }
+    figure(run, shown, "Euler angles", panels)
+}
+
+/// Of one rotation against time.
+fn curves((field, columns): &Placed, shown: Window<'_>) -> [Panel; 2] {
+    let times = shown.record.times.get(..shown.count).unwrap_or_default();
+    let (mut precession, mut nutation, mut spin) = (Vec::new(), Vec::new(), Vec::new());
+    for turn in rows(shown, columns).filter_map(matrix) {
+        let [phi, theta, psi] = euler(&turn);
+        precession.push(followed(precession.last().copied(), phi));
+        nutation.push(theta);
+        spin.push(followed(spin.last().copied(), psi));
+    }
+    let curve = |label: &str, number: usize, values: Vec<f64>| Curve {
+        label: label.to_owned(),
+        note: None,
+        points: reduce::extremes(times, values.into_iter()),
+        stroke: Stroke::number(number),
+    };
+    let panel = |caption: String, curves: Vec<Curve>| Panel {
+        caption,
+        y_label: "angle (rad)".to_owned(),
+        y: Axis::around(&curves),
+        curves,
+        map: None,
+        height: 200,
+    };
+    let name = field.name;
+    let both = vec![
+        curve("φ precession", 0, precession),
+        curve("ψ spin", 1, spin),
+    ];
+    [
+        panel(
+            format!("{}; {name} = R₃(φ) R₁(θ) R₃(ψ)", caption(field)),
+            both,
+        ),
+        panel(
+            format!("{name}: nutation"),
+            vec![curve("θ nutation", 2, nutation)],
+        ),
+    ]
+}
+
+/// Of the rotations at many sites over sites and time, with the turn φ + ψ, which alone is known where a body is upright.
+fn maps(kin: &Kin, shown: Window<'_>) -> [Panel; 4] {
+    let times = shown.record.times.get(..shown.count).unwrap_or_default();
+    let mut all = [const { Rows::new() }; 4];
+    for (site, (_, columns)) in sites::shown(&kin.members) {
+        let mut own = [const { Vec::new() }; 4];
+        for row in rows(shown, columns) {
+            let angles = matrix(row).map_or([f64::NAN; 4], |turn| determined(&turn));
+            for (list, angle) in own.iter_mut().zip(angles) {
+                list.push(angle);
+            }
+        }
+        for (rows, own) in all.iter_mut().zip(own) {
+            rows.push((site.unwrap_or_default(), own));
+        }
+    }
+    let name = &kin.name;
+    let [theta, phi, psi, turn] = all;
+    let map = |caption: String, rows| sites::mapped(caption, &kin.index, times, rows, 1.0);
+    let turning = |what: &str, upright: &str, rows: Rows| {
+        let white = rows
+            .iter()
+            .flat_map(|(_, row)| row)
+            .any(|angle| angle.is_nan());
+        let white = if white { upright } else { "" };
+        match continued(&rows) {
+            Some(rows) => map(format!("{what} of {name}, in rad{white}"), rows),
+            None => map(format!("{what} of {name}, in rad modulo 2π{white}"), rows),
+        }
+    };
+    [
+        map(
+            format!("nutation θ of {name} = R₃(φ) R₁(θ) R₃(ψ), in rad"),
+            theta,
+        ),
+        turning("precession φ", "; white where θ = 0, π", phi),
+        turning("spin ψ", "; white where θ = 0, π", psi),
+        turning("φ + ψ", "; white where θ = π", turn),
+    ]
+}
+
+/// Sites with an angle at each sample.
+type Rows = Vec<(usize, Vec<f64>)>;
+
+/// The angles followed over the turns; nothing where one is not determined at some sample or has turned so far from one sample
+/// to the next that its turns cannot be counted, as where a body comes past the vertical.
+fn continued(rows: &Rows) -> Option<Rows> {
+    let follow = |row: &Vec<f64>| {
+        let mut out: Vec<f64> = Vec::with_capacity(row.len());
+        for angle in row {
+            let before = out.last().copied();
+            let angle = followed(before, *angle);
+            let near = before.is_none_or(|b| (angle - b).abs() < std::f64::consts::FRAC_PI_2);
+            out.push(Some(angle).filter(|a| near && a.is_finite())?);
+        }
+        Some(out)
+    };
+    let each = rows.iter().map(|(site, row)| Some((*site, follow(row)?)));
+    each.collect()
+}
+
+/// θ, φ, ψ and φ + ψ; no numbers where they are not determined.
+fn determined(r: &Matrix3<f64>) -> [f64; 4] {
+    let [phi, theta, psi] = euler(r);
+    // (1 + cos θ) times sine and cosine of the sum: accurate at small θ, where φ and ψ are not.
+    let sum = (r[(1, 0)] - r[(0, 1)]).atan2(r[(0, 0)] + r[(1, 1)]);
+    match theta.sin() < UPRIGHT {
+        false => [theta, phi, psi, sum],
+        true if theta < 1.0 => [theta, f64::NAN, f64::NAN, sum],
+        true => [theta, f64::NAN, f64::NAN, f64::NAN],
+    }
+}
+
+/// φ, θ, ψ; θ from its sine and cosine, since the cosine alone loses half of the digits near 0 and π.
+fn euler(r: &Matrix3<f64>) -> [f64; 3] {
+    let sine = r[(0, 2)].hypot(r[(1, 2)]);
+    // Upright, only the sum of both turns about the axis is known: the first has it.
+    if sine < 1e-14 {
+        return [r[(1, 0)].atan2(r[(0, 0)]), sine.atan2(r[(2, 2)]), 0.0];
+    }
+    [
+        r[(0, 2)].atan2(-r[(1, 2)]),
+        sine.atan2(r[(2, 2)]),
+        r[(2, 0)].atan2(r[(2, 1)]),
+    ]
+}
+
+/// The angle nearest to the one before. In a plane through the vertical precession and spin jump by half a turn; of both
+/// sides, which are as near, the one nearer to zero is taken, lest they add up.
+fn followed(before: Option<f64>, angle: f64) -> f64 {
+    let full = std::f64::consts::TAU;
+    let Some(before) = before.filter(|before| before.is_finite() && angle.is_finite()) else {
+        return angle;
+    };
+    let turns = (before - angle) / full;
+    let sides = [turns.floor(), turns.ceil()].map(|whole| angle + full * whole);
+    if (turns - turns.floor() - 0.5).abs() > HALF {
+        return angle + full * turns.round();
+    }
+    let [below, above] = sides;
+    if below.abs() <= above.abs() {
+        below
+    } else {
+        above
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{determined, euler, followed, matrix};
+    use clebsch::nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
+
+    #[test]
+    fn angles_give_the_rotation_back() {
+        let upright = [(0.0, 0.0, 0.0), (0.4, 0.0, 0.0)];
+        let others = [(0.3, 1.1, -2.0), (-3.0, 0.001, 0.5), (2.0, 3.1, 3.0)];
+        for (phi, theta, psi) in upright.into_iter().chain(others) {
+            let about = |axis: Vector3<f64>, angle: f64| {
+                Rotation3::from_scaled_axis(axis * angle).into_inner()
+            };
+            let turn: Matrix3<f64> =
+                about(Vector3::z(), phi) * about(Vector3::x(), theta) * about(Vector3::z(), psi);
+            let found = euler(&turn);
+            for (x, y) in found.into_iter().zip([phi, theta, psi]) {
+                // Angles of a small nutation lose its digits.
+                assert!((x - y).abs() < 1e-12, "{found:?}");
+            }
+            let q = UnitQuaternion::from_matrix(&turn);
+            let Quaternion { coords } = *q.quaternion();
+            let again = matrix(&[coords.w, coords.x, coords.y, coords.z]).expect("four numbers");
+            assert!((again - turn).norm() < 1e-12, "{again}");
+        }
+        assert_eq!(followed(Some(6.0), -0.2), -0.2 + std::f64::consts::TAU);
+        assert_eq!(followed(None, -0.2), -0.2);
+        // Back and forth through the vertical.
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let mut angle = quarter;
+        for k in 0..20 {
+            let turned = if k % 2 == 0 { -quarter } else { quarter };
+            angle = followed(Some(angle), turned * (1.0 + 1e-15));
+            assert!((angle.abs() - quarter).abs() < 1e-12, "{angle}");
+        }
+    }
+
+    #[test]
+    fn upright_the_sum_of_both_turns_is_known() {
+        let turn =
+            |axis: Vector3<f64>, angle: f64| Rotation3::from_scaled_axis(axis * angle).into_inner();
+        let upright = turn(Vector3::z(), 0.7) * turn(Vector3::x(), 1e-9);
+        let [theta, phi, psi, sum] = determined(&upright);
+        assert!(theta < 1e-8 && phi.is_nan() && psi.is_nan());
+        assert!((sum - 0.7).abs() < 1e-12, "{sum}");
+        let inclined = turn(Vector3::z(), 0.7) * turn(Vector3::x(), 0.3) * turn(Vector3::z(), 0.2);
+        for (x, y) in determined(&inclined).into_iter().zip([0.3, 0.7, 0.2, 0.9]) {
+            assert!((x - y).abs() < 1e-12, "{x} {y}");
+        }
+        assert!(determined(&turn(Vector3::x(), std::f64::consts::PI))[3].is_nan());
+    }
+}

@@ -1,0 +1,104 @@
+//! Pictures of what lines have at their sites: maps, chosen spheres, what is zero.
+
+use crate::common::{Folder, program as clebsch};
+use std::fs;
+
+fn shipped(file: &str) -> String {
+    format!("{}/../models/lattices/{file}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Runs a shipped model from such a case; gives its pictures by their names.
+fn drawn(
+    folder: &Folder,
+    model: &str,
+    case: &str,
+    more: &[&str],
+) -> impl Fn(&str) -> String + use<> {
+    let (case, out) = (folder.write("case.toml", case), folder.path("out"));
+    let model = shipped(&format!("{model}.clebsch"));
+    let mut all = vec!["run", &model, "--case", &case, "--steps", "100"];
+    all.extend(["--force", "--out", &out]);
+    all.extend(more);
+    let done = clebsch(&all);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    move |name: &str| fs::read_to_string(format!("{out}/{name}.svg")).unwrap_or_default()
+}
+
+/// The shipped cantilever with five sections.
+fn cantilever() -> String {
+    let text = fs::read_to_string(shipped("geometrically-exact-rod.toml")).expect("is shipped");
+    let (before, rest) = text.split_once("m = [").expect("masses");
+    let (_, after) = rest.split_once("]\n").expect("their end");
+    let masses = "m = [0.03125, 0.0625, 0.0625, 0.0625, 0.0625, 0.03125]\n";
+    let short = format!("{before}{masses}{after}");
+    short.replace("i = 16", "i = 5")
+}
+
+/// Of a picture, in pixels; for a paper 430 of them are 86 mm.
+fn height(svg: &str) -> f64 {
+    let own = svg.split("height=\"").nth(1).expect("a height");
+    let own = own.split('"').next().expect("its end");
+    match own.strip_suffix("mm") {
+        Some(own) => own.parse::<f64>().expect("a number") * 430.0 / 86.0,
+        None => own.parse().expect("a number"),
+    }
+}
+
+#[test]
+fn rods_have_maps_of_their_angles_and_some_of_their_spheres() {
+    let folder = Folder::new("pictures-of-a-rod");
+    let wide = drawn(&folder, "geometrically-exact-rod", &cantilever(), &[]);
+    let angles = wide("angles");
+    for words in [
+        "nutation θ of Λ = R₃(φ) R₁(θ) R₃(ψ), in rad",
+        "precession φ of Λ, in rad modulo 2π; white where θ = 0, π",
+        "φ + ψ of Λ, in rad",
+        "site i",
+    ] {
+        assert!(angles.contains(words), "{words}");
+    }
+    assert!(!angles.contains("Λ_4") && height(&angles) < 1000.0);
+    let attitude = wide("attitude");
+    let told = "6 of 10 spheres are shown: Λ at i = 0, 2, 4; μ of Λ at i = 0, 2, 4";
+    assert!(attitude.contains(told), "{attitude:.2000}");
+    assert!(attitude.contains("Λ₄ e₃: the body axis e₃ in space"));
+    assert!(!attitude.contains("Λ₁ e₃") && !attitude.contains("φ in the ball"));
+
+    // In a plane: what stays zero is said, and the frames of momenta with the same letter otherwise are told.
+    let momentum = wide("momentum");
+    assert_eq!(momentum.matches("zero throughout").count(), 5);
+    for words in [
+        "μ₂, momentum of Λ, body frame",
+        "m₂, momentum of Λ, space frame",
+    ] {
+        assert!(momentum.contains(words), "{words}");
+    }
+    let numbers: Vec<&str> = momentum.split('>').map(str::trim).collect();
+    assert!(!numbers.iter().any(|own| own.starts_with("−0.5")));
+
+    // For a paper scales of colours stand beside their charts, and take no height of their own.
+    let paper = drawn(
+        &folder,
+        "geometrically-exact-rod",
+        &cantilever(),
+        &["--paper"],
+    );
+    for (name, wide) in [("momentum", &momentum), ("angles", &angles)] {
+        let own = paper(name);
+        assert!(height(&own) < height(wide), "{name}: {}", height(&own));
+    }
+    assert!(paper("attitude").contains("6 of 10 spheres are shown"));
+}
+
+#[test]
+fn a_few_bodies_have_their_angles_against_time() {
+    let folder = Folder::new("pictures-of-few-bodies");
+    let case = fs::read_to_string(shipped("coupled-tops.toml")).expect("is shipped");
+    let three = case.replace("i = 6", "i = 2");
+    let few = drawn(&folder, "coupled-tops", &three, &[]);
+    assert!(few("angles").contains("φ precession") && few("angles").contains("Λ_2: nutation"));
+    assert!(!few("attitude").contains("spheres are shown"));
+    let seven = drawn(&folder, "coupled-tops", &case, &[]);
+    assert!(seven("angles").contains("nutation θ of Λ"));
+    assert!(seven("attitude").contains("9 of 21 spheres are shown"));
+}
