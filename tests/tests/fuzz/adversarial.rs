@@ -281,6 +281,10 @@ fn explosions() -> Vec<(&'static str, String)> {
             top("", &format!("c{}", "/3".repeat(3000))),
         ),
         (
+            "as many quotients as may be",
+            top("", &format!("c{}", "/3".repeat(498))),
+        ),
+        (
             "many products of a number",
             top("", &format!("c{}", "*3".repeat(3000))),
         ),

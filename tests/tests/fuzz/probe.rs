@@ -143,7 +143,8 @@ fn failure(input: &Input, outcome: &Outcome) -> Option<String> {
     Some(format!("{} {complaint}\n{shown}", input.name))
 }
 
-/// Probes the inputs `0..count` on some threads of the size of stack that tests and macros have.
+/// Probes the inputs `0..count` on some threads, with half of the stack that rustc gives to macros: the engine is as
+/// unoptimised as in a user's build.
 pub fn probe_all(threads: u64, count: u64, input: impl Fn(u64) -> Input + Sync) -> Report {
     silence_probes();
     let trace = std::env::var_os(TRACE).is_some();
@@ -178,7 +179,7 @@ pub fn probe_all(threads: u64, count: u64, input: impl Fn(u64) -> Input + Sync) 
         for _ in 0..threads {
             let probing = std::thread::Builder::new()
                 .name("probe".to_owned())
-                .stack_size(2 << 20)
+                .stack_size(4 << 20)
                 .spawn_scoped(scope, work);
             assert!(probing.is_ok(), "a thread");
         }

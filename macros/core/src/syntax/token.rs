@@ -9,6 +9,8 @@ use proc_macro2::{Delimiter, Spacing, Span, TokenStream, TokenTree};
 
 /// Deepest nesting of parentheses that the parser follows.
 const DEEPEST: usize = 100;
+/// Most divisions in a statement: each stands on all that is before it, `((a/b)/c)/d`, so that they nest without parentheses.
+const MOST_DIVISIONS: usize = 500;
 /// Longest model, in bytes; blanks, comments and documentation are not counted.
 pub(super) const LONGEST: usize = 10_000;
 
@@ -193,6 +195,21 @@ impl Cursor {
                 }
             }
             end = span;
+        }
+        let mut divisions = 0;
+        for (token, span) in &tokens {
+            match token {
+                Token::Punct(';', _) => divisions = 0,
+                Token::Punct('/', _) => divisions += 1,
+                _ => {}
+            }
+            if divisions > MOST_DIVISIONS {
+                let message =
+                    format!("more than {MOST_DIVISIONS} divisions in one statement are refused");
+                return Err(Diagnostic::new(Place::token(*span), message)
+                    .help("divide by products, or name parts of the expression with `let`")
+                    .into());
+            }
         }
         Ok(Cursor { tokens, at: 0, end })
     }
@@ -428,5 +445,20 @@ impl Cursor {
             return Ok(n);
         }
         Err(self.unexpected("a whole number"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Cursor, MOST_DIVISIONS};
+
+    #[test]
+    fn divisions_are_counted_statement_by_statement() {
+        let read = |statements: &[usize]| {
+            let each = statements.iter().map(|n| format!("a{};", "/2".repeat(*n)));
+            Cursor::new(each.collect::<String>().parse().expect("tokens")).is_ok()
+        };
+        assert!(read(&[MOST_DIVISIONS, MOST_DIVISIONS]));
+        assert!(!read(&[1, MOST_DIVISIONS + 1]));
     }
 }
