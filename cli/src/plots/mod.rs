@@ -459,15 +459,7 @@ fn place(field: &Field, component: usize) -> String {
 }
 
 fn subscript(number: usize) -> String {
-    let digits = number.to_string();
-    digits
-        .chars()
-        .filter_map(|digit| {
-            digit
-                .to_digit(10)
-                .and_then(|digit| char::from_u32(0x2080 + digit))
-        })
-        .collect()
+    clebsch_core::print::lowered(&number.to_string()).unwrap_or_default()
 }
 
 fn first(times: &[f64]) -> f64 {

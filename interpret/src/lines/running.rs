@@ -10,6 +10,7 @@ use clebsch::line::LineError;
 use clebsch::saved::{Saved, Words};
 use clebsch::{ParameterError, StartError, StepCause, StepError};
 use clebsch_core::expr::symbol::ascii;
+use clebsch_core::print::lowered;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -160,8 +161,7 @@ impl Carded {
 
     /// A formula in parameters with the number of the site beside those that have one at each: `s J₅`.
     fn formula_at(&self, formula: &str, site: usize) -> String {
-        let lowered = |digit: char| char::from_u32(0x2080 + digit.to_digit(10)?);
-        let mark: String = site.to_string().chars().filter_map(lowered).collect();
+        let mark = lowered(&site.to_string()).unwrap_or_default();
         let (mut out, mut word) = (String::new(), String::new());
         for letter in formula.chars().chain([' ']) {
             if letter.is_alphanumeric() || letter == '_' {

@@ -31,6 +31,7 @@ use document::Document;
 use formula::Formula;
 
 pub use statement::statement;
+pub use unicode::lowered;
 
 /// What a document is written in.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

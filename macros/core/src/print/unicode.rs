@@ -106,12 +106,16 @@ fn brackets(fence: Fence) -> (char, char) {
     }
 }
 
-fn subscript(text: &str) -> String {
-    let digits: Option<String> = text
-        .chars()
+/// The digits of a number as subscripts: `₁₂` of `12`; nothing where there are other characters.
+pub fn lowered(digits: &str) -> Option<String> {
+    let digits = digits.chars();
+    digits
         .map(|c| char::from_u32(0x2080 + c.to_digit(10)?))
-        .collect();
-    match digits {
+        .collect()
+}
+
+fn subscript(text: &str) -> String {
+    match lowered(text) {
         Some(small) => small,
         None if text.chars().count() == 1 => format!("_{text}"),
         None => format!("_{{{text}}}"),

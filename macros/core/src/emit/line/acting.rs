@@ -182,14 +182,10 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
     };
     let letters = l.of_site(d, &wanted);
     let (locals, mut bindings) = l.locals(s, &letters, &at, &quote!(site));
-    let systems = l.systems();
-    let Some((_, n, members)) = systems
-        .iter()
-        .find(|(.., members)| members.iter().any(|o| o.mover.name == m.mover.name))
-    else {
+    let Some((_, n, members)) = l.system_of(&m) else {
         return TokenStream::new();
     };
-    let velocities = taken_apart(members, &letters, &mut bindings, false);
+    let velocities = taken_apart(&members, &letters, &mut bindings, false);
     let (lets, results) = l.program(s, &wanted, &bindings);
     let value = match (wanted.as_slice(), results.as_slice()) {
         ([_], [value]) => m.array(value.clone()),
@@ -208,7 +204,7 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
         }
         _ => return TokenStream::new(),
     };
-    let size = number(*n);
+    let size = number(n);
     let frame = match m.is_rotation() {
         true => ", in the space frame",
         false => "",
@@ -313,11 +309,7 @@ pub(super) fn arrive(l: &Lines, m: &Moving) -> TokenStream {
         let cause = StepCause::not_finite("momentum");
         return Err(self.refused(state, h, line::Place { quantity: #text, site: first + i }, cause));
     };
-    let systems = l.systems();
-    let own = systems
-        .iter()
-        .find(|(.., members)| members.iter().any(|o| o.mover.name == *text));
-    let (Some(_), Some((field, ..))) = (m.system(), own) else {
+    let Some((field, ..)) = l.system_of(m) else {
         let arriving = arriving(m);
         return quote! {
             {

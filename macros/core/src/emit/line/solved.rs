@@ -33,6 +33,12 @@ impl Lines<'_> {
         }
         out
     }
+
+    /// The block of a configuration whose velocity is found together with others.
+    pub(super) fn system_of(&self, m: &Moving) -> Option<(Ident, usize, Vec<Moving<'_>>)> {
+        let mut systems = self.systems().into_iter();
+        systems.find(|(.., members)| members.iter().any(|o| o.mover.name == m.mover.name))
+    }
 }
 
 impl Moving<'_> {

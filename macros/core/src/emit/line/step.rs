@@ -422,11 +422,7 @@ fn solve(l: &Lines, m: &Moving, edges: &Ident) -> TokenStream {
             }
         }
         Some(_) => {
-            let systems = l.systems();
-            let own = systems
-                .iter()
-                .find(|(.., members)| members.iter().any(|o| o.mover.name == *text));
-            let Some((field, _, members)) = own else {
+            let Some((field, _, members)) = l.system_of(m) else {
                 return TokenStream::new();
             };
             let before: usize = members

@@ -136,11 +136,7 @@ pub(super) fn walls(l: &Lines) -> Option<Walls> {
         }
     };
     let added = m.mover.how.added().is_some().then(|| {
-        let systems = l.systems();
-        let own = systems
-            .iter()
-            .find(|(.., members)| members.iter().any(|o| o.mover.name == *text));
-        let velocities = own.map(|(field, ..)| field.clone());
+        let velocities = l.system_of(&m).map(|(field, ..)| field);
         let edge = acting::edge_kernel(&m);
         quote!(self.#edge(h, site, &state.places, &work.places, &work.#velocities[site]))
     });
