@@ -3,7 +3,8 @@
 
 use clebsch::card::{Card, Settings, Trajectory};
 use clebsch::saved::Words;
-use clebsch_models::{Case, gallery};
+use clebsch_models::{Case, Entry, gallery};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Steps before and after.
 const STEPS: u64 = 150;
@@ -63,39 +64,52 @@ fn goes_on_alike(card: &Card, case: &Case, settings: Settings) -> bool {
     true
 }
 
+fn entry_goes_on_alike(entry: &Entry) {
+    let read = match clebsch_interpret::card(entry.card.source) {
+        Ok(card) => card,
+        Err(refused) => panic!("{}: {refused}", entry.card.name),
+    };
+    let mut followed = 0;
+    for case in &entry.cases {
+        let built = entry.card_of(case);
+        let sizes: Vec<usize> = built.dimensions.iter().map(|d| d.value).collect();
+        let Some(read) = (read.sized)(&sizes) else {
+            panic!("{} {sizes:?}", read.name);
+        };
+        for card in [&built, &read] {
+            let plain = Settings::step(case.h);
+            let mut ways = vec![plain];
+            ways.extend(card.orders.iter().map(|order| plain.of_order(*order)));
+            ways.push(Settings {
+                compensated: true,
+                ..plain.of_order(6)
+            });
+            ways.extend(clebsch::solvers::Method::ALL.map(|method| Settings {
+                solver: Some(method),
+                ..plain
+            }));
+            followed += ways
+                .into_iter()
+                .filter(|way| goes_on_alike(card, case, *way))
+                .count();
+        }
+    }
+    println!("{}: {followed} ways", entry.card.kebab);
+    assert!(followed >= 2 * entry.cases.len(), "{}", entry.card.kebab);
+}
+
+/// On two threads: the machines this runs on have two cores, and no other test stands beside it.
 #[test]
 fn every_trajectory_goes_on_as_if_it_had_not_been_written_down() {
-    for entry in gallery() {
-        let read = match clebsch_interpret::card(entry.card.source) {
-            Ok(card) => card,
-            Err(refused) => panic!("{}: {refused}", entry.card.name),
-        };
-        let mut followed = 0;
-        for case in &entry.cases {
-            let built = entry.card_of(case);
-            let sizes: Vec<usize> = built.dimensions.iter().map(|d| d.value).collect();
-            let Some(read) = (read.sized)(&sizes) else {
-                panic!("{} {sizes:?}", read.name);
-            };
-            for card in [&built, &read] {
-                let plain = Settings::step(case.h);
-                let mut ways = vec![plain];
-                ways.extend(card.orders.iter().map(|order| plain.of_order(*order)));
-                ways.push(Settings {
-                    compensated: true,
-                    ..plain.of_order(6)
-                });
-                ways.extend(clebsch::solvers::Method::ALL.map(|method| Settings {
-                    solver: Some(method),
-                    ..plain
-                }));
-                followed += ways
-                    .into_iter()
-                    .filter(|way| goes_on_alike(card, case, *way))
-                    .count();
-            }
+    let (next, entries) = (AtomicUsize::new(0), gallery());
+    let work = || {
+        while let Some(entry) = entries.get(next.fetch_add(1, Ordering::Relaxed)) {
+            entry_goes_on_alike(entry);
         }
-        println!("{}: {followed} ways", entry.card.kebab);
-        assert!(followed >= 2 * entry.cases.len(), "{}", entry.card.kebab);
-    }
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(work);
+        work();
+    });
+    assert!(next.into_inner() >= entries.len());
 }

@@ -73,7 +73,14 @@ pub const JUDGES: [Judge; 7] = [
         name: "derivation",
         folders: &[ENGINE, RUNTIME],
         filter: "",
-        arguments: &["-p", "clebsch-tests", "--test", "derivation"],
+        arguments: &[
+            "-p",
+            "clebsch-tests",
+            "--test",
+            "derivation",
+            "--test",
+            "many_models",
+        ],
     },
 ];
 

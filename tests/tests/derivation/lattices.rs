@@ -1,93 +1,117 @@
-//! Lattices against actions whose sums over sites are typed by hand, as loops with their own indices.
-//! Takes the derivation of a model with labels for chosen numbers of sites and ends; gives its momentum
-//! at either end of a step and its residual, at random fields that solve nothing, against the variation
-//! of the unreduced action by dual numbers. Then the typed action is changed by one sign or by one site
-//! of one range: every such change that moves the action must be seen.
+//! Lines and rings of a few sites, all kinds of them, against actions typed by hand; longer ones are those of
+//! `tests/tests/many_models/`.
 
-// Loops over sites read as the sums they were typed from.
-#![allow(clippy::needless_range_loop)]
+use super::common::lattices::{
+    Ends, FREE, beam, body_chain, held, hoop, rod, scalars, sets, shallow_water, tops,
+};
 
-mod beam;
-mod body_chain;
-mod change;
-mod compare;
-mod held;
-mod hoop;
-mod meant;
-mod rod;
-mod scalars;
-mod sets;
-mod shallow_water;
-mod sum;
-mod tops;
-
-use clebsch_core::Derivation;
-use clebsch_core::lattice::Lattice;
-use clebsch_core::pipeline::{derive_lattice, parse_source, representative};
-use clebsch_oracle::oracle::points::asked_for;
-use std::time::Instant;
-
-/// Agreement asked of each component, relative to the largest summand of the variation of its own site.
-/// A summand is rounded to some 1e-15 of what it is made of; differences of places along a line of 50
-/// sites, exponentials and a few tens of summands lose three digits more, 1e-12 in all. What is wrong by
-/// a sign, a factor or a site is wrong in the first digits.
-const AGREEMENT: f64 = 1e-10;
-
-/// How a line ends.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Ends {
-    /// Closed to a ring.
-    Ring,
-    /// These alternatives at the first and at the last site.
-    Open(&'static str, &'static str),
+#[test]
+fn toda_chains() {
+    for segments in [1, 2, 3, 5] {
+        scalars::toda(segments, Ends::Ring);
+        scalars::toda(segments, FREE);
+    }
 }
 
-impl Ends {
-    /// How many nodes a line of `segments` has.
-    fn nodes(self, segments: usize) -> usize {
-        match self {
-            Ends::Ring => segments,
-            Ends::Open(..) => segments + 1,
-        }
-    }
-
-    fn is_at(self, last: bool, name: &str) -> bool {
-        match self {
-            Ends::Ring => false,
-            Ends::Open(first, at_last) => name == if last { at_last } else { first },
+#[test]
+fn pendulums_in_a_row() {
+    for segments in [2, 3, 5] {
+        for first in ["free", "pinned"] {
+            for last in ["free", "pinned"] {
+                scalars::pendulums(segments, Ends::Open(first, last));
+            }
         }
     }
 }
 
-/// The natural ends of a line for which no other is stated.
-const FREE: Ends = Ends::Open("free", "free");
-
-/// Whether the typed action of so many segments is changed term by term: on longer lines by
-/// `LATTICE_CHANGES=12`, which takes a minute.
-fn is_changed(segments: usize) -> bool {
-    segments as u64 <= asked_for("LATTICE_CHANGES", 5)
+#[test]
+fn pendulums_in_a_ring() {
+    for segments in [1, 2, 3, 5] {
+        scalars::pendulums(segments, Ends::Ring);
+    }
 }
 
-/// Derives the model for so many sites of each label.
-fn derived(text: &str, counts: &[(&str, usize)], ends: Ends) -> Derivation {
-    let model = parse_source(text).unwrap_or_else(|e| panic!("{text}\n{e}"));
-    let lattice = Lattice::read(&model).unwrap_or_else(|e| panic!("{text}\n{e}"));
-    let mut choice = representative(&model, &lattice).unwrap_or_else(|e| panic!("{text}\n{e}"));
-    for (label, count) in counts {
-        choice = choice.with_count(&lattice, label, *count).unwrap();
+#[test]
+fn tops_in_a_row() {
+    for segments in [1, 2, 3, 5] {
+        tops::check(segments, FREE);
     }
-    choice = match ends {
-        Ends::Ring => choice.with_ring(&lattice).unwrap(),
-        Ends::Open(first, last) => {
-            let held = choice.with_end(&lattice, false, first).unwrap();
-            held.with_end(&lattice, true, last).unwrap()
+}
+
+#[test]
+fn tops_in_a_ring() {
+    for segments in [1, 2, 3, 5] {
+        tops::check(segments, Ends::Ring);
+    }
+}
+
+#[test]
+fn held_tops() {
+    held::check(1, Ends::Open("held", "free"));
+    held::check(1, Ends::Open("free", "held"));
+    for first in ["held", "free"] {
+        for last in ["free", "held"] {
+            held::check(3, Ends::Open(first, last));
         }
-    };
-    let start = Instant::now();
-    let found = derive_lattice(&model, &lattice, &choice);
-    let (_, d) =
-        found.unwrap_or_else(|e| panic!("{} {ends:?}\n{text}\n{e}", choice.words(&lattice)));
-    let (name, words, took) = (&d.spec.name, choice.words(&lattice), start.elapsed());
-    println!("{name} {words}: derived in {took:.1?}");
-    d
+    }
+}
+
+#[test]
+fn tops_that_carry_in_a_ring() {
+    for segments in [1, 2, 3] {
+        held::check(segments, Ends::Ring);
+    }
+}
+
+#[test]
+fn bodies_in_a_row() {
+    for segments in [1, 2, 3, 5] {
+        body_chain::check(segments);
+    }
+}
+
+#[test]
+fn beams_with_any_ends() {
+    for (first, last) in [("free", "free"), ("spring", "pinned"), ("pinned", "spring")] {
+        beam::check(1, Ends::Open(first, last));
+        beam::check(3, Ends::Open(first, last));
+    }
+}
+
+#[test]
+fn beams_in_a_ring() {
+    for segments in [1, 2, 3, 4, 5] {
+        beam::check(segments, Ends::Ring);
+    }
+}
+
+#[test]
+fn rods_with_any_ends() {
+    rod::any_ends(1);
+    rod::check(3, "pinned", "load");
+}
+
+#[test]
+fn hoops() {
+    for segments in [1, 2] {
+        hoop::check(segments, Ends::Ring);
+        hoop::check(segments, FREE);
+    }
+}
+
+#[test]
+fn a_cloud_beside_a_line() {
+    for (particles, segments) in [(1, 2), (2, 2), (2, 3)] {
+        sets::check(particles, segments, FREE);
+        sets::check(particles, segments, Ends::Ring);
+    }
+}
+
+#[test]
+fn shallow_water() {
+    for segments in [2, 3, 5] {
+        shallow_water::check(segments, Ends::Ring);
+        shallow_water::check(segments, FREE);
+    }
+    shallow_water::check(1, Ends::Ring);
 }

@@ -9,18 +9,18 @@
 #[path = "../common/allocations.rs"]
 mod allocations;
 mod architecture;
-mod bracket;
+#[path = "../common/mod.rs"]
+mod common;
 mod continuous_limit;
 mod documents;
 mod equations_of_a_step;
 mod expansion;
 mod generated_fresh;
-mod invariants;
 mod kinetic_analogy;
 mod latex;
 mod lattices;
+mod meant;
 mod mutation;
-mod oracle_bridge;
 mod oracle_groups;
 mod oracle_interpreted;
 mod quoted_figures;
@@ -28,6 +28,6 @@ mod random_mixed;
 mod reduction;
 mod reduction_of_motions;
 mod reference_numbers;
-mod second_proof;
+mod refusals;
 mod snapshots;
 mod wrong_sides;

@@ -2,48 +2,16 @@
 //! Takes each program with one summand removed or flipped; gives a disagreement with the oracle at some
 //! random point for every one of them. The mutant that nothing notices would be a term nobody tests.
 
-use super::oracle_bridge::{AGREEMENT, assignment, disagreement};
+use super::common::mutants::{Judged, POINTS, survivors};
+use super::common::oracle_bridge::{AGREEMENT, assignment, disagreement};
 use clebsch_core::{Derivation, derive_source};
 use clebsch_oracle::oracle::action::bodies::{FreeBody, HeavyTop, Stated};
 use clebsch_oracle::oracle::action::coupled::CoupledBodies;
 use clebsch_oracle::oracle::action::spatial::HeavyTopSpatial;
-use clebsch_oracle::oracle::action::{Variation, rotations, stationarity};
-use clebsch_oracle::oracle::points::{Given, Source};
-use clebsch_oracle::oracle::random::RandomLagrangian;
-use clebsch_oracle::oracle::random::sample::Sample;
+use clebsch_oracle::oracle::action::{rotations, stationarity};
+use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::Square;
 use std::array::from_fn;
-
-/// Points at which a mutant may be noticed; one is enough for nearly all.
-const POINTS: usize = 30;
-/// Random Lagrangians whose programs are mutated.
-const LAGRANGIANS: u64 = 160;
-
-/// A point with what the oracle says about it.
-struct Judged {
-    given: Vec<Given>,
-    step: (&'static str, f64),
-    oracle: Variation,
-}
-
-/// The number of mutants, and what describes those that agree with the oracle everywhere.
-fn survivors(derivation: &Derivation, points: &[Judged]) -> (usize, Vec<String>) {
-    let mutants = derivation.mutations();
-    let alive = mutants
-        .iter()
-        .filter(|mutant| {
-            points.iter().all(|point| {
-                let values = assignment(&point.given, point.step);
-                // A mutant that cannot be evaluated is noticed as well.
-                mutant
-                    .residual(&values)
-                    .is_ok_and(|residual| disagreement(&point.oracle, &residual) <= AGREEMENT)
-            })
-        })
-        .map(|mutant| mutant.describe())
-        .collect();
-    (mutants.len(), alive)
-}
 
 fn derive(text: &str) -> Derivation {
     match derive_source(text) {
@@ -104,39 +72,4 @@ fn heavy_top_spatial() {
 #[test]
 fn coupled_bodies() {
     every_mutant_is_noticed::<2, CoupledBodies<true>>(12);
-}
-
-#[test]
-fn random_lagrangians() {
-    let (mut total, mut failures) = (0, Vec::new());
-    for seed in 0..LAGRANGIANS {
-        let lagrangian = RandomLagrangian::of_seed(seed);
-        let text = lagrangian.text();
-        let Ok(derivation) = derive_source(&text) else {
-            failures.push(format!("{text}\nis refused"));
-            continue;
-        };
-        let mut source = Source::seeded(seed ^ 0xface);
-        let points: Vec<Judged> = (0..POINTS)
-            .map(|_| {
-                let sample = Sample::draw(&lagrangian, &mut source);
-                let nodes = from_fn(|_| [source.orthogonal()]);
-                Judged {
-                    given: sample.given(&nodes),
-                    step: (lagrangian.step, sample.step),
-                    oracle: stationarity(&sample, &nodes, &rotations()),
-                }
-            })
-            .collect();
-        let (count, alive) = survivors(&derivation, &points);
-        total += count;
-        if count == 0 {
-            failures.push(format!("{text}\nhas no mutants"));
-        }
-        if !alive.is_empty() {
-            failures.push(format!("{text}\nis not changed by\n{}", alive.join("\n")));
-        }
-    }
-    println!("{total} mutants of {LAGRANGIANS} random Lagrangians");
-    assert!(failures.is_empty(), "{}", failures.join("\n\n"));
 }

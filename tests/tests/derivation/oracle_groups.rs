@@ -1,52 +1,24 @@
 //! SU(2), SE(2) and SE(3) against the variation of unreduced actions, at random points that solve nothing:
-//! the gallery's models, and sums of random terms on both sides. A further group is a further name in
-//! `of_every_group!`, by its `TermSum`. Actions of the wrong side are
-//! refused, and a residual with one term changed is found out.
+//! the gallery's models, and some sums of random terms on both sides. Actions of the wrong side are refused, and a
+//! residual with one term changed is found out.
 
-use super::oracle_bridge::{AGREEMENT, assignment, disagreement};
-use clebsch_core::{Derivation, derive_source};
-use clebsch_oracle::oracle::action::motions::{self, KirchhoffBody, MotionSum, twists};
-use clebsch_oracle::oracle::action::plane::PlaneSum;
-use clebsch_oracle::oracle::action::quaternions::{self, CayleyKlein, QuaternionSum, halves};
-use clebsch_oracle::oracle::action::{DiscreteAction, Side, TermSum, stationarity};
-use clebsch_oracle::oracle::points::{Given, Source};
-use clebsch_oracle::oracle::square::Square;
-use clebsch_oracle::physics::measure::worse;
+use super::common::groups::{
+    Nodes, derived, every_term, of_every_group, random_lagrangians, worst,
+};
+use super::common::oracle_bridge::{AGREEMENT, assignment, disagreement};
+use clebsch_core::derive_source;
+use clebsch_oracle::oracle::action::motions::{self, KirchhoffBody, twists};
+use clebsch_oracle::oracle::action::quaternions::{self, CayleyKlein, halves};
+use clebsch_oracle::oracle::action::{Side, TermSum, stationarity};
+use clebsch_oracle::oracle::points::Source;
 use std::array::from_fn;
 
 /// Random points for every system.
 const POINTS: usize = 1000;
-/// Random Lagrangians of each group and side, and points for each.
-const LAGRANGIANS: usize = 60;
-const POINTS_EACH: usize = 20;
-
-type Nodes<const N: usize> = [[Square<f64, N>; 1]; 3];
-
-fn derived(text: &str) -> Derivation {
-    derive_source(text).unwrap_or_else(|errors| panic!("{text}\nis refused:\n{errors}"))
-}
-
-/// The worst disagreement over some points.
-fn worst<const N: usize, A: DiscreteAction<N, 1>>(
-    d: &Derivation,
-    source: &mut Source,
-    points: usize,
-    basis: &[Square<f64, N>],
-    node: fn(&mut Source) -> [Square<f64, N>; 1],
-    system: impl Fn(&mut Source) -> (A, f64),
-    given: impl Fn(&A, &Nodes<N>) -> Vec<Given>,
-) -> f64 {
-    let mut worst: f64 = 0.0;
-    for _ in 0..points {
-        let (action, h) = system(source);
-        let nodes: Nodes<N> = from_fn(|_| node(source));
-        let oracle = stationarity(&action, &nodes, basis);
-        let values = assignment(&given(&action, &nodes), ("h", h));
-        let engine = d.residual(&values).expect("all values are given");
-        worst = worse(worst, disagreement(&oracle, &engine));
-    }
-    worst
-}
+/// One in so many of the terms of every group, and so many sums of random ones: all of them are those of
+/// `tests/tests/many_models/`.
+const ONE_IN: usize = 4;
+const LAGRANGIANS: usize = 6;
 
 #[test]
 fn cayley_klein_on_both_sides() {
@@ -93,70 +65,14 @@ fn kirchhoff_body() {
     assert!(found < AGREEMENT, "{found:e}");
 }
 
-/// The worst disagreement of the sum of some terms.
-fn of_terms<const N: usize, S: TermSum<N>>(
-    terms: &[usize],
-    side: Side,
-    defined: bool,
-    seed: u64,
-    points: usize,
-) -> f64 {
-    worst(
-        &derived(&S::text(side, terms, defined)),
-        &mut Source::seeded(seed),
-        points,
-        &S::basis(),
-        S::node,
-        |s| {
-            let a = S::random(s, side, terms);
-            let h = a.step();
-            (a, h)
-        },
-        S::given,
-    )
-}
-
-/// Calls a function for the sums of terms of every group.
-macro_rules! of_every_group {
-    ($call:ident) => {
-        $call::<4, QuaternionSum>("SU(2)");
-        $call::<3, PlaneSum>("SE(2)");
-        $call::<4, MotionSum>("SE(3)");
-    };
-}
-
-fn every_term<const N: usize, S: TermSum<N>>(group: &str) {
-    for side in [Side::Body, Side::Space] {
-        for (term, text) in S::TERMS.iter().enumerate().skip(1) {
-            for defined in [true, false] {
-                let found = of_terms::<N, S>(&[0, term], side, defined, 53, 60);
-                assert!(found < AGREEMENT, "{group}, {side:?} {text}: {found:e}");
-            }
-        }
-    }
-}
-
 #[test]
-fn every_term_on_every_group() {
-    of_every_group!(every_term);
-}
-
-fn random_lagrangians<const N: usize, S: TermSum<N>>(group: &str) {
-    let mut source = Source::seeded(55);
-    let mut worst: f64 = 0.0;
-    for n in 0..LAGRANGIANS {
-        let side = if n % 2 == 0 { Side::Body } else { Side::Space };
-        let terms = S::choice(&mut source);
-        let found = of_terms::<N, S>(&terms, side, n % 3 == 0, n as u64, POINTS_EACH);
-        assert!(found < AGREEMENT, "{group}, {terms:?}, {side:?}: {found:e}");
-        worst = worse(worst, found);
-    }
-    println!("{group}: worst {worst:e}");
+fn terms_on_every_group() {
+    of_every_group!(every_term, ONE_IN);
 }
 
 #[test]
 fn random_lagrangians_on_every_group_and_side() {
-    of_every_group!(random_lagrangians);
+    of_every_group!(random_lagrangians, LAGRANGIANS);
 }
 
 /// Terms of every kind, the kinetic one, two of the velocity and the node, one of the node alone.

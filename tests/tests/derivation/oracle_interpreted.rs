@@ -1,8 +1,9 @@
 //! The engine's residual program, interpreted, against the variation of the unreduced action.
-//! Takes hand-typed systems and random Lagrangians at random points that solve nothing; gives agreement
+//! Takes hand-typed systems and a few random Lagrangians at random points that solve nothing; gives agreement
 //! to 1e-10 relative to the sum of the sizes of the summands.
 
-use super::oracle_bridge::{AGREEMENT, assignment, disagreement};
+use super::common::lagrangians::agree_and_their_mutants_do_not;
+use super::common::oracle_bridge::{AGREEMENT, assignment, disagreement};
 use clebsch_core::derive_source;
 use clebsch_oracle::oracle::action::bodies::{
     FourDimensional, FreeBody, HeavyTop, QuadraticField, Stated, TwoVectors,
@@ -10,20 +11,14 @@ use clebsch_oracle::oracle::action::bodies::{
 use clebsch_oracle::oracle::action::coupled::CoupledBodies;
 use clebsch_oracle::oracle::action::elastic::{EllipsoidConvective, EllipsoidSpatial, entries};
 use clebsch_oracle::oracle::action::spatial::{FreeBodySpatial, HeavyTopSpatial};
-use clebsch_oracle::oracle::action::{Side, rotations, stationarity};
+use clebsch_oracle::oracle::action::{rotations, stationarity};
 use clebsch_oracle::oracle::points::Source;
-use clebsch_oracle::oracle::random::RandomLagrangian;
-use clebsch_oracle::oracle::random::sample::Sample;
-use clebsch_oracle::oracle::random::tree::{Kind, Role};
 use clebsch_oracle::oracle::square::Square;
 use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
-use std::panic::catch_unwind;
 
-/// Random points for every system and every random Lagrangian.
+/// Random points for every system.
 const POINTS: usize = 1000;
-/// Random Lagrangians: well beyond a hundred of them have advected vectors or symmetric matrices.
-const LAGRANGIANS: u64 = 160;
 
 fn agrees<const N: usize, const G: usize, S: Stated<N, G>>(basis: &[Square<f64, N>]) {
     let text = S::text();
@@ -135,96 +130,15 @@ fn ellipsoid_spatial() {
     agrees::<3, 1, EllipsoidSpatial>(&entries());
 }
 
-/// The worst disagreement of a random Lagrangian, or what went wrong.
-fn random_disagreement(seed: u64) -> Result<f64, String> {
-    let lagrangian = RandomLagrangian::of_seed(seed);
-    let text = lagrangian.text();
-    let derivation = derive_source(&text)
-        .map_err(|errors| format!("seed {seed}\n{text}\nis refused:\n{errors}"))?;
-    let mut source = Source::seeded(seed ^ 0x5eed);
-    let mut worst: f64 = 0.0;
-    for point in 0..POINTS {
-        let sample = Sample::draw(&lagrangian, &mut source);
-        let nodes = from_fn(|_| [source.orthogonal()]);
-        let oracle = stationarity(&sample, &nodes, &rotations());
-        let values = assignment(&sample.given(&nodes), (lagrangian.step, sample.step));
-        let engine = derivation
-            .residual(&values)
-            .map_err(|error| format!("seed {seed}\n{text}\ncannot be evaluated: {error}"))?;
-        let difference = disagreement(&oracle, &engine);
-        if difference > AGREEMENT {
-            return Err(format!(
-                "seed {seed}\n{text}\npoint {point}: off by {difference:e} of {:e}\noracle {:?}\nengine {engine:?}",
-                oracle.scale, oracle.derivative
-            ));
-        }
-        worst = worse(worst, difference);
-    }
-    Ok(worst)
-}
-
-fn random_lagrangians_agree(seeds: impl Iterator<Item = u64>) {
-    let mut failures = Vec::new();
-    let mut worst: f64 = 0.0;
-    for seed in seeds {
-        // A panic of one seed must not hide what is wrong with the others.
-        match catch_unwind(|| random_disagreement(seed)) {
-            Ok(Ok(difference)) => worst = worse(worst, difference),
-            Ok(Err(failure)) => failures.push(failure),
-            Err(_) => failures.push(format!(
-                "seed {seed}\n{}\npanics",
-                RandomLagrangian::of_seed(seed).text()
-            )),
-        }
-    }
-    println!("worst {worst:e}");
-    assert!(
-        failures.is_empty(),
-        "{} failed\n{}",
-        failures.len(),
-        failures.join("\n\n")
-    );
-}
-
+/// The first of those of `tests/tests/many_models/`.
 #[test]
-fn random_lagrangians_of_even_seeds() {
-    random_lagrangians_agree((0..LAGRANGIANS).step_by(2));
+fn random_lagrangians() {
+    agree_and_their_mutants_do_not(0..16);
 }
 
-#[test]
-fn random_lagrangians_of_odd_seeds() {
-    random_lagrangians_agree((1..LAGRANGIANS).step_by(2));
-}
-
-/// Lagrangians further on whose derivations once went wrong: a determinant of a singular matrix, whose
+/// One further on whose derivation once went wrong: a determinant of a singular matrix, whose
 /// derivative is its adjugate and not the determinant times an inverse.
 #[test]
-fn random_lagrangians_that_were_hard() {
-    random_lagrangians_agree([1384].into_iter());
-}
-
-#[test]
-fn more_than_a_hundred_carry_vectors_or_symmetric_matrices() {
-    let (mut vectors, mut matrices, mut either, mut spatial) = (0, 0, 0, 0);
-    for seed in 0..LAGRANGIANS {
-        let lagrangian = RandomLagrangian::of_seed(seed);
-        let carries = |kind: Kind| {
-            lagrangian
-                .symbols
-                .iter()
-                .enumerate()
-                .any(|(index, symbol)| {
-                    symbol.kind == kind
-                        && matches!(symbol.role, Role::Advected { .. })
-                        && lagrangian.uses(index)
-                })
-        };
-        let (vector, matrix) = (carries(Kind::Vector), carries(Kind::Symmetric));
-        vectors += usize::from(vector);
-        matrices += usize::from(matrix);
-        either += usize::from(vector || matrix);
-        spatial += usize::from(lagrangian.side == Side::Space);
-    }
-    println!("vectors {vectors}, symmetric {matrices}, either {either}, spatial {spatial}");
-    assert!(either >= 100 && vectors >= 50 && matrices >= 50 && spatial >= 20);
+fn a_random_lagrangian_that_was_hard() {
+    agree_and_their_mutants_do_not([1384].into_iter());
 }

@@ -2,7 +2,7 @@
 //! residual is the variation of the action typed by hand, on either side, and their steps are those
 //! of the reduced statement. A wrong sign, factor or frame fails.
 
-use super::oracle_bridge::{AGREEMENT, assignment, disagreement};
+use super::common::oracle_bridge::{AGREEMENT, assignment, disagreement};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation, SpatialMomentum};
 use clebsch_core::{Derivation, derive_source};

@@ -2,7 +2,7 @@
 //! ends of a step. Their residuals are the variation of the action typed by hand and those of the
 //! reduced statement; their steps are those of the reduced model. What is stated wrongly disagrees.
 
-use super::oracle_bridge::{AGREEMENT, assignment, disagreement};
+use super::common::oracle_bridge::{AGREEMENT, assignment, disagreement};
 use clebsch::nalgebra::{Matrix3, SVector, Vector3, Vector4};
 use clebsch::{BodyImpulse, BodyMomentum, Group, RigidMotion, Rotation, UnitQuaternion};
 use clebsch_core::print::{Format, Style, expression};
@@ -22,7 +22,7 @@ use clebsch_oracle::oracle::square::Square;
 use clebsch_oracle::physics::measure::worse;
 use std::array::from_fn;
 
-const POINTS: usize = 1000;
+const POINTS: usize = 200;
 
 fn derive(text: &str) -> Derivation {
     derive_source(text).unwrap_or_else(|e| panic!("{text}\nis refused:\n{e}"))

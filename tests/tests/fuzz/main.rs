@@ -1,86 +1,61 @@
 //! The engine under arbitrary input: it never panics, never hangs and never fills the memory.
-//! Takes random token streams, mutated valid models and adversarial inputs; gives for each the time and the
-//! peak of the memory that it took, against the limits for inputs of at most 10 kB.
+//! Takes random token streams, mutated valid models and adversarial inputs; gives for each the work and the
+//! peak of the memory that it took, against the limits for inputs of at most 10 kB. More of them: `many.rs`.
 
 mod adversarial;
+mod kinds;
 mod memory;
 mod probe;
 mod tokens;
 
-use clebsch_oracle::oracle::points::{Source, asked_for};
-use probe::{Input, Report, probe_all};
+use kinds::{judge, judge_mutated};
+use probe::{Input, probe_all};
 use std::sync::{Mutex, MutexGuard};
 
-/// Inputs of each kind; a hundred thousand by `FUZZ_INPUTS=100000`.
-fn inputs() -> u64 {
-    asked_for("FUZZ_INPUTS", 6_000)
-}
+/// Inputs of each kind.
+const INPUTS: u64 = 500;
 
-/// Threads that probe; the machines this runs on have two cores.
-const THREADS: u64 = 2;
-
-/// One kind at a time: two threads each, and times that mean something.
+/// One kind at a time, which takes all threads.
 fn alone() -> MutexGuard<'static, ()> {
     static TURN: Mutex<()> = Mutex::new(());
     TURN.lock()
         .unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-fn judge(report: &Report) {
-    println!("{report}");
-    assert!(
-        report.failures.is_empty(),
-        "{}",
-        report.failures.join("\n\n")
-    );
-}
-
 #[test]
 fn random_token_streams() {
     let _turn = alone();
-    judge(&probe_all(THREADS, inputs(), |number| {
-        let mut source = Source::seeded(number);
-        Input {
-            name: format!("token stream {number}"),
-            text: tokens::stream(&mut source),
-        }
-    }));
+    judge(&probe_all(0..INPUTS, kinds::stream));
 }
 
 #[test]
 fn mutated_models() {
     let _turn = alone();
-    let models: Vec<Vec<String>> = tokens::models()
-        .iter()
-        .map(|text| tokens::lex(text))
-        .collect();
-    let report = probe_all(THREADS, inputs(), |number| {
-        let mut source = Source::seeded(number ^ 0x00f0_0d00);
-        Input {
-            name: format!("mutated model {number}"),
-            text: tokens::mutate(&mut source, &models),
-        }
-    });
-    // Some mutants are valid models: otherwise nothing but the parser is tested.
-    assert!(
-        report.accepted * 100 >= inputs(),
-        "only {} were valid",
-        report.accepted
-    );
-    judge(&report);
+    let models = kinds::models();
+    judge_mutated(&probe_all(0..INPUTS, |number| {
+        kinds::mutated(number, &models)
+    }));
+}
+
+/// Each of the inputs given.
+fn each(inputs: &[Input]) -> probe::Report {
+    probe_all(0..inputs.len() as u64, |number| {
+        let place = usize::try_from(number).unwrap_or(0);
+        inputs.get(place).cloned().unwrap_or_default()
+    })
 }
 
 #[test]
 fn unmutated_models_are_valid() {
     let _turn = alone();
-    let models = tokens::models();
-    let report = probe_all(1, models.len() as u64, |number| {
-        let place = usize::try_from(number).unwrap_or(0);
-        Input {
+    let texts = tokens::models().into_iter().enumerate();
+    let models: Vec<Input> = texts
+        .map(|(number, text)| Input {
             name: format!("model {number}"),
-            text: models.get(place).cloned().unwrap_or_default(),
-        }
-    });
+            text,
+        })
+        .collect();
+    let report = each(&models);
     judge(&report);
     assert_eq!(report.accepted, models.len() as u64);
 }
@@ -97,8 +72,5 @@ fn adversarial_inputs() {
             input.text.len()
         );
     }
-    judge(&probe_all(1, inputs.len() as u64, |number| {
-        let place = usize::try_from(number).unwrap_or(0);
-        inputs.get(place).cloned().unwrap_or_default()
-    }));
+    judge(&each(&inputs));
 }

@@ -7,6 +7,7 @@ use clebsch_core::print::Format;
 use clebsch_core::{Assignment, document, emit};
 use std::fmt;
 use std::io::Write as _;
+use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, Once, PoisonError};
@@ -18,6 +19,9 @@ const WORK: u64 = 20_000_000;
 const MEMORY: isize = 500_000_000;
 /// Failures after which probing ends: more tell nothing new.
 const ENOUGH: usize = 20;
+
+/// Threads that probe; the machines this runs on have two cores.
+const THREADS: usize = 2;
 
 /// If this variable is set every input is named before it is probed: an exhausted stack aborts the process,
 /// and then the last name tells why.
@@ -143,17 +147,17 @@ fn failure(input: &Input, outcome: &Outcome) -> Option<String> {
     Some(format!("{} {complaint}\n{shown}", input.name))
 }
 
-/// Probes the inputs `0..count` on some threads, with half of the stack that rustc gives to macros: the engine is as
+/// Probes the inputs with these numbers on two threads, with half of the stack that rustc gives to macros: the engine is as
 /// unoptimised as in a user's build.
-pub fn probe_all(threads: u64, count: u64, input: impl Fn(u64) -> Input + Sync) -> Report {
+pub fn probe_all(numbers: Range<u64>, input: impl Fn(u64) -> Input + Sync) -> Report {
     silence_probes();
     let trace = std::env::var_os(TRACE).is_some();
     let report = Mutex::new(Report::default());
-    let next = AtomicU64::new(0);
+    let next = AtomicU64::new(numbers.start);
     let work = || {
         loop {
             let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= count || lock(&report).failures.len() >= ENOUGH {
+            if number >= numbers.end || lock(&report).failures.len() >= ENOUGH {
                 break;
             }
             let input = input(number);
@@ -176,7 +180,7 @@ pub fn probe_all(threads: u64, count: u64, input: impl Fn(u64) -> Input + Sync) 
         }
     };
     std::thread::scope(|scope| {
-        for _ in 0..threads {
+        for _ in 0..THREADS {
             let probing = std::thread::Builder::new()
                 .name("probe".to_owned())
                 .stack_size(4 << 20)

@@ -8,6 +8,7 @@
 
 mod blocks;
 mod body_n;
+mod bracket;
 mod carried_momentum;
 mod carried_references;
 mod coordinates;
@@ -17,6 +18,7 @@ mod fields;
 mod fields_and_groups;
 mod high_order;
 mod hygiene;
+mod invariants;
 mod joint_symmetries;
 mod left_domain;
 mod newton_refusals;

@@ -1,8 +1,8 @@
 //! Statements whose sums over sites were once other than meant, each against the action typed by hand.
 
-use super::compare::agrees;
-use super::sum::{Bodies, Kind, Sum, Typed, around, number};
-use super::{FREE, derived};
+use super::common::lattices::compare::agrees;
+use super::common::lattices::sum::{Bodies, Kind, Sum, Typed, around, number};
+use super::common::lattices::{FREE, derived};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 

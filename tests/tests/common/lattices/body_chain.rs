@@ -79,7 +79,7 @@ impl Typed for Chain {
     }
 }
 
-fn check(segments: usize) {
+pub fn check(segments: usize) {
     let mut source = Source::seeded(segments as u64);
     let d = derived(TEXT, &[("i", segments)], FREE);
     let chain = Chain::of(segments, &mut source);
@@ -92,16 +92,4 @@ fn check(segments: usize) {
         let (changes, constant) = changes_are_seen(&d, &chain, &mut source);
         assert_eq!(constant, 0, "of {changes}");
     }
-}
-
-#[test]
-fn bodies_in_a_row() {
-    for segments in [1, 2, 3, 5, 12] {
-        check(segments);
-    }
-}
-
-#[test]
-fn bodies_in_a_long_row() {
-    check(50);
 }

@@ -194,7 +194,7 @@ impl Typed for Rod {
     }
 }
 
-fn check(segments: usize, first: &'static str, last: &'static str) {
+pub fn check(segments: usize, first: &'static str, last: &'static str) {
     let ends = Ends::Open(first, last);
     let mut source = Source::seeded(segments as u64);
     let d = derived(TEXT, &[("i", segments)], ends);
@@ -217,34 +217,10 @@ fn check(segments: usize, first: &'static str, last: &'static str) {
 }
 
 /// Every alternative at one end with every one at the other.
-fn any_ends(segments: usize) {
+pub fn any_ends(segments: usize) {
     for first in FIRST {
         for last in LAST {
             check(segments, first, last);
         }
-    }
-}
-
-#[test]
-fn short_rods() {
-    for segments in [1, 2, 3, 5] {
-        any_ends(segments);
-    }
-}
-
-#[test]
-fn longer_rods() {
-    any_ends(12);
-}
-
-#[test]
-fn long_rods() {
-    for (first, last) in [
-        ("free", "free"),
-        ("free", "pinned"),
-        ("pinned", "clamped"),
-        ("clamped", "load"),
-    ] {
-        check(50, first, last);
     }
 }

@@ -10,7 +10,7 @@ use clebsch_oracle::physics::measure::worse;
 
 /// What is changed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Change {
+pub enum Change {
     None,
     /// The sign of the summand of this number.
     Sign(usize),
@@ -30,11 +30,7 @@ fn varying(v: &Variation) -> usize {
 
 /// Every change of one sign or of one range by one site is seen, wherever it moves the action. How many
 /// changes there are, and how many of them only move what is constant.
-pub(super) fn changes_are_seen(
-    d: &Derivation,
-    model: &impl Typed,
-    source: &mut Source,
-) -> (usize, usize) {
+pub fn changes_are_seen(d: &Derivation, model: &impl Typed, source: &mut Source) -> (usize, usize) {
     let nodes = [(); 3].map(|()| model.draw(source));
     let found = found(d, model, &nodes);
     let mut sum = Sum::new(Change::None);
@@ -67,7 +63,7 @@ pub(super) fn changes_are_seen(
 
 /// Every summand of the derived residual is seen: left out or with the other sign it disagrees with the
 /// typed action at one of a few random points. What describes those that do not.
-pub(super) fn unseen(d: &Derivation, model: &impl Typed, source: &mut Source) -> Vec<String> {
+pub fn unseen(d: &Derivation, model: &impl Typed, source: &mut Source) -> Vec<String> {
     let points: Vec<(Assignment, Variation)> = (0..3)
         .map(|_| {
             let nodes = [(); 3].map(|()| model.draw(source));

@@ -8,7 +8,7 @@ use std::array::from_fn;
 
 /// What a configuration at a site is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Kind {
+pub enum Kind {
     Rotation,
     /// A rotation whose velocity is seen from space.
     Spatial,
@@ -18,7 +18,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// How many entries it has.
-    pub(super) fn entries(self) -> usize {
+    pub fn entries(self) -> usize {
         match self {
             Kind::Rotation | Kind::Spatial => 9,
             Kind::Vector(n) => n,
@@ -27,7 +27,7 @@ impl Kind {
     }
 
     /// In how many directions it varies.
-    pub(super) fn directions(self) -> usize {
+    pub fn directions(self) -> usize {
         match self {
             Kind::Rotation | Kind::Spatial => 3,
             Kind::Vector(n) => n,
@@ -38,19 +38,19 @@ impl Kind {
 
 /// A configuration at a site: the name of its copy, and where its entries begin.
 #[derive(Clone, Debug)]
-pub(super) struct Body {
-    pub(super) name: String,
-    pub(super) kind: Kind,
-    pub(super) at: usize,
+pub struct Body {
+    pub name: String,
+    pub kind: Kind,
+    pub at: usize,
 }
 
 /// All configurations, one after the other.
 #[derive(Clone, Default, Debug)]
-pub(super) struct Bodies(pub(super) Vec<Body>);
+pub struct Bodies(pub Vec<Body>);
 
 impl Bodies {
     /// One more; where its entries begin.
-    pub(super) fn add(&mut self, name: &str, site: Option<usize>, kind: Kind) -> usize {
+    pub fn add(&mut self, name: &str, site: Option<usize>, kind: Kind) -> usize {
         let at = self.entries();
         let name = match site {
             Some(site) => format!("{name}_{site}"),
@@ -60,13 +60,13 @@ impl Bodies {
         at
     }
 
-    pub(super) fn entries(&self) -> usize {
+    pub fn entries(&self) -> usize {
         self.0.last().map_or(0, |b| b.at + b.kind.entries())
     }
 }
 
 /// A model with the action of one step typed by hand.
-pub(super) trait Typed {
+pub trait Typed {
     fn bodies(&self) -> &Bodies;
 
     /// Random configurations.
@@ -85,15 +85,15 @@ pub(super) trait Typed {
 }
 
 /// The summands of an action.
-pub(super) struct Sum<T> {
-    pub(super) summands: Vec<T>,
+pub struct Sum<T> {
+    pub summands: Vec<T>,
     /// Names of the sums, in order.
-    pub(super) sums: Vec<&'static str>,
+    pub sums: Vec<&'static str>,
     change: Change,
 }
 
 impl<T: Number> Sum<T> {
-    pub(super) fn new(change: Change) -> Self {
+    pub fn new(change: Change) -> Self {
         Sum {
             summands: Vec::new(),
             sums: Vec::new(),
@@ -102,7 +102,7 @@ impl<T: Number> Sum<T> {
     }
 
     /// The sites from `from` on, before `to`, of the sum of this name.
-    pub(super) fn over(&mut self, sum: &'static str, from: usize, to: usize) -> Vec<isize> {
+    pub fn over(&mut self, sum: &'static str, from: usize, to: usize) -> Vec<isize> {
         let number = |n: usize| isize::try_from(n).unwrap();
         let (mut from, mut to) = (number(from), number(to));
         if let Change::Range(which, first, last) = self.change
@@ -116,39 +116,39 @@ impl<T: Number> Sum<T> {
     }
 
     /// A summand over the edge in time.
-    pub(super) fn edge(&mut self, value: T) {
+    pub fn edge(&mut self, value: T) {
         let flipped = self.change == Change::Sign(self.summands.len());
         self.summands.push(if flipped { -value } else { value });
     }
 
     /// A summand at a node in time: half of it at either end of the edge.
-    pub(super) fn node(&mut self, at_tail: T, at_head: T) {
+    pub fn node(&mut self, at_tail: T, at_head: T) {
         self.edge((at_tail + at_head) * T::constant(0.5));
     }
 }
 
 /// The site in a list of `count`, once around a ring or more. On a line it is the site itself, except
 /// where the range of a sum is changed.
-pub(super) fn around(site: isize, count: usize) -> usize {
+pub fn around(site: isize, count: usize) -> usize {
     usize::try_from(site.rem_euclid(isize::try_from(count).unwrap())).unwrap()
 }
 
-pub(super) fn number<T: Number>(value: f64) -> T {
+pub fn number<T: Number>(value: f64) -> T {
     T::constant(value)
 }
 
-pub(super) fn turn<T: Number>(x: &[T], at: usize) -> Square<T, 3> {
+pub fn turn<T: Number>(x: &[T], at: usize) -> Square<T, 3> {
     Square::from_entries(|i, j| x[at + 3 * i + j])
 }
 
-pub(super) fn column<T: Number, const N: usize>(x: &[T], at: usize) -> [T; N] {
+pub fn column<T: Number, const N: usize>(x: &[T], at: usize) -> [T; N] {
     from_fn(|i| x[at + i])
 }
 
-pub(super) fn fixed<T: Number, const N: usize>(v: &[f64; N]) -> [T; N] {
+pub fn fixed<T: Number, const N: usize>(v: &[f64; N]) -> [T; N] {
     from_fn(|i| T::constant(v[i]))
 }
 
-pub(super) fn minus<T: Number, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N] {
+pub fn minus<T: Number, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N] {
     from_fn(|i| a[i] - b[i])
 }

@@ -1,38 +1,15 @@
-//! Wrong models and what is said of them: one fault a file of `tests/ui/`, whose `.stderr` holds
-//! the messages as the compiler prints them. All are judged by the engine alone, a few by the
-//! compiler too. To write messages anew: `TRYBUILD=overwrite cargo test --release --test refusals`.
+//! Wrong models and what is said of them by the engine: one fault a file of `tests/refusals/tests/ui/`, whose `.stderr` holds
+//! the messages as the compiler prints them. `compiler` of the same folder asks the compiler itself about a few.
 
 use clebsch_core::diagnostic::{Diagnostic, Place};
 use clebsch_core::{lattice, pipeline};
 use std::path::{Path, PathBuf};
 
-/// Where the faults are.
-const FOLDER: &str = "tests/ui";
-
-/// Faults that the compiler judges too, one for each way in which a message reaches it: several
-/// at once, a refusal of the emitter, names that other code uses, warnings, a range of tokens.
-const COMPILED: [&str; 5] = [
-    "several_faults",
-    "group_too_large",
-    "used_elsewhere",
-    "warnings_on_their_tokens",
-    "wrong_sided_action",
-];
+/// Where the faults are, and where their package is that the compiler is run in.
+const FOLDER: &str = "refusals/tests/ui";
 
 /// Warnings are no errors of the engine: only the compiler, told to deny them, stops there.
 const WARNED: &str = "warnings_on_their_tokens";
-
-#[test]
-fn the_compiler_shows_what_the_engine_says() {
-    let compiler = trybuild::TestCases::new();
-    if std::env::var_os("TRYBUILD").is_some() {
-        compiler.compile_fail(format!("{FOLDER}/*.rs"));
-    } else {
-        for name in COMPILED {
-            compiler.compile_fail(format!("{FOLDER}/{name}.rs"));
-        }
-    }
-}
 
 #[test]
 fn every_fault_is_refused_on_its_tokens() {
@@ -54,7 +31,8 @@ fn every_fault_is_refused_on_its_tokens() {
 
 /// The files of faults, in order.
 fn faults() -> Vec<PathBuf> {
-    let mut files: Vec<PathBuf> = std::fs::read_dir(FOLDER)
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(FOLDER);
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.extension().is_some_and(|e| e == "rs"))
@@ -92,10 +70,10 @@ fn printed(source: &str, file: &Path, place: Place, text: &str) -> String {
     let line = source.lines().nth(start.line - 1).unwrap();
     let number = start.line.to_string();
     let margin = " ".repeat(number.len());
+    let name = file.file_name().unwrap().to_string_lossy();
     format!(
-        "error: {}\n{margin}--> {}:{number}:{}\n{margin} |\n{number} | {line}\n{margin} | {}{}\n",
+        "error: {}\n{margin}--> tests/ui/{name}:{number}:{}\n{margin} |\n{number} | {line}\n{margin} | {}{}\n",
         text.replace('\n', "\n       "),
-        file.display(),
         start.column + 1,
         " ".repeat(start.column),
         "^".repeat(end.column - start.column),

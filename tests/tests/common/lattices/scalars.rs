@@ -4,7 +4,7 @@
 use super::change::{changes_are_seen, unseen};
 use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
-use super::{Ends, FREE, derived, is_changed};
+use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 
@@ -184,7 +184,7 @@ impl Typed for Pendulums {
     }
 }
 
-fn toda(segments: usize, ends: Ends) {
+pub fn toda(segments: usize, ends: Ends) {
     let mut source = Source::seeded(segments as u64);
     let d = derived(TODA, &[("i", segments)], ends);
     let chain = Toda::of(segments, ends, &mut source);
@@ -202,15 +202,7 @@ fn toda(segments: usize, ends: Ends) {
     assert_eq!(constant > 0, alone, "{constant} of {changes}");
 }
 
-#[test]
-fn toda_chains() {
-    for segments in [1, 2, 3, 5, 12, 50] {
-        toda(segments, Ends::Ring);
-        toda(segments, FREE);
-    }
-}
-
-fn pendulums(segments: usize, ends: Ends) {
+pub fn pendulums(segments: usize, ends: Ends) {
     let mut source = Source::seeded(segments as u64);
     let d = derived(PENDULUMS, &[("i", segments)], ends);
     let line = Pendulums::of(segments, ends, &mut source);
@@ -229,23 +221,5 @@ fn pendulums(segments: usize, ends: Ends) {
         let held = line.angles.iter().filter(|u| u.is_err()).count();
         let between = if held == 2 { 2 } else { 0 };
         assert_eq!(constant, 6 * held + between, "of {changes}");
-    }
-}
-
-#[test]
-fn pendulums_in_a_row() {
-    for segments in [2, 3, 5, 12, 50] {
-        for first in ["free", "pinned"] {
-            for last in ["free", "pinned"] {
-                pendulums(segments, Ends::Open(first, last));
-            }
-        }
-    }
-}
-
-#[test]
-fn pendulums_in_a_ring() {
-    for segments in [1, 2, 3, 5, 12, 50] {
-        pendulums(segments, Ends::Ring);
     }
 }

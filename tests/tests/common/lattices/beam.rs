@@ -193,7 +193,7 @@ impl Typed for Beam {
     }
 }
 
-fn check(segments: usize, ends: Ends) {
+pub fn check(segments: usize, ends: Ends) {
     let mut source = Source::seeded(segments as u64);
     let d = derived(TEXT, &[("i", segments)], ends);
     let beam = Beam::of(segments, ends, &mut source);
@@ -205,32 +205,4 @@ fn check(segments: usize, ends: Ends) {
     if is_changed(segments) {
         changes_are_seen(&d, &beam, &mut source);
     }
-}
-
-#[test]
-fn beams_with_any_ends() {
-    for segments in [2, 3, 5, 12] {
-        for first in ["free", "spring", "pinned"] {
-            for last in ["free", "pinned", "spring"] {
-                check(segments, Ends::Open(first, last));
-            }
-        }
-    }
-    for (first, last) in [("free", "free"), ("spring", "pinned"), ("pinned", "spring")] {
-        check(1, Ends::Open(first, last));
-    }
-}
-
-#[test]
-fn beams_in_a_ring() {
-    for segments in [1, 2, 3, 4, 5, 12] {
-        check(segments, Ends::Ring);
-    }
-}
-
-#[test]
-fn long_beams() {
-    // Of 50 segments the derivation is larger than any is given.
-    check(40, Ends::Open("spring", "spring"));
-    check(40, Ends::Ring);
 }

@@ -3,7 +3,7 @@
 use super::change::{changes_are_seen, unseen};
 use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
-use super::{Ends, FREE, derived, is_changed};
+use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
@@ -100,7 +100,7 @@ impl Typed for Tops {
     }
 }
 
-fn check(segments: usize, ends: Ends) {
+pub fn check(segments: usize, ends: Ends) {
     let mut source = Source::seeded(segments as u64);
     let d = derived(TEXT, &[("i", segments)], ends);
     let tops = Tops::of(segments, ends, &mut source);
@@ -115,24 +115,4 @@ fn check(segments: usize, ends: Ends) {
         let alone = ends == Ends::Ring && segments == 1;
         assert_eq!(constant > 0, alone, "{constant} of {changes}");
     }
-}
-
-#[test]
-fn tops_in_a_row() {
-    for segments in [1, 2, 3, 5, 12] {
-        check(segments, FREE);
-    }
-}
-
-#[test]
-fn tops_in_a_ring() {
-    for segments in [1, 2, 3, 5, 12] {
-        check(segments, Ends::Ring);
-    }
-}
-
-#[test]
-fn tops_in_a_long_row() {
-    check(50, FREE);
-    check(50, Ends::Ring);
 }

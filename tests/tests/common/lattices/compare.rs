@@ -12,12 +12,12 @@ use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::physics::measure::worse;
 
 /// The variation of an action at the configurations of one node: a component for each direction.
-pub(super) struct Variation {
+pub struct Variation {
     derivative: Vec<f64>,
     /// The largest summand in the variation of the site that a component belongs to.
     scale: Vec<f64>,
     /// The largest slope of each summand.
-    pub(super) largest: Vec<f64>,
+    pub largest: Vec<f64>,
 }
 
 /// The directions in which a configuration varies, each as the change of its entries.
@@ -81,7 +81,7 @@ fn still(x: &[f64]) -> Vec<Dual> {
 }
 
 /// The momentum at the start of a step, at its end, and the residual at the node between two steps.
-pub(super) fn typed(model: &impl Typed, nodes: &[Vec<f64>; 3], change: Change) -> [Variation; 3] {
+pub fn typed(model: &impl Typed, nodes: &[Vec<f64>; 3], change: Change) -> [Variation; 3] {
     let [before, here, after] = nodes.each_ref().map(|x| still(x));
     let mut start = vary(model, &nodes[1], |x| summands(model, x, &after, change));
     for p in &mut start.derivative {
@@ -118,7 +118,7 @@ fn configuration(body: &Body, shift: i8, x: &[f64]) -> Given {
 }
 
 /// Values of all names at three nodes.
-pub(super) fn values(model: &impl Typed, nodes: &[Vec<f64>; 3]) -> Assignment {
+pub fn values(model: &impl Typed, nodes: &[Vec<f64>; 3]) -> Assignment {
     let mut values = Assignment::new();
     set(&mut values, &model.parameters());
     for (shift, x) in (-1..=1).zip(nodes) {
@@ -131,7 +131,7 @@ pub(super) fn values(model: &impl Typed, nodes: &[Vec<f64>; 3]) -> Assignment {
 }
 
 /// A residual, which comes in the order of the derivation, in that of the typed configurations.
-pub(super) fn ordered(residual: &[f64], order: &[usize], model: &impl Typed) -> Vec<f64> {
+pub fn ordered(residual: &[f64], order: &[usize], model: &impl Typed) -> Vec<f64> {
     let sizes = order.iter().zip(&model.bodies().0);
     let sizes: Vec<(usize, usize)> = sizes.map(|(i, b)| (*i, b.kind.directions())).collect();
     let begin = |i: usize| -> usize {
@@ -144,7 +144,7 @@ pub(super) fn ordered(residual: &[f64], order: &[usize], model: &impl Typed) -> 
 }
 
 /// What the derivation says of the same: numbers in the order of the typed configurations.
-pub(super) fn found(d: &Derivation, model: &impl Typed, nodes: &[Vec<f64>; 3]) -> [Vec<f64>; 3] {
+pub fn found(d: &Derivation, model: &impl Typed, nodes: &[Vec<f64>; 3]) -> [Vec<f64>; 3] {
     let s = &d.letters.symbols;
     let order = order(d, model);
     let mut values = values(model, nodes);
@@ -183,7 +183,7 @@ pub(super) fn found(d: &Derivation, model: &impl Typed, nodes: &[Vec<f64>; 3]) -
 }
 
 /// For each typed configuration its number in the derivation, which has no others.
-pub(super) fn order(d: &Derivation, model: &impl Typed) -> Vec<usize> {
+pub fn order(d: &Derivation, model: &impl Typed) -> Vec<usize> {
     let s = &d.letters.symbols;
     let names: Vec<&str> = d
         .spec
@@ -199,7 +199,7 @@ pub(super) fn order(d: &Derivation, model: &impl Typed) -> Vec<usize> {
 }
 
 /// The largest difference of a component, and which one it is; infinite for anything that is not finite.
-pub(super) fn disagreement(wanted: &Variation, found: &[f64]) -> (f64, usize) {
+pub fn disagreement(wanted: &Variation, found: &[f64]) -> (f64, usize) {
     assert_eq!(wanted.derivative.len(), found.len());
     let mut worst = (0.0f64, 0);
     for (i, (a, b)) in wanted.derivative.iter().zip(found).enumerate() {
@@ -228,10 +228,10 @@ fn site(model: &impl Typed, component: usize) -> String {
 }
 
 /// What is compared.
-pub(super) const WHAT: [&str; 3] = ["momentum at the start", "momentum at the end", "residual"];
+pub const WHAT: [&str; 3] = ["momentum at the start", "momentum at the end", "residual"];
 
 /// The derivation agrees with the typed action at random fields.
-pub(super) fn agrees(d: &Derivation, model: &impl Typed, source: &mut Source) {
+pub fn agrees(d: &Derivation, model: &impl Typed, source: &mut Source) {
     for _ in 0..3 {
         let nodes = [(); 3].map(|()| model.draw(source));
         let found = found(d, model, &nodes);

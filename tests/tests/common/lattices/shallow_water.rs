@@ -4,7 +4,7 @@
 use super::change::{changes_are_seen, unseen};
 use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
-use super::{Ends, FREE, derived, is_changed};
+use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 
@@ -117,7 +117,7 @@ impl Typed for Water {
     }
 }
 
-fn check(segments: usize, ends: Ends) {
+pub fn check(segments: usize, ends: Ends) {
     let mut source = Source::seeded(segments as u64);
     let d = derived(TEXT, &[("i", segments)], ends);
     let water = Water::of(segments, ends, &mut source);
@@ -133,26 +133,4 @@ fn check(segments: usize, ends: Ends) {
     // On a ring of one or two both neighbours are one particle, a fixed distance apart.
     let few = ends == Ends::Ring && segments <= 2;
     assert_eq!(constant > 0, few, "{constant} of {changes}");
-}
-
-#[test]
-fn shallow_water_in_a_ring() {
-    for segments in [1, 2, 3, 5, 9] {
-        check(segments, Ends::Ring);
-    }
-}
-
-#[test]
-fn shallow_water_on_a_line() {
-    for segments in [2, 3, 5, 8] {
-        check(segments, FREE);
-    }
-}
-
-#[test]
-fn more_shallow_water() {
-    for segments in [12, 50] {
-        check(segments, Ends::Ring);
-        check(segments, FREE);
-    }
 }

@@ -3,7 +3,7 @@
 use super::change::{changes_are_seen, unseen};
 use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
-use super::{Ends, FREE, derived, is_changed};
+use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
@@ -135,7 +135,7 @@ impl Typed for Cloud {
     }
 }
 
-fn check(particles: usize, segments: usize, ends: Ends) {
+pub fn check(particles: usize, segments: usize, ends: Ends) {
     let mut source = Source::seeded(segments as u64);
     let d = derived(TEXT, &[("a", particles), ("i", segments)], ends);
     let cloud = Cloud::of(particles, segments, ends, &mut source);
@@ -148,17 +148,4 @@ fn check(particles: usize, segments: usize, ends: Ends) {
         let (changes, constant) = changes_are_seen(&d, &cloud, &mut source);
         assert_eq!(constant, 0, "of {changes}");
     }
-}
-
-#[test]
-fn a_cloud_beside_a_line() {
-    for (particles, segments) in [(1, 2), (2, 2), (3, 5), (5, 3), (12, 12)] {
-        check(particles, segments, FREE);
-        check(particles, segments, Ends::Ring);
-    }
-}
-
-#[test]
-fn a_large_cloud_beside_a_long_line() {
-    check(50, 50, FREE);
 }

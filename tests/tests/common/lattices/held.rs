@@ -166,7 +166,7 @@ impl Typed for Tops {
     }
 }
 
-fn check(segments: usize, ends: Ends) {
+pub fn check(segments: usize, ends: Ends) {
     let mut source = Source::seeded(segments as u64);
     let d = derived(TEXT, &[("i", segments)], ends);
     let tops = Tops::of(segments, ends, &mut source);
@@ -178,29 +178,4 @@ fn check(segments: usize, ends: Ends) {
     if is_changed(segments) {
         changes_are_seen(&d, &tops, &mut source);
     }
-}
-
-#[test]
-fn held_tops() {
-    for segments in [2, 3, 5, 12] {
-        for first in ["held", "free"] {
-            for last in ["free", "held"] {
-                check(segments, Ends::Open(first, last));
-            }
-        }
-    }
-    check(1, Ends::Open("held", "free"));
-    check(1, Ends::Open("free", "held"));
-}
-
-#[test]
-fn tops_that_carry_in_a_ring() {
-    for segments in [1, 2, 3, 5, 12] {
-        check(segments, Ends::Ring);
-    }
-}
-
-#[test]
-fn held_tops_in_a_long_row() {
-    check(50, Ends::Open("held", "held"));
 }

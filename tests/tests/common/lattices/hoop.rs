@@ -4,7 +4,7 @@
 use super::change::{changes_are_seen, unseen};
 use super::compare::agrees;
 use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
-use super::{Ends, FREE, derived, is_changed};
+use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
@@ -157,7 +157,7 @@ impl Typed for Hoop {
     }
 }
 
-fn check(segments: usize, ends: Ends) {
+pub fn check(segments: usize, ends: Ends) {
     let mut source = Source::seeded(segments as u64);
     let d = derived(TEXT, &[("i", segments)], ends);
     let hoop = Hoop::of(segments, ends, &mut source);
@@ -172,16 +172,3 @@ fn check(segments: usize, ends: Ends) {
 }
 
 // Of 50 segments the derivation is larger than any is given.
-#[test]
-fn hoops() {
-    for segments in [1, 2, 3, 5, 12, 24] {
-        check(segments, Ends::Ring);
-    }
-}
-
-#[test]
-fn hoops_cut_open() {
-    for segments in [1, 2, 3, 5, 12, 24] {
-        check(segments, FREE);
-    }
-}

@@ -1,0 +1,28 @@
+//! Wrong models and what the compiler says of them: one fault a file of `tests/ui/`, whose `.stderr` holds the messages. A few
+//! are judged here, all by the engine alone in `refusals` of `derivation`. To write messages anew:
+//! `TRYBUILD=overwrite cargo test --release -p clebsch-refusals --test compiler`.
+
+/// Where the faults are.
+const FOLDER: &str = "tests/ui";
+
+/// One fault for each way in which a message reaches the compiler: several at once, a refusal of the emitter, names that
+/// other code uses, warnings, a range of tokens.
+const COMPILED: [&str; 5] = [
+    "several_faults",
+    "group_too_large",
+    "used_elsewhere",
+    "warnings_on_their_tokens",
+    "wrong_sided_action",
+];
+
+#[test]
+fn the_compiler_shows_what_the_engine_says() {
+    let compiler = trybuild::TestCases::new();
+    if std::env::var_os("TRYBUILD").is_some() {
+        compiler.compile_fail(format!("{FOLDER}/*.rs"));
+    } else {
+        for name in COMPILED {
+            compiler.compile_fail(format!("{FOLDER}/{name}.rs"));
+        }
+    }
+}

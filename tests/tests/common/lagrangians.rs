@@ -1,0 +1,104 @@
+//! Random Lagrangians of a rotation: the residual program, interpreted, against the variation of the unreduced action at
+//! random points that solve nothing, and every mutant of the program noticed at some of them.
+
+use super::mutants::{self, Judged, survivors};
+use super::oracle_bridge::{AGREEMENT, assignment, disagreement};
+use clebsch_core::{Derivation, derive_source};
+use clebsch_oracle::oracle::action::{rotations, stationarity};
+use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::random::RandomLagrangian;
+use clebsch_oracle::oracle::random::sample::Sample;
+use clebsch_oracle::physics::measure::worse;
+use std::array::from_fn;
+use std::panic::catch_unwind;
+
+/// Random points for every Lagrangian: three times as many as all mutants of all of them are noticed at.
+const POINTS: usize = 3 * mutants::POINTS;
+
+/// A random point with what the oracle says about it.
+fn judged(lagrangian: &RandomLagrangian, source: &mut Source) -> Judged {
+    let sample = Sample::draw(lagrangian, source);
+    let nodes = from_fn(|_| [source.orthogonal()]);
+    Judged {
+        given: sample.given(&nodes),
+        step: (lagrangian.step, sample.step),
+        oracle: stationarity(&sample, &nodes, &rotations()),
+    }
+}
+
+/// The worst disagreement of a Lagrangian, or what went wrong.
+fn found(derivation: &Derivation, lagrangian: &RandomLagrangian, seed: u64) -> Result<f64, String> {
+    let mut source = Source::seeded(seed ^ 0x5eed);
+    let mut worst: f64 = 0.0;
+    for point in 0..POINTS {
+        let Judged {
+            given,
+            step,
+            oracle,
+        } = judged(lagrangian, &mut source);
+        let engine = derivation
+            .residual(&assignment(&given, step))
+            .map_err(|error| format!("cannot be evaluated: {error}"))?;
+        let difference = disagreement(&oracle, &engine);
+        if difference > AGREEMENT {
+            return Err(format!(
+                "point {point}: off by {difference:e} of {:e}\noracle {:?}\nengine {engine:?}",
+                oracle.scale, oracle.derivative
+            ));
+        }
+        worst = worse(worst, difference);
+    }
+    Ok(worst)
+}
+
+/// The number of mutants, all noticed, or what went wrong.
+fn mutated(
+    derivation: &Derivation,
+    lagrangian: &RandomLagrangian,
+    seed: u64,
+) -> Result<usize, String> {
+    let mut source = Source::seeded(seed ^ 0xface);
+    let points: Vec<Judged> = (0..mutants::POINTS)
+        .map(|_| judged(lagrangian, &mut source))
+        .collect();
+    match survivors(derivation, &points) {
+        (0, _) => Err("has no mutants".to_owned()),
+        (count, alive) if alive.is_empty() => Ok(count),
+        (_, alive) => Err(format!("is not changed by\n{}", alive.join("\n"))),
+    }
+}
+
+fn of_seed(seed: u64) -> Result<(f64, usize), String> {
+    let lagrangian = RandomLagrangian::of_seed(seed);
+    let derivation =
+        derive_source(&lagrangian.text()).map_err(|errors| format!("is refused:\n{errors}"))?;
+    let worst = found(&derivation, &lagrangian, seed)?;
+    Ok((worst, mutated(&derivation, &lagrangian, seed)?))
+}
+
+/// Fails if a Lagrangian of these seeds disagrees with the oracle, or one of its mutants does not.
+pub fn agree_and_their_mutants_do_not(seeds: impl Iterator<Item = u64>) {
+    let mut failures = Vec::new();
+    let (mut worst, mut count): (f64, usize) = (0.0, 0);
+    for seed in seeds {
+        // A panic of one seed must not hide what is wrong with the others.
+        let failure = match catch_unwind(|| of_seed(seed)) {
+            Ok(Ok((difference, mutants))) => {
+                worst = worse(worst, difference);
+                count += mutants;
+                continue;
+            }
+            Ok(Err(failure)) => failure,
+            Err(_) => "panics".to_owned(),
+        };
+        let text = RandomLagrangian::of_seed(seed).text();
+        failures.push(format!("seed {seed}\n{text}\n{failure}"));
+    }
+    println!("worst {worst:e}, {count} mutants");
+    assert!(
+        failures.is_empty(),
+        "{} failed\n{}",
+        failures.len(),
+        failures.join("\n\n")
+    );
+}

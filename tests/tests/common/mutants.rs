@@ -1,0 +1,36 @@
+//! Residual programs with one summand removed or flipped, judged at points of which the oracle knows the variation of the
+//! action.
+
+use super::oracle_bridge::{AGREEMENT, assignment, disagreement};
+use clebsch_core::Derivation;
+use clebsch_oracle::oracle::action::Variation;
+use clebsch_oracle::oracle::points::Given;
+
+/// Points at which a mutant may be noticed; one is enough for nearly all.
+pub const POINTS: usize = 30;
+
+/// A point with what the oracle says about it.
+pub struct Judged {
+    pub given: Vec<Given>,
+    pub step: (&'static str, f64),
+    pub oracle: Variation,
+}
+
+/// The number of mutants, and what describes those that agree with the oracle everywhere.
+pub fn survivors(derivation: &Derivation, points: &[Judged]) -> (usize, Vec<String>) {
+    let mutants = derivation.mutations();
+    let alive = mutants
+        .iter()
+        .filter(|mutant| {
+            points.iter().all(|point| {
+                let values = assignment(&point.given, point.step);
+                // A mutant that cannot be evaluated is noticed as well.
+                mutant
+                    .residual(&values)
+                    .is_ok_and(|residual| disagreement(&point.oracle, &residual) <= AGREEMENT)
+            })
+        })
+        .map(|mutant| mutant.describe())
+        .collect();
+    (mutants.len(), alive)
+}
