@@ -1,8 +1,9 @@
 //! Kernels of what acts on a site at a node: its own potential and what neighbours add, before the node
 //! and after it; of blocks of fields, what the edge adds. The loop over sites that puts it all to the momenta.
 
+use super::arguments::Argument;
 use super::lanes::{Windows, are_together};
-use super::locals::{Argument, Places, step};
+use super::locals::{Places, step};
 use super::pulls::{field, front};
 use super::velocities::taken_apart;
 use super::{Lines, Moving, number};

@@ -1,7 +1,7 @@
 //! What a loop over sites computes of several sites together: the windows of lists that its kernel reads, as wide as its
 //! neighbours are far, and the value of one site.
 
-use super::locals::Argument;
+use super::arguments::Argument;
 use super::number;
 use crate::expr::{Expr, Function, Node};
 use proc_macro2::{Ident, TokenStream};

@@ -3,6 +3,7 @@
 //! Takes a [`Line`]; gives Rust items.
 
 mod acting;
+mod arguments;
 mod around;
 mod constraints;
 mod domain;

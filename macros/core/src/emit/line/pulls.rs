@@ -1,9 +1,10 @@
 //! Kernels of terms of neighbours: what one term adds to the sites that it touches, evaluated once for
 //! all of them, and the loop over all terms.
 
+use super::arguments::Argument;
 use super::forms::forms;
 use super::lanes::{Windows, are_together};
-use super::locals::{Argument, Known, Places, Stands};
+use super::locals::{Known, Places, Stands};
 use super::{Lines, number};
 use crate::emit::expression::{Bindings, Writer};
 use crate::emit::items::letters_of;

@@ -1,8 +1,9 @@
 //! Kernels of the velocities of a site: from the momentum that leaves a node to the place at the next
 //! one.
 
+use super::arguments::Argument;
 use super::lanes::Windows;
-use super::locals::{Argument, Places, step};
+use super::locals::{Places, step};
 use super::velocities::{as_array, taken_apart, width};
 use super::{Lines, Moving, number};
 use crate::emit::blocks::linear_solution;
