@@ -7,6 +7,7 @@ use super::sweep::{Threads, Two, try_fill_part, try_in_parts, update_part};
 use crate::Real;
 use crate::integrate::{InstructionSet, Work};
 use crate::solvers::moser_veselov::Edge;
+use core::ops::Range;
 use nalgebra::SMatrix;
 
 /// How the values of several sites are computed together.
@@ -113,13 +114,24 @@ where
             let mut lanes = P::zeros();
             match self.together.lanes::<P>(self.first + at, &mut lanes) {
                 true => self.part.write(at, &lanes),
-                false => try_fill_part(self.first, &mut self.part, at..at + LANES, &self.value)?,
+                false => singly(self.first, &mut self.part, at..at + LANES, &self.value)?,
             }
             at += LANES;
         }
         let rest = whole..self.part.count();
-        try_fill_part(self.first, &mut self.part, rest, &self.value)
+        singly(self.first, &mut self.part, rest, &self.value)
     }
+}
+
+/// One site after the other: compiled once, for the build's own instruction set.
+#[inline(never)]
+fn singly<P: InColumns, E>(
+    first: usize,
+    out: &mut P,
+    sites: Range<usize>,
+    value: &impl Fn(usize) -> Result<P::One, E>,
+) -> Result<(), (usize, E)> {
+    try_fill_part(first, out, sites, value)
 }
 
 /// `(value, kept[i]) = change(i, kept[i])`, the value put into `out[i]`, for every site, several of them together. Says which
@@ -179,14 +191,26 @@ where
                 }
                 false => {
                     let (out, kept) = (&mut self.out, &mut self.kept);
-                    update_part(self.first, out, kept, at..at + LANES, &self.change)?;
+                    changed_singly(self.first, out, kept, at..at + LANES, &self.change)?;
                 }
             }
             at += LANES;
         }
         let (rest, out, kept) = (whole..self.out.count(), &mut self.out, &mut self.kept);
-        update_part(self.first, out, kept, rest, &self.change)
+        changed_singly(self.first, out, kept, rest, &self.change)
     }
+}
+
+/// One site after the other: compiled once, for the build's own instruction set.
+#[inline(never)]
+fn changed_singly<P: InColumns, K: InColumns>(
+    first: usize,
+    out: &mut P,
+    kept: &mut K,
+    sites: Range<usize>,
+    change: &impl Fn(usize, K::One) -> Option<(P::One, K::One)>,
+) -> Result<(), (usize, ())> {
+    update_part(first, out, kept, sites, change)
 }
 
 /// A [`Stage`] or a [`Change`]: what it reads, of which lists it sees how many sites, and the value of one site.
