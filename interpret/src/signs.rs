@@ -2,7 +2,7 @@
 //! sites does it. Takes the initial values in the order of a card; changes the signs of some.
 
 use clebsch::card::Card;
-use clebsch::line::{self, Attitude};
+use clebsch::line::{self, Attitude, Attitudes};
 use clebsch::{ParameterError, UnitQuaternion};
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Choice, Lattice};
@@ -75,7 +75,7 @@ impl Agreement {
             let q = UnitQuaternion::from_components(components).ok()?;
             Some(Attitude::of_quaternion(q))
         };
-        let given: Option<Vec<Attitude>> = self.sites.iter().map(read).collect();
+        let given: Option<Attitudes<f64>> = self.sites.iter().map(read).collect();
         // What is no unit quaternion is told where it is read.
         let Some(given) = given else {
             return Ok(());
@@ -87,7 +87,7 @@ impl Agreement {
                 line::turn_towards(&mut list, *site, &Matrix4::from_row_slice(wall));
             }
         }
-        for ((place, before), after) in self.sites.iter().zip(&given).zip(&list) {
+        for ((place, before), after) in self.sites.iter().zip(given.iter()).zip(list.iter()) {
             if before != after
                 && let Some(own) = initial.get_mut(*place)
             {

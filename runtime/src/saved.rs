@@ -211,6 +211,19 @@ pub fn sites<X: Saved>(list: &mut [X], words: &mut Words) {
     list.iter_mut().for_each(|x| x.words(words));
 }
 
+/// A list of values of sites, whose number does not change.
+#[doc(hidden)]
+pub trait Sites {
+    /// All of them, one after the other.
+    fn sites(&mut self, words: &mut Words);
+}
+
+impl<X: Saved> Sites for Vec<X> {
+    fn sites(&mut self, words: &mut Words) {
+        sites(self, words);
+    }
+}
+
 /// [`Saved`](crate::saved::Saved) for the state of a line over plain numbers; all lists of its sites are named. The workspace is
 /// made again from it.
 #[doc(hidden)]
@@ -220,10 +233,10 @@ macro_rules! saved_line {
         impl $crate::saved::Saved for $name<f64> {
             fn words(&mut self, words: &mut $crate::saved::Words) {
                 $(
-                    $crate::saved::sites(&mut self.places.$list, words);
-                    $crate::saved::sites(&mut self.momenta.$list, words);
+                    $crate::saved::Sites::sites(&mut self.places.$list, words);
+                    $crate::saved::Sites::sites(&mut self.momenta.$list, words);
                 )*
-                $($crate::saved::sites(&mut self.multipliers.$multiplier, words);)*
+                $($crate::saved::Sites::sites(&mut self.multipliers.$multiplier, words);)*
                 $crate::saved::Saved::words(&mut self.node, words);
                 if words.are_given() {
                     self.stamp = $crate::line::Stamp::fresh();

@@ -104,7 +104,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             _ => None,
         },
         ("Vec::new", 0) => |_, _| Some(Value::Sites(Column::Values(Vec::new()))),
-        ("filled", 2) => |a, _| {
+        ("filled" | "Columns::filled", 2) => |a, _| {
             let (value, count) = (a.first()?, a.get(1)?.count()?);
             let mut column = Column::like(value);
             column.resize(count, value)?;
@@ -239,10 +239,20 @@ fn agree<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
         return Err(missing());
     };
     match list.place_mut(places) {
-        Some(Value::Sites(Column::Attitudes(all))) => line::agree(all),
+        Some(Value::Sites(Column::Attitudes(all))) => changed(all, line::agree),
         _ => return Err(missing()),
     }
     Ok(Value::Unit)
+}
+
+/// Attitudes as the runtime changes them.
+fn changed<T: Real>(
+    list: &mut Vec<line::Attitude<T>>,
+    change: impl FnOnce(&mut line::Attitudes<T>),
+) {
+    let mut all: line::Attitudes<T> = list.iter().copied().collect();
+    change(&mut all);
+    *list = all.iter().collect();
 }
 
 /// `line::turn_towards(&mut list, site, &wall)`
@@ -254,7 +264,9 @@ fn turn_towards<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     let wall = unfit(wall.dense())?;
     let wall = Matrix4::from_fn(|i, j| wall.at(i, j));
     match list.place_mut(places) {
-        Some(Value::Sites(Column::Attitudes(all))) => line::turn_towards(all, site, &wall),
+        Some(Value::Sites(Column::Attitudes(all))) => {
+            changed(all, |all| line::turn_towards(all, site, &wall));
+        }
         _ => return Err(missing()),
     }
     Ok(Value::Unit)
@@ -270,7 +282,7 @@ fn closes<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     };
     match list.place(places) {
         Some(Value::Sites(Column::Attitudes(all))) => Ok(Value::result(
-            line::closes(quantity, all).map(|()| Value::Unit),
+            line::closes(quantity, &all.iter().copied().collect()).map(|()| Value::Unit),
         )),
         _ => Err(missing()),
     }

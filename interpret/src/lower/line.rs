@@ -16,18 +16,23 @@ impl<T: Lowered> Lower<'_, '_, T> {
     /// A list of sites, or a part of it.
     fn slice(&mut self, e: &syn::Expr) -> Result<Slice<T>, Refused> {
         let inner = past_references(e);
-        let (list, from, to) = match inner {
-            syn::Expr::Index(i) => match &*i.index {
-                syn::Expr::Range(r) => {
-                    let mut end = |e: &Option<Box<syn::Expr>>| match e {
-                        Some(e) => self.expression(e, None).map(Some),
-                        None => Ok(None),
-                    };
-                    (&*i.expr, end(&r.start)?, end(&r.end)?)
-                }
-                _ => (inner, None, None),
-            },
-            _ => (inner, None, None),
+        let part = match inner {
+            syn::Expr::Index(i) => range(&i.index).map(|r| (&*i.expr, r)),
+            syn::Expr::MethodCall(m) if m.method == "part" => {
+                let own = m.args.first().and_then(range);
+                own.map(|r| (&*m.receiver, r))
+            }
+            _ => None,
+        };
+        let (list, from, to) = match part {
+            Some((list, r)) => {
+                let mut end = |e: &Option<Box<syn::Expr>>| match e {
+                    Some(e) => self.expression(e, None).map(Some),
+                    None => Ok(None),
+                };
+                (list, end(&r.start)?, end(&r.end)?)
+            }
+            None => (inner, None, None),
         };
         let list = self.expression(list, None)?;
         match is_place(&list) {
@@ -60,14 +65,20 @@ impl<T: Lowered> Lower<'_, '_, T> {
     ) -> Result<Option<Code<T>>, Refused> {
         let list: Vec<&syn::Expr> = c.args.iter().collect();
         let (kind, out, range, body) = match (name, list.as_slice()) {
-            ("line::fill", [_, out, body]) => (Kind::Fill, vec![self.slice(out)?], None, body),
-            ("line::try_fill", [_, out, body]) => {
+            // How several sites are computed together is of no concern: one after the other they get the same.
+            ("line::fill", [_, out, body]) | ("line::fill_in_lanes", [_, out, body, _]) => {
+                (Kind::Fill, vec![self.slice(out)?], None, body)
+            }
+            ("line::try_fill", [_, out, body]) | ("line::try_fill_in_lanes", [_, out, body, _]) => {
                 (Kind::TryFill, vec![self.slice(out)?], None, body)
             }
-            ("line::update", [_, out, kept, body]) => {
+            ("line::update", [_, out, kept, body])
+            | ("line::update_in_lanes", [_, out, kept, body, _]) => {
                 let out = vec![self.slice(out)?, self.slice(kept)?];
                 (Kind::Update, out, None, body)
             }
+            // Bodies that are alike are kept once each.
+            ("line::once", [_]) => return Ok(Some(Code::Constant(Value::Unit))),
             ("line::try_each", [first, last, body]) => {
                 let range = [self.expression(first, None)?, self.expression(last, None)?];
                 (Kind::TryEach, Vec::new(), Some(range), body)
@@ -125,6 +136,40 @@ impl<T: Lowered> Lower<'_, '_, T> {
         let arguments: Vec<&syn::Expr> = m.args.iter().collect();
         Ok(Some(
             match (m.method.to_string().as_str(), arguments.as_slice()) {
+                ("at", [site]) => {
+                    let list = self.expression(&m.receiver, None)?;
+                    let site = self.expression(site, None)?;
+                    Code::Index(Box::new(list), vec![site])
+                }
+                ("set", [site, value]) => {
+                    let list = self.expression(&m.receiver, None)?;
+                    let site = self.expression(site, None)?;
+                    let value = self.expression(value, None)?;
+                    let place = Code::Index(Box::new(list), vec![site]);
+                    Code::Assign(vec![place], Box::new(value))
+                }
+                ("take", [count]) => {
+                    let syn::Expr::MethodCall(all) = &*m.receiver else {
+                        return Ok(None);
+                    };
+                    let list = self.expression(&all.receiver, None)?;
+                    let count = self.expression(count, None)?;
+                    let all = vec![list, Code::Constant(Value::None), count];
+                    self.special("slice", all, m)?
+                }
+                ("keep", [sites, other]) => {
+                    let r = range(sites).ok_or_else(|| refuse(m))?;
+                    let mut end = |e: &Option<Box<syn::Expr>>| match e {
+                        Some(e) => self.expression(e, None),
+                        None => Ok(Code::Constant(Value::None)),
+                    };
+                    let [from, to] = [end(&r.start)?, end(&r.end)?];
+                    let own = self.expression(&m.receiver, None)?;
+                    let other = self.expression(other, None)?;
+                    let other = vec![other, from.clone(), to.clone()];
+                    let part = self.special("slice", other, m)?;
+                    self.special("copy_slice", vec![own, from, to, part], m)?
+                }
                 ("copy_from_slice", [other]) => {
                     let mut all = ends(self.slice(&m.receiver)?);
                     all.push(self.expression(other, None)?);
@@ -267,6 +312,13 @@ impl<T: Lowered> Lower<'_, '_, T> {
 fn ends<T: clebsch::Real>(slice: Slice<T>) -> Vec<Code<T>> {
     let end = |e: Option<Code<T>>| e.unwrap_or(Code::Constant(Value::None));
     vec![slice.list, end(slice.from), end(slice.to)]
+}
+
+fn range(e: &syn::Expr) -> Option<&syn::ExprRange> {
+    match e {
+        syn::Expr::Range(r) => Some(r),
+        _ => None,
+    }
 }
 
 fn past_references(e: &syn::Expr) -> &syn::Expr {

@@ -23,6 +23,12 @@ impl<T: Real> Attitude<T> {
         }
     }
 
+    /// The attitude that has been kept as both.
+    #[inline(always)]
+    pub(super) fn kept(rotation: Rotation<T>, matrix: Matrix3<T>) -> Self {
+        Self { rotation, matrix }
+    }
+
     /// The attitude of a unit quaternion.
     pub fn of_quaternion(element: UnitQuaternion<T>) -> Self {
         Self::new(element.rotation())

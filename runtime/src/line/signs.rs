@@ -3,7 +3,7 @@
 //! are therefore made to agree. Takes attitudes in order along the line; changes signs, or tells that around a ring
 //! they cannot agree.
 
-use super::Attitude;
+use super::Attitudes;
 use crate::error::Problem;
 use crate::linalg::{quaternion_imaginary, quaternion_real};
 use crate::{ParameterError, Real};
@@ -23,25 +23,27 @@ fn sign<T: Real>(x: T) -> T {
 }
 
 /// Replaces each unit quaternion by its opposite where its scalar product with the one before is negative.
-pub fn agree<T: Real>(list: &mut [Attitude<T>]) {
+pub fn agree<T: Real>(list: &mut Attitudes<T>) {
     let mut before: Option<[T; 4]> = None;
-    for x in list {
+    for site in 0..list.len() {
+        let x = list.at(site);
         let own = x.unit_quaternion().components();
-        if let Some(before) = before {
-            *x = x.of_sign(sign(pairing(before, own)));
-        }
+        let x = before.map_or(x, |before| x.of_sign(sign(pairing(before, own))));
+        list.set(site, x);
         before = Some(x.unit_quaternion().components());
     }
 }
 
 /// Replaces all of them by their opposites where the one of a site disagrees with a quaternion that an end gives, as
 /// the matrix of its left multiplication.
-pub fn turn_towards<T: Real>(list: &mut [Attitude<T>], site: usize, wall: &Matrix4<T>) {
+pub fn turn_towards<T: Real>(list: &mut Attitudes<T>, site: usize, wall: &Matrix4<T>) {
     let v = quaternion_imaginary(wall);
     let wall = [quaternion_real(wall), v.x, v.y, v.z];
-    if let Some(own) = list.get(site) {
-        let sign = sign(pairing(wall, own.unit_quaternion().components()));
-        list.iter_mut().for_each(|x| *x = x.of_sign(sign));
+    if site < list.len() {
+        let sign = sign(pairing(wall, list.at(site).unit_quaternion().components()));
+        for site in 0..list.len() {
+            list.set(site, list.at(site).of_sign(sign));
+        }
     }
 }
 
@@ -49,10 +51,11 @@ pub fn turn_towards<T: Real>(list: &mut [Attitude<T>], site: usize, wall: &Matri
 ///
 /// # Errors
 /// Where it does not: around the ring they make an odd number of turns.
-pub fn closes<T: Real>(quantity: &'static str, list: &[Attitude<T>]) -> Result<(), ParameterError> {
-    let (Some(first), Some(last)) = (list.first(), list.last()) else {
+pub fn closes<T: Real>(quantity: &'static str, list: &Attitudes<T>) -> Result<(), ParameterError> {
+    if list.is_empty() {
         return Ok(());
-    };
+    }
+    let (first, last) = (list.at(0), list.at(list.len() - 1));
     let [first, last] = [first, last].map(|x| x.unit_quaternion().components());
     match pairing(first, last).least() < 0.0 {
         true => Err(ParameterError {
@@ -68,12 +71,12 @@ pub fn closes<T: Real>(quantity: &'static str, list: &[Attitude<T>]) -> Result<(
 #[cfg(test)]
 mod tests {
     use super::{agree, closes, turn_towards};
-    use crate::line::Attitude;
+    use crate::line::{Attitude, Attitudes};
     use crate::{Rotation, UnitQuaternion};
     use nalgebra::Vector3;
 
     /// Attitudes that make so many turns over the whole of a list, with signs that are given at random.
-    fn turning(turns: f64, count: usize) -> Vec<Attitude> {
+    fn turning(turns: f64, count: usize) -> Attitudes<f64> {
         let each = (0..count).map(|i| {
             let half = std::f64::consts::PI * turns * i as f64 / count as f64;
             let sign = if i * i % 7 < 3 { 1.0 } else { -1.0 };
@@ -89,10 +92,10 @@ mod tests {
             let given = turning(turns, 40);
             let mut list = given.clone();
             agree(&mut list);
-            for (two, x) in list.windows(2).zip(&given) {
-                let [a, b] = [two[0], two[1]].map(|x| x.unit_quaternion());
+            for site in 1..list.len() {
+                let [a, b] = [site - 1, site].map(|i| list.at(i).unit_quaternion());
                 assert!((a.inverse() * b).real() > 0.0);
-                assert_eq!(two[0].matrix(), x.matrix());
+                assert_eq!(list.at(site).matrix(), given.at(site).matrix());
             }
             let before = list.clone();
             agree(&mut list);
@@ -118,7 +121,7 @@ mod tests {
             let mut list = turning(0.2, 5);
             agree(&mut list);
             turn_towards(&mut list, 0, &wall.matrix());
-            assert!((wall.inverse() * list[0].unit_quaternion()).real() > 0.0);
+            assert!((wall.inverse() * list.at(0).unit_quaternion()).real() > 0.0);
         }
     }
 }

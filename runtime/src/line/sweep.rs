@@ -1,8 +1,10 @@
 //! Loops over sites. Each site's value is computed from what stood before the loop, so that the order
-//! of sites, and how threads share them, changes no bit. Threads need the feature `rayon`. What is done at a site is copied
-//! into the loop: behind a reference that threads share, the compiler would read everything anew at each site.
+//! of sites, and how threads share them, changes no bit. Threads need the feature `rayon`.
 
+use super::part::Part;
 use crate::Real;
+use core::convert::Infallible;
+use core::ops::Range;
 use nalgebra::SMatrix;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
@@ -23,27 +25,15 @@ impl Threads {
     /// The length of the ranges of `sites` sites, if there are to be several.
     fn share(self, sites: usize) -> Option<usize> {
         let parts = self.0.min(sites / FEWEST);
-        (parts > 1).then(|| sites.div_ceil(parts))
+        (parts > 1).then(|| sites.div_ceil(parts).next_multiple_of(super::part::LANES))
     }
 }
 
 /// `out[i] = value(i)` for every site.
 #[inline]
-pub fn fill<S: Send>(threads: Threads, out: &mut [S], value: impl Fn(usize) -> S + Sync + Copy) {
-    #[cfg(feature = "rayon")]
-    if let Some(share) = threads.share(out.len()) {
-        let parts = out.par_chunks_mut(share).enumerate();
-        return parts.for_each(|(k, part)| fill_part(k * share, part, value));
-    }
-    let _ = threads;
-    fill_part(0, out, value);
-}
-
-#[inline(always)]
-fn fill_part<S>(first: usize, out: &mut [S], value: impl Fn(usize) -> S) {
-    for (i, place) in out.iter_mut().enumerate() {
-        *place = value(first + i);
-    }
+pub fn fill<P: Part>(threads: Threads, out: P, value: impl Fn(usize) -> P::One + Sync + Copy) {
+    let value = |i| Ok::<_, Infallible>(value(i));
+    let Ok(()) = try_fill(threads, out, value);
 }
 
 /// The same where a site may fail: the first one that does, and why. Others may be filled or not.
@@ -51,32 +41,51 @@ fn fill_part<S>(first: usize, out: &mut [S], value: impl Fn(usize) -> S) {
 /// # Errors
 /// That of the site with the smallest number.
 #[inline]
-pub fn try_fill<S: Send, E: Send>(
+pub fn try_fill<P: Part, E: Send>(
     threads: Threads,
-    out: &mut [S],
-    value: impl Fn(usize) -> Result<S, E> + Sync + Copy,
+    out: P,
+    value: impl Fn(usize) -> Result<P::One, E> + Sync + Copy,
+) -> Result<(), (usize, E)> {
+    try_in_parts(threads, out, |first, mut part| {
+        let all = 0..part.count();
+        try_fill_part(first, &mut part, all, &value)
+    })
+}
+
+/// Does what is to be done with the parts that threads share, each with the number of its first site.
+#[inline(always)]
+pub(super) fn try_in_parts<P: Part, E: Send>(
+    threads: Threads,
+    all: P,
+    done: impl Fn(usize, P) -> Result<(), (usize, E)> + Sync,
 ) -> Result<(), (usize, E)> {
     #[cfg(feature = "rayon")]
-    if let Some(share) = threads.share(out.len()) {
-        let parts = out.par_chunks_mut(share).enumerate();
-        let all: Vec<_> = parts
-            .map(|(k, part)| try_fill_part(k * share, part, value))
-            .collect();
+    if let Some(share) = threads.share(all.count()) {
+        let (mut parts, mut rest, mut first) = (Vec::new(), all, 0);
+        while rest.count() > share {
+            let (part, others) = rest.split(share);
+            parts.push((first, part));
+            (rest, first) = (others, first + share);
+        }
+        parts.push((first, rest));
+        let all = parts.into_par_iter().map(|(first, part)| done(first, part));
+        let all: Vec<_> = all.collect();
         return all.into_iter().collect();
     }
     let _ = threads;
-    try_fill_part(0, out, value)
+    done(0, all)
 }
 
 #[inline(always)]
-fn try_fill_part<S, E>(
+pub(super) fn try_fill_part<P: Part, E>(
     first: usize,
-    out: &mut [S],
-    value: impl Fn(usize) -> Result<S, E>,
+    out: &mut P,
+    sites: Range<usize>,
+    value: &impl Fn(usize) -> Result<P::One, E>,
 ) -> Result<(), (usize, E)> {
-    for (i, place) in out.iter_mut().enumerate() {
+    for i in sites {
         match value(first + i) {
-            Ok(found) => *place = found,
+            Ok(found) => out.put(i, found),
             Err(e) => return Err((first + i, e)),
         }
     }
@@ -101,46 +110,57 @@ pub fn try_each<E>(
 /// # Errors
 /// The number of that site.
 #[inline]
-pub fn update<S: Copy + Send, K: Copy + Send>(
+pub fn update<P: Part, K: Part>(
     threads: Threads,
-    out: &mut [S],
-    kept: &mut [K],
-    change: impl Fn(usize, K) -> Option<(S, K)> + Sync + Copy,
+    out: P,
+    kept: K,
+    change: impl Fn(usize, K::One) -> Option<(P::One, K::One)> + Sync + Copy,
 ) -> Result<(), usize> {
-    #[cfg(feature = "rayon")]
-    if let Some(share) = threads.share(out.len()) {
-        let parts = out.par_chunks_mut(share).zip(kept.par_chunks_mut(share));
-        let all: Vec<_> = parts
-            .enumerate()
-            .map(|(k, (out, kept))| update_part(k * share, out, kept, change))
-            .collect();
-        return all.into_iter().collect();
-    }
-    let _ = threads;
-    update_part(0, out, kept, change)
+    let made = try_in_parts(threads, Two(out, kept), |first, Two(mut out, mut kept)| {
+        let all = 0..out.count();
+        update_part(first, &mut out, &mut kept, all, &change)
+    });
+    made.map_err(|(site, ())| site)
 }
 
-/// The loop goes on behind a site that does not change, of which the smallest number is kept: sites can then be changed
-/// several at a time.
 #[inline(always)]
-fn update_part<S: Copy, K: Copy>(
+pub(super) fn update_part<P: Part, K: Part>(
     first: usize,
-    out: &mut [S],
-    kept: &mut [K],
-    change: impl Fn(usize, K) -> Option<(S, K)>,
-) -> Result<(), usize> {
-    let mut none = u64::MAX;
-    for (i, (place, keep)) in out.iter_mut().zip(kept).enumerate() {
-        let made = change(first + i, *keep);
-        none = none.min(match made.is_some() {
-            true => u64::MAX,
-            false => i as u64,
-        });
-        (*place, *keep) = made.unwrap_or((*place, *keep));
+    out: &mut P,
+    kept: &mut K,
+    sites: Range<usize>,
+    change: &impl Fn(usize, K::One) -> Option<(P::One, K::One)>,
+) -> Result<(), (usize, ())> {
+    for i in sites {
+        let (value, after) = change(first + i, kept.get(i)).ok_or((first + i, ()))?;
+        out.put(i, value);
+        kept.put(i, after);
     }
-    match none {
-        u64::MAX => Ok(()),
-        i => Err(first + i as usize),
+    Ok(())
+}
+
+/// Two lists of the same sites.
+pub(super) struct Two<P, K>(pub(super) P, pub(super) K);
+
+impl<P: Part, K: Part> Part for Two<P, K> {
+    type One = (P::One, K::One);
+
+    fn count(&self) -> usize {
+        self.0.count()
+    }
+
+    fn split(self, at: usize) -> (Self, Self) {
+        let ((a, c), (b, d)) = (self.0.split(at), self.1.split(at));
+        (Two(a, b), Two(c, d))
+    }
+
+    fn get(&self, site: usize) -> Self::One {
+        (self.0.get(site), self.1.get(site))
+    }
+
+    fn put(&mut self, site: usize, (value, kept): Self::One) {
+        self.0.put(site, value);
+        self.1.put(site, kept);
     }
 }
 

@@ -1,6 +1,8 @@
 //! Kernels of what acts on a site at a node: its own potential and what neighbours add, before the node
 //! and after it; of blocks of fields, what the edge adds. The loop over sites that puts it all to the momenta.
 
+use super::arguments::Argument;
+use super::lanes::{Windows, are_together};
 use super::locals::{Places, step};
 use super::pulls::{field, front};
 use super::velocities::taken_apart;
@@ -47,22 +49,68 @@ impl Lines<'_> {
     }
 
     /// What neighbours add to a configuration at a site, term by term.
-    pub(super) fn collected(&self, name: &str) -> Vec<TokenStream> {
-        let mut terms: Vec<TokenStream> = Vec::new();
+    fn pulled(&self, name: &str) -> Vec<Pulled> {
+        let mut terms: Vec<Pulled> = Vec::new();
         for (n, pull) in self.line.pulls.iter().enumerate() {
-            let array = format_ident!("pull_{}", n + 1);
             for f in pull.forces.iter().filter(|f| f.on == name) {
-                let by = number(front(pull) - f.site);
-                let field = field(name, f.site);
-                terms.push(quote!(pulls.#array[site + #by].#field));
+                terms.push(Pulled {
+                    array: format_ident!("pull_{}", n + 1),
+                    by: front(pull) - f.site,
+                    field: Some(field(name, f.site)),
+                });
             }
         }
         let of_functionals = self.line.meshed.iter().flat_map(|m| &m.forces);
         if of_functionals.into_iter().any(|f| f.on == name) {
-            let array = super::meshes::collected(name);
-            terms.push(quote!(pulls.#array[site]));
+            terms.push(Pulled {
+                array: super::meshes::collected(name),
+                by: 0,
+                field: None,
+            });
         }
         terms
+    }
+
+    /// The same as it is read at a site.
+    pub(super) fn collected(&self, name: &str) -> Vec<TokenStream> {
+        self.pulled(name).iter().map(Pulled::value).collect()
+    }
+}
+
+/// What a term of neighbours, or a functional, adds at a site.
+struct Pulled {
+    array: Ident,
+    /// How many places on from that of the site it stands.
+    by: usize,
+    field: Option<Ident>,
+}
+
+impl Pulled {
+    fn value(&self) -> TokenStream {
+        let (array, by) = (&self.array, number(self.by));
+        match &self.field {
+            Some(field) => quote!(pulls.#array.at(site + #by).#field),
+            None => quote!(pulls.#array[site]),
+        }
+    }
+
+    /// In the window of its list.
+    fn seen(&self) -> TokenStream {
+        let (window, by) = (self.window(), number(self.by));
+        let field = self.field.iter();
+        quote!(#window.at(site + #by) #(.#field)*)
+    }
+
+    fn window(&self) -> Ident {
+        format_ident!("__at_{}", self.array)
+    }
+
+    /// Its name in the kernel: stated names do not begin so.
+    fn name(&self) -> Ident {
+        match &self.field {
+            Some(field) => format_ident!("__{}_{field}", self.array),
+            None => format_ident!("__{}", self.array),
+        }
     }
 }
 
@@ -85,24 +133,56 @@ pub(super) fn acting(l: &Lines) -> TokenStream {
     let added: Vec<TokenStream> = added.collect();
     let arrivals = l.moving().filter_map(|m| arrival(l, m));
     let arrivals: Vec<TokenStream> = arrivals.collect();
-    quote!(impl<T: Real> #name<T> { #(#each)* #(#added)* #(#arrivals)* })
+    let arrived = l.moving().map(|m| arrived(l, &m));
+    let stages = l.moving().filter_map(|m| stage(l, &m));
+    let (arrived, stages): (Vec<_>, Vec<_>) = (arrived.collect(), stages.collect());
+    quote!(impl<T: Real> #name<T> { #(#each)* #(#added)* #(#arrived)* #(#arrivals)* } #(#stages)*)
+}
+
+/// What acts of the site itself, as it is computed: the whole of it where halves act.
+fn wanted(l: &Lines, m: &Moving) -> Vec<Expr> {
+    let s = &m.outline().letters.symbols;
+    let [arrive, leave] = own(m);
+    let wanted: Vec<Expr> = match l.acting(m) {
+        Acting::Halves => vec![crate::emit::forced::doubled(s, &leave)],
+        Acting::Both => vec![arrive, leave],
+    };
+    wanted.iter().map(|e| expr::parted(s, e)).collect()
+}
+
+/// What the kernel reads of its site.
+fn reads(l: &Lines, m: &Moving) -> Vec<Argument> {
+    let d = m.outline();
+    let letters = l.of_site(d, &wanted(l, m));
+    l.read(&d.letters.symbols, &letters).arguments
+}
+
+/// What acts at a site, the places of all found at `at`.
+pub(super) fn call(l: &Lines, m: &Moving, at: &TokenStream) -> TokenStream {
+    let kernel = kernel(m);
+    let at = Places {
+        here: at.clone(),
+        next: at.clone(),
+    };
+    let own = reads(l, m).into_iter();
+    let own = own.map(|a| a.value(&at, &quote!(site)));
+    let all = own.chain(l.collected(&m.mover.name));
+    quote!(self.#kernel(h, #(#all),*))
 }
 
 fn one(l: &Lines, m: Moving) -> TokenStream {
     let d = m.outline();
     let s = &d.letters.symbols;
-    let (kernel, places, pulls, t) = (kernel(&m), l.item("Places"), l.item("Pulls"), m.covector());
+    let (kernel, t) = (kernel(&m), m.covector());
     let h = step(d);
-    let [arrive, leave] = own(&m);
     let halves = matches!(l.acting(&m), Acting::Halves);
-    let wanted: Vec<Expr> = match halves {
-        true => vec![crate::emit::forced::doubled(s, &leave)],
-        false => vec![arrive, leave],
-    };
-    let wanted: Vec<Expr> = wanted.iter().map(|e| expr::parted(s, e)).collect();
-    let (lets, results) = l.computed(s, &l.of_site(d, &wanted), &wanted);
-    let collected = l.collected(&m.mover.name);
-    let collected = (!collected.is_empty()).then(|| quote!(#(#collected)+*));
+    let wanted = wanted(l, &m);
+    let read = l.read(s, &l.of_site(d, &wanted));
+    let (lets, results) = l.program(s, &wanted, &read.bindings);
+    let known_once = &read.lets;
+    let pulled: Vec<Ident> = l.pulled(&m.mover.name).iter().map(Pulled::name).collect();
+    let arguments = read.arguments.iter().map(Argument::declared);
+    let collected = (!pulled.is_empty()).then(|| quote!(#(#pulled)+*));
     let shared = |value: &TokenStream, e: &Expr, share: Rational| -> TokenStream {
         let own = (!e.is_zero()).then(|| m.array(value.clone()));
         let pulled =
@@ -152,8 +232,9 @@ fn one(l: &Lines, m: Moving) -> TokenStream {
     quote! {
         #[doc = #doc]
         #[inline(always)]
-        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, pulls: &#pulls<T>) -> #output {
-            let _ = (#h, site, at, pulls);
+        fn #kernel(&self, #h: T, #(#arguments,)* #(#pulled: #t),*) -> #output {
+            let _ = #h;
+            #known_once
             #lets
             #value
         }
@@ -192,8 +273,8 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
         ([leaving, arriving], [at_start, at_end]) => {
             let name = m.name();
             let parts = [
-                (leaving, quote!(from.#name[site].matrix() * (#at_start))),
-                (arriving, quote!(to.#name[site].matrix() * (#at_end))),
+                (leaving, quote!(from.#name.at(site).matrix() * (#at_start))),
+                (arriving, quote!(to.#name.at(site).matrix() * (#at_end))),
             ];
             let parts = parts.into_iter().filter(|(e, _)| !e.is_zero());
             let parts: Vec<TokenStream> = parts.map(|(_, value)| value).collect();
@@ -226,44 +307,115 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
     }
 }
 
-/// What is done with what acts: the momentum at the node and that of the edge that leaves, given that
+/// The kernel of what is done with what acts: the momentum at the node and that of the edge that leaves, given that
 /// of the edge that came.
 fn arrived(l: &Lines, m: &Moving) -> TokenStream {
-    let name = m.name();
-    match (m.is_rotation(), l.acting(m)) {
-        (true, Acting::Halves) => quote! {
-            let turn = at.#name[site].matrix();
-            let space = edge.space();
-            let kick = turn * acting;
-            let momentum = space + kick * T::from_f64(0.5);
-            let edge = Edge::new(turn.tr_mul(&space) + acting, space + kick);
-            all_finite(&edge.space()).then_some((momentum, edge))
-        },
-        (true, Acting::Both) => quote! {
-            let [before, after] = acting;
-            let turn = at.#name[site].matrix();
-            let space = edge.space();
-            let momentum = space + turn * before;
-            let edge = Edge::new(turn.tr_mul(&space) + before + after, momentum + turn * after);
-            all_finite(&edge.space()).then_some((momentum, edge))
-        },
-        (false, Acting::Halves) => quote! {
-            let momentum = edge + acting * T::from_f64(0.5);
-            let edge = edge + acting;
-            all_finite(&edge).then_some((momentum, edge))
-        },
-        (false, Acting::Both) => quote! {
-            let [before, after] = acting;
-            let momentum = edge + before;
-            let edge = momentum + after;
-            all_finite(&edge).then_some((momentum, edge))
-        },
+    let (kernel, t, edge) = (arrived_kernel(m), m.covector(), m.edge());
+    let (acting, done) = match (m.is_rotation(), l.acting(m)) {
+        (true, Acting::Halves) => (
+            quote!(#t),
+            quote! {
+                let space = edge.space();
+                let kick = turn * acting;
+                let momentum = space + kick * T::from_f64(0.5);
+                (momentum, Edge::new(turn.tr_mul(&space) + acting, space + kick))
+            },
+        ),
+        (true, Acting::Both) => (
+            quote!([#t; 2]),
+            quote! {
+                let [before, after] = acting;
+                let space = edge.space();
+                let momentum = space + turn * before;
+                (momentum, Edge::new(turn.tr_mul(&space) + before + after, momentum + turn * after))
+            },
+        ),
+        (false, Acting::Halves) => (
+            quote!(#t),
+            quote! {
+                (edge + acting * T::from_f64(0.5), edge + acting)
+            },
+        ),
+        (false, Acting::Both) => (
+            quote!([#t; 2]),
+            quote! {
+                let [before, after] = acting;
+                let momentum = edge + before;
+                (momentum, momentum + after)
+            },
+        ),
+    };
+    let turn = m.is_rotation().then(|| quote!(turn: SMatrix<T, 3, 3>,));
+    let doc = format!(
+        " The momentum of `{}` at the node and that of the edge that leaves, from that of the edge that came.",
+        m.mover.name
+    );
+    quote! {
+        #[doc = #doc]
+        #[inline(always)]
+        fn #kernel(&self, acting: #acting, #turn edge: #edge) -> (#t, #edge) {
+            #done
+        }
     }
+}
+
+fn arrived_kernel(m: &Moving) -> Ident {
+    format_ident!("arrived_{}", m.mover.name)
 }
 
 /// The name of the loop over the sites at which a momentum arrives.
 fn arriving(m: &Moving) -> Ident {
     format_ident!("arrive_{}", m.mover.name)
+}
+
+/// The call of that kernel in a loop over sites.
+fn arrived_call(m: &Moving, acting: &TokenStream) -> TokenStream {
+    let (kernel, name) = (arrived_kernel(m), m.name());
+    let turn = m.is_rotation().then(|| quote!(at.#name.at(site).matrix(),));
+    let space = m.is_rotation().then(|| quote!(.space()));
+    quote! {
+        let (momentum, edge) = self.#kernel(#acting, #turn edge);
+        all_finite(&edge #space).then_some((momentum, edge))
+    }
+}
+
+/// The same of several sites together: an item of its own.
+fn stage(l: &Lines, m: &Moving) -> Option<TokenStream> {
+    if m.system().is_some() || !are_together(&wanted(l, m)) {
+        return None;
+    }
+    let [model, places, pulls] = ["", "Places", "Pulls"].map(|x| l.item(x));
+    let (name, edge, t) = (stage_name(l, m), m.edge(), m.covector());
+    let (acted, arrived) = (kernel(m), arrived_kernel(m));
+    let (own, pulled) = (reads(l, m), l.pulled(&m.mover.name));
+    let mut windows = Windows::of(&own);
+    for p in &pulled {
+        let array = &p.array;
+        windows.add(p.window(), quote!(pulls.#array), p.by);
+    }
+    let turn = m
+        .is_rotation()
+        .then(|| Argument::place(m, m.name()))
+        .map(|place| {
+            windows.add(place.window(), place.list(), 0);
+            let seen = place.seen();
+            quote!(#seen,)
+        });
+    let windows = windows.stated();
+    let values = own.iter().map(Argument::seen);
+    let values = values.chain(pulled.iter().map(Pulled::seen));
+    Some(quote! {
+        ::clebsch::in_lanes! {
+            /// Momenta that arrive, of several sites together.
+            #name(model: #model<T>, h: T, at: #places<T>, pulls: #pulls<T>) -> #t, #edge
+            #windows
+            |site, edge| model.#arrived(model.#acted(*h, #(#values),*), #turn edge)
+        }
+    })
+}
+
+fn stage_name(l: &Lines, m: &Moving) -> Ident {
+    l.item(&format!("ArrivedTogether_{}", m.mover.name))
 }
 
 /// The loop, of a configuration whose velocity is found site by site. A method of its own: what it reads is told apart from
@@ -272,15 +424,24 @@ fn arrival(l: &Lines, m: Moving) -> Option<TokenStream> {
     if m.system().is_some() {
         return None;
     }
-    let (name, arriving, kernel) = (m.name(), arriving(&m), kernel(&m));
+    let (name, arriving, stage) = (m.name(), arriving(&m), stage_name(l, &m));
     let [places, pulls, momenta, edges] =
         ["Places", "Pulls", "Momenta", "Edges"].map(|n| l.item(n));
-    let (range, arrived) = (super::step::range_name(&m), arrived(l, &m));
+    let range = super::step::range_name(&m);
+    let arrived = arrived_call(&m, &call(l, &m, &quote!(at)));
+    let part = m.part(&quote!(edges.#name));
     let doc = format!(
         " The momenta of `{}` at the node, and those of the edges that leave, from those of the edges that came. Says at \
          which site they are not finite.",
         m.mover.name
     );
+    let (loop_over_sites, together) = match are_together(&wanted(l, &m)) {
+        true => (
+            quote!(line::update_in_lanes),
+            quote!(, &#stage { model: self, h: &h, at, pulls, first }),
+        ),
+        false => (quote!(line::update), TokenStream::new()),
+    };
     Some(quote! {
         #[doc = #doc]
         #[inline]
@@ -288,23 +449,18 @@ fn arrival(l: &Lines, m: Moving) -> Option<TokenStream> {
             &self, h: T, at: &#places<T>, pulls: &#pulls<T>, momenta: &mut #momenta<T>, edges: &mut #edges<T>,
         ) -> Result<(), usize> {
             let [first, last] = self.#range();
-            line::update(self.threads, &mut momenta.#name[first..last], &mut edges.#name[first..last], |i, edge| {
+            #loop_over_sites(self.threads, &mut momenta.#name[first..last], #part, |i, edge| {
                 let site = first + i;
-                let acting = self.#kernel(h, site, at, pulls);
                 #arrived
-            })
+            } #together)
         }
     })
 }
 
 /// The momenta of one configuration at the next node, and those of the edges that leave it.
 pub(super) fn arrive(l: &Lines, m: &Moving) -> TokenStream {
-    let (name, text, range, kernel) = (
-        m.name(),
-        &m.mover.name,
-        super::step::range_name(m),
-        kernel(m),
-    );
+    let (name, text) = (m.name(), &m.mover.name);
+    let range = super::step::range_name(m);
     let refused = quote! {
         let cause = StepCause::not_finite("momentum");
         return Err(self.refused(state, h, line::Place { quantity: #text, site: first + i }, cause));
@@ -327,7 +483,8 @@ pub(super) fn arrive(l: &Lines, m: &Moving) -> TokenStream {
         true => quote!(let edge = Edge::new(edge.body(), edge.space() + #of_edge);),
         false => quote!(let edge = edge + #of_edge;),
     };
-    let arrived = arrived(l, m);
+    let arrived = arrived_call(m, &call(l, m, &quote!(at)));
+    let part = m.part(&quote!(work.edges.#name));
     quote! {
         {
             let [first, last] = self.#range();
@@ -335,11 +492,10 @@ pub(super) fn arrive(l: &Lines, m: &Moving) -> TokenStream {
             let made = line::update(
                 self.threads,
                 &mut work.momenta.#name[first..last],
-                &mut work.edges.#name[first..last],
+                #part,
                 |i, edge| {
                     let site = first + i;
                     #added
-                    let acting = self.#kernel(h, site, at, pulls);
                     #arrived
                 },
             );

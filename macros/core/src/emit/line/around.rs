@@ -29,9 +29,13 @@ pub(super) fn around(l: &Lines, moving: &[Moving]) -> TokenStream {
             let value = m.array(quote!(#local));
             quote!(+ #value)
         });
+        let repeated = match m.is_rotation() {
+            true => quote!(at.#name.set(#count + i, at.#name.at(i));),
+            false => quote!(at.#name[#count + i] = at.#name[i] #offset;),
+        };
         Some(quote! {
             for i in 0..#beyond {
-                at.#name[#count + i] = at.#name[i] #offset;
+                #repeated
             }
         })
     });

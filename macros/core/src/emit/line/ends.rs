@@ -193,7 +193,11 @@ fn added(l: &Lines, end: &EndTerm) -> TokenStream {
         };
         let index = place(l, end.last, &f.on, f.site);
         let (before, name) = (number(before), field(&f.on, site));
-        quote!(pulls.#array[#index + #before].#name += #value;)
+        quote! {{
+            let mut pull = pulls.#array.at(#index + #before);
+            pull.#name += #value;
+            pulls.#array.set(#index + #before, pull);
+        }}
     });
     quote! {
         #lets

@@ -218,7 +218,7 @@ fn momenta_of_velocities(l: &Lines) -> Option<TokenStream> {
             let at = #places { #name: #name.to_vec() };
             let _ = &at;
             let mut momenta = ::std::vec![SMatrix::zeros(); #count];
-            line::fill(self.threads, &mut momenta, |site| {
+            line::fill(self.threads, &mut momenta[..], |site| {
                 let velocity = #velocity;
                 #locals
                 #lets
@@ -233,7 +233,7 @@ fn momenta_of_velocities(l: &Lines) -> Option<TokenStream> {
 pub(super) fn momentum(m: &Moving, site: &TokenStream) -> TokenStream {
     let name = m.name();
     match m.is_rotation() {
-        true => quote!(at.#name[#site].matrix().tr_mul(&momenta.#name[#site])),
+        true => quote!(at.#name.at(#site).matrix().tr_mul(&momenta.#name[#site])),
         false => quote!(momenta.#name[#site]),
     }
 }

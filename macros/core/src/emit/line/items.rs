@@ -456,6 +456,7 @@ fn factors(l: &Lines, fields: &mut TokenStream, init: &mut TokenStream, made: &m
             false => quote!(1),
         };
         let quantity = &m.mover.name;
+        let alike = varies.then(|| quote!(line::once(&mut model.#name);));
         made.extend(quote! {
             for site in 0..#count {
                 #(#locals)*
@@ -465,6 +466,7 @@ fn factors(l: &Lines, fields: &mut TokenStream, init: &mut TokenStream, made: &m
                     _ => LineError::Site { at: line::Place { quantity: #quantity, site }, error },
                 })?);
             }
+            #alike
         });
     }
 }

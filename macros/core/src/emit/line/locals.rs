@@ -1,16 +1,15 @@
 //! The locals with which a kernel begins: what its expressions read of parameters and places.
 
-use super::{Lines, number};
+use super::Lines;
 use crate::derive::Outline;
 use crate::emit::expression::{Bindings, program};
-use crate::emit::names::{local_name, variable};
+use crate::emit::names::variable;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Map, Node};
-use crate::lattice::Kind;
 use crate::schedule;
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::quote;
 
 /// A letter as stated: the quantity, and how many sites on from the site of the kernel.
 pub(super) struct Known {
@@ -119,69 +118,13 @@ impl Lines<'_> {
         places: &Places,
         site: &TokenStream,
     ) -> (TokenStream, Bindings) {
-        let mut bindings = Bindings::new();
-        let mut out = TokenStream::new();
-        let mut used = Vec::new();
-        for known in letters {
-            let symbol = s.get(known.letter.symbol);
-            if symbol.role == Role::Step || symbol.role == Role::Velocity {
-                continue;
-            }
-            let field = format_ident!("{}", known.of);
-            let index = match known.on {
-                None => None,
-                Some(0) => Some(site.clone()),
-                Some(n) => {
-                    let n = number(n);
-                    Some(quote!(#site + #n))
-                }
-            };
-            let stated = self.line.lattice.find(&known.of).map(|q| q.kind);
-            let base = local_name(s, &known.of).to_string();
-            let base = match (known.on, known.letter.shift.time) {
-                (None | Some(0), 0) => base,
-                (None | Some(0), _) => format!("{base}_next"),
-                (Some(n), 0) => format!("{base}_{n}"),
-                (Some(n), _) => format!("{base}_{n}_next"),
-            };
-            let name = self.unique(&known.of, &base, &mut used);
-            let value = match (stated, index) {
-                (Some(Kind::Configuration), Some(index)) => {
-                    let at = match known.letter.shift.time {
-                        0 => &places.here,
-                        _ => &places.next,
-                    };
-                    let is_own = |m: &super::Moving| m.mover.name == known.of;
-                    let own = self.moving().find(is_own);
-                    let quaternion = own.is_some_and(|m| m.is_quaternion());
-                    if quaternion && known.stands.turned {
-                        let turn = self.unique(&known.of, &format!("{base}_turn"), &mut used);
-                        out.extend(quote!(let #turn = #at.#field[#index].matrix();));
-                        bindings.bind_rotation(known.letter, turn);
-                    }
-                    if quaternion && known.stands.parted {
-                        let unit = self.unique(&known.of, &format!("{base}_unit"), &mut used);
-                        out.extend(quote!(let #unit = #at.#field[#index].unit_quaternion();));
-                        bindings.bind_quaternion(known.letter, unit);
-                    }
-                    if quaternion && !known.stands.alone {
-                        continue;
-                    }
-                    let rotation = own.is_some_and(|m| m.is_rotation());
-                    match (rotation, symbol.shape.is_scalar()) {
-                        _ if quaternion => quote!(#at.#field[#index].unit_quaternion().matrix()),
-                        (true, _) => quote!(#at.#field[#index].matrix()),
-                        (_, true) => quote!(#at.#field[#index][0]),
-                        _ => quote!(#at.#field[#index]),
-                    }
-                }
-                (Some(_), Some(index)) => quote!(self.parameters.#field[#index]),
-                _ => quote!(self.parameters.#field),
-            };
+        let read = self.read(s, letters);
+        let mut out = read.lets;
+        for one in &read.arguments {
+            let (name, value) = (&one.name, one.value(places, site));
             out.extend(quote!(let #name = #value;));
-            bindings.bind(known.letter, name);
         }
-        (out, bindings)
+        (out, read.bindings)
     }
 
     /// The letters of expressions of one site.

@@ -389,7 +389,7 @@ fn written(
         fields.extend(quote!(#field: Vec<T>,));
         inits.extend(quote!(#field: ::std::vec![T::zero(); #count],));
         opened.extend(quote!(#field: #own,));
-        filled.extend(quote!(line::fill(self.threads, #own, |site| at.#place[site][0]);));
+        filled.extend(quote!(line::fill(self.threads, &mut #own[..], |site| at.#place[site][0]);));
     }
     let backs = plan.arrays.iter().filter_map(|a| {
         let mesh = &declared[a.mesh];
@@ -401,7 +401,7 @@ fn written(
         let (lets, value) = plan.computed(a.seed.as_ref()?);
         let (argument, name) = (plan.argument(mesh), &mesh.name.text);
         Some(quote! {
-            line::fill(self.threads, #seed, |site| { #lets #value });
+            line::fill(self.threads, &mut #seed[..], |site| { #lets #value });
             #f.pull_back(#argument, #seed, #all).map_err(|e| (#name, e))?;
         })
     });
@@ -417,7 +417,9 @@ fn written(
         let count = l.count_of(&f.on);
         let (lets, value) = plan.computed(e);
         let value = m.array(value);
-        sums.extend(quote!(line::fill(self.threads, &mut pulls.#field, |site| { #lets #value });));
+        sums.extend(
+            quote!(line::fill(self.threads, &mut pulls.#field[..], |site| { #lets #value });),
+        );
         collect.extend(quote!(#field: Vec<#t>,));
         zeros.extend(quote!(#field: ::std::vec![SMatrix::zeros(); #count],));
     }

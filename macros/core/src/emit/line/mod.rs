@@ -3,6 +3,7 @@
 //! Takes a [`Line`]; gives Rust items.
 
 mod acting;
+mod arguments;
 mod around;
 mod constraints;
 mod domain;
@@ -14,6 +15,7 @@ mod held;
 mod impulses;
 mod inertia;
 mod items;
+mod lanes;
 mod locals;
 mod meshes;
 mod pulls;
@@ -153,11 +155,38 @@ impl Moving<'_> {
         }
     }
 
-    /// The type of its place.
-    fn place(&self) -> TokenStream {
+    /// The type of the list of its places.
+    fn places(&self) -> TokenStream {
         match self.is_rotation() {
-            true => quote!(line::Attitude<T>),
-            false => self.covector(),
+            true => quote!(line::Attitudes<T>),
+            false => {
+                let covector = self.covector();
+                quote!(Vec<#covector>)
+            }
+        }
+    }
+
+    /// The type of the list of the momenta of its edges.
+    fn edges(&self) -> TokenStream {
+        match self.is_rotation() {
+            true => quote!(line::Edges<T>),
+            false => self.places(),
+        }
+    }
+
+    /// A part of such a list, to be filled.
+    fn part(&self, list: &TokenStream) -> TokenStream {
+        match self.is_rotation() {
+            true => quote!(#list.part(first..last)),
+            false => quote!(&mut #list[first..last]),
+        }
+    }
+
+    /// The value of such a list at a site.
+    fn at(&self, list: &TokenStream, site: &TokenStream) -> TokenStream {
+        match self.is_rotation() {
+            true => quote!(#list.at(#site)),
+            false => quote!(#list[#site]),
         }
     }
 

@@ -1,7 +1,9 @@
 //! Kernels of terms of neighbours: what one term adds to the sites that it touches, evaluated once for
 //! all of them, and the loop over all terms.
 
+use super::arguments::Argument;
 use super::forms::forms;
+use super::lanes::{Windows, are_together};
 use super::locals::{Known, Places, Stands};
 use super::{Lines, number};
 use crate::emit::expression::{Bindings, Writer};
@@ -50,22 +52,26 @@ fn of_pull(l: &Lines, n: usize, pull: &Pull) -> (TokenStream, TokenStream) {
     let part = &l.line.representative;
     let s = &part.d.letters.symbols;
     let t = l.item(&format!("Pull{n}"));
-    let places = l.item("Places");
     let moving: Vec<_> = l.moving().collect();
     let of = |on: &str| moving.iter().find(|m| m.mover.name == on);
     let mut fields = TokenStream::new();
     let mut zeros = TokenStream::new();
+    let mut counts = TokenStream::new();
     for f in &pull.forces {
         let name = field(&f.on, f.site);
         let covector = of(&f.on).map(|m| m.covector());
         fields.extend(quote!(#name: #covector,));
+        counts.extend(of(&f.on).map(|m| {
+            let (rows, cols) = m.dims();
+            quote!(#name: #rows * #cols,)
+        }));
         zeros.extend(quote!(#name: SMatrix::zeros(),));
     }
-    let values = pull.forces.iter().map(|f| expr::parted(s, &f.value));
-    let values: Vec<_> = values.collect();
+    let values = stated_values(l, pull);
     let letters = known(l, &values);
-    let (locals, bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
-    let (lets, results) = computed(l, s, &values, &bindings);
+    let read = l.read(s, &letters);
+    let (locals, arguments) = (&read.lets, read.arguments.iter().map(Argument::declared));
+    let (lets, results) = computed(l, s, &values, &read.bindings);
     let made = pull.forces.iter().zip(results).map(|(f, value)| {
         let name = field(&f.on, f.site);
         let value = of(&f.on).map_or(value.clone(), |m| m.array(value));
@@ -77,6 +83,7 @@ fn of_pull(l: &Lines, n: usize, pull: &Pull) -> (TokenStream, TokenStream) {
     let doc = format!(
         " What `{term}` adds to the {sites} momenta that it touches, the whole of it at one node."
     );
+    let stage = are_together(&values).then(|| stage(l, n, &read.arguments));
     let structure = quote! {
         #[doc = #doc]
         #[derive(Clone, Copy, Debug)]
@@ -85,17 +92,53 @@ fn of_pull(l: &Lines, n: usize, pull: &Pull) -> (TokenStream, TokenStream) {
             /// Nothing.
             fn none() -> Self { Self { #zeros } }
         }
+        ::clebsch::numbered! { #t { #counts } }
+        #stage
     };
     let kernel = quote! {
         #[doc = #doc]
         #[inline(always)]
-        fn #kernel(&self, #step: T, site: usize, at: &#places<T>) -> #t<T> {
+        fn #kernel(&self, #step: T, #(#arguments),*) -> #t<T> {
             #locals
             #lets
             #t { #(#made),* }
         }
     };
     (structure, kernel)
+}
+
+/// How many numbers a term adds.
+pub(super) fn numbers(l: &Lines, pull: &Pull) -> TokenStream {
+    let moving: Vec<_> = l.moving().collect();
+    let counts = pull.forces.iter().filter_map(|f| {
+        let (rows, cols) = moving.iter().find(|m| m.mover.name == f.on)?.dims();
+        Some(quote!(#rows * #cols))
+    });
+    quote!({ #(#counts)+* })
+}
+
+/// What a term adds, of each force.
+fn stated_values(l: &Lines, pull: &Pull) -> Vec<Expr> {
+    let s = &l.line.representative.d.letters.symbols;
+    let values = pull.forces.iter().map(|f| expr::parted(s, &f.value));
+    values.collect()
+}
+
+/// The same of several sites together.
+fn stage(l: &Lines, n: usize, arguments: &[Argument]) -> TokenStream {
+    let (model, places) = (l.item(""), l.item("Places"));
+    let [name, made] = ["PullsTogether", "Pull"].map(|x| l.item(&format!("{x}{n}")));
+    let kernel = format_ident!("pull_{n}");
+    let windows = Windows::of(arguments).stated();
+    let values = arguments.iter().map(Argument::seen);
+    quote! {
+        ::clebsch::in_lanes! {
+            /// What a term adds, of several sites together.
+            #name(model: #model<T>, h: T, at: #places<T>) -> #made<T>
+            #windows
+            |site| Some(model.#kernel(*h, #(#values),*))
+        }
+    }
 }
 
 /// Expressions of neighbours in the form in which they are computed.
@@ -206,20 +249,34 @@ fn sweep(l: &Lines) -> TokenStream {
         let count = l.count_field(pull.label);
         let of_line = l.line.lattice.line == Some(pull.label);
         let range = range_of(l, pull.label, pull.from, pull.to);
+        let wanted = stated_values(l, pull);
+        let letters = known(l, &wanted);
+        let read = l.read(&part.d.letters.symbols, &letters);
+        let at = Places::of_node();
+        let values = read.arguments.iter().map(|a| a.value(&at, &quote!(site)));
+        let stage = l.item(&format!("PullsTogether{}", n + 1));
+        let (loop_over_sites, together) = match are_together(&wanted) {
+            true => (
+                quote!(line::fill_in_lanes),
+                quote!(, &#stage { model: self, h: &#step, at, first }),
+            ),
+            false => (quote!(line::fill), TokenStream::new()),
+        };
         let kernel = quote! {
-            line::fill(self.threads, &mut pulls.#field[first + #front..last + #front], |i| {
-                self.#field(#step, first + i, at)
-            });
+            #loop_over_sites(self.threads, pulls.#field.part(first + #front..last + #front), |i| {
+                let site = first + i;
+                self.#field(#step, #(#values),*)
+            } #together);
         };
         let beside = quote! {
-            pulls.#field[..first + #front].fill(#t::none());
-            pulls.#field[last + #front..].fill(#t::none());
+            pulls.#field.part(0..first + #front).fill(#t::none());
+            pulls.#field.part(last + #front..pulls.#field.len()).fill(#t::none());
         };
         let around = match of_line && l.line.lattice.periodic.is_some() {
             true => quote! {
                 if self.is_ring() {
                     for i in (0..#front).rev() {
-                        pulls.#field[i] = pulls.#field[i + self.sites.#count];
+                        pulls.#field.set(i, pulls.#field.at(i + self.sites.#count));
                     }
                 } else {
                     #beside

@@ -264,22 +264,26 @@ fn response(b: &Bodies) -> TokenStream {
 fn kicked(l: &Lines, m: &Moving) -> TokenStream {
     let (name, range) = (m.name(), range_name(m));
     if !l.is_reached(&m.mover.name) {
-        return quote!(work.kicked.#name.copy_from_slice(&work.edges.#name););
+        return match m.is_rotation() {
+            true => quote!(work.kicked.#name.keep(0..work.edges.#name.len(), &work.edges.#name);),
+            false => quote!(work.kicked.#name.copy_from_slice(&work.edges.#name);),
+        };
     }
     let kernel = format_ident!("reacted_{}", m.mover.name);
     let value = match m.is_rotation() {
         true => quote! {
-            let edge = edges[site];
-            Edge::new(edge.body() + kick, edge.space() + at.#name[site].matrix() * kick)
+            let edge = edges.at(site);
+            Edge::new(edge.body() + kick, edge.space() + at.#name.at(site).matrix() * kick)
         },
         false => quote!(edges[site] + kick),
     };
+    let part = m.part(&quote!(work.kicked.#name));
     quote! {
         {
             let [first, last] = self.#range();
             let (at, edges, here, impulses) = (&state.places, &work.edges.#name, &work.here, &work.impulses);
             let _ = at;
-            line::fill(self.threads, &mut work.kicked.#name[first..last], |i| {
+            line::fill(self.threads, #part, |i| {
                 let site = first + i;
                 let kick = self.#kernel(site, here, impulses);
                 #value
@@ -436,11 +440,12 @@ pub(super) fn project(l: &Lines) -> TokenStream {
         let kernel = format_ident!("reacted_{}", m.mover.name);
         let value = match m.is_rotation() {
             true => quote! {
-                let turned = at.#name[site].matrix() * kick;
+                let turned = at.#name.at(site).matrix() * kick;
                 Some((momenta[site] - turned, Edge::new(edge.body() - kick, edge.space() - turned)))
             },
             false => quote!(Some((momenta[site] - kick, edge - kick))),
         };
+        let edges = m.part(&quote!(work.edges.#name));
         quote! {
             {
                 let [first, last] = self.#range();
@@ -449,7 +454,7 @@ pub(super) fn project(l: &Lines) -> TokenStream {
                 let _ = line::update(
                     self.threads,
                     &mut state.momenta.#name[first..last],
-                    &mut work.edges.#name[first..last],
+                    #edges,
                     |i, edge| {
                         let site = first + i;
                         let kick = self.#kernel(site, there, impulses);
@@ -531,7 +536,7 @@ pub(super) fn admitted(l: &Lines) -> TokenStream {
         let (name, range) = (m.name(), range_name(m));
         let kernel = format_ident!("reacted_{}", m.mover.name);
         let value = match m.is_rotation() {
-            true => quote!(momenta[site] - at.#name[site].matrix() * kick),
+            true => quote!(momenta[site] - at.#name.at(site).matrix() * kick),
             false => quote!(momenta[site] - kick),
         };
         quote! {

@@ -30,7 +30,7 @@ pub(super) fn kernels(l: &Lines, b: &Bodies) -> TokenStream {
                 #[inline(always)]
                 fn #response(&self, #h: T, site: usize, from: &#places<T>, to: &#places<T>) -> #ty {
                     let factor = &self.#factor[site.min(self.#factor.len() - 1)];
-                    line::turned_by(factor, #h, &from.#field[site], &to.#field[site])
+                    line::turned_by(factor, #h, &from.#field.at(site), &to.#field.at(site))
                 }
             }
         }

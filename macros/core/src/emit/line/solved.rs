@@ -1,6 +1,8 @@
 //! Kernels of the velocities of a site: from the momentum that leaves a node to the place at the next
 //! one.
 
+use super::arguments::Argument;
+use super::lanes::Windows;
 use super::locals::{Places, step};
 use super::velocities::{as_array, taken_apart, width};
 use super::{Lines, Moving, number};
@@ -54,10 +56,12 @@ pub(super) fn solved(l: &Lines) -> TokenStream {
     let name = l.item("");
     let each = l.moving().map(|m| match &m.mover.how {
         How::Rotation { .. } => rotation(l, m),
-        How::Field { form, .. } => field(l, m, &[&form.left, &form.right]),
+        How::Field { .. } => field(l, m),
         How::System { .. } | How::Newton { .. } => TokenStream::new(),
     });
     let each: Vec<TokenStream> = each.collect();
+    let stages = l.moving().filter_map(|m| stage(l, &m));
+    let stages: Vec<TokenStream> = stages.collect();
     let systems = l.systems();
     let systems = systems.iter().map(|(_, n, members)| {
         let by_newton = members
@@ -68,7 +72,7 @@ pub(super) fn solved(l: &Lines) -> TokenStream {
             _ => system(l, *n, members),
         }
     });
-    quote!(impl<T: Real> #name<T> { #(#each)* #(#systems)* })
+    quote!(impl<T: Real> #name<T> { #(#each)* #(#systems)* } #(#stages)*)
 }
 
 /// The name of the kernel of a velocity.
@@ -85,8 +89,8 @@ fn rotation(l: &Lines, m: Moving) -> TokenStream {
         m.mover.name
     );
     let turn = match m.is_quaternion() {
-        true => quote!(edge.turn_in_quaternions(factor, #h, &at.#name[site].unit_quaternion())),
-        false => quote!(edge.turn(factor, #h, &at.#name[site].rotation())),
+        true => quote!(edge.turn_in_quaternions(factor, #h, &at.#name.at(site).unit_quaternion())),
+        false => quote!(edge.turn(factor, #h, &at.#name.at(site).rotation())),
     };
     quote! {
         #[doc = #doc]
@@ -101,24 +105,26 @@ fn rotation(l: &Lines, m: Moving) -> TokenStream {
     }
 }
 
-fn field(l: &Lines, m: Moving, factors: &[&Expr; 2]) -> TokenStream {
-    let d = m.outline();
-    let s = &d.letters.symbols;
-    let (kernel, places, name, t) = (kernel(&m), l.item("Places"), m.name(), m.covector());
-    let h = step(d);
-    let values: Vec<Expr> = factors.iter().map(|e| d.defined(e)).collect();
-    let (lets, results) = l.computed(s, &l.of_site(d, &values), &values);
-    let [left, right] = results.as_slice() else {
+fn field(l: &Lines, m: Moving) -> TokenStream {
+    let How::Field { form, .. } = &m.mover.how else {
         return TokenStream::new();
     };
-    let form = match &m.mover.how {
-        How::Field { form, .. } => form,
-        _ => return TokenStream::new(),
+    let factors = [&form.left, &form.right];
+    let d = m.outline();
+    let s = &d.letters.symbols;
+    let (kernel, t) = (kernel(&m), m.covector());
+    let h = step(d);
+    let values: Vec<Expr> = factors.iter().map(|e| d.defined(e)).collect();
+    let read = l.read(s, &l.of_site(d, &values));
+    let (lets, results) = l.program(s, &values, &read.bindings);
+    let (known_once, arguments) = (&read.lets, read.arguments.iter().map(Argument::declared));
+    let [left, right] = results.as_slice() else {
+        return TokenStream::new();
     };
     // The array around a number is made where it is solved for.
     let known = match m.is_number() {
         true => quote!(edge[0]),
-        false => quote!(*edge),
+        false => quote!(edge),
     };
     let index = m.mover.index;
     let solution = linear_solution(m.d(), index, form, left.clone(), known, right.clone());
@@ -129,11 +135,79 @@ fn field(l: &Lines, m: Moving, factors: &[&Expr; 2]) -> TokenStream {
     quote! {
         #[doc = #doc]
         #[inline(always)]
-        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, edge: &#t) -> Result<#t, StepCause> {
+        fn #kernel(&self, #h: T, place: #t, edge: #t, #(#arguments),*) -> Result<#t, StepCause> {
+            #known_once
             #lets
             match #solution {
-                Ok(velocity) => Ok(at.#name[site] + velocity.matrix()),
+                Ok(velocity) => Ok(place + velocity.matrix()),
                 Err(e) => Err(StepCause::Singular(e)),
+            }
+        }
+    }
+}
+
+/// What the kernel of a field reads of its site beside place and edge.
+fn reads_of_field(l: &Lines, m: &Moving) -> Option<Vec<Argument>> {
+    let How::Field { form, .. } = &m.mover.how else {
+        return None;
+    };
+    let d = m.outline();
+    let values = [d.defined(&form.left), d.defined(&form.right)];
+    Some(l.read(&d.letters.symbols, &l.of_site(d, &values)).arguments)
+}
+
+/// The same of several sites together: an item of its own.
+fn stage(l: &Lines, m: &Moving) -> Option<TokenStream> {
+    let arguments = reads_of_field(l, m)?;
+    let (model, places, t) = (l.item(""), l.item("Places"), m.covector());
+    let (name, kernel, edges) = (stage_name(l, m), kernel(m), m.edges());
+    let own = Argument::place(m, m.name());
+    let mut windows = Windows::of(&arguments);
+    windows.add(own.window(), own.list(), 0);
+    windows.add(format_ident!("leaving"), quote!(*edges), 0);
+    let (windows, place) = (windows.stated(), own.seen());
+    let values = arguments.iter().map(Argument::seen);
+    Some(quote! {
+        ::clebsch::in_lanes! {
+            /// Where edges end, of several sites together.
+            #name(model: #model<T>, h: T, at: #places<T>, edges: #edges) -> #t
+            #windows
+            |site| model.#kernel(*h, #place, leaving.at(site), #(#values),*).ok()
+        }
+    })
+}
+
+fn stage_name(l: &Lines, m: &Moving) -> Ident {
+    l.item(&format!("MovedTogether_{}", m.mover.name))
+}
+
+/// The loop over the sites of a configuration whose velocity is found site by site.
+pub(super) fn loop_over_sites(l: &Lines, m: &Moving) -> TokenStream {
+    let (name, kernel) = (m.name(), kernel(m));
+    let part = m.part(&quote!(work.places.#name));
+    match reads_of_field(l, m) {
+        Some(arguments) => {
+            let (at, stage) = (Places::of_node(), stage_name(l, m));
+            let values = arguments.iter().map(|a| a.value(&at, &quote!(site)));
+            quote! {
+                line::try_fill_in_lanes(self.threads, #part, |i| {
+                    let site = first + i;
+                    self.#kernel(h, at.#name[site], edges[site], #(#values),*)
+                }, &#stage { model: self, h: &h, at, edges, first })
+            }
+        }
+        None if m.is_quaternion() => quote! {
+            line::try_fill(self.threads, #part, |i| self.#kernel(h, first + i, at, &edges.at(first + i)))
+        },
+        None => {
+            let factor = format_ident!("factor_{}", m.mover.name);
+            quote! {
+                line::try_fill_in_lanes(
+                    self.threads,
+                    #part,
+                    |i| self.#kernel(h, first + i, at, &edges.at(first + i)),
+                    &line::Turning { at: &at.#name, edges, bodies: &self.#factor, h, first },
+                )
             }
         }
     }
@@ -249,7 +323,7 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
         let momentum = results.next().map(|(_, value)| m.array(value));
         fill.extend(quote!(made.fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&(#momentum));));
         let edge = match m.is_rotation() {
-            true => quote!(edges.#name[site].body()),
+            true => quote!(edges.#name.at(site).body()),
             false => quote!(edges.#name[site]),
         };
         given.extend(quote!(known.fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&#edge);));

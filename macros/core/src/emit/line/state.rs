@@ -41,12 +41,13 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
         }
     });
     let names: Vec<_> = moving.iter().map(|m| m.name()).collect();
-    let place_types = moving.iter().map(|m| m.place());
+    let place_lists = moving.iter().map(|m| m.places());
     let momentum_types = moving.iter().map(|m| m.covector());
-    let edge_types = moving.iter().map(|m| m.edge());
+    let edge_lists = moving.iter().map(|m| m.edges());
     let pull_fields = (1..=l.line.pulls.len()).map(|n| {
         let (field, t) = (format_ident!("pull_{n}"), l.item(&format!("Pull{n}")));
-        quote!(#field: Vec<#t<T>>)
+        let count = l.line.pulls.get(n - 1).map(|p| super::pulls::numbers(l, p));
+        quote!(#field: line::Columns<#t<T>, T, #count>)
     });
     let velocities = l.systems().into_iter().map(|(field, n, _)| {
         let n = number(n);
@@ -70,7 +71,7 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
                 quote! {
                     #[doc = #doc]
                     pub fn #name(&self) -> impl ExactSizeIterator<Item = #element> {
-                        self.places.#name[..self.#count].iter().map(|x| x.#told())
+                        self.places.#name.iter().take(self.#count).map(|x| x.#told())
                     }
                     /// Its momenta at this node, in the space frame.
                     pub fn #spatial(&self) -> impl ExactSizeIterator<Item = SpatialMomentum<T>> {
@@ -78,7 +79,7 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
                     }
                     /// Its momenta at this node, in body frames.
                     pub fn #body(&self) -> impl ExactSizeIterator<Item = BodyMomentum<T>> {
-                        let both = self.momenta.#name.iter().zip(&self.places.#name);
+                        let both = self.momenta.#name.iter().zip(self.places.#name.iter());
                         both.map(|(m, x)| BodyMomentum(x.matrix().tr_mul(m)))
                     }
                 }
@@ -135,7 +136,7 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
 
         /// Places of all sites, those beyond the last one included.
         #[derive(Clone, Debug, PartialEq)]
-        struct #places<T> { #(#names: Vec<#place_types>),* }
+        struct #places<T> { #(#names: #place_lists),* }
 
         /// Momenta of all sites, of rotations in the space frame.
         #[derive(Clone, Debug, PartialEq)]
@@ -143,7 +144,7 @@ pub(super) fn state(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
 
         /// Momenta of the edges that begin at a node.
         #[derive(Clone, Debug)]
-        struct #edges<T> { #(#names: Vec<#edge_types>),* }
+        struct #edges<T> { #(#names: #edge_lists),* }
 
         /// What neighbours add at a node.
         #[derive(Clone, Debug)]

@@ -31,6 +31,10 @@ pub(super) fn step(
         .iter()
         .map(|m| super::items::words(m.lone.sites))
         .collect();
+    let last_places = moving.iter().zip(&counts).map(|(m, count)| {
+        let name = m.name();
+        m.at(&quote!(state.places.#name), &quote!(#count - 1))
+    });
     let ranges = moving.iter().map(|m| range(l, m));
     let checks = moving.iter().map(|m| check(l, m));
     let beyond = number(l.line.beyond());
@@ -76,7 +80,7 @@ pub(super) fn step(
         .map(|m| {
             let own = m.name();
             match m.is_rotation() {
-                true => quote!(::std::vec![Edge::new(SVector::zeros(), SVector::zeros()); state.momenta.#own.len()]),
+                true => quote!(line::Columns::filled(Edge::new(SVector::zeros(), SVector::zeros()), state.momenta.#own.len())),
                 false => quote!(state.momenta.#own.clone()),
             }
         })
@@ -88,7 +92,7 @@ pub(super) fn step(
         );
         let front = number(super::pulls::front(pull));
         let count = l.count_field(pull.label);
-        quote!(#field: ::std::vec![#t::none(); self.sites.#count + 1 + 2 * #front])
+        quote!(#field: line::Columns::filled(#t::none(), self.sites.#count + 1 + 2 * #front))
     });
     let mesh_values = of_meshes.map(|m| &m.zeros);
     let meshes_made = of_meshes.map(|_| quote!(meshes: self.meshes()?,));
@@ -198,7 +202,7 @@ pub(super) fn step(
                 };
                 #agreed
                 #(
-                    let last = state.places.#names[#counts - 1];
+                    let last = #last_places;
                     state.places.#names.resize(#counts + #beyond, last);
                 )*
                 self.around(&mut state.places);
@@ -410,12 +414,10 @@ fn solve(l: &Lines, m: &Moving, edges: &Ident) -> TokenStream {
     let count = l.count_of(text);
     let fill = match m.system() {
         None => {
-            let kernel = solved::kernel(m);
+            let loop_over_sites = solved::loop_over_sites(l, m);
             quote! {
                 let (at, edges) = (&state.places, &work.#edges.#name);
-                let made = line::try_fill(self.threads, &mut work.places.#name[first..last], |i| {
-                    self.#kernel(h, first + i, at, &edges[first + i])
-                });
+                let made = #loop_over_sites;
                 if let Err((i, cause)) = made {
                     return Err(self.refused(state, h, line::Place { quantity: #text, site: first + i }, cause));
                 }
@@ -433,26 +435,36 @@ fn solve(l: &Lines, m: &Moving, edges: &Ident) -> TokenStream {
             let (rows, row) = (number(m.components()), number(before));
             let moved = match m.is_rotation() {
                 true => {
-                    quote!(at.#name[first + i].moved(&velocity[first + i].fixed_rows::<3>(#row).into_owned()))
+                    quote!(at.#name.at(first + i).moved(&velocity[first + i].fixed_rows::<3>(#row).into_owned()))
                 }
                 false => {
                     quote!(at.#name[first + i] + velocity[first + i].fixed_rows::<#rows>(#row))
                 }
             };
+            let part = m.part(&quote!(work.places.#name));
             quote! {
                 let (at, velocity) = (&state.places, &work.#field);
-                line::fill(self.threads, &mut work.places.#name[first..last], |i| {
+                line::fill(self.threads, #part, |i| {
                     #moved
                 });
             }
         }
     };
+    let kept = match m.is_rotation() {
+        true => quote! {
+            work.places.#name.keep(0..first, &state.places.#name);
+            work.places.#name.keep(last..#count, &state.places.#name);
+        },
+        false => quote! {
+            work.places.#name[..first].copy_from_slice(&state.places.#name[..first]);
+            work.places.#name[last..#count].copy_from_slice(&state.places.#name[last..#count]);
+        },
+    };
     quote! {
         {
             let [first, last] = self.#range();
             #fill
-            work.places.#name[..first].copy_from_slice(&state.places.#name[..first]);
-            work.places.#name[last..#count].copy_from_slice(&state.places.#name[last..#count]);
+            #kept
         }
     }
 }
@@ -479,14 +491,16 @@ fn solve_system(field: &Ident, members: &[Moving], edges: &Ident) -> TokenStream
 
 /// The momentum of the edge that begins at a state.
 fn begin(l: &Lines, m: &Moving) -> TokenStream {
-    let (name, kernel) = (m.name(), acting::kernel(m));
+    let name = m.name();
+    let acted = acting::call(l, m, &quote!(state.places));
+    let part = m.part(&quote!(work.edges.#name));
     let after = match l.acting(m) {
         Acting::Halves => quote!(acting * T::from_f64(0.5)),
         Acting::Both => quote!(acting[1]),
     };
     let edge = match m.is_rotation() {
         true => quote! {
-            let turn = state.places.#name[site].matrix();
+            let turn = state.places.#name.at(site).matrix();
             Edge::new(turn.tr_mul(&momentum) + after, momentum + turn * after)
         },
         false => quote!(momentum + after),
@@ -496,9 +510,9 @@ fn begin(l: &Lines, m: &Moving) -> TokenStream {
         {
             let [first, last] = self.#range();
             let pulls = &work.pulls;
-            line::fill(self.threads, &mut work.edges.#name[first..last], |i| {
+            line::fill(self.threads, #part, |i| {
                 let site = first + i;
-                let acting = self.#kernel(h, site, &state.places, pulls);
+                let acting = #acted;
                 let (momentum, after) = (state.momenta.#name[site], #after);
                 #edge
             });

@@ -204,7 +204,7 @@ pub(super) fn added(l: &Lines, m: &Moving) -> Option<TokenStream> {
     let name = m.name();
     Some(match m.is_rotation() {
         true => {
-            quote!(+ state.places.#name[site].matrix() * work.tied[site].fixed_rows::<3>(#row))
+            quote!(+ state.places.#name.at(site).matrix() * work.tied[site].fixed_rows::<3>(#row))
         }
         false => quote!(+ work.tied[site].fixed_rows::<#rows>(#row)),
     })

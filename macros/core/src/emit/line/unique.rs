@@ -8,7 +8,7 @@ use quote::format_ident;
 use std::collections::BTreeSet;
 
 /// What kernels and the functions around them call their own.
-const KERNEL: [&str; 60] = [
+const KERNEL: [&str; 63] = [
     "a",
     "acting",
     "after",
@@ -37,6 +37,7 @@ const KERNEL: [&str; 60] = [
     "kick",
     "known",
     "last",
+    "leaving",
     "line",
     "list",
     "made",
@@ -46,6 +47,8 @@ const KERNEL: [&str; 60] = [
     "momentum",
     "newton",
     "parts",
+    "place",
+    "pull",
     "pulls",
     "quantity",
     "rate",

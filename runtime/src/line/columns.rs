@@ -1,0 +1,353 @@
+//! Lists with a value of several numbers for each site, the same number of all sites side by side: loops over sites read and
+//! write several sites at a time. Takes values; gives each of them back, or a part of the list to be filled.
+
+use super::Attitude;
+use crate::saved::{Saved, Sites, Words};
+use crate::solvers::moser_veselov::Edge;
+use crate::{Real, Rotation};
+use core::marker::PhantomData;
+use core::ops::Range;
+use nalgebra::{Matrix3, SMatrix};
+
+/// A value made of `N` numbers.
+pub trait Numbered<const N: usize>: Copy + Send + Sync {
+    /// Its numbers.
+    type Number: Real;
+
+    /// All of them.
+    fn numbers(&self) -> [Self::Number; N];
+
+    /// The value that has them.
+    fn of(numbers: [Self::Number; N]) -> Self;
+}
+
+/// A list with a value of `N` numbers for each site.
+#[derive(Clone, Debug)]
+pub struct Columns<V, T, const N: usize> {
+    /// One column after the other.
+    data: Vec<T>,
+    /// From where a column begins to where the next one does.
+    stride: usize,
+    len: usize,
+    of: PhantomData<V>,
+}
+
+/// A list with the attitude of each site.
+pub type Attitudes<T> = Columns<Attitude<T>, T, 13>;
+
+/// A list with the momenta of the edge that leaves each site.
+pub type Edges<T> = Columns<Edge<T>, T, 6>;
+
+/// From so many numbers on, columns do not begin at the same place of a page of memory: a processor that compares addresses by
+/// their place in a page takes what it writes to one column for what it is to read of another.
+const PAGE: usize = 512;
+
+/// Where in its page a column begins behind the one before.
+const SHIFT: usize = 40;
+
+fn stride_of(len: usize) -> usize {
+    match len < PAGE {
+        true => len,
+        false => (len - SHIFT).next_multiple_of(PAGE) + SHIFT,
+    }
+}
+
+impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
+    /// The same value at so many sites.
+    pub fn filled(value: V, len: usize) -> Self {
+        let stride = stride_of(len);
+        let mut data = Vec::with_capacity(N * stride);
+        for number in value.numbers() {
+            data.extend(core::iter::repeat_n(number, stride));
+        }
+        Self {
+            data,
+            stride,
+            len,
+            of: PhantomData,
+        }
+    }
+
+    /// The number of sites.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there is no site.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The value at a site.
+    ///
+    /// # Panics
+    /// Where there is no such site.
+    #[inline(always)]
+    pub fn at(&self, site: usize) -> V {
+        assert!(site < self.len, "site {site} of {}", self.len);
+        let mut numbers = [T::zero(); N];
+        for (k, number) in numbers.iter_mut().enumerate() {
+            *number = self.data[k * self.stride + site];
+        }
+        V::of(numbers)
+    }
+
+    /// Puts another value at a site.
+    ///
+    /// # Panics
+    /// Where there is no such site.
+    #[inline(always)]
+    pub fn set(&mut self, site: usize, value: V) {
+        assert!(site < self.len, "site {site} of {}", self.len);
+        for (k, number) in value.numbers().into_iter().enumerate() {
+            self.data[k * self.stride + site] = number;
+        }
+    }
+
+    /// All values.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = V> + '_ {
+        (0..self.len).map(|site| self.at(site))
+    }
+
+    /// So many sites: the first of those there are, then copies of a value.
+    pub fn resize(&mut self, len: usize, value: V) {
+        let mut other = Self::filled(value, len);
+        other.keep(0..self.len.min(len), self);
+        *self = other;
+    }
+
+    /// Takes over the values of some sites from another list.
+    pub fn keep(&mut self, sites: Range<usize>, from: &Self) {
+        for k in 0..N {
+            let (own, other) = (k * self.stride, k * from.stride);
+            self.data[own + sites.start..own + sites.end]
+                .copy_from_slice(&from.data[other + sites.start..other + sites.end]);
+        }
+    }
+
+    /// The column of each number from a site on, `M` sites long.
+    #[inline(always)]
+    pub(super) fn columns<const M: usize>(&self, first: usize) -> [&[T; M]; N] {
+        let mut out = [const { &[] as &[T] }; N];
+        for (k, column) in out.iter_mut().enumerate() {
+            *column = &self.data[k * self.stride..][..self.len];
+        }
+        out.map(|column| of_length(&column[first..first + M]))
+    }
+
+    /// Some sites, to be filled.
+    pub fn part(&mut self, sites: Range<usize>) -> ColumnsPart<'_, V, T, N> {
+        assert!(sites.end <= self.len, "sites {sites:?} of {}", self.len);
+        let mut rest = self.data.as_mut_slice();
+        let columns = core::array::from_fn(|_| {
+            let (own, others) = core::mem::take(&mut rest).split_at_mut(self.stride);
+            rest = others;
+            &mut own[sites.clone()]
+        });
+        ColumnsPart {
+            columns,
+            of: PhantomData,
+        }
+    }
+}
+
+/// One value for all, where all are the same.
+pub fn once<V: PartialEq>(list: &mut Vec<V>) {
+    if list.windows(2).all(|two| two[0] == two[1]) {
+        list.truncate(1);
+    }
+}
+
+/// A slice of known length as an array.
+#[inline(always)]
+pub(super) fn of_length<T, const M: usize>(list: &[T]) -> &[T; M] {
+    match list.try_into() {
+        Ok(array) => array,
+        Err(_) => unreachable!("a slice of that length"),
+    }
+}
+
+/// Some sites of a list, to be filled.
+pub struct ColumnsPart<'a, V, T, const N: usize> {
+    pub(super) columns: [&'a mut [T]; N],
+    pub(super) of: PhantomData<V>,
+}
+
+impl<V: Numbered<N, Number = T>, T: Real, const N: usize> ColumnsPart<'_, V, T, N> {
+    /// The same value at all sites.
+    pub fn fill(mut self, value: V) {
+        for (column, number) in self.columns.iter_mut().zip(value.numbers()) {
+            column.fill(number);
+        }
+    }
+}
+
+impl<V: Numbered<N, Number = T>, T: Real, const N: usize> FromIterator<V> for Columns<V, T, N> {
+    fn from_iter<I: IntoIterator<Item = V>>(values: I) -> Self {
+        let values: Vec<V> = values.into_iter().collect();
+        let Some(first) = values.first() else {
+            return Self {
+                data: Vec::new(),
+                stride: 0,
+                len: 0,
+                of: PhantomData,
+            };
+        };
+        let mut out = Self::filled(*first, values.len());
+        for (site, value) in values.into_iter().enumerate() {
+            out.set(site, value);
+        }
+        out
+    }
+}
+
+impl<V, T: PartialEq, const N: usize> PartialEq for Columns<V, T, N> {
+    fn eq(&self, other: &Self) -> bool {
+        let is_same = |k: usize| {
+            let [own, others] = [self, other].map(|x| &x.data[k * x.stride..k * x.stride + x.len]);
+            own == others
+        };
+        self.len == other.len && (0..N).all(is_same)
+    }
+}
+
+/// Site by site, as a list of the values is.
+impl<V: Numbered<N, Number = f64> + Saved, const N: usize> Sites for Columns<V, f64, N> {
+    fn sites(&mut self, words: &mut Words) {
+        words.same(self.len as u64);
+        for site in 0..self.len {
+            let mut value = self.at(site);
+            value.words(words);
+            self.set(site, value);
+        }
+    }
+}
+
+impl<T: Real> Numbered<13> for Attitude<T> {
+    type Number = T;
+
+    #[inline(always)]
+    fn numbers(&self) -> [T; 13] {
+        let [a, b, c, d] = self.rotation().quaternion();
+        let [[e, f, g], [h, i, j], [k, l, m]] = self.matrix().data.0;
+        [a, b, c, d, e, f, g, h, i, j, k, l, m]
+    }
+
+    #[inline(always)]
+    fn of([a, b, c, d, e, f, g, h, i, j, k, l, m]: [T; 13]) -> Self {
+        let matrix = Matrix3::new(e, h, k, f, i, l, g, j, m);
+        Self::kept(Rotation::from_unit([a, b, c, d]), matrix)
+    }
+}
+
+impl<T: Real> Numbered<6> for Edge<T> {
+    type Number = T;
+
+    #[inline(always)]
+    fn numbers(&self) -> [T; 6] {
+        let ([[a, b, c]], [[d, e, f]]) = (self.body().data.0, self.space().data.0);
+        [a, b, c, d, e, f]
+    }
+
+    #[inline(always)]
+    fn of([a, b, c, d, e, f]: [T; 6]) -> Self {
+        Self::new([a, b, c].into(), [d, e, f].into())
+    }
+}
+
+/// [`Numbered`] for a struct of matrices, whose rows times columns are named.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! numbered {
+    ($name:ident { $($field:ident: $count:expr),* $(,)? }) => {
+        impl<T: $crate::Real> $crate::line::Numbered<{ 0 $(+ $count)* }> for $name<T> {
+            type Number = T;
+
+            #[inline(always)]
+            fn numbers(&self) -> [T; 0 $(+ $count)*] {
+                let mut out = [<T as $crate::num_traits::Zero>::zero(); 0 $(+ $count)*];
+                let mut at = 0;
+                $(
+                    for (k, own) in self.$field.as_slice().iter().enumerate() {
+                        out[at + k] = *own;
+                    }
+                    at += $count;
+                )*
+                let _ = at;
+                out
+            }
+
+            #[inline(always)]
+            fn of(numbers: [T; 0 $(+ $count)*]) -> Self {
+                let mut at = 0;
+                $(
+                    let $field = $crate::line::array_from(&numbers, at);
+                    at += $count;
+                )*
+                let _ = at;
+                Self { $($field),* }
+            }
+        }
+    };
+}
+
+/// The matrix whose numbers stand, column after column, from some place on.
+#[doc(hidden)]
+#[inline(always)]
+pub fn array_from<T: Real, const R: usize, const C: usize>(
+    numbers: &[T],
+    at: usize,
+) -> SMatrix<T, R, C> {
+    let mut out = SMatrix::<T, R, C>::zeros();
+    for (k, number) in out.as_mut_slice().iter_mut().enumerate() {
+        *number = numbers[at + k];
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Columns, Edges, once};
+    use crate::line::Part;
+    use crate::solvers::moser_veselov::Edge;
+    use nalgebra::Vector3;
+
+    fn edge(i: usize) -> Edge<f64> {
+        let x = i as f64;
+        Edge::new(
+            Vector3::new(x, x + 0.1, x + 0.2),
+            Vector3::new(-x, 1.0, 2.0 * x),
+        )
+    }
+
+    #[test]
+    fn a_list_in_columns_is_the_list_of_its_values() {
+        for count in [1, 5, 511, 512, 513, 2000] {
+            let mut list: Edges<f64> = (0..count).map(edge).collect();
+            assert_eq!(list.len(), count);
+            assert!(list.iter().eq((0..count).map(edge)));
+            list.resize(count + 3, edge(7));
+            assert!(list.iter().eq((0..count).chain([7; 3]).map(edge)));
+            let mut other = Columns::filled(edge(0), count + 3);
+            assert_ne!(other, list);
+            other.keep(0..count + 3, &list);
+            assert_eq!(other, list);
+            let (mut before, mut behind) = other.part(0..count).split(count / 2);
+            assert_eq!(before.count() + behind.count(), count);
+            if count > 1 {
+                before.put(0, edge(90));
+            }
+            behind.put(0, edge(91));
+            assert_eq!(behind.get(0), edge(91));
+            assert_eq!(other.at(count / 2), edge(91));
+        }
+    }
+
+    #[test]
+    fn what_is_the_same_everywhere_is_kept_once() {
+        let (mut same, mut other) = (vec![2.0; 5], vec![2.0, 2.0, 3.0]);
+        once(&mut same);
+        once(&mut other);
+        assert_eq!((same.len(), other.len()), (1, 3));
+    }
+}
