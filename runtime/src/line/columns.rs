@@ -128,11 +128,16 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
     /// The column of each number from a site on, `M` sites long.
     #[inline(always)]
     pub(super) fn columns<const M: usize>(&self, first: usize) -> [&[T; M]; N] {
+        // A loop: `map` of an array is not always inlined.
         let mut out = [const { &[] as &[T] }; N];
         for (k, column) in out.iter_mut().enumerate() {
             *column = &self.data[k * self.stride..][..self.len];
         }
-        out.map(|column| of_length(&column[first..first + M]))
+        let mut known = [of_length(&out[0][first..first + M]); N];
+        for (known, column) in known.iter_mut().zip(&out) {
+            *known = of_length(&column[first..first + M]);
+        }
+        known
     }
 
     /// Some sites, to be filled.

@@ -4,6 +4,7 @@
 use super::columns::{Columns, Numbered, of_length};
 use crate::Real;
 use nalgebra::SMatrix;
+use num_traits::Zero;
 
 /// A list of which `M` sites can be read together.
 pub trait Windowed<const M: usize> {
@@ -29,7 +30,12 @@ impl<V: Numbered<N>, const N: usize, const M: usize> Window<'_, V, N, M> {
     /// The value at a site.
     #[inline(always)]
     pub fn at(&self, site: usize) -> V {
-        V::of(self.columns.map(|column| column[site - self.first]))
+        // A loop: `map` of an array is not always inlined.
+        let mut numbers = [V::Number::zero(); N];
+        for (number, column) in numbers.iter_mut().zip(&self.columns) {
+            *number = column[site - self.first];
+        }
+        V::of(numbers)
     }
 }
 
