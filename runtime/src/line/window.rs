@@ -56,23 +56,17 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize, const M: usize> Window
     }
 }
 
-/// Sites of a list of matrices, their numbers copied.
-pub struct Matrices<T, const R: usize, const C: usize, const M: usize> {
-    numbers: [[[T; M]; R]; C],
+/// Sites of a list of matrices.
+pub struct Matrices<'a, T, const R: usize, const C: usize, const M: usize> {
+    list: &'a [SMatrix<T, R, C>; M],
     first: usize,
 }
 
-impl<T: Real, const R: usize, const C: usize, const M: usize> Matrices<T, R, C, M> {
+impl<T: Real, const R: usize, const C: usize, const M: usize> Matrices<'_, T, R, C, M> {
     /// The value at a site.
     #[inline(always)]
     pub fn at(&self, site: usize) -> SMatrix<T, R, C> {
-        let mut value = SMatrix::zeros();
-        for (own, column) in value.data.0.iter_mut().zip(&self.numbers) {
-            for (own, numbers) in own.iter_mut().zip(column) {
-                *own = numbers[site - self.first];
-            }
-        }
-        value
+        self.list[site - self.first]
     }
 }
 
@@ -80,21 +74,16 @@ impl<T: Real, const R: usize, const C: usize, const M: usize> Windowed<M>
     for Vec<SMatrix<T, R, C>>
 {
     type Window<'a>
-        = Matrices<T, R, C, M>
+        = Matrices<'a, T, R, C, M>
     where
         Self: 'a;
 
     #[inline(always)]
-    fn window(&self, first: usize) -> Matrices<T, R, C, M> {
-        let mut numbers = [[[T::zero(); M]; R]; C];
-        for (k, value) in self[first..first + M].iter().enumerate() {
-            for (own, column) in value.data.0.iter().zip(&mut numbers) {
-                for (own, numbers) in own.iter().zip(column) {
-                    numbers[k] = *own;
-                }
-            }
+    fn window(&self, first: usize) -> Matrices<'_, T, R, C, M> {
+        Matrices {
+            list: of_length(&self[first..first + M]),
+            first,
         }
-        Matrices { numbers, first }
     }
 }
 
