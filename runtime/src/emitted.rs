@@ -365,8 +365,7 @@ impl<T: Real, const R: usize, const C: usize> Compared for SMatrix<T, R, C> {
 #[inline]
 #[must_use]
 pub fn all_finite<T: Real, const R: usize, const C: usize>(a: &SMatrix<T, R, C>) -> bool {
-    // One branch at the end: none of the tests is worth one of its own.
-    a.iter().fold(true, |all, x| all & x.is_finite())
+    line::Finite::is_finite(a)
 }
 
 /// Copies `values` to the front of `out` and returns what is left of it.

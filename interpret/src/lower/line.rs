@@ -26,11 +26,8 @@ impl<T: Lowered> Lower<'_, '_, T> {
         };
         let (list, from, to) = match part {
             Some((list, r)) => {
-                let mut end = |e: &Option<Box<syn::Expr>>| match e {
-                    Some(e) => self.expression(e, None).map(Some),
-                    None => Ok(None),
-                };
-                (list, end(&r.start)?, end(&r.end)?)
+                let [from, to] = self.bounds(r)?;
+                (list, from, to)
             }
             None => (inner, None, None),
         };
@@ -39,6 +36,15 @@ impl<T: Lowered> Lower<'_, '_, T> {
             true => Ok(Slice { list, from, to }),
             false => Err(refuse(e)),
         }
+    }
+
+    /// The two ends of a range, where they are given.
+    fn bounds(&mut self, r: &syn::ExprRange) -> Result<[Option<Code<T>>; 2], Refused> {
+        let mut end = |e: &Option<Box<syn::Expr>>| match e {
+            Some(e) => self.expression(e, None).map(Some),
+            None => Ok(None),
+        };
+        Ok([end(&r.start)?, end(&r.end)?])
     }
 
     /// A part of a list as a value.
@@ -158,17 +164,17 @@ impl<T: Lowered> Lower<'_, '_, T> {
                     self.special("slice", all, m)?
                 }
                 ("keep", [sites, other]) => {
-                    let r = range(sites).ok_or_else(|| refuse(m))?;
-                    let mut end = |e: &Option<Box<syn::Expr>>| match e {
-                        Some(e) => self.expression(e, None),
-                        None => Ok(Code::Constant(Value::None)),
-                    };
-                    let [from, to] = [end(&r.start)?, end(&r.end)?];
-                    let own = self.expression(&m.receiver, None)?;
+                    let [from, to] = self.bounds(range(sites).ok_or_else(|| refuse(m))?)?;
+                    let list = self.expression(&m.receiver, None)?;
                     let other = self.expression(other, None)?;
-                    let other = vec![other, from.clone(), to.clone()];
-                    let part = self.special("slice", other, m)?;
-                    self.special("copy_slice", vec![own, from, to, part], m)?
+                    let other = Slice {
+                        list: other,
+                        from: from.clone(),
+                        to: to.clone(),
+                    };
+                    let mut all = ends(Slice { list, from, to });
+                    all.push(self.special("slice", ends(other), m)?);
+                    self.special("copy_slice", all, m)?
                 }
                 ("copy_from_slice", [other]) => {
                     let mut all = ends(self.slice(&m.receiver)?);

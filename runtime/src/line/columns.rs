@@ -129,15 +129,16 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
     #[inline(always)]
     pub(super) fn columns<const M: usize>(&self, first: usize) -> [&[T; M]; N] {
         // A loop: `map` of an array is not always inlined.
-        let mut out = [const { &[] as &[T] }; N];
-        for (k, column) in out.iter_mut().enumerate() {
-            *column = &self.data[k * self.stride..][..self.len];
+        let mut all = [self.column(0, first); N];
+        for (k, column) in all.iter_mut().enumerate() {
+            *column = self.column(k, first);
         }
-        let mut known = [of_length(&out[0][first..first + M]); N];
-        for (known, column) in known.iter_mut().zip(&out) {
-            *known = of_length(&column[first..first + M]);
-        }
-        known
+        all
+    }
+
+    #[inline(always)]
+    fn column<const M: usize>(&self, k: usize, first: usize) -> &[T; M] {
+        of_length(&self.data[k * self.stride..][..self.len][first..first + M])
     }
 
     /// Some sites, to be filled.

@@ -46,6 +46,7 @@ pub trait Finite {
 impl<T: Real, const R: usize, const C: usize> Finite for SMatrix<T, R, C> {
     #[inline(always)]
     fn is_finite(&self) -> bool {
+        // One branch at the end: none of the tests is worth one of its own.
         let each = self.as_slice().iter();
         each.fold(true, |all, x| all & x.is_finite())
     }
@@ -213,14 +214,14 @@ fn changed_singly<P: InColumns, K: InColumns>(
     update_part(first, out, kept, sites, change)
 }
 
-/// A [`Stage`] or a [`Change`]: what it reads, of which lists it sees how many sites, and the value of one site.
+/// A [`Stage`] or a [`Change`]: what it reads, of which lists how many sites beyond its own, and the value of one site.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! in_lanes {
     (
         $(#[$about:meta])*
         $name:ident($($read:ident: $of:ty),*) -> $one:ty
-        { $($seen:ident: $m:tt = $list:expr),* }
+        { $($seen:ident: $on:tt = $list:expr),* }
         |$site:ident| $body:expr
     ) => {
         $crate::in_lanes! { @read $(#[$about])* $name $($read: $of),* }
@@ -231,7 +232,7 @@ macro_rules! in_lanes {
             fn lanes<P: $crate::line::InColumns<One = $one>>(&self, first: usize, out: &mut P::Lanes) -> bool {
                 let Self { $($read,)* first: before } = *self;
                 let first = first + before;
-                $(let $seen = $crate::line::Windowed::<{ $m }>::window(&$list, first);)*
+                $(let $seen = $crate::line::Windowed::<{ $crate::line::LANES + $on }>::window(&$list, first);)*
                 let mut all = true;
                 for lane in 0..$crate::line::LANES {
                     let $site = first + lane;
@@ -247,7 +248,7 @@ macro_rules! in_lanes {
     (
         $(#[$about:meta])*
         $name:ident($($read:ident: $of:ty),*) -> $one:ty, $kept:ty
-        { $($seen:ident: $m:tt = $list:expr),* }
+        { $($seen:ident: $on:tt = $list:expr),* }
         |$site:ident, $edge:ident| $body:expr
     ) => {
         $crate::in_lanes! { @read $(#[$about])* $name $($read: $of),* }
@@ -261,7 +262,7 @@ macro_rules! in_lanes {
             ) -> bool {
                 let Self { $($read,)* first: before } = *self;
                 let first = first + before;
-                $(let $seen = $crate::line::Windowed::<{ $m }>::window(&$list, first);)*
+                $(let $seen = $crate::line::Windowed::<{ $crate::line::LANES + $on }>::window(&$list, first);)*
                 let mut all = true;
                 for lane in 0..$crate::line::LANES {
                     let ($site, $edge) = (first + lane, K::lane(kept, lane));
@@ -301,14 +302,14 @@ mod tests {
     crate::in_lanes! {
         /// Differences.
         Differences(row: Row<T>) -> SMatrix<T, 2, 1>
-        { at: 17 = row.list }
+        { at: 1 = row.list }
         |site| Some((at.at(site + 1) - at.at(site)) * row.factor)
     }
 
     crate::in_lanes! {
         /// Values, of what is kept and a difference.
         Shifted(row: Row<T>) -> SMatrix<T, 2, 1>, SMatrix<T, 2, 1>
-        { at: 17 = row.list }
+        { at: 1 = row.list }
         |site, kept| (kept + at.at(site), kept + at.at(site + 1) * row.factor)
     }
 

@@ -34,4 +34,4 @@ pub use stamp::Stamp;
 pub use sweep::{Threads, fill, sum, total, try_each, try_fill, update};
 pub use turn::turn_of;
 pub use turning::Turning;
-pub use window::{Matrices, Numbers, Window, Windowed};
+pub use window::{Stretch, Window, Windowed};

@@ -3,7 +3,6 @@
 
 use super::columns::{Columns, Numbered, of_length};
 use crate::Real;
-use nalgebra::SMatrix;
 use num_traits::Zero;
 
 /// A list of which `M` sites can be read together.
@@ -56,60 +55,29 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize, const M: usize> Window
     }
 }
 
-/// Sites of a list of matrices.
-pub struct Matrices<'a, T, const R: usize, const C: usize, const M: usize> {
-    list: &'a [SMatrix<T, R, C>; M],
+/// Sites of a list of values that stand one after the other.
+pub struct Stretch<'a, V, const M: usize> {
+    list: &'a [V; M],
     first: usize,
 }
 
-impl<T: Real, const R: usize, const C: usize, const M: usize> Matrices<'_, T, R, C, M> {
+impl<V: Copy, const M: usize> Stretch<'_, V, M> {
     /// The value at a site.
     #[inline(always)]
-    pub fn at(&self, site: usize) -> SMatrix<T, R, C> {
+    pub fn at(&self, site: usize) -> V {
         self.list[site - self.first]
     }
 }
 
-impl<T: Real, const R: usize, const C: usize, const M: usize> Windowed<M>
-    for Vec<SMatrix<T, R, C>>
-{
+impl<V: Copy, const M: usize> Windowed<M> for Vec<V> {
     type Window<'a>
-        = Matrices<'a, T, R, C, M>
+        = Stretch<'a, V, M>
     where
         Self: 'a;
 
     #[inline(always)]
-    fn window(&self, first: usize) -> Matrices<'_, T, R, C, M> {
-        Matrices {
-            list: of_length(&self[first..first + M]),
-            first,
-        }
-    }
-}
-
-/// Sites of a list of numbers.
-pub struct Numbers<'a, T, const M: usize> {
-    list: &'a [T; M],
-    first: usize,
-}
-
-impl<T: Copy, const M: usize> Numbers<'_, T, M> {
-    /// The number at a site.
-    #[inline(always)]
-    pub fn at(&self, site: usize) -> T {
-        self.list[site - self.first]
-    }
-}
-
-impl<T: Real, const M: usize> Windowed<M> for Vec<T> {
-    type Window<'a>
-        = Numbers<'a, T, M>
-    where
-        Self: 'a;
-
-    #[inline(always)]
-    fn window(&self, first: usize) -> Numbers<'_, T, M> {
-        Numbers {
+    fn window(&self, first: usize) -> Stretch<'_, V, M> {
+        Stretch {
             list: of_length(&self[first..first + M]),
             first,
         }

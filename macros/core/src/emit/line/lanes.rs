@@ -7,9 +7,6 @@ use crate::expr::{Expr, Function, Node};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-/// The number of sites that are computed together, as the runtime has it (`line::LANES`).
-const LANES: usize = 16;
-
 /// Whether values of several sites are computed together. What calls a function of the library of mathematics is computed one
 /// after the other anyway, and wide registers would have to be put away around each call.
 pub(super) fn are_together(values: &[Expr]) -> bool {
@@ -49,11 +46,11 @@ impl Windows {
         }
     }
 
-    /// As the runtime's `in_lanes!` takes them.
+    /// As the runtime's `in_lanes!` takes them: how many sites each is read beyond those that are computed.
     pub(super) fn stated(&self) -> TokenStream {
         let each = self.all.iter().map(|(name, list, on)| {
-            let sites = number(LANES + on);
-            quote!(#name: #sites = #list)
+            let on = number(*on);
+            quote!(#name: #on = #list)
         });
         quote!({ #(#each),* })
     }

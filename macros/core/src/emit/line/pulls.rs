@@ -31,12 +31,14 @@ pub(super) fn pulls(l: &Lines) -> TokenStream {
     let name = l.item("");
     let mut structs = TokenStream::new();
     let mut kernels = TokenStream::new();
+    let mut loops = TokenStream::new();
     for (n, pull) in l.line.pulls.iter().enumerate() {
-        let (one, kernel) = of_pull(l, n + 1, pull);
+        let [one, kernel, over_sites] = of_pull(l, n + 1, pull);
         structs.extend(one);
         kernels.extend(kernel);
+        loops.extend(over_sites);
     }
-    let all = sweep(l);
+    let all = sweep(l, &loops);
     let ends = super::ends::ends(l);
     quote! {
         #structs
@@ -48,7 +50,8 @@ pub(super) fn pulls(l: &Lines) -> TokenStream {
     }
 }
 
-fn of_pull(l: &Lines, n: usize, pull: &Pull) -> (TokenStream, TokenStream) {
+/// The structure of a term, its kernel, and the loop over all such terms.
+fn of_pull(l: &Lines, n: usize, pull: &Pull) -> [TokenStream; 3] {
     let part = &l.line.representative;
     let s = &part.d.letters.symbols;
     let t = l.item(&format!("Pull{n}"));
@@ -67,7 +70,8 @@ fn of_pull(l: &Lines, n: usize, pull: &Pull) -> (TokenStream, TokenStream) {
         }));
         zeros.extend(quote!(#name: SMatrix::zeros(),));
     }
-    let values = stated_values(l, pull);
+    let values = pull.forces.iter().map(|f| expr::parted(s, &f.value));
+    let values: Vec<_> = values.collect();
     let letters = known(l, &values);
     let read = l.read(s, &letters);
     let (locals, arguments) = (&read.lets, read.arguments.iter().map(Argument::declared));
@@ -83,7 +87,9 @@ fn of_pull(l: &Lines, n: usize, pull: &Pull) -> (TokenStream, TokenStream) {
     let doc = format!(
         " What `{term}` adds to the {sites} momenta that it touches, the whole of it at one node."
     );
-    let stage = are_together(&values).then(|| stage(l, n, &read.arguments));
+    let together = are_together(&values);
+    let over_sites = over_sites(l, n, pull, &read.arguments, together);
+    let stage = together.then(|| stage(l, n, &read.arguments));
     let structure = quote! {
         #[doc = #doc]
         #[derive(Clone, Copy, Debug)]
@@ -104,7 +110,7 @@ fn of_pull(l: &Lines, n: usize, pull: &Pull) -> (TokenStream, TokenStream) {
             #t { #(#made),* }
         }
     };
-    (structure, kernel)
+    [structure, kernel, over_sites]
 }
 
 /// How many numbers a term adds.
@@ -115,13 +121,6 @@ pub(super) fn numbers(l: &Lines, pull: &Pull) -> TokenStream {
         Some(quote!(#rows * #cols))
     });
     quote!({ #(#counts)+* })
-}
-
-/// What a term adds, of each force.
-fn stated_values(l: &Lines, pull: &Pull) -> Vec<Expr> {
-    let s = &l.line.representative.d.letters.symbols;
-    let values = pull.forces.iter().map(|f| expr::parted(s, &f.value));
-    values.collect()
 }
 
 /// The same of several sites together.
@@ -236,62 +235,68 @@ pub(super) fn range_of(l: &Lines, label: usize, from: usize, to: isize) -> Token
     }
 }
 
-/// The sweep over all terms, and the repetition along a ring.
-fn sweep(l: &Lines) -> TokenStream {
-    let (places, pulls) = (l.item("Places"), l.item("Pulls"));
-    let part = &l.line.representative;
-    let step = super::locals::step(&part.d);
-    let mut out = TokenStream::new();
-    for (n, pull) in l.line.pulls.iter().enumerate() {
-        let field = format_ident!("pull_{}", n + 1);
-        let t = l.item(&format!("Pull{}", n + 1));
-        let front = number(front(pull));
-        let count = l.count_field(pull.label);
-        let of_line = l.line.lattice.line == Some(pull.label);
-        let range = range_of(l, pull.label, pull.from, pull.to);
-        let wanted = stated_values(l, pull);
-        let letters = known(l, &wanted);
-        let read = l.read(&part.d.letters.symbols, &letters);
-        let at = Places::of_node();
-        let values = read.arguments.iter().map(|a| a.value(&at, &quote!(site)));
-        let stage = l.item(&format!("PullsTogether{}", n + 1));
-        let (loop_over_sites, together) = match are_together(&wanted) {
-            true => (
-                quote!(line::fill_in_lanes),
-                quote!(, &#stage { model: self, h: &#step, at, first }),
-            ),
-            false => (quote!(line::fill), TokenStream::new()),
-        };
-        let kernel = quote! {
-            #loop_over_sites(self.threads, pulls.#field.part(first + #front..last + #front), |i| {
+/// The loop over all terms of a kind, and the repetition along a ring.
+fn over_sites(
+    l: &Lines,
+    n: usize,
+    pull: &Pull,
+    arguments: &[Argument],
+    together: bool,
+) -> TokenStream {
+    let step = super::locals::step(&l.line.representative.d);
+    let field = format_ident!("pull_{n}");
+    let [t, stage] = ["Pull", "PullsTogether"].map(|x| l.item(&format!("{x}{n}")));
+    let front = number(front(pull));
+    let count = l.count_field(pull.label);
+    let of_line = l.line.lattice.line == Some(pull.label);
+    let range = range_of(l, pull.label, pull.from, pull.to);
+    let at = Places::of_node();
+    let values = arguments.iter().map(|a| a.value(&at, &quote!(site)));
+    let (fill, together) = match together {
+        true => (
+            quote!(line::fill_in_lanes),
+            quote!(, &#stage { model: self, h: &#step, at, first }),
+        ),
+        false => (quote!(line::fill), TokenStream::new()),
+    };
+    let beside = quote! {
+        pulls.#field.part(0..first + #front).fill(#t::none());
+        pulls.#field.part(last + #front..pulls.#field.len()).fill(#t::none());
+    };
+    let around = match of_line && l.line.lattice.periodic.is_some() {
+        true => quote! {
+            if self.is_ring() {
+                for i in (0..#front).rev() {
+                    pulls.#field.set(i, pulls.#field.at(i + self.sites.#count));
+                }
+            } else {
+                #beside
+            }
+        },
+        false => beside,
+    };
+    quote! {
+        {
+            #range
+            #fill(self.threads, pulls.#field.part(first + #front..last + #front), |i| {
                 let site = first + i;
                 self.#field(#step, #(#values),*)
             } #together);
-        };
-        let beside = quote! {
-            pulls.#field.part(0..first + #front).fill(#t::none());
-            pulls.#field.part(last + #front..pulls.#field.len()).fill(#t::none());
-        };
-        let around = match of_line && l.line.lattice.periodic.is_some() {
-            true => quote! {
-                if self.is_ring() {
-                    for i in (0..#front).rev() {
-                        pulls.#field.set(i, pulls.#field.at(i + self.sites.#count));
-                    }
-                } else {
-                    #beside
-                }
-            },
-            false => beside,
-        };
-        out.extend(quote!({ #range #kernel #around }));
+            #around
+        }
     }
+}
+
+/// The sweep over all terms.
+fn sweep(l: &Lines, loops: &TokenStream) -> TokenStream {
+    let (places, pulls) = (l.item("Places"), l.item("Pulls"));
+    let step = super::locals::step(&l.line.representative.d);
     quote! {
         /// What neighbours and ends add at these places.
         #[inline]
         fn pulled(&self, #step: T, at: &#places<T>, pulls: &mut #pulls<T>) {
             let _ = (#step, at, &pulls);
-            #out
+            #loops
             self.ended(#step, at, pulls);
         }
     }
