@@ -134,7 +134,7 @@ fn directions(point: &Point, l: Letter) -> Option<Vec<Matrix>> {
 
 fn moved(base: &Matrix, directions: &[Matrix], by: &[u64]) -> Matrix {
     let pairs = directions.iter().zip(by);
-    pairs.fold(base.clone(), |m, (d, t)| m.plus(&d.scaled(*t)))
+    pairs.fold(base.clone(), |m, (d, t)| m.plus(&d.clone().scaled(*t)))
 }
 
 /// Moves the letter so that the equation holds; the directions in which it still may move.
@@ -155,7 +155,7 @@ fn solve(point: &mut Point, e: &Expr, l: Letter, directions: &[Matrix]) -> Optio
             .collect::<Vec<_>>()
     };
     let here = at(point, &unit(n, 0))?;
-    let minus = here.scaled(negate(1));
+    let minus = here.clone().scaled(negate(1));
     let columns: Vec<Matrix> = (0..n)
         .map(|i| Some(at(point, &unit(i, 1))?.plus(&minus)))
         .collect::<Option<_>>()?;
@@ -166,7 +166,9 @@ fn solve(point: &mut Point, e: &Expr, l: Letter, directions: &[Matrix]) -> Optio
     if at(point, &t)? == predicted {
         let (particular, null) = affine(&columns, &minus)?;
         point.set(l, moved(&base, directions, &particular));
-        let left = null.iter().map(|v| moved(&base.scaled(0), directions, v));
+        let left = null
+            .iter()
+            .map(|v| moved(&base.clone().scaled(0), directions, v));
         return Some(left.collect());
     }
     if here.data.len() != 1 {

@@ -8,128 +8,20 @@ pub(crate) use super::prime::{add, inverse, mul, negate, rational};
 use super::rational::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Symbols;
-use crate::expr::{self, Expr, Function, Letter, Map, Node, Part};
+use crate::expr::{self, Expr, Function, Hashed, Letter, Map, Node, Part};
 use crate::work;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
+
+mod matrix;
+
+pub(crate) use matrix::Matrix;
 
 /// Points at which an identity must hold.
 pub(crate) const POINTS: u64 = 6;
 
 /// Attempts to find a point where every root exists and every divisor is non-zero.
 pub(crate) const ATTEMPTS: u64 = 100;
-
-/// A matrix over the field, row by row.
-#[derive(Clone, PartialEq, Debug)]
-pub(crate) struct Matrix {
-    pub(crate) rows: usize,
-    pub(crate) cols: usize,
-    pub(crate) data: Vec<u64>,
-}
-
-impl Matrix {
-    pub(crate) fn from_fn(rows: usize, cols: usize, f: impl Fn(usize, usize) -> u64) -> Matrix {
-        let data = (0..rows * cols).map(|k| f(k / cols, k % cols)).collect();
-        Matrix { rows, cols, data }
-    }
-
-    pub(crate) fn number(x: u64) -> Matrix {
-        Matrix {
-            rows: 1,
-            cols: 1,
-            data: vec![x],
-        }
-    }
-
-    pub(crate) fn identity(n: usize) -> Matrix {
-        Matrix::from_fn(n, n, |i, j| u64::from(i == j))
-    }
-
-    #[inline(always)]
-    pub(crate) fn at(&self, i: usize, j: usize) -> u64 {
-        self.data.get(i * self.cols + j).copied().unwrap_or(0)
-    }
-
-    pub(crate) fn plus(&self, b: &Matrix) -> Matrix {
-        Matrix::from_fn(self.rows, self.cols, |i, j| add(self.at(i, j), b.at(i, j)))
-    }
-
-    pub(crate) fn scaled(&self, x: u64) -> Matrix {
-        Matrix::from_fn(self.rows, self.cols, |i, j| mul(x, self.at(i, j)))
-    }
-
-    pub(crate) fn times(&self, b: &Matrix) -> Matrix {
-        if self.data.len() == 1 {
-            return b.scaled(self.data[0]);
-        }
-        if b.data.len() == 1 {
-            return self.scaled(b.data[0]);
-        }
-        work::take(self.data.len() * b.cols);
-        Matrix::from_fn(self.rows, b.cols, |i, j| {
-            (0..self.cols).fold(0, |s, k| add(s, mul(self.at(i, k), b.at(k, j))))
-        })
-    }
-
-    pub(crate) fn transposed(&self) -> Matrix {
-        Matrix::from_fn(self.cols, self.rows, |i, j| self.at(j, i))
-    }
-
-    /// Inverse and determinant; `None` for a singular matrix.
-    pub(crate) fn inverted(&self) -> Option<(Matrix, u64)> {
-        let n = self.rows;
-        work::take(2 * n * n * n);
-        let (mut a, mut b, mut det) = (self.clone(), Matrix::identity(n), 1);
-        for c in 0..n {
-            let p = (c..n).find(|r| a.at(*r, c) != 0)?;
-            if p != c {
-                det = negate(det);
-                for k in 0..n {
-                    a.data.swap(c * n + k, p * n + k);
-                    b.data.swap(c * n + k, p * n + k);
-                }
-            }
-            let d = a.at(c, c);
-            det = mul(det, d);
-            let d = inverse(d)?;
-            for k in 0..n {
-                a.data[c * n + k] = mul(a.at(c, k), d);
-                b.data[c * n + k] = mul(b.at(c, k), d);
-            }
-            for r in (0..n).filter(|r| *r != c) {
-                let f = negate(a.at(r, c));
-                for k in 0..n {
-                    a.data[r * n + k] = add(a.at(r, k), mul(f, a.at(c, k)));
-                    b.data[r * n + k] = add(b.at(r, k), mul(f, b.at(c, k)));
-                }
-            }
-        }
-        Some((b, det))
-    }
-
-    pub(crate) fn zeros(rows: usize, cols: usize) -> Matrix {
-        Matrix::from_fn(rows, cols, |_, _| 0)
-    }
-
-    /// Whether every entry is zero.
-    pub(crate) fn vanishes(&self) -> bool {
-        self.data.iter().all(|x| *x == 0)
-    }
-
-    /// `tr(self^T b)`, for matrices of one shape.
-    pub(crate) fn pairing(&self, b: &Matrix) -> u64 {
-        let pairs = self.data.iter().zip(&b.data);
-        pairs.fold(0, |s, (x, y)| add(s, mul(*x, *y)))
-    }
-
-    /// `tr(self^T b)` with the entries of `b` that are not zero, 1 or -1: as many terms as entries, however
-    /// large the matrix is.
-    pub(crate) fn paired(&self, b: &[(usize, usize, i64)]) -> u64 {
-        b.iter().fold(0, |sum, (i, j, x)| {
-            let own = self.data.get(i * self.cols + j).copied().unwrap_or(0);
-            add(sum, if *x < 0 { negate(own) } else { own })
-        })
-    }
-}
 
 /// What a dimension that has only a name stands for.
 #[derive(Clone, Copy)]
@@ -147,6 +39,17 @@ pub(crate) struct Point<'a> {
     pub(super) seed: u64,
     size: Size,
     given: BTreeMap<Letter, Matrix>,
+    found: Found,
+}
+
+/// Values at a point, so that what expressions share is evaluated once. A copy begins without any.
+#[derive(Default)]
+struct Found(RefCell<Hashed<Matrix>>);
+
+impl Clone for Found {
+    fn clone(&self) -> Found {
+        Found::default()
+    }
 }
 
 impl<'a> Point<'a> {
@@ -161,12 +64,14 @@ impl<'a> Point<'a> {
                 _ => Size::Largest,
             },
             given: BTreeMap::new(),
+            found: Found::default(),
         }
     }
 
     /// The same point with this size for every dimension that has only a name.
     pub(crate) fn sized(mut self, size: usize) -> Point<'a> {
         self.size = Size::Given(size);
+        self.found = Found::default();
         self
     }
 
@@ -181,6 +86,8 @@ impl<'a> Point<'a> {
     /// Gives a letter its value.
     pub(crate) fn set(&mut self, letter: Letter, value: Matrix) {
         self.given.insert(letter, value);
+        let found = self.found.0.get_mut();
+        found.retain(|e, _| !expr::may_contain(e, letter));
     }
 
     /// The symbols of the letters.
@@ -245,6 +152,15 @@ impl<'a> Point<'a> {
 
     /// The value, or nothing where a divisor vanishes or a root does not exist.
     pub(crate) fn value(&self, e: &Expr) -> Option<Matrix> {
+        if let Some(value) = self.found.0.borrow().get(e) {
+            return Some(value.clone());
+        }
+        let value = self.evaluated(e)?;
+        self.found.0.borrow_mut().insert(e.clone(), value.clone());
+        Some(value)
+    }
+
+    fn evaluated(&self, e: &Expr) -> Option<Matrix> {
         let go = |x: &Expr| self.value(x);
         let number = |x: &Expr| self.value(x).map(|m| m.at(0, 0));
         let Shape { rows, cols } = e.shape();
@@ -257,7 +173,7 @@ impl<'a> Point<'a> {
             Node::Constant(c) => Matrix::number(mix(c.bits())),
             Node::Letter(l) => self.letter(*l)?,
             Node::Identity(_) => Matrix::identity(rows),
-            Node::Zero(_) => Matrix::from_fn(rows, cols, |_, _| 0),
+            Node::Zero(_) => Matrix::zeros(rows, cols),
             Node::Unit(_, axis) => Matrix::from_fn(rows, 1, |i, _| u64::from(i == *axis as usize)),
             Node::Inclusion(_, at) => {
                 let at = *at as usize;
@@ -266,9 +182,7 @@ impl<'a> Point<'a> {
             Node::Sum(list) => {
                 let mut total = Matrix::zeros(rows, cols);
                 for x in list {
-                    let part = go(x)?;
-                    let entries = total.data.iter_mut().zip(&part.data);
-                    entries.for_each(|(t, x)| *t = add(*t, *x));
+                    total = total.plus(&go(x)?);
                 }
                 total
             }
@@ -320,8 +234,13 @@ impl<'a> Point<'a> {
             Node::Part(part, a) => {
                 let a = go(a)?;
                 match part {
-                    Part::Symmetric => a.plus(&a.transposed()).scaled(HALF),
-                    Part::Skew => a.plus(&a.transposed().scaled(negate(1))).scaled(HALF),
+                    Part::Symmetric => a.clone().transposed().plus(&a).scaled(HALF),
+                    Part::Skew => a
+                        .clone()
+                        .transposed()
+                        .scaled(negate(1))
+                        .plus(&a)
+                        .scaled(HALF),
                     Part::Diagonal => {
                         Matrix::from_fn(rows, cols, |i, j| if i == j { a.at(i, i) } else { 0 })
                     }
@@ -437,7 +356,7 @@ impl<'a> Point<'a> {
 /// Cayley's transform `(1 - A)^-1 (1 + A)` of a skew matrix: a rotation.
 fn cayley(a: &Matrix) -> Option<Matrix> {
     let id = Matrix::identity(a.rows);
-    let (below, _) = id.plus(&a.scaled(negate(1))).inverted()?;
+    let below = a.clone().scaled(negate(1)).plus(&id).inverted()?.0;
     Some(below.times(&id.plus(a)))
 }
 
@@ -479,9 +398,10 @@ fn rotation([w, x, y, z]: &[u64; 4]) -> Matrix {
         cols: 1,
         data: vec![*x, *y, *z],
     };
-    let square = v.transposed().times(&v).at(0, 0);
+    let row = v.clone().transposed();
+    let square = row.times(&v).at(0, 0);
     let trace = add(mul(*w, *w), negate(square));
-    let outer = v.times(&v.transposed()).scaled(2);
+    let outer = v.times(&row).scaled(2);
     let turn = hat(&v).scaled(mul(2, *w));
     Matrix::identity(3).scaled(trace).plus(&outer).plus(&turn)
 }

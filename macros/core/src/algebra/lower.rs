@@ -10,10 +10,38 @@ use super::{Algebra, Sense};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Function, Map, Node, Parity, Part};
+use std::rc::Rc;
+
+/// Nodes of an expression from which on its normal form is kept: that of a smaller one is found as fast as it is looked up.
+const SHARED: u32 = 3;
 
 impl Algebra<'_> {
     /// The normal form of an expression.
     pub fn lower(&self, e: &Expr) -> Poly {
+        Rc::unwrap_or_clone(self.lowered(e))
+    }
+
+    /// The same, shared with those who ask again.
+    pub(super) fn lowered(&self, e: &Expr) -> Rc<Poly> {
+        if e.size() < SHARED {
+            return Rc::new(self.normal_form(e));
+        }
+        let forms = &self.lowered[usize::from(self.blocks.get())];
+        if let Some((known, work)) = forms.borrow().get(e) {
+            // What is refused does not depend on what was asked before: the work counts again.
+            self.spend(*work);
+            return known.clone();
+        }
+        let before = self.work.get();
+        let form = Rc::new(self.normal_form(e));
+        if !self.exhausted() {
+            let work = usize::try_from(self.work.get() - before).unwrap_or(usize::MAX);
+            forms.borrow_mut().insert(e.clone(), (form.clone(), work));
+        }
+        form
+    }
+
+    fn normal_form(&self, e: &Expr) -> Poly {
         let shape = e.shape();
         if self.exhausted() {
             return Poly::zero(shape);
@@ -62,63 +90,63 @@ impl Algebra<'_> {
             Node::Sum(terms) => {
                 let mut out = Poly::zero(shape);
                 for t in terms {
-                    self.accumulate(&mut out, &self.lower(t), Rational::ONE);
+                    self.accumulate(&mut out, &self.lowered(t), Rational::ONE);
                 }
                 out
             }
-            Node::Neg(a) => self.scaled(&self.lower(a), Rational::MINUS_ONE),
+            Node::Neg(a) => self.scaled(&self.lowered(a), Rational::MINUS_ONE),
             Node::Product(factors) => {
-                let mut lowered = factors.iter().map(|f| self.lower(f));
-                let first = lowered
-                    .next()
-                    .unwrap_or_else(|| Poly::constant(shape, Rational::ONE));
-                lowered.fold(first, |acc, f| self.mul(&acc, &f))
+                let mut factors = factors.iter();
+                let Some(first) = factors.next() else {
+                    return Poly::constant(shape, Rational::ONE);
+                };
+                factors.fold(self.lower(first), |acc, f| self.mul(&acc, &self.lowered(f)))
             }
             Node::Quotient(a, b) => {
                 let inverse = self.lower_power(b, Rational::MINUS_ONE);
-                self.mul(&self.lower(a), &inverse)
+                self.mul(&self.lowered(a), &inverse)
             }
             Node::Power(a, q) => self.lower_power(a, *q),
-            Node::Transpose(a) => self.transpose(&self.lower(a)),
+            Node::Transpose(a) => self.transpose(&self.lowered(a)),
             Node::Inverse(a) => match a.node() {
                 Node::Letter(at) if self.in_blocks(*at) => self.rigid_motion(*at, true),
-                _ => self.inverse(&self.lower(a), a),
+                _ => self.inverse(&self.lowered(a), a),
             },
-            Node::Trace(a) => self.trace_poly(&self.lower(a)),
-            Node::Det(a) => self.det(&self.lower(a), a),
+            Node::Trace(a) => self.trace_poly(&self.lowered(a)),
+            Node::Det(a) => self.det(&self.lowered(a), a),
             // Of a letter by its inverse, which cancels against the letter. Sums have too many
             // forms for that, and skew matrices no inverse: their polynomial is decided.
             Node::Adjugate(a) if !self.is_plain_letter(a) => {
                 self.lower(&expr::adjugate_polynomial(a))
             }
             Node::Adjugate(a) => {
-                let lowered = self.lower(a);
+                let lowered = self.lowered(a);
                 let det = self.det(&lowered, a);
                 self.mul(&det, &self.inverse(&lowered, a))
             }
             Node::Dot(a, b) => {
-                let row = self.transpose(&self.lower(a));
-                self.mul(&row, &self.lower(b))
+                let row = self.transpose(&self.lowered(a));
+                self.mul(&row, &self.lowered(b))
             }
             Node::Cross(a, b) => {
-                let hat = self.linear(&self.lower(a), Shape::square(Dim::Fixed(3)), |w| {
+                let hat = self.linear(&self.lowered(a), Shape::square(Dim::Fixed(3)), |w| {
                     self.hat_word(w)
                 });
-                self.mul(&hat, &self.lower(b))
+                self.mul(&hat, &self.lowered(b))
             }
-            Node::Hat(v) => self.linear(&self.lower(v), shape, |w| self.hat_word(w)),
-            Node::Vee(a) => self.linear(&self.lower(a), shape, |w| self.vee_word(w)),
-            Node::Part(part, a) => self.part(*part, &self.lower(a), a),
+            Node::Hat(v) => self.linear(&self.lowered(v), shape, |w| self.hat_word(w)),
+            Node::Vee(a) => self.linear(&self.lowered(a), shape, |w| self.vee_word(w)),
+            Node::Part(part, a) => self.part(*part, &self.lowered(a), a),
             Node::Call(function, a) => self.call(*function, self.lower(a), a),
             Node::Given(a) => self.functional(e, a, None),
             Node::PullBack(a, which, seed) => self.functional(e, a, Some((*which, seed))),
             Node::Map(map, a) => match map {
-                Map::Real => self.scaled(&self.trace_poly(&self.lower(a)), Rational::QUARTER),
-                Map::Imaginary => self.linear(&self.lower(a), shape, |w| self.imaginary_word(w)),
-                Map::Pure => self.linear(&self.lower(a), shape, |w| self.pure_word(w)),
-                Map::Twist => self.twist(&self.lower(a), shape.rows),
-                Map::Diagonal => self.diagonal(&self.lower(a), e),
-                Map::DiagonalOf => self.diagonal_of(&self.lower(a)),
+                Map::Real => self.scaled(&self.trace_poly(&self.lowered(a)), Rational::QUARTER),
+                Map::Imaginary => self.linear(&self.lowered(a), shape, |w| self.imaginary_word(w)),
+                Map::Pure => self.linear(&self.lowered(a), shape, |w| self.pure_word(w)),
+                Map::Twist => self.twist(&self.lowered(a), shape.rows),
+                Map::Diagonal => self.diagonal(&self.lowered(a), e),
+                Map::DiagonalOf => self.diagonal_of(&self.lowered(a)),
                 Map::Translation => match a.node() {
                     Node::Letter(at) => self.one_factor(shape, translation_of(*at)),
                     _ => {
@@ -263,7 +291,7 @@ impl Algebra<'_> {
                 let below = self.lower_power(b, q.negated());
                 self.mul(&self.lower_power(a, q), &below)
             }
-            _ => self.power(&self.lower(e), q, e),
+            _ => self.power(&self.lowered(e), q, e),
         }
     }
 

@@ -26,9 +26,10 @@ pub use rational::Rational;
 pub(crate) use rigid::{inclusion_of_space, last_unit};
 
 use crate::expr::symbol::Symbols;
-use crate::expr::{self, Expr};
+use crate::expr::{self, Expr, Hashed};
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
+use std::rc::Rc;
 
 /// Work allowed for one model, in products of terms. A model of the gallery needs a few
 /// thousand; the bound keeps any input of 10 kB below two seconds.
@@ -79,6 +80,8 @@ pub struct Algebra<'a> {
     opened: RefCell<Vec<functional::Opened>>,
     /// Their normal forms, in blocks or not. Looked up, never iterated.
     given: RefCell<HashMap<(Expr, bool), Poly>>,
+    /// Normal forms, not in blocks and in blocks. Looked up, never iterated.
+    lowered: [RefCell<Hashed<Lowered>>; 2],
     work: Cell<u64>,
     evaluated: Cell<u64>,
     excess: Cell<Option<Excess>>,
@@ -95,6 +98,9 @@ pub enum Known {
     /// exact arithmetic modulo a prime of 61 bits.
     ExactEvaluation,
 }
+
+/// A normal form and the work that it took.
+type Lowered = (Rc<Poly>, usize);
 
 /// A sub-expression that the normal form treats as one letter.
 struct Opaque {
@@ -124,6 +130,7 @@ impl<'a> Algebra<'a> {
             numbers: RefCell::default(),
             opened: RefCell::default(),
             given: RefCell::default(),
+            lowered: Default::default(),
             work: Cell::new(0),
             evaluated: Cell::new(0),
             excess: Cell::new(None),

@@ -221,6 +221,8 @@ pub(crate) trait Numbers {
     fn opposite(&self, x: Self::Number) -> Self::Number;
     /// The number that a dimension stands for.
     fn dim(&self, d: Dim) -> usize;
+    /// `tr(g^T e)`, for a gradient row by row with so many columns.
+    fn paired(&self, gradient: &[Self::Number], cols: usize, e: &Element) -> Self::Number;
     /// The entries of an expression, row by row, with basis elements in place of some letters.
     fn entries(&mut self, e: &Expr, with: &[(Letter, &Element)]) -> Option<Vec<Self::Number>>;
 }
@@ -277,10 +279,13 @@ impl Bracket {
                 at(letters.variation[k], Shift::HERE),
                 at(letters.direction[k], Shift::HERE),
             );
+            // Linear in the second direction: its gradient has the values along the whole basis.
+            let along = expr::gradient(s, &self.momenta[k], eta);
+            let cols = numbers.dim(along.shape().cols);
             for (i, e) in own.iter().enumerate() {
+                let gradient = numbers.entries(&along, &[(xi, e)])?;
                 for (j, f) in own.iter().enumerate().skip(i + 1) {
-                    let value = numbers.entries(&self.momenta[k], &[(xi, e), (eta, f)])?;
-                    let value = *value.first()?;
+                    let value = numbers.paired(&gradient, cols, f);
                     out[starts[k] + i][starts[k] + j] = value;
                     out[starts[k] + j][starts[k] + i] = numbers.opposite(value);
                 }
@@ -330,6 +335,11 @@ impl Numbers for Plain<'_> {
             Dim::Fixed(n) => n as usize,
             Dim::Named(_) => 0,
         }
+    }
+
+    fn paired(&self, gradient: &[f64], cols: usize, e: &Element) -> f64 {
+        let own = |(i, j, x): &(usize, usize, i64)| *x as f64 * gradient[i * cols + j];
+        e.iter().map(own).sum()
     }
 
     fn entries(&mut self, e: &Expr, with: &[(Letter, &Element)]) -> Option<Vec<f64>> {

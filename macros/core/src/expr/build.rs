@@ -4,6 +4,7 @@
 
 use super::function::Parity;
 use super::functional;
+use super::hashed::{Hashed, Words};
 use super::presence::Marks;
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{SymbolId, Symbols};
@@ -11,22 +12,7 @@ use super::{Constant, Expr, Function, Inner, Letter, Map, Node, Part, Shift};
 use crate::algebra::Rational;
 use crate::work;
 use core::hash::{Hash, Hasher};
-use std::collections::HashMap;
 use std::sync::Arc;
-
-/// A fixed hash (FNV-1a): the same on every machine and in every run.
-struct Fnv(u64);
-
-impl Hasher for Fnv {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-    fn write(&mut self, bytes: &[u8]) {
-        for b in bytes {
-            self.0 = (self.0 ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3);
-        }
-    }
-}
 
 pub(super) fn make(node: Node, shape: Shape) -> Expr {
     let (mut size, mut marks) = (1u32, Marks::default());
@@ -48,7 +34,7 @@ pub(super) fn make(node: Node, shape: Shape) -> Expr {
             }
         }
     };
-    let mut hasher = Fnv(0xcbf2_9ce4_8422_2325);
+    let mut hasher = Words::default();
     node.hash(&mut hasher);
     Expr(Arc::new(Inner {
         node,
@@ -154,7 +140,7 @@ fn without_opposites(terms: &mut Vec<Expr>) {
         return;
     }
     // Looked up, never iterated: no order of it reaches the sum.
-    let mut places: HashMap<Expr, Vec<usize>> = HashMap::new();
+    let mut places: Hashed<Vec<usize>> = Hashed::default();
     for (i, term) in terms.iter().enumerate().rev() {
         if !matches!(term.node(), Node::Neg(_)) {
             places.entry(term.clone()).or_default().push(i);

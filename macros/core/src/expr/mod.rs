@@ -11,6 +11,7 @@ mod factored;
 mod function;
 pub(crate) mod functional;
 mod gradient;
+mod hashed;
 mod magnitude;
 mod parted;
 pub(crate) mod places;
@@ -48,10 +49,12 @@ pub use functional::{
 };
 pub(crate) use functional::{kind, pairing};
 pub use gradient::gradient;
+pub(crate) use hashed::{Exprs, Hashed};
 pub(crate) use magnitude::{
     length, lengths_of_differences, magnitude, magnitude_between, magnitude_by_differences,
 };
 pub use parted::parted;
+pub(crate) use presence::{may_contain, may_hold};
 pub use projection::projected;
 pub use quaternion::{imaginary, pure, real, rotation};
 pub use rigid::{

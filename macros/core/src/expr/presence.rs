@@ -2,7 +2,9 @@
 //! part that several places share again. One mark of 128 stands for each letter; letters may share
 //! one, so that a mark that is absent proves absence and one that is present proves nothing.
 
+use super::hashed::Words;
 use super::{Expr, Letter};
+use core::hash::BuildHasherDefault;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -37,15 +39,30 @@ impl Marks {
         self.0[0] & other.0[0] == 0 && self.0[1] & other.0[1] == 0
     }
 
+    /// Whether all of the other ones are among these.
+    pub(super) fn hold(self, other: Marks) -> bool {
+        self.with(other) == self
+    }
+
     /// Whether there is no letter.
     pub(super) fn is_empty(self) -> bool {
         self == Marks::default()
     }
 }
 
+/// Whether all letters of a part may occur in the whole; where not, it is no part of it.
+pub(crate) fn may_hold(whole: &Expr, part: &Expr) -> bool {
+    whole.0.marks.hold(part.0.marks)
+}
+
+/// Whether a letter may occur; where not, it does not.
+pub(crate) fn may_contain(e: &Expr, letter: Letter) -> bool {
+    !e.0.marks.are_apart(Marks::of(letter))
+}
+
 /// Results of one walk for the parts that several places share. It holds these parts, so that no
 /// other expression comes to lie at the address of one.
-pub(super) struct Memo<T>(HashMap<usize, (Expr, T)>);
+pub(super) struct Memo<T>(HashMap<usize, (Expr, T), BuildHasherDefault<Words>>);
 
 /// Parts of fewer nodes are read again: that costs less than looking them up.
 const SHARED: u32 = 8;
@@ -53,7 +70,7 @@ const SHARED: u32 = 8;
 impl<T> Default for Memo<T> {
     fn default() -> Self {
         // Looked up, never iterated: no order of it reaches a result.
-        Memo(HashMap::new())
+        Memo(HashMap::default())
     }
 }
 

@@ -60,7 +60,7 @@ pub fn shift_time(symbols: &Symbols, e: &Expr, by: i8) -> Expr {
         if moves {
             to.shift.time = to.shift.time.saturating_add(by);
         }
-        letter_of_shape(to, shape)
+        (to != at).then(|| letter_of_shape(to, shape))
     };
     map_letters(symbols, e, &mut Memo::default(), &shifted)
 }
@@ -71,11 +71,9 @@ pub fn substitute(symbols: &Symbols, e: &Expr, replacements: &[(Letter, Expr)]) 
     if e.0.marks.are_apart(wanted) {
         return e.clone();
     }
-    let replaced = |at: Letter, shape| {
-        replacements
-            .iter()
-            .find(|(l, _)| *l == at)
-            .map_or_else(|| letter_of_shape(at, shape), |(_, x)| x.clone())
+    let replaced = |at: Letter, _| {
+        let own = replacements.iter().find(|(l, _)| *l == at);
+        own.map(|(_, x)| x.clone())
     };
     map_letters(symbols, e, &mut Memo::default(), &replaced)
 }
@@ -84,10 +82,13 @@ fn map_letters(
     symbols: &Symbols,
     e: &Expr,
     memo: &mut Memo<Expr>,
-    f: &dyn Fn(Letter, shape::Shape) -> Expr,
+    f: &dyn Fn(Letter, shape::Shape) -> Option<Expr>,
 ) -> Expr {
     if let Node::Letter(at) = e.node() {
-        return f(*at, e.shape());
+        return f(*at, e.shape()).unwrap_or_else(|| e.clone());
+    }
+    if e.0.marks.is_empty() {
+        return e.clone();
     }
     if let Some(known) = memo.get(e) {
         return known;
@@ -97,16 +98,30 @@ fn map_letters(
     mapped
 }
 
-/// The same node with these in the places of its children, in their order.
-pub fn with_children(symbols: &Symbols, e: &Expr, children: Vec<Expr>) -> Expr {
-    let mut each = children.into_iter();
-    rebuild(symbols, e, &mut |x| {
-        each.next().unwrap_or_else(|| x.clone())
-    })
+/// The same node with every child replaced; the very same expression where none is another one.
+pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -> Expr {
+    let (mut children, mut same) = (Vec::new(), true);
+    e.node().each_child(&mut |x| {
+        let y = go(x);
+        same &= Arc::ptr_eq(&x.0, &y.0);
+        children.push(y);
+    });
+    match same {
+        true => e.clone(),
+        false => with_children(symbols, e, children),
+    }
 }
 
-/// The same node with every child replaced; leaves stay.
-pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -> Expr {
+/// The same node with these in the places of its children, in their order; leaves stay.
+pub fn with_children(symbols: &Symbols, e: &Expr, children: Vec<Expr>) -> Expr {
+    if let Node::Sum(_) = e.node() {
+        return sum(children, e.shape());
+    }
+    if let Node::Product(_) = e.node() {
+        return product(children);
+    }
+    let mut each = children.into_iter();
+    let mut go = |x: &Expr| each.next().unwrap_or_else(|| x.clone());
     match e.node() {
         Node::Number(_)
         | Node::Constant(_)
@@ -114,10 +129,10 @@ pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -
         | Node::Identity(_)
         | Node::Zero(_)
         | Node::Unit(..)
-        | Node::Inclusion(..) => e.clone(),
-        Node::Sum(list) => sum(list.iter().map(go).collect::<Vec<_>>(), e.shape()),
+        | Node::Inclusion(..)
+        | Node::Sum(_)
+        | Node::Product(_) => e.clone(),
         Node::Neg(a) => neg(go(a)),
-        Node::Product(list) => product(list.iter().map(go).collect::<Vec<_>>()),
         Node::Quotient(a, b) => {
             let a = go(a);
             quotient(a, go(b))
@@ -150,7 +165,9 @@ pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -
             Map::Diagonal => diagonal(go(a)),
             Map::DiagonalOf => diagonal_of(go(a)),
         },
-        Node::Given(a) => functional::rebuilt(symbols, a, None, go),
-        Node::PullBack(a, which, seed) => functional::rebuilt(symbols, a, Some((*which, seed)), go),
+        Node::Given(a) => functional::rebuilt(symbols, a, None, &mut go),
+        Node::PullBack(a, which, seed) => {
+            functional::rebuilt(symbols, a, Some((*which, seed)), &mut go)
+        }
     }
 }

@@ -3,15 +3,14 @@
 
 use crate::algebra::Rational;
 use crate::expr::symbol::Symbols;
-use crate::expr::{self, Expr, Node};
-use std::collections::HashMap;
+use crate::expr::{self, Expr, Hashed, Node};
 
 /// The same expressions with like terms added.
 pub fn collected(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
     let mut like = Like {
         symbols,
-        numbers: HashMap::new(),
-        done: HashMap::new(),
+        numbers: Hashed::default(),
+        done: Hashed::default(),
     };
     results.iter().map(|e| like.collect(e)).collect()
 }
@@ -26,8 +25,8 @@ struct Term {
 struct Like<'a> {
     symbols: &'a Symbols,
     /// A number for each factor, in the order in which they were met.
-    numbers: HashMap<Expr, usize>,
-    done: HashMap<Expr, Expr>,
+    numbers: Hashed<usize>,
+    done: Hashed<Expr>,
 }
 
 impl Like<'_> {

@@ -5,13 +5,12 @@
 use crate::algebra::Rational;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::Symbols;
-use crate::expr::{self, Expr, Node};
-use std::collections::{HashMap, HashSet};
+use crate::expr::{self, Expr, Exprs, Hashed, Node};
 
 /// The same expressions without inverses beside adjugates.
 pub fn by_adjugates(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
-    let mut adjugates = HashSet::new();
-    let mut seen = HashSet::new();
+    let mut adjugates = Exprs::default();
+    let mut seen = Exprs::default();
     results
         .iter()
         .for_each(|e| collect(e, &mut adjugates, &mut seen));
@@ -21,13 +20,13 @@ pub fn by_adjugates(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
     let mut all = Known {
         symbols,
         adjugates,
-        done: HashMap::new(),
+        done: Hashed::default(),
     };
     results.iter().map(|e| all.rewrite(e)).collect()
 }
 
 /// What adjugates are taken of.
-fn collect(e: &Expr, all: &mut HashSet<Expr>, seen: &mut HashSet<Expr>) {
+fn collect(e: &Expr, all: &mut Exprs, seen: &mut Exprs) {
     if !seen.insert(e.clone()) {
         return;
     }
@@ -41,8 +40,8 @@ fn collect(e: &Expr, all: &mut HashSet<Expr>, seen: &mut HashSet<Expr>) {
 
 struct Known<'a> {
     symbols: &'a Symbols,
-    adjugates: HashSet<Expr>,
-    done: HashMap<Expr, Expr>,
+    adjugates: Exprs,
+    done: Hashed<Expr>,
 }
 
 impl Known<'_> {

@@ -5,7 +5,7 @@ use super::program::{Program, scheduled};
 use super::work;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
-use crate::expr::{self, Expr, Node};
+use crate::expr::{self, Expr, Exprs, Hashed, Node};
 use std::collections::{HashMap, HashSet};
 
 /// Most pairs that are tried.
@@ -52,7 +52,7 @@ impl Pairs {
     fn most_frequent(&self, refused: &HashSet<[Expr; 2]>) -> Option<[Expr; 2]> {
         let mut found = Found {
             symbols: &self.symbols,
-            met: HashSet::new(),
+            met: Exprs::default(),
             order: Vec::new(),
             counts: HashMap::new(),
         };
@@ -82,7 +82,7 @@ impl Pairs {
             turned: turned(&symbols, pair),
             pair,
             named: [named.clone(), expr::transpose(&symbols, named)],
-            done: HashMap::new(),
+            done: Hashed::default(),
         };
         let mut list: Vec<(SymbolId, Expr)> = Vec::new();
         for (known, e) in &self.list {
@@ -118,7 +118,7 @@ fn is_named(e: &Expr) -> bool {
 
 struct Found<'a> {
     symbols: &'a Symbols,
-    met: HashSet<Expr>,
+    met: Exprs,
     order: Vec<[Expr; 2]>,
     counts: HashMap<[Expr; 2], usize>,
 }
@@ -169,7 +169,7 @@ struct Put<'a> {
     turned: [Expr; 2],
     /// The name, and its transpose.
     named: [Expr; 2],
-    done: HashMap<Expr, Expr>,
+    done: Hashed<Expr>,
 }
 
 impl Put<'_> {

@@ -2,8 +2,7 @@
 //! temporaries. What is emitted and what is interpreted is the same program.
 
 use crate::expr::symbol::{Role, SymbolId, Symbols};
-use crate::expr::{self, Expr, Letter, Node, Shift};
-use std::collections::HashMap;
+use crate::expr::{self, Expr, Hashed, Letter, Node, Shift};
 
 /// Temporaries in order of computation, then results.
 #[derive(Clone, Debug)]
@@ -50,7 +49,7 @@ pub fn program_after(earlier: &Program, results: &[Expr], prefix: &str) -> Progr
         whole.push((at(id), value.clone()));
         value
     };
-    let mut known: HashMap<Expr, SymbolId> = HashMap::new();
+    let mut known: Hashed<SymbolId> = Hashed::default();
     for (id, e) in &earlier.temporaries {
         known.insert(expanded(symbols, *id, e), *id);
     }
@@ -84,14 +83,14 @@ pub(super) fn scheduled(
     results: &[Expr],
     prefix: &str,
 ) -> Program {
-    let mut uses: HashMap<Expr, usize> = HashMap::new();
+    let mut uses: Hashed<usize> = Hashed::default();
     for e in before.iter().map(|(_, e)| e).chain(results) {
         count(symbols, e, &mut uses);
     }
     let mut build = Build {
         symbols: symbols.clone(),
         uses,
-        done: HashMap::new(),
+        done: Hashed::default(),
         temporaries: Vec::new(),
         named: before.len(),
         prefix,
@@ -109,7 +108,7 @@ pub(super) fn scheduled(
 }
 
 /// Counts how often each sub-expression is met when every one is visited once per parent.
-fn count(symbols: &Symbols, e: &Expr, uses: &mut HashMap<Expr, usize>) {
+fn count(symbols: &Symbols, e: &Expr, uses: &mut Hashed<usize>) {
     let n = uses.entry(e.clone()).or_insert(0);
     *n += 1;
     if *n == 1 && !super::rest::is_difference(symbols, e) {
@@ -158,8 +157,8 @@ fn is_stage(e: &Expr) -> bool {
 
 struct Build<'a> {
     symbols: Symbols,
-    uses: HashMap<Expr, usize>,
-    done: HashMap<Expr, Expr>,
+    uses: Hashed<usize>,
+    done: Hashed<Expr>,
     temporaries: Vec<(SymbolId, Expr)>,
     /// How many names have been given.
     named: usize,

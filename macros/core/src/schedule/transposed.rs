@@ -3,16 +3,16 @@
 //! written as the transpose of the earlier one.
 
 use crate::expr::symbol::Symbols;
-use crate::expr::{self, Expr, Node};
+use crate::expr::{self, Expr, Hashed, Node};
 use std::collections::HashMap;
 
 /// The same expressions with products of matrices, and sums of such, that were met transposed.
 pub fn aligned(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
     let mut met = Met {
         symbols,
-        numbers: HashMap::new(),
+        numbers: Hashed::default(),
         first: HashMap::new(),
-        done: HashMap::new(),
+        done: Hashed::default(),
     };
     results.iter().map(|e| met.align(e)).collect()
 }
@@ -20,10 +20,10 @@ pub fn aligned(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
 struct Met<'a> {
     symbols: &'a Symbols,
     /// A number for each term, in the order in which they were met.
-    numbers: HashMap<Expr, usize>,
+    numbers: Hashed<usize>,
     /// What was met first, by the numbers of its terms in rising order.
     first: HashMap<Vec<usize>, Expr>,
-    done: HashMap<Expr, Expr>,
+    done: Hashed<Expr>,
 }
 
 impl Met<'_> {

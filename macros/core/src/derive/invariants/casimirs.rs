@@ -229,6 +229,13 @@ impl Numbers for Exact<'_> {
         self.point.dim(d)
     }
 
+    fn paired(&self, gradient: &[u64], cols: usize, e: &Element) -> u64 {
+        e.iter().fold(0, |sum, (i, j, x)| {
+            let own = gradient[i * cols + j];
+            add(sum, if *x < 0 { negate(own) } else { own })
+        })
+    }
+
     fn entries(&mut self, e: &Expr, with: &[(Letter, &Element)]) -> Option<Vec<u64>> {
         for (l, entries) in with {
             let shape = self.point.symbols().get(l.symbol).shape;

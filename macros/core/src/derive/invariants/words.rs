@@ -26,14 +26,15 @@ pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
     let vectors = vectors(x, passages);
     let matrices = matrices(x);
     let mut out: Vec<Candidate> = Vec::new();
-    let chain = |words: &[&Piece]| -> (String, Expr) {
+    let chain = |words: &[&Piece]| -> Option<(String, Expr)> {
+        let fit = |w: &[&Piece]| w[0].value.shape().cols == w[1].value.shape().rows;
         let value = expr::product(words.iter().map(|w| w.value.clone()).collect::<Vec<_>>());
-        (joined(words), value)
+        words.windows(2).all(fit).then(|| (joined(words), value))
     };
     let sizes =
         |list: &[&Piece]| expr::product(list.iter().map(|p| p.size.clone()).collect::<Vec<_>>());
     let bracket = |u: &Piece, middle: &[&Piece], v: &Piece| -> Option<Candidate> {
-        let (between, m) = chain(middle);
+        let (between, m) = chain(middle)?;
         let right = if middle.is_empty() {
             v.value.clone()
         } else {
@@ -62,7 +63,7 @@ pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
         })
     };
     let trace = |word: &[&Piece]| -> Option<Candidate> {
-        let (name, value) = chain(word);
+        let (name, value) = chain(word)?;
         // The sum of n entries is at most √n times the length; of a product, that of the lengths.
         let entries = match word {
             [_] => length(x, &expr::identity(value.shape().rows)),

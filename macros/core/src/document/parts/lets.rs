@@ -148,10 +148,17 @@ fn pattern(symbols: &Symbols, value: &Expr, name: Expr) -> Pattern {
 }
 
 impl Pattern {
+    /// Whether the letters of the value may all occur.
+    fn may_stand_in(&self, e: &Expr) -> bool {
+        self.terms.iter().all(|(_, term)| expr::may_hold(e, term))
+    }
+
     /// The expression with the name wherever all terms of the value stand in one context.
     fn put(&self, symbols: &Symbols, e: &Expr) -> Expr {
-        let children = e.children().into_iter().map(|x| self.put(symbols, x));
-        let e = expr::with_children(symbols, e, children.collect());
+        if !self.may_stand_in(e) {
+            return e.clone();
+        }
+        let e = expr::rebuild(symbols, e, &mut |x| self.put(symbols, x));
         match self.terms.as_slice() {
             [(c, only)] => self.alone(symbols, &e, *c, only),
             _ => match e.node() {

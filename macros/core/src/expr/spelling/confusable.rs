@@ -14,6 +14,9 @@ const TWINS: &str = "аaеeоoрpсcуyхxѕsіiјjһhԁdԛqԝwӏlүyАAВBЕEК
 
 /// The letter that a character looks like, if it is not that letter itself.
 pub(crate) fn twin(c: char) -> Option<char> {
+    if c.is_ascii() {
+        return None;
+    }
     let mut rest = TWINS.chars();
     while let (Some(letter), Some(other)) = (rest.next(), rest.next()) {
         if letter == c {
@@ -39,6 +42,9 @@ fn plain(c: char) -> impl Iterator<Item = char> {
 
 /// A name with every such character replaced by the letter that it looks like.
 pub(crate) fn skeleton(name: &str) -> String {
+    if name.is_ascii() {
+        return name.to_owned();
+    }
     let letters = name.chars().flat_map(|c| match twin(c) {
         Some(other) => vec![other],
         None => plain(c).collect(),
