@@ -264,7 +264,9 @@ impl<T: Real> AnyBand<T> {
             // Linear: from rest in one step.
             self.velocity.fill(T::zero());
             line.evaluate(&self.velocity, &mut self.momenta, !self.factored);
-            line.scales(&mut self.scales);
+            if !self.factored {
+                line.scales(&mut self.scales);
+            }
             for i in 0..self.known.len() {
                 self.correction[i] = self.known[i] - self.momenta[i];
             }

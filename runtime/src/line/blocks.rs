@@ -114,16 +114,15 @@ pub(super) struct Blocks<T> {
     sites: usize,
     /// Whether the first site and the last are neighbours besides.
     closed: bool,
-    /// The blocks of a site with itself, with the one before, with the one after.
+    /// The block of a site with itself; once factored, what is left of it when those before are eliminated, inverted or
+    /// factored.
     own: Vec<T>,
+    /// With the one before.
     before: Vec<T>,
+    /// With the one after; once factored, the inverse of what is left times it, but for the last site of an open line.
     after: Vec<T>,
-    /// Of each site what is left of its block when those before are eliminated, inverted or factored; and its inverse
-    /// times `after`.
-    left: Vec<T>,
     inverted: Vec<bool>,
     pivots: Vec<usize>,
-    onward: Vec<T>,
     /// Of a ring: what the last site does to each other one.
     border: Vec<T>,
     scratch: Vec<T>,
@@ -144,12 +143,10 @@ impl<T: Real> Blocks<T> {
             own: list(),
             before: list(),
             after: list(),
-            left: list(),
             inverted: vec![false; sites],
             pivots: vec![0; n * sites],
-            onward: list(),
             border: if closed { list() } else { Vec::new() },
-            scratch: vec![T::zero(); n],
+            scratch: vec![T::zero(); n * n],
             without_pivot: None,
         }
     }
@@ -216,7 +213,7 @@ impl<T: Real> Blocks<T> {
         }
     }
 
-    /// The block of a site with itself.
+    /// The block of a site with itself, of a matrix that is not factored.
     pub fn own(&self, site: usize) -> &[T] {
         let size = self.n * self.n;
         &self.own[size * site..size * (site + 1)]
@@ -266,7 +263,8 @@ impl<T: Real> Blocks<T> {
         self.sites - usize::from(self.closed)
     }
 
-    /// Factors, and `x = A^-1 x`; where a block has no pivot, or none above `floor` times its own columns, the site.
+    /// Factors, in the place of the matrix, and `x = A^-1 x`; where a block has no pivot, or none above `floor` times its own
+    /// columns, the site.
     #[inline(always)]
     pub fn factor_and_solve(
         &mut self,

@@ -18,38 +18,37 @@ fn take<T: Real>(n: usize, a: &[T], x: &[T], out: &mut [T]) {
 }
 
 impl<T: Real> Blocks<T> {
-    /// Whether the pivots of a site are more than this part of the columns of its own block.
+    /// Whether the pivots of a site are more than this part of the columns of its own block, which was kept.
     fn is_above(&self, n: usize, site: usize, floor: f64) -> bool {
         let here = n * n * site..n * n * (site + 1);
-        floor <= 0.0 || pivots::are_above(n, &self.left[here.clone()], &self.own[here], floor)
+        floor <= 0.0 || pivots::are_above(n, &self.own[here], &self.scratch, floor)
     }
 
     /// Factors; where a block has no pivot, or none above `floor` times its own columns, the site.
     pub(super) fn factor_lists(&mut self, n: usize, floor: f64) -> Result<(), usize> {
         let size = n * n;
         let open = self.open();
-        self.left.copy_from_slice(&self.own);
         for i in 0..open {
             let here = size * i..size * (i + 1);
+            self.scratch.copy_from_slice(&self.own[here.clone()]);
             if i > 0 {
                 let there = size * (i - 1)..size * i;
                 take(
                     n,
                     &self.before[here.clone()],
-                    &self.onward[there],
-                    &mut self.left[here.clone()],
+                    &self.after[there],
+                    &mut self.own[here.clone()],
                 );
             }
             let (left, own) = (
-                &mut self.left[here.clone()],
+                &mut self.own[here.clone()],
                 &mut self.pivots[n * i..n * (i + 1)],
             );
             if !pivots::factor(n, left, own) {
                 return Err(i);
             }
             if i + 1 < open {
-                self.onward[here.clone()].copy_from_slice(&self.after[here.clone()]);
-                for column in self.onward[here].chunks_exact_mut(n) {
+                for column in self.after[here].chunks_exact_mut(n) {
                     pivots::solve(n, left, own, column);
                 }
             }
@@ -71,29 +70,30 @@ impl<T: Real> Blocks<T> {
         border.fill(T::zero());
         border[..size].copy_from_slice(&self.before[..size]);
         let end = size * (open - 1)..size * open;
+        let here = size * last..size * (last + 1);
         for (x, y) in border[end.clone()].iter_mut().zip(&self.after[end.clone()]) {
             *x += *y;
         }
         for k in 0..n {
             self.eliminate(n, &mut border, |i| size * i + n * k..size * i + n * (k + 1));
         }
-        let here = size * last..size * (last + 1);
+        self.scratch.copy_from_slice(&self.own[here.clone()]);
         take(
             n,
             &self.before[here.clone()],
             &border[end],
-            &mut self.left[here.clone()],
+            &mut self.own[here.clone()],
         );
         take(
             n,
             &self.after[here.clone()],
             &border[..size],
-            &mut self.left[here.clone()],
+            &mut self.own[here.clone()],
         );
         self.border = border;
         pivots::factor(
             n,
-            &mut self.left[here],
+            &mut self.own[here],
             &mut self.pivots[n * last..n * (last + 1)],
         )
     }
@@ -105,18 +105,23 @@ impl<T: Real> Blocks<T> {
         for i in 0..open {
             let here = size * i..size * (i + 1);
             if i > 0 {
-                self.scratch.copy_from_slice(&x[at(i - 1)]);
-                take(n, &self.before[here.clone()], &self.scratch, &mut x[at(i)]);
+                self.scratch[..n].copy_from_slice(&x[at(i - 1)]);
+                take(
+                    n,
+                    &self.before[here.clone()],
+                    &self.scratch[..n],
+                    &mut x[at(i)],
+                );
             }
             let own = &self.pivots[n * i..n * (i + 1)];
-            pivots::solve(n, &self.left[here], own, &mut x[at(i)]);
+            pivots::solve(n, &self.own[here], own, &mut x[at(i)]);
         }
         for i in (0..open.saturating_sub(1)).rev() {
-            self.scratch.copy_from_slice(&x[at(i + 1)]);
+            self.scratch[..n].copy_from_slice(&x[at(i + 1)]);
             take(
                 n,
-                &self.onward[size * i..size * (i + 1)],
-                &self.scratch,
+                &self.after[size * i..size * (i + 1)],
+                &self.scratch[..n],
                 &mut x[at(i)],
             );
         }
@@ -140,7 +145,7 @@ impl<T: Real> Blocks<T> {
         );
         take(n, &self.after[here.clone()], &others[..n], own);
         let chosen = &self.pivots[n * last..n * (last + 1)];
-        pivots::solve(n, &self.left[here], chosen, own);
+        pivots::solve(n, &self.own[here], chosen, own);
         for i in 0..open {
             take(
                 n,

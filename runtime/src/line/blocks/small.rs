@@ -130,10 +130,10 @@ impl<'a, T: Real, const N: usize> Factors<'a, T, N> {
     fn of(all: &'a Blocks<T>) -> Self {
         Self {
             before: blocks(&all.before),
-            left: blocks(&all.left),
+            left: blocks(&all.own),
             inverted: &all.inverted,
             pivots: all.pivots.as_chunks::<N>().0,
-            onward: blocks(&all.onward),
+            onward: blocks(&all.after),
         }
     }
 
@@ -240,29 +240,29 @@ pub(super) fn factor_and_solve<T: Real, const N: usize>(
     let (open, closed) = (all.open(), all.closed);
     let x = x.as_chunks_mut::<N>().0;
     {
-        let (own, before, after) = (
-            blocks::<T, N>(&all.own),
-            blocks::<T, N>(&all.before),
-            blocks::<T, N>(&all.after),
-        );
-        let (left, onward) = (
-            blocks_mut::<T, N>(&mut all.left),
-            blocks_mut::<T, N>(&mut all.onward),
+        let before = blocks::<T, N>(&all.before);
+        let (list, after) = (
+            blocks_mut::<T, N>(&mut all.own),
+            blocks_mut::<T, N>(&mut all.after),
         );
         let chosen = all.pivots.as_chunks_mut::<N>().0;
         let (mut earlier, mut found) = ([[T::zero(); N]; N], [T::zero(); N]);
         for i in 0..open {
-            let (mut block, mut value) = (own[i], x[i]);
+            let own = list[i];
+            let (mut block, mut value) = (own, x[i]);
             if i > 0 {
                 for k in 0..N {
                     take(&before[i], &earlier[k], &mut block[k]);
                 }
                 take(&before[i], &found, &mut value);
             }
-            let of_own = (floor > 0.0).then_some(&own[i]);
+            let of_own = (floor > 0.0).then_some(&own);
             let how = (floor, &mut chosen[i]);
             let settled = settle(block, of_own, how, (&after[i], value)).ok_or(i)?;
-            (left[i], onward[i], x[i]) = (settled.left, settled.onward, settled.value);
+            (list[i], x[i]) = (settled.left, settled.value);
+            if i + 1 < open {
+                after[i] = settled.onward;
+            }
             all.inverted[i] = settled.inverted;
             (earlier, found) = (settled.onward, settled.value);
         }
@@ -307,7 +307,7 @@ fn border<T: Real, const N: usize>(all: &mut Blocks<T>, floor: f64) -> Result<()
     let of_own = (floor > 0.0).then_some(&own);
     let none = ([[T::zero(); N]; N], [T::zero(); N]);
     let settled = settle(left, of_own, (floor, chosen), (&none.0, none.1)).ok_or(last)?;
-    blocks_mut(&mut all.left)[last] = settled.left;
+    blocks_mut(&mut all.own)[last] = settled.left;
     all.inverted[last] = settled.inverted;
     Ok(())
 }
