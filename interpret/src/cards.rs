@@ -36,7 +36,7 @@ pub const MOST_BODY_BY_BODY: usize = 32;
 
 /// The same where constraints are held: a step body by body solves for all velocities and multipliers at once, with work that grows
 /// with the cube of their number.
-pub const MOST_HELD_BODY_BY_BODY: usize = 4;
+pub const MOST_HELD_BODY_BY_BODY: usize = 1;
 
 /// The same where velocities of neighbours stand in one term: so does a step for the velocities of all bodies.
 pub const MOST_TOGETHER_BODY_BY_BODY: usize = 8;
@@ -172,8 +172,17 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
             most: MOST_BODY_BY_BODY,
         });
     }
-    let derived = pipeline::derive_lattice(&model, &lattice, choice);
-    let (unfolded, d) = derived.map_err(Refused::Model)?;
+    let (unfolded, d) = match pipeline::derive_lattice(&model, &lattice, choice) {
+        Ok(derived) => derived,
+        // What is too large body by body has one kernel for all sites.
+        Err(errors) if errors.are_of_size() && written_out.is_none() => {
+            return match LineModel::read(source) {
+                Ok(line) => card_of_line((&model, &lattice), choice, line, source),
+                Err(_) => Err(Refused::Model(errors)),
+            };
+        }
+        Err(errors) => return Err(Refused::Model(errors)),
+    };
     // What is open is found by its text; here the choice is part of it.
     let key = format!("{source}\n{choice:?}");
     let text = Text::of_derivation(d)?;

@@ -412,7 +412,10 @@ impl Writer<'_> {
         let group = self.copies.groups.iter().find(|g| g.of == base.of);
         let (every, left) = group.map_or((&[][..], &[][..]), |g| (&g.sites[..], &g.moving[..]));
         let place = |list: &[usize]| list.binary_search(&base.site).unwrap_or(0);
+        let label = self.stated.lattice.labels.get(base.label);
+        let index = label.map_or("i", |l| l.index.text.as_str());
         let at = Site {
+            named: &format!("{index} = {}", base.site),
             field,
             place: place(every),
             count: if base.end { 1 } else { every.len() },
@@ -466,6 +469,7 @@ impl Writer<'_> {
         value: &Spanned<DeValue<'_>>,
     ) -> Result<String, String> {
         let only = Site {
+            named: "",
             field,
             place: 0,
             count: 1,

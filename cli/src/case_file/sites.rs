@@ -16,6 +16,8 @@ pub(super) struct Site<'a> {
     pub count: usize,
     /// The same among the sites that move, where a list may leave the others out.
     pub moving: Option<(usize, usize)>,
+    /// Which site it is, as a reader is told: `i = 3`.
+    pub named: &'a str,
 }
 
 pub(super) type Numbers<'a> = dyn Fn(&str) -> Option<f64> + 'a;
@@ -108,7 +110,7 @@ pub(super) fn at(site: &Site<'_>, value: &DeValue<'_>, of: &Numbers<'_>) -> Resu
         ));
     }
     match list.get(place) {
-        Some(one) => plain(one.get_ref(), of),
+        Some(one) => plain(one.get_ref(), of).map_err(|why| format!("at {}, {why}", site.named)),
         None => plain(value, of),
     }
 }

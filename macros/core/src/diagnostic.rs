@@ -52,6 +52,8 @@ pub struct Diagnostic {
     pub also: Vec<(Place, String)>,
     /// Whether it only follows from another mistake: it is not reported beside one.
     pub follows: bool,
+    /// Whether the model is larger than what is derived, and not wrong.
+    pub too_large: bool,
 }
 
 impl Diagnostic {
@@ -63,6 +65,16 @@ impl Diagnostic {
             help: Vec::new(),
             also: Vec::new(),
             follows: false,
+            too_large: false,
+        }
+    }
+
+    /// Told as one of a model that is not wrong but larger than what is derived.
+    #[must_use]
+    pub fn of_size(self) -> Diagnostic {
+        Diagnostic {
+            too_large: true,
+            ..self
         }
     }
 
@@ -125,6 +137,11 @@ pub struct Errors {
 const MOST: usize = 20;
 
 impl Errors {
+    /// Whether all that is told is that the model is larger than what is derived.
+    pub fn are_of_size(&self) -> bool {
+        !self.list.is_empty() && self.list.iter().all(|d| d.too_large)
+    }
+
     /// Nothing wrong so far.
     pub fn new() -> Errors {
         Errors::default()

@@ -51,7 +51,8 @@ pub fn along_constraint<T: Real>(
         return Err(ParameterError {
             field,
             problem: Problem::DependentConstraints { equation },
-            remedy: "leave out constraints that follow from others, or start elsewhere",
+            remedy: "leave out constraints that follow from others, or start elsewhere; where none does, masses differ by so much that \
+                     what one constraint does is rounding beside another: take some nearer to one another",
         });
     }
     let (taken, whole) = (taken.magnitude(), whole.magnitude());

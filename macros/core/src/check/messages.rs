@@ -38,6 +38,7 @@ pub fn too_large(place: Place, size: u32, largest: u32, lets: bool) -> Diagnosti
 pub fn too_much_work(place: Place, excess: Option<String>) -> Diagnostic {
     let excess = excess.map(|e| format!(": {e}")).unwrap_or_default();
     Diagnostic::new(place, format!("this model is too large to derive{excess}"))
+        .of_size()
         .help("shorten it, or make parts of it parameters")
 }
 

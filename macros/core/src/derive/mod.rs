@@ -283,6 +283,7 @@ fn too_large(place: Place, excess: Option<String>) -> Diagnostic {
         None => "this model is too large to derive".to_owned(),
     };
     Diagnostic::new(place, message)
+        .of_size()
         .help("take fewer bodies or terms, lower powers of sums and less nested products, or make parts parameters")
 }
 
