@@ -143,41 +143,6 @@ fn velocities_of_all_sites_are_found_together_to_the_last_bit_and_as_those_of_bo
 }
 
 #[test]
-fn totals_about_what_ends_hold_equal_the_compiled_ones_and_those_of_bodies() {
-    beside::equal_to_the_last_bit(compiled::strung::all().into_iter());
-    beside::move_as_bodies_do(compiled::strung::all().into_iter());
-    let (source, make, _) = compiled::strung::all().remove(0);
-    for (ends, name) in [
-        (["pinned", "free"], "total_momentum_angular_about_X"),
-        (["free", "pinned"], "total_momentum_angular_about_X"),
-        (["pinned", "pinned"], "joint_momentum_across_X_angular"),
-        (["free", "free"], "total_momentum_angular"),
-    ] {
-        // More sites than are written out: the card lists the total, and it does not drift.
-        let case = Case::new(60, Some(ends));
-        let chosen = choice(source, case.n, case.ends);
-        let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("a card");
-        let listed = card.invariants.iter().any(|i| i.name == name);
-        assert!(listed, "{ends:?}: {:?}", card.invariants);
-        let model = LineModel::read(source).expect("is read");
-        let (_, data) = make(&case);
-        let mut line = start(&model, source, &case, &data);
-        let total = |line: &mut clebsch_interpret::lines::LineTrajectory| {
-            line.total(name).expect("is conserved")
-        };
-        let before = total(&mut line);
-        let size: f64 = line.total_sizes(name).expect("has sizes").iter().sum();
-        for _ in 0..100 {
-            line.step().expect("steps");
-        }
-        for (x, y) in before.iter().zip(total(&mut line)) {
-            // A few roundings of every term in each of a hundred steps.
-            assert!((x - y).abs() < 1e-13 * size, "{ends:?}: {x} {y}, {size}");
-        }
-    }
-}
-
-#[test]
 fn bodies_whose_velocities_are_joined_run_with_sixty_segments() {
     let (source, make, _) = compiled::together::all().remove(0);
     let case = Case::new(60, None);
