@@ -27,6 +27,41 @@ fn held_lines_move_as_their_bodies_do() {
 }
 
 #[test]
+fn totals_about_what_ends_hold_equal_the_compiled_ones_and_those_of_bodies() {
+    beside::equal_to_the_last_bit(compiled::strung::all().into_iter());
+    beside::move_as_bodies_do(compiled::strung::all().into_iter());
+    let (source, make, _) = compiled::strung::all().remove(0);
+    for (ends, name) in [
+        (["pinned", "free"], "total_momentum_angular_about_X"),
+        (["free", "pinned"], "total_momentum_angular_about_X"),
+        (["pinned", "pinned"], "joint_momentum_across_X_angular"),
+        (["free", "free"], "total_momentum_angular"),
+    ] {
+        // More sites than are written out: the card lists the total, and it does not drift.
+        let case = Case::new(60, Some(ends));
+        let chosen = choice(source, case.n, case.ends);
+        let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("a card");
+        let listed = card.invariants.iter().any(|i| i.name == name);
+        assert!(listed, "{ends:?}: {:?}", card.invariants);
+        let model = LineModel::read(source).expect("is read");
+        let (_, data) = make(&case);
+        let mut line = start(&model, source, &case, &data);
+        let total = |line: &mut clebsch_interpret::lines::LineTrajectory| {
+            line.total(name).expect("is conserved")
+        };
+        let before = total(&mut line);
+        let size: f64 = line.total_sizes(name).expect("has sizes").iter().sum();
+        for _ in 0..100 {
+            line.step().expect("steps");
+        }
+        for (x, y) in before.iter().zip(total(&mut line)) {
+            // A few roundings of every term in each of a hundred steps.
+            assert!((x - y).abs() < 1e-13 * size, "{ends:?}: {x} {y}, {size}");
+        }
+    }
+}
+
+#[test]
 fn a_held_line_is_written_down_and_goes_on_to_the_last_bit() {
     beside::go_on(held::all().into_iter());
     beside::go_on(sums::all().into_iter());
@@ -94,6 +129,24 @@ fn data_off_a_constraint_are_refused_at_their_site() {
         across.contains("site 49") && across.contains("would move"),
         "{across}"
     );
+}
+
+#[test]
+fn a_site_without_mass_is_told_as_such() {
+    let model = LineModel::read(held::ROD).expect("is read");
+    let case = Case::new(50, Some(["free", "free"]));
+    let (_, data) = (held::all()[0].1)(&case);
+    let chosen = choice(held::ROD, case.n, case.ends);
+    let refused = |name: &'static str, change: fn(&mut Vec<f64>)| {
+        let data = data.with(name, change);
+        let started = model.start(&chosen, case.h, &|name| data.get(name));
+        started.map(|_| ()).expect_err("is refused").to_string()
+    };
+    let told = refused("m", |m| m[31] = 0.0);
+    for part in ["site 31", "`φ`", "mass is zero", "positive mass"] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    assert!(!told.contains("follow from others"), "{told}");
 }
 
 /// Rows of a long line come from the short one: every multiplier has its place, constraints of all sites are told together.

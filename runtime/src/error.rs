@@ -128,6 +128,8 @@ pub enum Problem {
         /// The size of the momentum.
         whole: f64,
     },
+    /// No velocity answers to an impulse: a mass is zero, or the mass matrix is singular.
+    NoInertia,
     /// Constraints are not independent where the motion starts.
     DependentConstraints {
         /// One of them.
@@ -229,6 +231,11 @@ impl fmt::Display for Problem {
                 "the initial momentum would move the configuration off the constraint `{equation}`: {taken:e} of its \
                  size {whole:e} are along the reactions, of this one {impulse} times the derivative of the left side \
                  less the right one"
+            ),
+            Self::NoInertia => write!(
+                f,
+                "its mass is zero here, or its mass matrix singular, so that the reactions of the constraints on it are \
+                 not determined"
             ),
             Self::DependentConstraints { equation } => write!(
                 f,

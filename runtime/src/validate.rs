@@ -4,7 +4,7 @@
 mod constraints;
 mod initial;
 
-pub use constraints::{along_constraint, on_constraint};
+pub use constraints::{along_constraint, has_inertia, on_constraint};
 pub use initial::{Initial, initial};
 
 use crate::domain::{Domain, Function};

@@ -93,6 +93,10 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             [Value::Bool(holds), Value::Text(label)] => told(validate::assumption(*holds, label)),
             _ => None,
         },
+        ("validate::has_inertia", 2) => |a, _| match a {
+            [Value::Text(name), Value::Real(answer)] => told(validate::has_inertia(name, *answer)),
+            _ => None,
+        },
         ("validate::on_constraint", 4) => |a, _| match a {
             [
                 Value::Text(name),

@@ -161,9 +161,9 @@ impl Carded {
         // Sums of this line that leave sites out, as ends may make them, are not those of all sites.
         let own = totals_on(lattice, &short, &unfolded, &whole.derivation);
         let is_same = |name: &str| {
-            let there = model.density(name);
-            let mut here = own.iter().filter(|(own, _)| own == name);
-            there.is_none_or(|there| here.any(|(_, here)| here == there))
+            let mut there = model.densities(name).peekable();
+            let here = |there: &str| own.iter().any(|(own, text)| own == name && text == there);
+            there.peek().is_none() || there.any(here)
         };
         let (kept, lost): (Vec<Invariant>, Vec<Invariant>) = named.partition(|i| match i.name {
             "energy" => model.has_energies(),

@@ -184,10 +184,17 @@ impl LineModel {
         let totals = own(name, &|f| {
             line.totals.iter().any(|t| t.name == f) || of_holds(f)
         });
-        let conserved = line.totals.iter().filter_map(|t| {
-            let rows = rows(&program.function(name, &t.name)?.sig.output)?;
-            Some((t.name.clone(), rows, t.reason.clone()))
-        });
+        let is_first = |i: &usize| {
+            let name = |i: usize| line.totals.get(i).map(|t| &t.name);
+            (0..*i).all(|before| name(before) != name(*i))
+        };
+        let functions = (0..line.totals.len()).filter(is_first);
+        let conserved = functions
+            .filter_map(|i| line.totals.get(i))
+            .filter_map(|t| {
+                let rows = rows(&program.function(name, &t.name)?.sig.output)?;
+                Some((t.name.clone(), rows, t.reason.clone()))
+            });
         let of_constraints = totals.iter().filter_map(|f| {
             let (multiplier, is_rate) = held(line, f)?;
             let reason = match is_rate {
@@ -334,10 +341,10 @@ impl LineModel {
         all.map(|(name, rows, reason)| (name.as_str(), *rows, reason.as_str()))
     }
 
-    /// What a total sums over all sites, as text.
-    pub(crate) fn density(&self, name: &str) -> Option<&str> {
-        let found = self.densities.iter().find(|(own, _)| own == name);
-        found.map(|(_, text)| text.as_str())
+    /// What a total sums over all sites, as text: one for each of the ways of holding the ends in which it is another sum.
+    pub(crate) fn densities(&self, name: &str) -> impl Iterator<Item = &str> {
+        let own = self.densities.iter().filter(move |(own, _)| own == name);
+        own.map(|(_, text)| text.as_str())
     }
 
     /// The names of what is observed at sites, as [`LineTrajectory::observe`] takes them: what moves and its

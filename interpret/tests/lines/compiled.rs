@@ -170,6 +170,8 @@ pub mod held;
 pub mod newton;
 #[path = "quaternions.rs"]
 pub mod quaternions;
+#[path = "strung.rs"]
+pub mod strung;
 #[path = "sums.rs"]
 pub mod sums;
 #[path = "together.rs"]
@@ -255,6 +257,10 @@ compiled!(
         (
             "total_momentum_angular_g",
             vec![m.total_momentum_angular_g(s)]
+        ),
+        (
+            "total_momentum_angular_g_about_phi",
+            vec![m.total_momentum_angular_g_about_phi(s)]
         ),
         (
             "total_momentum_phi_across_g",

@@ -73,6 +73,10 @@ compiled!(
             vec![m.total_momentum_angular_g(s)]
         ),
         (
+            "total_momentum_angular_g_about_phi",
+            vec![m.total_momentum_angular_g_about_phi(s)]
+        ),
+        (
             "total_momentum_phi_across_g",
             m.total_momentum_phi_across_g(s).as_slice().to_vec()
         ),
@@ -92,6 +96,10 @@ compiled!(
     |m, s| vec![
         ("constraint_lambda", vec![m.constraint_λ(s)]),
         ("constraint_rate_lambda", vec![m.constraint_rate_λ(s)]),
+        (
+            "total_momentum_angular_about_x_g",
+            vec![m.total_momentum_angular_about_x_g(s)]
+        ),
     ]
 );
 

@@ -58,6 +58,10 @@ compiled!(
             vec![m.total_momentum_angular_g(s)]
         ),
         (
+            "total_momentum_angular_g_about_phi",
+            vec![m.total_momentum_angular_g_about_phi(s)]
+        ),
+        (
             "total_momentum_phi_across_g",
             m.total_momentum_phi_across_g(s).as_slice().to_vec()
         ),

@@ -70,3 +70,18 @@ pub fn along_constraint<T: Real>(
         remedy: "subtract that from the momentum, or give one that belongs to a velocity along the constraint",
     })
 }
+
+/// What a constraint holds answers to impulses at the start by velocities of size `answer` for each unit of them.
+///
+/// # Errors
+/// When that is not finite.
+pub fn has_inertia<T: Real>(field: &'static str, answer: T) -> Result<(), ParameterError> {
+    if answer.is_finite() {
+        return Ok(());
+    }
+    Err(ParameterError {
+        field,
+        problem: Problem::NoInertia,
+        remedy: "give every site that moves a positive mass, and second moments that leave no direction without inertia",
+    })
+}

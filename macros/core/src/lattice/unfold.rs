@@ -8,6 +8,8 @@ mod mesh;
 mod pinned;
 mod totals;
 mod warned;
+#[cfg(test)]
+mod warned_tests;
 
 use super::choice::Choice;
 use super::declared::{Lattice, Quantity, Sites};
@@ -20,7 +22,7 @@ use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::expr::symbol::ascii;
 use crate::syntax::ast::{Alternative, Expression, Extent, Kind, Kindred, Model, Name, Statement};
 pub(crate) use definitions::{definitions, inlined};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 pub use totals::{StatedTotal, Summed};
 use warned::without_a_ring;
 
@@ -81,6 +83,8 @@ pub struct Unfolded {
     pub totals: Vec<StatedTotal>,
     /// Terms that are hardly meant.
     pub warnings: Vec<Warning>,
+    /// Parameters that nothing in the statement names.
+    unnamed: BTreeSet<String>,
 }
 
 /// Writes a model out.
@@ -125,6 +129,7 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfol
             holds: Vec::new(),
             totals: Vec::new(),
             warnings: Vec::new(),
+            unnamed: warned::unnamed(model),
         },
     };
     writer.pin(model);

@@ -27,7 +27,7 @@ pub use pull::{EndTerm, Force, Pull};
 pub use signs::{Signs, Wall, signs};
 pub use site::{BASE, Sited};
 pub use tie::{Part, Tie};
-pub use total::{Total, totals_on};
+pub use total::{Density, Total, totals_on};
 
 use crate::algebra::Rational;
 use crate::derive::Outline;
@@ -145,8 +145,9 @@ impl Line {
             |e: &Expr| expr::contains_role(&representative.d.letters.symbols, e, Role::Step);
         totals.retain(|t| {
             let mut densities = t.densities.iter();
-            !densities
-                .any(|(.., e)| holds_step(e) || representative.is_turned_by_walls(&lattice, e))
+            !densities.any(|d| {
+                holds_step(&d.value) || representative.is_turned_by_walls(&lattice, &d.value)
+            })
         });
         total::name_apart(&lattice, &mut totals);
         let shares = representative.shares();

@@ -281,3 +281,45 @@ fn loops_over_sites_keep_no_time() {
     };
     assert!(why.contains("goes on with the step by itself"), "{why}");
 }
+
+/// Beads in space that springs join, with these ends at either side.
+fn strung(first: &str, last: &str) -> Line {
+    let text = format!(
+        "model Strung {{ label i in 0..N; param m, k, l: Real; field X: Vec<3> at nodes; let d = next(X, i) - X;
+        lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) - h*(k/2)*(dot(d, d) - l)^2;
+        end i = 0 {{ {first} }} end i = N {{ {last} }} }}"
+    );
+    line(&text).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+#[test]
+fn totals_are_about_what_ends_hold() {
+    let (free, both) = ("free;", "free; pinned { X = given; }");
+    let of = |line: &Line| -> Vec<(String, Vec<[usize; 2]>, usize)> {
+        let each = line.totals.iter().map(|t| {
+            let left_out = t.densities.iter().map(|d| d.left_out).collect();
+            (t.name.clone(), left_out, t.places.len())
+        });
+        each.collect()
+    };
+    let total =
+        |name: &str, left_out: [usize; 2], places: usize| (name.to_owned(), vec![left_out], places);
+    let of_free = [
+        total("total_momentum", [0, 0], 0),
+        total("total_momentum_angular", [0, 0], 0),
+    ];
+    assert_eq!(of(&strung(free, free)), of_free);
+    let about = "total_momentum_angular_about_X";
+    let first = [&of_free[..], &[total(about, [1, 0], 1)]].concat();
+    assert_eq!(of(&strung(both, free)), first);
+    let across = "joint_momentum_across_X_angular";
+    let all = [
+        &of_free[..],
+        &[
+            total(about, [0, 1], 1),
+            total(about, [1, 0], 1),
+            total(across, [1, 1], 2),
+        ],
+    ];
+    assert_eq!(of(&strung(both, both)), all.concat());
+}

@@ -1,5 +1,5 @@
-//! Conserved totals of a line: sums over sites of one density, which is the same at every site. Found on
-//! the lattice that is written out; a quantity that is no such sum is left to it.
+//! Conserved totals of a line: sums over sites of one density, which is the same at every site that no end holds; places
+//! that ends hold may stand in it. Found on the lattice that is written out; a quantity that is no such sum is left to it.
 
 use super::site::BASE;
 use super::{Lone, Meshed, Refused, Written};
@@ -7,13 +7,27 @@ use crate::algebra::Algebra;
 use crate::derive::Derivation;
 use crate::derive::invariants::{Family, Invariant};
 use crate::document::default_choice;
-use crate::expr::symbol::{SymbolId, Symbols};
+use crate::expr::shape::Shape;
+use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 use crate::lattice::{Choice, Known, Lattice, Mesh, Sites, Source, Unfolded};
 use crate::pipeline;
 use crate::print::{Format, Style, expression};
 use crate::syntax::ast::{Extent, Model};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What is summed over the sites of one kind.
+#[derive(Clone, Debug)]
+pub struct Density {
+    /// The label of the sites.
+    pub label: usize,
+    /// Which of its sites.
+    pub sites: Sites,
+    /// How many of them ends hold, at the first end and at the last: these are left out.
+    pub left_out: [usize; 2],
+    /// The summand, its letters at the base of the representative.
+    pub value: Expr,
+}
 
 /// A conserved total.
 #[derive(Clone, Debug)]
@@ -24,20 +38,36 @@ pub struct Total {
     pub reason: String,
     /// On which lines.
     pub on: String,
-    /// What is summed, over which sites: letters at the base of the representative.
-    pub densities: Vec<(usize, Sites, Expr)>,
+    /// What is summed.
+    pub densities: Vec<Density>,
+    /// Letters of what an end holds, with whether it is the last end: these stay where they are.
+    pub places: Vec<(Letter, bool)>,
+    /// The end conditions that hold the same configurations as those with which it was found, at the first end and at the
+    /// last. A total of the same name with other densities belongs to other ends.
+    pub ends: [Vec<usize>; 2],
 }
 
 impl Total {
+    /// The shape of the sum.
+    pub fn shape(&self) -> Shape {
+        let first = self.densities.first();
+        first.map_or(Shape::SCALAR, |d| d.value.shape())
+    }
+
     /// What is summed, as text, by which a total of another lattice is known to be this one; letters are of `part`.
     pub fn text(&self, part: &Written) -> String {
         let style = Style::new(&part.d.spec.time_index);
-        let each = self.densities.iter().map(|(label, sites, e)| {
+        let each = self.densities.iter().map(|density| {
+            let (label, sites, e) = (density.label, density.sites, &density.value);
+            let [first, last] = density.left_out;
             // In names that are those of any lattice of the model.
             let mut s = part.d.letters.symbols.clone();
-            let name = |l: &Letter| match part.sited(l.symbol) {
-                Some(at) => format!("{} at {}", at.of, at.site),
-                None => part.d.letters.symbols.get(l.symbol).name.clone(),
+            let place = |l: &Letter| self.places.iter().find(|(own, _)| own == l);
+            let name = |l: &Letter| match (part.sited(l.symbol), place(l)) {
+                (Some(at), Some((_, false))) => format!("{} at the first end", at.of),
+                (Some(at), Some((_, true))) => format!("{} at the last end", at.of),
+                (Some(at), None) => format!("{} at {}", at.of, at.site),
+                (None, _) => part.d.letters.symbols.get(l.symbol).name.clone(),
             };
             let letters = expr::letters(e).into_iter();
             let mut letters: Vec<(String, Letter)> = letters.map(|l| (name(&l), l)).collect();
@@ -46,33 +76,104 @@ impl Total {
                 .into_iter()
                 .map(|(name, l)| {
                     let own = s.get(l.symbol).clone();
-                    let id = s.add(&name, own.shape, own.structure, own.role);
+                    let role = match place(&l) {
+                        Some(_) => Role::Parameter,
+                        None => own.role,
+                    };
+                    let id = s.add(&name, own.shape, own.structure, role);
                     (l, expr::letter(&s, id, l.shift))
                 })
                 .collect();
             let e = expr::substitute(&s, e, &renamed);
             let density = expression(&e, &s, &style, Format::Text);
-            format!("{label} {sites:?} {density}")
+            format!("{label} {sites:?} {first} {last} {density}")
         });
         each.collect::<Vec<_>>().join("; ")
     }
 }
 
-/// The totals on the line that a case has by default: a ring where `periodic` stands alone, else the first
-/// end conditions.
+/// The totals on the line that a case has by default, a ring where `periodic` stands alone, else the first
+/// end conditions; then those on lines whose ends hold other configurations.
 pub(super) fn totals(
     model: &Model,
     lattice: &Lattice,
     part: &Written,
 ) -> Result<Vec<Total>, Refused> {
-    let choice = default_choice(lattice, part.choice.clone());
-    let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
-    let whole = Written {
-        choice,
-        unfolded,
-        d: d.outline(),
+    let on = |choice: Choice| -> Result<Vec<Total>, Refused> {
+        let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
+        let whole = Written {
+            choice,
+            unfolded,
+            d: d.outline(),
+        };
+        Ok(of_part(lattice, &whole, &d.invariants, part))
     };
-    Ok(of_part(lattice, &whole, &d.invariants, part))
+    let choice = default_choice(lattice, part.choice.clone());
+    let mut all = on(choice.clone())?;
+    for other in holding_others(lattice, &choice) {
+        // Ends that do not derive are told where a case chooses them.
+        for total in on(other).unwrap_or_default() {
+            let text = total.text(part);
+            let mut alike = all.iter().filter(|t| t.name == total.name);
+            // A name is one function.
+            if alike.all(|t| t.shape() == total.shape() && t.text(part) != text) {
+                all.push(total);
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// Choices of ends that hold other configurations than this one, one for all that hold the same: that which adds fewest
+/// terms.
+fn holding_others(lattice: &Lattice, choice: &Choice) -> Vec<Choice> {
+    if choice.periodic {
+        return Vec::new();
+    }
+    let kinds = |last: bool| -> Vec<(BTreeSet<&str>, usize)> {
+        let own = choice.ends[usize::from(last)];
+        let list = &lattice.ends[usize::from(last)];
+        let mut out: BTreeMap<BTreeSet<&str>, usize> = BTreeMap::new();
+        let terms = |i: usize| list.get(i).map_or(0, |a| a.terms.len());
+        for (i, a) in list.iter().enumerate() {
+            let given = a.given.iter().map(|n| n.text.as_str()).collect();
+            let known = out.entry(given).or_insert(i);
+            if i == own || *known != own && terms(i) < terms(*known) {
+                *known = i;
+            }
+        }
+        match out.is_empty() {
+            true => vec![(BTreeSet::new(), own)],
+            false => out.into_iter().collect(),
+        }
+    };
+    let lasts = kinds(true);
+    let each = kinds(false).into_iter().flat_map(|(held_first, first)| {
+        let each = lasts.iter().filter_map(move |(held_last, last)| {
+            let ends = [first, *last];
+            let none = held_first.is_empty() && held_last.is_empty();
+            (!none && ends != choice.ends).then(|| Choice {
+                ends,
+                ..choice.clone()
+            })
+        });
+        each.collect::<Vec<_>>()
+    });
+    each.collect()
+}
+
+/// The end conditions that hold the same configurations as the chosen ones.
+fn holding_alike(lattice: &Lattice, choice: &Choice) -> [Vec<usize>; 2] {
+    [0, 1].map(|end| {
+        let given = |i: usize| -> BTreeSet<&str> {
+            let own = lattice.ends[end].get(i).into_iter();
+            own.flat_map(|a| a.given.iter().map(|n| n.text.as_str()))
+                .collect()
+        };
+        let all = 0..lattice.ends[end].len();
+        all.filter(|i| given(*i) == given(choice.ends[end]))
+            .collect()
+    })
 }
 
 /// Totals that functionals of all sites leave as they are: those of the sites alone in which no momentum that
@@ -106,7 +207,14 @@ pub(super) fn beside_functionals(
                 name: v.name.clone(),
                 reason: v.reason.clone(),
                 on: "always".to_owned(),
-                densities: vec![(one.label, one.sites, density)],
+                densities: vec![Density {
+                    label: one.label,
+                    sites: one.sites,
+                    left_out: [0, 0],
+                    value: density,
+                }],
+                places: Vec::new(),
+                ends: Default::default(),
             });
         }
     }
@@ -118,13 +226,15 @@ pub(super) fn name_apart(lattice: &Lattice, totals: &mut [Total]) {
     for i in 1..totals.len() {
         let (before, rest) = totals.split_at_mut(i);
         let Some(own) = rest.first_mut() else { break };
-        if !before.iter().any(|t| t.name == own.name) {
+        // On lines that are held in another way it is this total.
+        let is_other = |t: &Total| t.name == own.name && t.ends == own.ends;
+        if !before.iter().any(is_other) {
             continue;
         }
         let label = own
             .densities
             .first()
-            .and_then(|(l, ..)| lattice.labels.get(*l));
+            .and_then(|d| lattice.labels.get(d.label));
         let label = label.map_or_else(String::new, |l| crate::expr::symbol::ascii(&l.index.text));
         let mut name = format!("{}_{label}", own.name);
         while before.iter().any(|t| t.name == name) {
@@ -188,18 +298,32 @@ fn of_part(
     // Constraints are told for all sites together.
     let exact = invariants.iter();
     let exact = exact.filter(|v| v.exact && v.family != Family::Held);
+    let ends = holding_alike(lattice, &part.choice);
     let each = summed(part, exact.collect())
         .into_iter()
         .filter_map(|(v, value)| {
-            let densities = densities(lattice, part, &value)?;
-            let moved = densities
-                .into_iter()
-                .map(|(label, sites, e)| Some((label, sites, part.in_letters_of(base, &e)?)));
+            let mut densities = densities(lattice, part, &value)?;
+            let mut places: Vec<(Letter, bool)> = Vec::new();
+            for density in &mut densities {
+                let own = expr::letters(&density.value).into_iter();
+                let own: Vec<Letter> = own.filter(|l| is_held(part, l)).collect();
+                for l in own {
+                    let last = part.sited(l.symbol)?.site > 0;
+                    let there = part.in_letters_of(
+                        base,
+                        &expr::letter(&part.d.letters.symbols, l.symbol, l.shift),
+                    )?;
+                    places.extend(expr::letters(&there).into_iter().map(|l| (l, last)));
+                }
+                density.value = part.in_letters_of(base, &density.value)?;
+            }
             Some(Total {
                 name: part.unfolded.plain(&v.name).replace(' ', "_"),
                 reason: v.reason.clone(),
                 on: on.clone(),
-                densities: moved.collect::<Option<_>>()?,
+                densities,
+                places,
+                ends: ends.clone(),
             })
         });
     each.collect()
@@ -257,8 +381,8 @@ fn summed<'v>(part: &Written, invariants: Vec<&'v Invariant>) -> Vec<(&'v Invari
     out.into_iter().map(|(v, e, _)| (v, e)).collect()
 }
 
-/// The density of a sum over all sites of each kind, at the base.
-fn densities(lattice: &Lattice, part: &Written, e: &Expr) -> Option<Vec<(usize, Sites, Expr)>> {
+/// The densities of a sum over all sites of each kind that no end holds, at the base.
+fn densities(lattice: &Lattice, part: &Written, e: &Expr) -> Option<Vec<Density>> {
     let mut by_site: BTreeMap<(usize, Sites), BTreeMap<usize, Vec<Expr>>> = BTreeMap::new();
     for term in terms(part, e) {
         let (kind, site) = only_site(lattice, part, &term)?;
@@ -272,29 +396,86 @@ fn densities(lattice: &Lattice, part: &Written, e: &Expr) -> Option<Vec<(usize, 
     let algebra = Algebra::new(&part.d.letters.symbols);
     let mut out = Vec::new();
     for ((label, sites), all) in by_site {
-        if all.len() != part.choice.sites(lattice, label, sites) {
+        let count = part.choice.sites(lattice, label, sites);
+        let absent: Vec<usize> = (0..count).filter(|i| !all.contains_key(i)).collect();
+        let is_end = |i: &usize| *i == 0 || i + 1 == count;
+        if !absent
+            .iter()
+            .all(|i| is_end(i) && holds(lattice, part, (label, sites), *i))
+        {
             return None;
         }
+        let left_out = [0, count.checked_sub(1)?].map(|i| usize::from(absent.contains(&i)));
         let mut density: Option<Expr> = None;
         for (site, terms) in all {
-            let by = isize::try_from(BASE).ok()? - isize::try_from(site).ok()?;
             let sum = expr::sum(terms, e.shape());
-            let at_base = part.moved(&sum, by)?;
+            let at_base = at_base(part, &sum, site)?;
             match &density {
                 None => density = Some(at_base),
                 Some(d) if algebra.is_zero(&expr::sub(d.clone(), at_base)) => {}
                 Some(_) => return None,
             }
         }
-        out.push((label, sites, density?));
+        out.push(Density {
+            label,
+            sites,
+            left_out,
+            value: density?,
+        });
     }
     (!out.is_empty()).then_some(out)
 }
 
-/// The only site of a term.
+/// Whether an end holds a configuration at this site.
+fn holds(lattice: &Lattice, part: &Written, kind: (usize, Sites), site: usize) -> bool {
+    let mut held = part
+        .unfolded
+        .given
+        .iter()
+        .filter_map(|own| part.unfolded.copy(own));
+    held.any(|c| {
+        let of = lattice.find(&c.of);
+        c.site == site && of.is_some_and(|q| (q.label, q.sites) == kind)
+    })
+}
+
+/// Whether a letter is of what an end holds, which is the same for all sites.
+fn is_held(part: &Written, l: &Letter) -> bool {
+    part.unfolded
+        .given
+        .contains(&part.d.letters.symbols.get(l.symbol).name)
+}
+
+/// A summand of one site at the base; what ends hold stays where it is.
+fn at_base(part: &Written, e: &Expr, site: usize) -> Option<Expr> {
+    let by = isize::try_from(BASE).ok()? - isize::try_from(site).ok()?;
+    let s = &part.d.letters.symbols;
+    let mut list: Vec<(Letter, Expr)> = Vec::new();
+    for l in expr::letters(e) {
+        if !is_held(part, &l) {
+            let own = expr::letter(s, l.symbol, l.shift);
+            list.push((l, part.moved(&own, by)?));
+        }
+    }
+    Some(expr::substitute(s, e, &list))
+}
+
+/// Whether something of one site stands beside what an end holds.
+fn is_from_held(part: &Written, e: &Expr) -> bool {
+    let letters = expr::letters(e).into_iter();
+    let (held, others): (Vec<Letter>, Vec<Letter>) = letters.partition(|l| is_held(part, l));
+    let mut sites = others
+        .iter()
+        .filter_map(|l| part.sited(l.symbol))
+        .map(|at| at.site);
+    let first = sites.next();
+    !held.is_empty() && first.is_some() && sites.all(|s| Some(s) == first)
+}
+
+/// The only site of a term, besides those that ends hold.
 fn only_site(lattice: &Lattice, part: &Written, e: &Expr) -> Option<((usize, Sites), usize)> {
     let mut found = None;
-    for l in expr::letters(e) {
+    for l in expr::letters(e).iter().filter(|l| !is_held(part, l)) {
         let Some(at) = part.sited(l.symbol) else {
             continue;
         };
@@ -309,8 +490,12 @@ fn only_site(lattice: &Lattice, part: &Written, e: &Expr) -> Option<((usize, Sit
     found
 }
 
-/// The terms of a sum, with what multiplies a sum as a whole multiplied in.
+/// The terms of a sum, with what multiplies a sum as a whole multiplied in. Distances from what an end holds stay as they
+/// are: multiplied out they round more far from the origin.
 fn terms(part: &Written, e: &Expr) -> Vec<Expr> {
+    if is_from_held(part, e) {
+        return vec![e.clone()];
+    }
     let go = |x: &Expr| terms(part, x);
     let both = |a: &Expr, b: &Expr, with: &dyn Fn(Expr, Expr) -> Expr| {
         let (a, b) = (go(a), go(b));

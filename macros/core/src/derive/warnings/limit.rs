@@ -1,9 +1,11 @@
 //! Whether the action of a step has a limit of small steps. Takes the limit as derived; gives the
 //! warning that there is none, with what keeps it from having one.
 
+use super::terms::{action_of, place, typed};
 use super::{Inputs, Topic, Warning};
 use crate::derive::limit;
 use crate::diagnostic::Diagnostic;
+use crate::expr::Expr;
 
 /// The warning, if there is no limit.
 pub(super) fn limit(x: &Inputs) -> Option<Warning> {
@@ -38,8 +40,10 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
         return Some(Warning::new(Topic::NoLimit, d));
     }
     let [kinetic, potential] = x.examples();
+    let (addends, all) = typed(x);
+    let term = blamed(x, &addends, why).or_else(|| blamed(x, &all, why));
     let d = Diagnostic::new(
-        x.spec.lagrangian_place,
+        place(x, term.as_ref()),
         format!("the discrete Lagrangian has no limit of small steps: {why}"),
     )
     .help(format!(
@@ -47,4 +51,26 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
          divided by `h`, potentials multiplied by `h`, as in `{kinetic} - {potential}`"
     ));
     Some(Warning::new(Topic::NoLimit, d))
+}
+
+/// The first of the terms that has no limit by itself, for the same reason; none where no term has one.
+fn blamed(x: &Inputs, terms: &[Expr], why: &str) -> Option<Expr> {
+    let without = |term: &&Expr| {
+        let algebra = x.engine();
+        let action = action_of(x, term);
+        let found = limit::limit(
+            x.spec,
+            x.letters,
+            &action,
+            x.variations,
+            x.assumed,
+            &algebra,
+        );
+        !algebra.exhausted() && found.is_err_and(|own| own == why)
+    };
+    let own: Vec<&Expr> = terms.iter().filter(without).collect();
+    match own.len() == terms.len() {
+        true => None,
+        false => own.first().map(|term| (*term).clone()),
+    }
 }

@@ -2,7 +2,7 @@
 //! the action is not self-adjoint, on the terms that make it so, where that is not what the model
 //! asks for.
 
-use super::terms::{place, typed};
+use super::terms::{action_of, place, typed};
 use super::{Inputs, Topic, Warning, difference};
 use crate::check::spec::Spec;
 use crate::derive::action::{self, Action};
@@ -176,16 +176,7 @@ fn blamed(x: &Inputs, terms: Vec<Expr>) -> Vec<(Expr, Expr)> {
 
 /// A term and its reverse, where they do not add up to a total difference.
 fn left_over(x: &Inputs, term: &Expr) -> Option<Expr> {
-    let physical = match &x.spec.scale {
-        Some(scale) => expr::quotient(term.clone(), scale.clone()),
-        None => term.clone(),
-    };
-    let action = action::action(&Spec {
-        lagrangian: physical,
-        node_rule: NodeRule::Symmetric,
-        reduction: None,
-        ..x.spec.clone()
-    });
+    let action = action_of(x, term);
     let symmetric = |a: &Action| reversed(x, a).is_some_and(|r| r.is_symmetric());
     let special = x.for_symmetric_matrices(&action);
     if symmetric(&action) || special.is_some_and(|a| symmetric(&a)) {

@@ -7,9 +7,11 @@ use super::{Inputs, Topic, Warning, assumptions};
 use crate::derive::kinetic;
 use crate::derive::variation::at;
 use crate::diagnostic::Diagnostic;
-use crate::expr::symbol::Role;
+use crate::expr::shape::Structure;
+use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Shift};
 use crate::interpret::{Assignment, evaluate};
+use std::collections::BTreeSet;
 
 /// What is said of signs, wherever a sign is wrong.
 const CONVENTION: &str = "the Lagrangian states kinetic minus potential energy: of a body with \
@@ -84,9 +86,10 @@ pub(super) fn sign(x: &Inputs) -> Option<Warning> {
     if cost.saturating_mul(basis.len() as u64) > EVALUATED {
         return None;
     }
+    let joining = joining(x, &gradients);
     let (mut tried, mut negative) = (0, true);
     for seed in 0..DRAWS {
-        let Some(values) = draw_state(x, &kinetic.energy, seed) else {
+        let Some(values) = draw_state(x, &kinetic.energy, &joining, seed) else {
             continue;
         };
         let Some(matrix) = hessian(x, &gradients, &values) else {
@@ -121,13 +124,44 @@ pub(super) fn sign(x: &Inputs) -> Option<Warning> {
     Some(Warning::new(Topic::SignOfKineticEnergy, d))
 }
 
+/// Parameters that stand in products of different velocities only: where they are small enough they take nothing from the
+/// sign.
+fn joining(x: &Inputs, gradients: &[Expr]) -> BTreeSet<SymbolId> {
+    let s = &x.letters.symbols;
+    let all = &x.letters.variation;
+    let alone = gradients.iter().zip(all).map(|(gradient, own)| {
+        let others = all.iter().filter(|xi| *xi != own);
+        let none: Vec<_> = others
+            .map(|xi| (at(*xi, Shift::HERE), expr::zero(s.get(*xi).shape)))
+            .collect();
+        expr::substitute(s, gradient, &none)
+    });
+    let of = |e: &Expr| expr::letters(e).into_iter().map(|l| l.symbol);
+    let alone: BTreeSet<SymbolId> = alone.flat_map(|e| of(&e).collect::<Vec<_>>()).collect();
+    let can_be_small = |id: &SymbolId| {
+        let symbol = s.get(*id);
+        let fixed = matches!(
+            symbol.structure,
+            Structure::Orthogonal | Structure::UnitQuaternion | Structure::RigidMotion
+        );
+        symbol.role == Role::Parameter && !fixed && !alone.contains(id)
+    };
+    gradients.iter().flat_map(of).filter(can_be_small).collect()
+}
+
 /// Values for the letters of the form, parameters among them admitted by the assumptions.
-fn draw_state(x: &Inputs, energy: &Expr, seed: u64) -> Option<Assignment> {
+fn draw_state(
+    x: &Inputs,
+    energy: &Expr,
+    joining: &BTreeSet<SymbolId>,
+    seed: u64,
+) -> Option<Assignment> {
     let s = &x.letters.symbols;
     let mut source = Draw::new(seed);
     let mut values = draw::nothing(s);
     // Coupling terms are small at some of the points.
     let scale = [1.0, 0.1, 0.01, 0.001][(seed % 4) as usize];
+    let joined = [1.0, 0.1, 0.01, 0.001][(seed / 4 % 4) as usize];
     let mut letters: Vec<_> = expr::letters(energy).iter().map(|l| l.symbol).collect();
     letters.extend(x.spec.parameters.iter().copied());
     letters.sort();
@@ -137,7 +171,10 @@ fn draw_state(x: &Inputs, energy: &Expr, seed: u64) -> Option<Assignment> {
             continue;
         }
         let symbol = s.get(id);
-        let data = draw::natural(s, id, scale, &mut source);
+        let mut data = draw::natural(s, id, scale, &mut source);
+        if joining.contains(&id) {
+            data.iter_mut().for_each(|v| *v *= joined);
+        }
         let (rows, cols) = (
             draw::size(s, symbol.shape.rows),
             draw::size(s, symbol.shape.cols),

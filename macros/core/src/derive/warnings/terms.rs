@@ -4,13 +4,15 @@
 use super::difference::{is_constant, is_kept, is_total, on_edge};
 use super::{Inputs, Topic, Warning};
 use crate::algebra::Rational;
-use crate::derive::action::{split, summands};
+use crate::check::spec::Spec;
+use crate::derive::action::{self, Action, split, summands};
 use crate::derive::reversal::by_configuration;
 use crate::derive::variation::at;
 use crate::diagnostic::{Diagnostic, Place};
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Letter, Node, Shift};
+use crate::syntax::ast::NodeRule;
 
 /// Most nodes of the action, times parameters and pairs of ends, that are differentiated.
 const EVALUATED: u64 = 50_000;
@@ -260,6 +262,20 @@ pub(super) fn vanishing(x: &Inputs) -> Option<Warning> {
          `h` once, as in `-{potential}`"
     ));
     Some(Warning::new(Topic::NoLimit, d))
+}
+
+/// The action of a term as typed, alone.
+pub(super) fn action_of(x: &Inputs, term: &Expr) -> Action {
+    let physical = match &x.spec.scale {
+        Some(scale) => expr::quotient(term.clone(), scale.clone()),
+        None => term.clone(),
+    };
+    action::action(&Spec {
+        lagrangian: physical,
+        node_rule: NodeRule::Symmetric,
+        reduction: None,
+        ..x.spec.clone()
+    })
 }
 
 /// Where a term was typed: that of the same term without signs and divisors, else the Lagrangian.

@@ -92,12 +92,13 @@ fn beside_functionals(
     let mut items = Vec::new();
     for t in &line.totals {
         let mut sums = Vec::new();
-        for (label, _, density) in &t.densities {
-            let Some(e) = line.representative.in_letters_of(written, density) else {
+        for density in &t.densities {
+            let of_density = line.representative.in_letters_of(written, &density.value);
+            let Some(e) = of_density else {
                 continue;
             };
             let of = folded.derived(part, &e, From::Site(0));
-            let Some(l) = folded.lattice.labels.get(*label) else {
+            let Some(l) = folded.lattice.labels.get(density.label) else {
                 continue;
             };
             sums.push(Formula::SumOver {

@@ -7,8 +7,8 @@ use super::{Lines, number};
 use crate::algebra::Algebra;
 use crate::emit::expression::Bindings;
 use crate::emit::items::letters_of;
-use crate::expr::symbol::Role;
-use crate::expr::{self, Expr};
+use crate::expr::symbol::{Role, Symbols};
+use crate::expr::{self, Expr, Letter};
 use crate::line::EndTerm;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -127,38 +127,10 @@ fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenS
             // A parameter of the end, bound by the pattern.
             Some((_, of, None)) => bindings.bind(*letter, end_local(of)),
             Some((_, of, Some(site))) => {
-                let local = format_ident!("__{of}_{site}");
                 let at = place(l, end.last, of, *site);
-                let bound = |stands: Stands| {
-                    let one = [Known {
-                        letter: *letter,
-                        of: of.clone(),
-                        on: Some(0),
-                        stands,
-                    }];
-                    l.locals(s, &one, &Places::of_node(), &at)
-                };
                 let stands = Stands::of(s, *letter, values);
-                let alone = stands.alone || stands.parted;
-                let (lets, inner) = bound(Stands {
-                    turned: stands.turned,
-                    ..Stands::default()
-                });
-                if let Some(turn) = inner.rotation(*letter) {
-                    let local = format_ident!("__{of}_{site}_turn");
-                    locals.extend(quote!(let #local = { #lets #turn };));
-                    bindings.bind_rotation(*letter, local);
-                    if !alone {
-                        continue;
-                    }
-                }
-                let (lets, inner) = bound(Stands {
-                    alone: true,
-                    ..Stands::default()
-                });
-                let name = inner.local(s, *letter);
-                locals.extend(quote!(let #local = { #lets #name };));
-                bindings.bind(*letter, local);
+                let one = (*letter, of.as_str(), stands);
+                locals.extend(held_at(l, s, one, &at, &site.to_string(), &mut bindings));
             }
             None => {
                 let own = &symbol.name;
@@ -170,6 +142,48 @@ fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenS
     }
     let (lets, results) = computed(l, s, values, &bindings);
     (quote!(#locals #lets), results)
+}
+
+/// A local for what stands at one place of the line, whose name ends in `name`.
+pub(super) fn held_at(
+    l: &Lines,
+    s: &Symbols,
+    (letter, of, stands): (Letter, &str, Stands),
+    at: &TokenStream,
+    name: &str,
+    bindings: &mut Bindings,
+) -> TokenStream {
+    let mut locals = TokenStream::new();
+    let bound = |stands: Stands| {
+        let one = [Known {
+            letter,
+            of: of.to_owned(),
+            on: Some(0),
+            stands,
+        }];
+        l.locals(s, &one, &Places::of_node(), at)
+    };
+    let alone = stands.alone || stands.parted;
+    let (lets, inner) = bound(Stands {
+        turned: stands.turned,
+        ..Stands::default()
+    });
+    if let Some(turn) = inner.rotation(letter) {
+        let local = format_ident!("__{of}_{name}_turn");
+        locals.extend(quote!(let #local = { #lets #turn };));
+        bindings.bind_rotation(letter, local);
+        if !alone {
+            return locals;
+        }
+    }
+    let (lets, inner) = bound(Stands {
+        alone: true,
+        ..Stands::default()
+    });
+    let (local, own) = (format_ident!("__{of}_{name}"), inner.local(s, letter));
+    locals.extend(quote!(let #local = { #lets #own };));
+    bindings.bind(letter, local);
+    locals
 }
 
 fn added(l: &Lines, end: &EndTerm) -> TokenStream {

@@ -11,7 +11,7 @@ use crate::emit::element;
 use crate::emit::energy::twice_kinetic_of;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::line::{Lone, Total};
+use crate::line::Lone;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -20,8 +20,8 @@ pub(super) fn energy(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
     let name = l.item("");
     let energies = energies(l, of_meshes).unwrap_or_default();
     let momenta = momenta_of_velocities(l);
-    let totals = l.line.totals.iter().map(|t| total(l, t));
-    quote!(impl<T: Real> #name<T> { #energies #momenta #(#totals)* })
+    let totals = super::conserved::totals(l);
+    quote!(impl<T: Real> #name<T> { #energies #momenta #totals })
 }
 
 /// `energies` and `energy`, where every part has a limit of small steps.
@@ -235,61 +235,5 @@ pub(super) fn momentum(m: &Moving, site: &TokenStream) -> TokenStream {
     match m.is_rotation() {
         true => quote!(at.#name.at(#site).matrix().tr_mul(&momenta.#name[#site])),
         false => quote!(momenta.#name[#site]),
-    }
-}
-
-/// A conserved total.
-fn total(l: &Lines, t: &Total) -> TokenStream {
-    let part = &l.line.representative;
-    let s = &part.d.letters.symbols;
-    let (method, state) = (format_ident!("{}", t.name), l.item("State"));
-    let doc = format!(" Conserved {}: {}.", t.on, t.reason);
-    let moving: Vec<Moving> = l.moving().collect();
-    let mut output = quote!(T);
-    let parts: Vec<TokenStream> = t
-        .densities
-        .iter()
-        .map(|(label, sites, density)| {
-            let d = &part.d;
-            let density = d.defined(density);
-            let values = [density.clone()];
-            let (momenta, letters): (Vec<_>, Vec<_>) =
-                known(l, &values).into_iter().partition(|k| {
-                    part.sited(k.letter.symbol)
-                        .is_some_and(|x| x.momentum_of().is_some())
-                });
-            let places = Places::of_node();
-            let (mut locals, mut bindings) = l.locals(s, &letters, &places, &quote!(site));
-            for k in momenta {
-                let Some(of) = part.sited(k.letter.symbol) else {
-                    continue;
-                };
-                let Some(m) = moving.iter().find(|m| m.mover.name == of.plain()) else {
-                    continue;
-                };
-                let c = &m.d().spec.configurations[m.mover.index];
-                let local = format_ident!("momentum_{}", m.mover.name);
-                let value = element::value(c, momentum(m, &quote!(site)));
-                locals.extend(quote!(let #local = #value;));
-                bindings.bind(k.letter, local);
-            }
-            let (lets, results) = l.program(s, &values, &bindings);
-            let count = l.count(*label, *sites);
-            let shape = density.shape();
-            let sum = match shape.is_scalar() {
-                true => quote!(sum),
-                false => quote!(total),
-            };
-            output = crate::emit::expression::ty(s, shape);
-            quote!(line::#sum(#count, |site| { #locals #lets #(#results)* }))
-        })
-        .collect();
-    quote! {
-        #[doc = #doc]
-        pub fn #method(&self, state: &#state<T>) -> #output {
-            let (at, momenta) = (&state.places, &state.momenta);
-            let _ = at;
-            #(#parts)+*
-        }
     }
 }

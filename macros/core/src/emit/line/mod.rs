@@ -5,6 +5,7 @@
 mod acting;
 mod arguments;
 mod around;
+mod conserved;
 mod constraints;
 mod domain;
 mod ends;

@@ -561,6 +561,7 @@ pub(super) fn admitted(l: &Lines) -> TokenStream {
         quote!(::core::mem::swap(&mut state.momenta.#name, &mut work.momenta.#name);)
     });
     let swapped: Vec<TokenStream> = swapped.collect();
+    let inertia = super::responses::tests_of_inertia(l);
     let first = l.line.holds.first();
     let label = first.map(|h| &h.name);
     let equation_of_first = first.map(|h| equation(l, h));
@@ -582,6 +583,7 @@ pub(super) fn admitted(l: &Lines) -> TokenStream {
         let site = match work.search.projected(&work.held_rows, &work.held_rates, &mut work.impulses) {
             Ok(()) => work.search.largest_impulse(),
             Err((site, _)) => {
+                #inertia
                 let none = T::from_f64(f64::NAN);
                 if let Err(error) = validate::along_constraint(#label, #equation_of_first, none, none, none) {
                     return Err(#refused_first);

@@ -172,3 +172,29 @@ fn inverse(l: &Lines, b: &Bodies, list: &[Matrix], with_velocities: bool) -> Tok
         inverse_or_nan(&inertia)
     }
 }
+
+/// The tests that impulses find an inertia at every site, for where reactions are not found.
+pub(super) fn tests_of_inertia(l: &Lines) -> TokenStream {
+    l.bodies().iter().map(test_of_inertia).collect()
+}
+
+/// The test of one of them.
+fn test_of_inertia(b: &Bodies) -> TokenStream {
+    let Some(first) = b.first() else {
+        return TokenStream::new();
+    };
+    let (range, field, label) = (super::step::range_name(first), b.field(), &first.mover.name);
+    let answer = match b.scalar {
+        true => quote!(weights.#field[i]),
+        false => quote!(length(&weights.#field[i])),
+    };
+    quote! {
+        {
+            let [first, last] = self.#range();
+            let (weights,) = (&work.weights,);
+            if let Err((site, error)) = line::try_each(first, last, |i| validate::has_inertia(#label, #answer)) {
+                return Err(LineError::Site { at: line::Place { quantity: #label, site }, error });
+            }
+        }
+    }
+}

@@ -57,7 +57,7 @@ fn a_grid_keeps_no_momentum_and_a_field_beside_it_keeps_its_own() {
     let names: Vec<String> = found
         .densities
         .iter()
-        .flat_map(|(.., e)| crate::expr::letters(e))
+        .flat_map(|d| crate::expr::letters(&d.value))
         .map(|l| {
             line(text)
                 .representative
@@ -102,7 +102,7 @@ fn momenta_that_walls_turn_are_not_listed_and_coupled_ones_are_refused() {
         let letters = t
             .densities
             .iter()
-            .flat_map(|(.., e)| crate::expr::letters(e));
+            .flat_map(|d| crate::expr::letters(&d.value));
         for l in letters {
             let sited = in_box.representative.sited(l.symbol);
             let of = sited.as_ref().and_then(|at| at.momentum_of());

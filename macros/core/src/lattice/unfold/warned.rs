@@ -3,8 +3,9 @@
 use super::Unfolded;
 use crate::derive::warnings::{Topic, Warning};
 use crate::diagnostic::Diagnostic;
-use crate::lattice::Choice;
-use crate::syntax::ast::{Expression, Name};
+use crate::lattice::{Choice, any_name};
+use crate::syntax::ast::{Expression, Extent, Model, Name, Statement};
+use std::collections::BTreeSet;
 
 /// The sum of such a term starts or ends a site later than that of the same term at the site itself.
 pub(super) fn one_neighbour(stated: &Expression) -> Warning {
@@ -42,6 +43,9 @@ impl Unfolded {
             let place = |w: &Warning| format!("{:?}", w.diagnostic.place);
             let known = |o: &Warning| o.topic == w.topic && place(o) == place(w);
             let stated = self.warnings.iter().any(known);
+            // What no statement names is unused on every line.
+            let of_every_line = w.topic == Topic::UnusedParameter && self.is_unnamed(w);
+            let of_this_choice = of_this_choice && !of_every_line;
             if partial && of_this_choice && !stated || out.iter().any(known) {
                 continue;
             }
@@ -54,6 +58,15 @@ impl Unfolded {
             out.push(Warning::new(w.topic, d));
         }
         out
+    }
+
+    /// Whether nothing in the statement names the parameter that a warning speaks of.
+    fn is_unnamed(&self, w: &Warning) -> bool {
+        let name = w.diagnostic.message.split('`').nth(1);
+        name.is_some_and(|name| {
+            let of = self.copy(name).map_or(name, |c| c.of.as_str());
+            self.unnamed.contains(of)
+        })
     }
 
     /// Whether what is said of a copy of a quantity is said of all of them: the terms of a line may leave out its last site.
@@ -84,4 +97,47 @@ impl Unfolded {
         }
         out
     }
+}
+
+/// Parameters of the model that nothing states by name, at whatever ends.
+pub(super) fn unnamed(model: &Model) -> BTreeSet<String> {
+    let declared = model.statements.iter().flat_map(|s| match s {
+        Statement::Label { step, .. } => step.iter().map(|n| n.text.clone()).collect(),
+        Statement::Param { names, .. } => names.iter().map(|n| n.text.clone()).collect(),
+        _ => Vec::new(),
+    });
+    declared.filter(|name| !is_named(model, name)).collect()
+}
+
+/// Whether a name stands in an expression of the model, or is what a field grows by or lies in.
+fn is_named(model: &Model, name: &str) -> bool {
+    let used = |e: &Expression| any_name(e, &|n| n == name);
+    model.statements.iter().any(|s| match s {
+        Statement::Assume { left, right, .. } | Statement::Hold { left, right, .. } => {
+            used(left) || used(right)
+        }
+        Statement::Lagrangian(value)
+        | Statement::Scale(value)
+        | Statement::Let { value, .. }
+        | Statement::Constraint { value, .. } => used(value),
+        Statement::Advected { definition, .. } => definition.iter().any(used),
+        Statement::Mesh { arguments, .. } => arguments.iter().any(|n| n.text == name),
+        Statement::End { alternatives, .. } => alternatives.iter().flat_map(|a| &a.terms).any(used),
+        Statement::Field { offset, domain, .. } => {
+            let lengths = match domain {
+                Some(Extent::Torus(lengths)) => Some(lengths),
+                _ => None,
+            };
+            offset.iter().chain(lengths).any(|n| n.text == name)
+        }
+        Statement::Label { .. }
+        | Statement::Periodic(_)
+        | Statement::Dim { .. }
+        | Statement::Time { .. }
+        | Statement::Param { .. }
+        | Statement::Group { .. }
+        | Statement::Given { .. }
+        | Statement::Grid(_)
+        | Statement::Node(..) => false,
+    })
 }
