@@ -172,17 +172,35 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
             most: MOST_BODY_BY_BODY,
         });
     }
-    let (unfolded, d) = match pipeline::derive_lattice(&model, &lattice, choice) {
-        Ok(derived) => derived,
+    match body_by_body((&model, &lattice), choice, source, written_out) {
         // What is too large body by body has one kernel for all sites.
-        Err(errors) if errors.are_of_size() && written_out.is_none() => {
-            return match LineModel::read(source) {
-                Ok(line) => card_of_line((&model, &lattice), choice, line, source),
-                Err(_) => Err(Refused::Model(errors)),
-            };
-        }
-        Err(errors) => return Err(Refused::Model(errors)),
-    };
+        Err(Refused::Model(errors)) if errors.are_of_size() => match LineModel::read(source) {
+            Ok(line) => card_of_line((&model, &lattice), choice, line, source),
+            Err(_) => Err(Refused::Model(errors)),
+        },
+        card => card,
+    }
+}
+
+/// The card of a model with labels that is written out body by body whatever loops over sites take: what they are compared with.
+///
+/// # Errors
+/// As [`card`].
+pub fn card_body_by_body(source: &str, choice: &Choice) -> Result<(Card, Vec<Warning>), Refused> {
+    let model = pipeline::parse_source(source).map_err(Refused::Model)?;
+    let lattice = Lattice::read(&model).map_err(Refused::Model)?;
+    body_by_body((&model, &lattice), choice, source, None)
+}
+
+/// The card of a lattice that is written out; `written_out` says why, where loops over sites were asked for.
+fn body_by_body(
+    (model, lattice): (&Model, &Lattice),
+    choice: &Choice,
+    source: &str,
+    written_out: Option<String>,
+) -> Result<(Card, Vec<Warning>), Refused> {
+    let derived = pipeline::derive_lattice(model, lattice, choice);
+    let (unfolded, d) = derived.map_err(Refused::Model)?;
     // What is open is found by its text; here the choice is part of it.
     let key = format!("{source}\n{choice:?}");
     let text = Text::of_derivation(d)?;
@@ -191,14 +209,14 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
         None => {
             let mut opened = Opened::read(&text, &key, None)?;
             // What is not read of a line has none.
-            let signs = clebsch_core::line::signs(&model, &lattice).unwrap_or_default();
-            opened.signs = Agreement::of(signs, &lattice, choice, &opened.card);
+            let signs = clebsch_core::line::signs(model, lattice).unwrap_or_default();
+            opened.signs = Agreement::of(signs, lattice, choice, &opened.card);
             kept(opened)?
         }
     };
     let d = &text.derivation;
     let warnings = unfolded.told(choice, &d.warnings);
-    let words = document::card_words(&lattice, choice, unfolded, d, card.solver);
+    let words = document::card_words(lattice, choice, unfolded, d, card.solver);
     let invariants = named(card.invariants, words.invariants);
     let card = Card {
         source: crate::text(source),

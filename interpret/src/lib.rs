@@ -23,7 +23,7 @@ mod sites;
 mod value;
 
 pub use at_particles::{AtParticles, Placed, Unvalued, at_particles};
-pub use cards::{MOST_BODY_BY_BODY, card, card_and_warnings, card_on_lattice};
+pub use cards::{MOST_BODY_BY_BODY, card, card_and_warnings, card_body_by_body, card_on_lattice};
 
 use clebsch_core::Errors;
 use core::fmt;

@@ -22,14 +22,14 @@ fn held_lines_equal_the_compiled_ones_to_the_last_bit() {
 
 #[test]
 fn held_lines_move_as_their_bodies_do() {
-    beside::move_as_bodies_do(held::all().into_iter());
-    beside::move_as_bodies_do(sums::all().into_iter());
+    beside::move_as_bodies_do(held::all().into_iter(), 3);
+    beside::move_as_bodies_do(sums::all().into_iter(), 3);
 }
 
 #[test]
 fn totals_about_what_ends_hold_equal_the_compiled_ones_and_those_of_bodies() {
     beside::equal_to_the_last_bit(compiled::strung::all().into_iter());
-    beside::move_as_bodies_do(compiled::strung::all().into_iter());
+    beside::move_as_bodies_do(compiled::strung::all().into_iter(), 5);
     let (source, make, _) = compiled::strung::all().remove(0);
     for (ends, name) in [
         (["pinned", "free"], "total_momentum_angular_about_X"),

@@ -97,7 +97,7 @@ fn a_step_beyond_a_fold_is_refused_alike_and_names_its_site() {
 
 #[test]
 fn every_line_moves_as_its_bodies_do() {
-    beside::move_as_bodies_do(compiled::all().into_iter());
+    beside::move_as_bodies_do(compiled::all().into_iter(), 5);
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn a_term_that_is_left_out_is_seen() {
 #[test]
 fn velocities_of_all_sites_are_found_together_to_the_last_bit_and_as_those_of_bodies() {
     beside::equal_to_the_last_bit(compiled::together::all().into_iter());
-    beside::move_as_bodies_do(compiled::together::all().into_iter());
+    beside::move_as_bodies_do(compiled::together::all().into_iter(), 5);
     beside::go_on(compiled::together::all().into_iter());
 }
 

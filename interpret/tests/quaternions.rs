@@ -22,7 +22,7 @@ fn lines_in_quaternions_equal_the_compiled_ones_to_the_last_bit() {
 
 #[test]
 fn lines_in_quaternions_move_as_their_bodies_do() {
-    beside::move_as_bodies_do(quaternions::all().into_iter());
+    beside::move_as_bodies_do(quaternions::all().into_iter(), 5);
 }
 
 #[test]

@@ -341,6 +341,11 @@ fn a_wrong_case_is_told_by_line_and_site() {
             "q = [1.0, 2.0] #",
             ":22: initial.q: a list has a value for each of the 32 sites, and this one has 2",
         ),
+        (
+            "m = 1.0",
+            &format!("m = [{}nan, 1.0]", "1.0, ".repeat(30)),
+            ":16: parameters.m: at i = 30, NaN is not a finite number",
+        ),
         ("q = \"log", "q = \"sqrt(5.5 - i)\" #", "initial.q_6: NaN"),
         ("q = \"log", "q = \"1/(i - 7)\" #", ":22: initial.q_7: inf"),
         (

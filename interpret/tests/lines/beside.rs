@@ -161,14 +161,14 @@ pub fn equal_to_the_last_bit(lines: impl Iterator<Item = Line>) {
 }
 
 /// Lines move as their bodies do, written out.
-pub fn move_as_bodies_do(lines: impl Iterator<Item = Line>) {
+pub fn move_as_bodies_do(lines: impl Iterator<Item = Line>, sites: usize) {
     for (source, make, cases) in lines {
         let model = LineModel::read(source).expect("is read");
-        for case in cases.iter().filter(|c| c.n == 5) {
+        for case in cases.iter().filter(|c| c.n == sites) {
             let (_, data) = make(case);
             let chosen = choice(source, case.n, case.ends);
             let (card, _) =
-                clebsch_interpret::card_on_lattice(source, &chosen).expect("is written out");
+                clebsch_interpret::card_body_by_body(source, &chosen).expect("is written out");
             let (parameters, initial) =
                 (values(card.parameters, &data), values(card.initial, &data));
             let settings = Settings::step(case.h);
