@@ -342,9 +342,9 @@ fn a_wrong_case_is_told_by_line_and_site() {
             ":22: initial.q: a list has a value for each of the 32 sites, and this one has 2",
         ),
         (
-            "m = 1.0",
-            &format!("m = [{}nan, 1.0]", "1.0, ".repeat(30)),
-            ":16: parameters.m: at i = 30, NaN is not a finite number",
+            "q = \"log",
+            &format!("q = [{}nan, 1.0] #", "1.0, ".repeat(30)),
+            ":22: initial.q: at i = 30, NaN is not a finite number",
         ),
         ("q = \"log", "q = \"sqrt(5.5 - i)\" #", "initial.q_6: NaN"),
         ("q = \"log", "q = \"1/(i - 7)\" #", ":22: initial.q_7: inf"),
