@@ -2,7 +2,7 @@
 //! `-2 V A`, `h^2 a/(2 h)` reads `h a/2`. Takes an expression, gives an equal one; products are not
 //! multiplied out, so that what the user wrote can still be recognised.
 
-use super::presence::Memo;
+use super::substitute::bottom_up;
 use super::*;
 use crate::expr::symbol::Symbols;
 
@@ -16,21 +16,11 @@ pub(super) struct Parts {
 
 /// The same expression with like terms collected at every depth.
 pub fn collect(symbols: &Symbols, e: &Expr) -> Expr {
-    walk(symbols, e, &mut Memo::default())
-}
-
-fn walk(symbols: &Symbols, whole: &Expr, known: &mut Memo<Expr>) -> Expr {
-    if let Some(found) = known.get(whole) {
-        return found;
-    }
-    let e = rebuild(symbols, whole, &mut |x| walk(symbols, x, known));
-    let out = match e.node() {
+    bottom_up(symbols, e, &|e| match e.node() {
         Node::Sum(terms) => sum_of(terms, e.shape()),
         Node::Product(_) | Node::Quotient(..) | Node::Neg(_) => cancelled(&e),
         _ => e,
-    };
-    known.keep(whole, &out);
-    out
+    })
 }
 
 fn sum_of(terms: &[Expr], shape: Shape) -> Expr {

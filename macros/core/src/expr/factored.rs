@@ -3,8 +3,8 @@
 //! Takes an expression, gives an equal one.
 
 use super::collect::{Parts, parts};
-use super::presence::Memo;
 use super::shape::Structure;
+use super::substitute::bottom_up;
 use super::*;
 use crate::expr::symbol::Symbols;
 
@@ -20,15 +20,7 @@ struct Word {
 
 /// The same expression with common factors taken out of sums of vectors and matrices.
 pub fn factored(symbols: &Symbols, e: &Expr) -> Expr {
-    walk(symbols, e, &mut Memo::default())
-}
-
-fn walk(symbols: &Symbols, whole: &Expr, known: &mut Memo<Expr>) -> Expr {
-    if let Some(found) = known.get(whole) {
-        return found;
-    }
-    let e = rebuild(symbols, whole, &mut |x| walk(symbols, x, known));
-    let out = match e.node() {
+    bottom_up(symbols, e, &|e| match e.node() {
         Node::Sum(_) | Node::Product(_) | Node::Quotient(..) if !e.shape().is_scalar() => {
             let mut terms = Vec::new();
             flatten(symbols, &e, &mut terms);
@@ -36,9 +28,7 @@ fn walk(symbols: &Symbols, whole: &Expr, known: &mut Memo<Expr>) -> Expr {
         }
         Node::Vee(a) => axial_of_outer(symbols, a).unwrap_or(e),
         _ => e,
-    };
-    known.keep(whole, &out);
-    out
+    })
 }
 
 /// `vee(a b^T)`, which is half of `b x a`, for a product of a column and a row, or of a matrix and a

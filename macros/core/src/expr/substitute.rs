@@ -98,6 +98,27 @@ fn map_letters(
     mapped
 }
 
+/// The expression rewritten from its leaves to its root, a part that several places share once.
+pub(super) fn bottom_up(symbols: &Symbols, e: &Expr, f: &dyn Fn(Expr) -> Expr) -> Expr {
+    rewritten(symbols, e, f, &mut Memo::default())
+}
+
+fn rewritten(
+    symbols: &Symbols,
+    e: &Expr,
+    f: &dyn Fn(Expr) -> Expr,
+    known: &mut Memo<Expr>,
+) -> Expr {
+    if let Some(found) = known.get(e) {
+        return found;
+    }
+    let new = f(rebuild(symbols, e, &mut |x| {
+        rewritten(symbols, x, f, known)
+    }));
+    known.keep(e, &new);
+    new
+}
+
 /// The same node with every child replaced; the very same expression where none is another one.
 pub fn rebuild(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -> Expr {
     let (mut children, mut same) = (Vec::new(), true);
