@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 
 mod matrix;
 
-pub(crate) use matrix::Matrix;
+pub(crate) use matrix::{Matrix, paired};
 
 /// Points at which an identity must hold.
 pub(crate) const POINTS: u64 = 6;

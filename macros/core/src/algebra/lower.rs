@@ -10,38 +10,10 @@ use super::{Algebra, Sense};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Function, Map, Node, Parity, Part};
-use std::rc::Rc;
-
-/// Nodes of an expression from which on its normal form is kept: that of a smaller one is found as fast as it is looked up.
-const SHARED: u32 = 3;
 
 impl Algebra<'_> {
-    /// The normal form of an expression.
-    pub fn lower(&self, e: &Expr) -> Poly {
-        Rc::unwrap_or_clone(self.lowered(e))
-    }
-
-    /// The same, shared with those who ask again.
-    pub(super) fn lowered(&self, e: &Expr) -> Rc<Poly> {
-        if e.size() < SHARED {
-            return Rc::new(self.normal_form(e));
-        }
-        let forms = &self.lowered[usize::from(self.blocks.get())];
-        if let Some((known, work)) = forms.borrow().get(e) {
-            // What is refused does not depend on what was asked before: the work counts again.
-            self.spend(*work);
-            return known.clone();
-        }
-        let before = self.work.get();
-        let form = Rc::new(self.normal_form(e));
-        if !self.exhausted() {
-            let work = usize::try_from(self.work.get() - before).unwrap_or(usize::MAX);
-            forms.borrow_mut().insert(e.clone(), (form.clone(), work));
-        }
-        form
-    }
-
-    fn normal_form(&self, e: &Expr) -> Poly {
+    /// The normal form of an expression, whose parts may be known.
+    pub(super) fn normal_form(&self, e: &Expr) -> Poly {
         let shape = e.shape();
         if self.exhausted() {
             return Poly::zero(shape);

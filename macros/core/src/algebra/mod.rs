@@ -7,6 +7,7 @@ mod bracket;
 pub(crate) mod exact;
 mod factor;
 mod functional;
+mod kept;
 mod lower;
 mod monomial;
 mod poly;
@@ -29,7 +30,6 @@ use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Hashed};
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
-use std::rc::Rc;
 
 /// Work allowed for one model, in products of terms. A model of the gallery needs a few
 /// thousand; the bound keeps any input of 10 kB below two seconds.
@@ -81,7 +81,7 @@ pub struct Algebra<'a> {
     /// Their normal forms, in blocks or not. Looked up, never iterated.
     given: RefCell<HashMap<(Expr, bool), Poly>>,
     /// Normal forms, not in blocks and in blocks. Looked up, never iterated.
-    lowered: [RefCell<Hashed<Lowered>>; 2],
+    lowered: [RefCell<Hashed<kept::Lowered>>; 2],
     work: Cell<u64>,
     evaluated: Cell<u64>,
     excess: Cell<Option<Excess>>,
@@ -98,9 +98,6 @@ pub enum Known {
     /// exact arithmetic modulo a prime of 61 bits.
     ExactEvaluation,
 }
-
-/// A normal form and the work that it took.
-type Lowered = (Rc<Poly>, usize);
 
 /// A sub-expression that the normal form treats as one letter.
 struct Opaque {

@@ -171,9 +171,14 @@ impl Matrix {
     /// `tr(self^T b)` with the entries of `b` that are not zero, 1 or -1: as many terms as entries, however
     /// large the matrix is.
     pub(crate) fn paired(&self, b: &[(usize, usize, i64)]) -> u64 {
-        b.iter().fold(0, |sum, (i, j, x)| {
-            let own = self.data.get(i * self.cols + j).copied().unwrap_or(0);
-            add(sum, if *x < 0 { negate(own) } else { own })
-        })
+        paired(&self.data, self.cols, b)
     }
+}
+
+/// The same of entries row by row with so many columns.
+pub(crate) fn paired(data: &[u64], cols: usize, b: &[(usize, usize, i64)]) -> u64 {
+    b.iter().fold(0, |sum, (i, j, x)| {
+        let own = data.get(i * cols + j).copied().unwrap_or(0);
+        add(sum, if *x < 0 { negate(own) } else { own })
+    })
 }

@@ -6,7 +6,7 @@ use super::independence::tangents;
 use super::passage::Passage;
 use super::{Family, Inputs, Invariant, Kind, here, is_conserved, words};
 use crate::algebra::assumed::{self, Independent, rank};
-use crate::algebra::exact::{ATTEMPTS, Matrix, Point, add, mul, negate};
+use crate::algebra::exact::{ATTEMPTS, Matrix, Point, add, mul, negate, paired};
 use crate::derive::bracket::{Element, Numbers, Space};
 use crate::expr::shape::Dim;
 use crate::expr::{self, Expr, Letter};
@@ -230,10 +230,7 @@ impl Numbers for Exact<'_> {
     }
 
     fn paired(&self, gradient: &[u64], cols: usize, e: &Element) -> u64 {
-        e.iter().fold(0, |sum, (i, j, x)| {
-            let own = gradient[i * cols + j];
-            add(sum, if *x < 0 { negate(own) } else { own })
-        })
+        paired(gradient, cols, e)
     }
 
     fn entries(&mut self, e: &Expr, with: &[(Letter, &Element)]) -> Option<Vec<u64>> {

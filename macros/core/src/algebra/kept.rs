@@ -1,0 +1,40 @@
+//! Normal forms are kept: what expressions share is brought to its own once. Takes an expression; gives its normal form, shared
+//! with those who ask again.
+
+use super::Algebra;
+use super::poly::Poly;
+use crate::expr::Expr;
+use std::rc::Rc;
+
+/// Nodes of an expression from which on its normal form is kept: that of a smaller one is found as fast as it is looked up.
+const SHARED: u32 = 3;
+
+/// A normal form and the work that it took.
+pub(super) type Lowered = (Rc<Poly>, usize);
+
+impl Algebra<'_> {
+    /// The normal form of an expression.
+    pub fn lower(&self, e: &Expr) -> Poly {
+        Rc::unwrap_or_clone(self.lowered(e))
+    }
+
+    /// The same, shared with those who ask again.
+    pub(super) fn lowered(&self, e: &Expr) -> Rc<Poly> {
+        if e.size() < SHARED {
+            return Rc::new(self.normal_form(e));
+        }
+        let forms = &self.lowered[usize::from(self.blocks.get())];
+        if let Some((known, work)) = forms.borrow().get(e) {
+            // What is refused does not depend on what was asked before: the work counts again.
+            self.spend(*work);
+            return known.clone();
+        }
+        let before = self.work.get();
+        let form = Rc::new(self.normal_form(e));
+        if !self.exhausted() {
+            let work = usize::try_from(self.work.get() - before).unwrap_or(usize::MAX);
+            forms.borrow_mut().insert(e.clone(), (form.clone(), work));
+        }
+        form
+    }
+}
