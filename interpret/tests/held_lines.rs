@@ -11,6 +11,7 @@ mod beside;
 mod compiled;
 
 use beside::{bits, choice, start};
+use clebsch::card::{Field, Settings};
 use clebsch_interpret::lines::LineModel;
 use compiled::{Case, held, sums};
 
@@ -59,6 +60,105 @@ fn totals_about_what_ends_hold_equal_the_compiled_ones_and_those_of_bodies() {
             assert!((x - y).abs() < 1e-13 * size, "{ends:?}: {x} {y}, {size}");
         }
     }
+}
+
+/// The order of composed steps, of places and momenta; and a step that cannot be made leaves the line where it was.
+#[test]
+fn composed_steps_have_their_order() {
+    let of_held = held::all().remove(1);
+    let of_rod = compiled::all()
+        .into_iter()
+        .find(|(source, ..)| *source == compiled::ROD);
+    let lines = [
+        ((compiled::TODA, compiled::toda as _), Case::new(40, None)),
+        (
+            of_rod
+                .map(|(source, make, _)| (source, make))
+                .expect("is here"),
+            Case::new(40, Some(["clamped", "load"])),
+        ),
+        (
+            (of_held.0, of_held.1),
+            Case::new(5, Some(["pinned", "free"])),
+        ),
+    ];
+    for ((source, make), case) in lines {
+        let (_, data) = make(&case);
+        let chosen = choice(source, case.n, case.ends);
+        let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("a card");
+        assert_eq!(card.orders, [2, 4, 6, 8], "{}", card.name);
+        let (parameters, initial) = (
+            beside::values(card.parameters, &data),
+            beside::values(card.initial, &data),
+        );
+        let end = |order: u32, steps: u32| {
+            let settings = Settings {
+                order: Some(order),
+                ..Settings::step(0.16 / f64::from(steps))
+            };
+            let mut line = (card.open)(&parameters, &initial, settings).expect("starts");
+            for _ in 0..steps {
+                line.step().expect("steps");
+            }
+            assert_eq!(line.node(), u64::from(steps));
+            // What the data begin with; multipliers are those of the last part.
+            let mut all = vec![0.0; card.observable_count()];
+            line.observe(&mut all);
+            let given = |f: &Field| data.of_ascii(beside::split(f).0).is_some();
+            let of = card.observables.iter();
+            let moving: Vec<bool> = of.flat_map(|f| vec![given(f); f.count()]).collect();
+            let all = all.into_iter().zip(moving);
+            all.filter(|(_, moves)| *moves)
+                .map(|(x, _)| x)
+                .collect::<Vec<f64>>()
+        };
+        let truth = end(8, 16);
+        let error = |order, steps| {
+            let all = end(order, steps);
+            let off = all.iter().zip(&truth).map(|(x, y)| x - y);
+            clebsch::scalar::largest(off)
+        };
+        for (order, steps) in [(2, 8), (4, 8), (6, 4)] {
+            let (coarse, fine) = (error(order, steps), error(order, 2 * steps));
+            let measured = (coarse / fine).log2();
+            assert!(
+                (measured - f64::from(order)).abs() < 0.15,
+                "{} of order {order}: {measured:.3}, {coarse:e} {fine:e}",
+                card.name
+            );
+        }
+    }
+}
+
+#[test]
+fn a_composed_step_that_is_refused_leaves_the_line_where_it_was() {
+    let source = compiled::WATER;
+    let case = Case::new(40, None);
+    let (_, calm) = compiled::water(&case);
+    // Particles that run into one another.
+    let wild = calm.with("momentum_X", |p| p.iter_mut().for_each(|p| *p *= 400.0));
+    let chosen = choice(source, case.n, case.ends);
+    let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("a card");
+    let (parameters, initial) = (
+        beside::values(card.parameters, &wild),
+        beside::values(card.initial, &wild),
+    );
+    let settings = Settings {
+        order: Some(4),
+        ..Settings::step(0.02)
+    };
+    let mut line = (card.open)(&parameters, &initial, settings).expect("starts");
+    let mut seen = vec![0.0; card.observable_count()];
+    let refused = (0..1000).find_map(|node| {
+        line.observe(&mut seen);
+        line.step().err().map(|e| (node, e.to_string()))
+    });
+    let (node, words) = refused.expect("they meet");
+    assert_eq!(line.node(), node);
+    let mut after = vec![0.0; seen.len()];
+    line.observe(&mut after);
+    assert_eq!(bits(&seen), bits(&after), "{words}");
+    assert!(words.contains("site "), "{words}");
 }
 
 #[test]

@@ -26,6 +26,10 @@ pub enum Kind {
     Sum,
     /// The same of the sizes of their terms: a scale of what is summed.
     Sizes,
+    /// `worst_residual`: what is left of the equations of sites by themselves.
+    Worst,
+    /// `residual_of_all`: what is left of those of all sites together.
+    OfAll,
 }
 
 /// A list of sites or part of it.
@@ -175,8 +179,26 @@ impl<T: Real> Sweep<T> {
                 }
                 unfit(summed(&all, self.kind == Kind::Sizes))
             }
+            (Kind::Worst | Kind::OfAll, []) => self.left(places),
             _ => Err(Exit::Unfit(WRONG)),
         }
+    }
+
+    /// What is left of the equations of sites.
+    fn left(&self, places: &mut Places<T>) -> Evaluated<T> {
+        let [from, to] = self.whole(places)?;
+        let mut parts = Vec::with_capacity(to.saturating_sub(from));
+        for i in from..to {
+            match self.at([site(i)].into_iter(), places)? {
+                Value::Residual(part) => parts.push(part),
+                _ => return Err(Exit::Unfit(WRONG)),
+            }
+        }
+        let left = |i: usize| parts[i];
+        Ok(Value::Residual(match self.kind {
+            Kind::OfAll => line::residual_of_all(parts.len(), left),
+            _ => line::worst_residual(parts.len(), left),
+        }))
     }
 
     /// Runs sites by operations, as far as that goes: the next site that is left to the body.

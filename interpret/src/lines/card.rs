@@ -184,6 +184,9 @@ impl Carded {
             }
         }
         left_out.extend(lost.iter().map(|i| expander.at_its_site(i.name)));
+        if !model.has_residual() {
+            left_out.push("residuals".to_owned());
+        }
         let summary = words
             .summary
             .replace(&short.words(lattice), &choice.words(lattice));
@@ -207,7 +210,12 @@ impl Carded {
                 (false, true) => TOGETHER,
                 (false, false) => text(&words.solver),
             },
-            orders: &[2],
+            // Functionals of all sites, and walls that reflect, are not smooth enough for more.
+            orders: match lattice.meshes.is_empty() && !card.preprocessed {
+                true => card.orders,
+                false => &[2],
+            },
+            preprocessed: false,
             solvers: &[],
             parameters,
             initial,
@@ -274,13 +282,12 @@ fn of_all_sites<'a>(summary: &str, names: impl Iterator<Item = &'a str>) -> Stri
     each.collect::<Vec<_>>().join("\n")
 }
 
-/// What a reader is told of how a line is run.
+/// What a reader is told of how a line is run: what is not computed.
 fn told(left_out: &[String]) -> String {
-    let mut told = String::from(
-        "\nprogram              one for every number of sites, with loops over them; residuals are not computed",
-    );
+    let mut told =
+        String::from("\nprogram              one for every number of sites, with loops over them");
     if !left_out.is_empty() {
-        told.push_str("; nor are ");
+        told.push_str("; not computed are ");
         told.push_str(&left_out.join(", "));
     }
     told

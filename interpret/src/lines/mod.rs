@@ -3,6 +3,7 @@
 
 mod asked;
 mod card;
+mod composed;
 mod coordinates;
 mod given;
 mod kinetic;
@@ -96,6 +97,9 @@ pub struct LineModel {
     /// The same, with momenta projected on constraints, where any are held.
     projecting: Option<Routine<f64>>,
     step: Routine<f64>,
+    workspace: Routine<f64>,
+    /// What a step leaves of its equations, where it is told.
+    residual: Option<Routine<f64>>,
     /// Whether velocities of all sites are found together.
     together: bool,
     /// Where the energy of small steps is known.
@@ -217,6 +221,14 @@ impl LineModel {
         let new = lower(name, "new", &[at::GIVEN, at::OUT])?;
         let start = lower(name, "start", &[at::MODEL, at::GIVEN, at::STEP])?;
         let step = lower(name, "step", &[at::MODEL, at::STATE, at::WORK])?;
+        let workspace = lower(name, "workspace", &[at::MODEL, at::STATE, at::STEP])?;
+        let residual = match program.function(name, "residual") {
+            Some(_) => {
+                let of = [at::MODEL, at::BEFORE, at::STATE, at::WORK];
+                Some(lower(name, "residual", &of)?)
+            }
+            None => None,
+        };
         let has_energies = program.function(name, "energies").is_some();
         let energies = match has_energies {
             true => Some(lower(name, "energies", &[at::MODEL, at::STATE])?),
@@ -274,11 +286,12 @@ impl LineModel {
         let of_state = totals.iter().chain(&observers).chain(&total_sizes);
         let of_state = of_state.chain(&functionals).chain(&momenta);
         let of_state = of_state.map(|(_, r)| r.places);
-        let own = [&new, &start, &step].into_iter();
+        let own = [&new, &start, &step, &workspace].into_iter();
         let own = own
             .chain(&energies)
             .chain(&energy_sizes)
             .chain(&enlarged)
+            .chain(&residual)
             .chain(&projecting);
         let own = own.map(|r| r.places);
         let places = own.chain(of_state).max();
@@ -298,6 +311,8 @@ impl LineModel {
             start,
             projecting,
             step,
+            workspace,
+            residual,
             together: !line.ties.is_empty(),
             energies,
             energy_sizes,
@@ -323,6 +338,11 @@ impl LineModel {
     /// Whether velocities of all sites are found together.
     pub fn is_solved_together(&self) -> bool {
         self.together
+    }
+
+    /// Whether [`LineTrajectory::residual`] gives any.
+    pub fn has_residual(&self) -> bool {
+        self.residual.is_some()
     }
 
     /// Whether [`LineTrajectory::energies`] gives any.
@@ -483,10 +503,17 @@ impl LineModel {
         for (value, place) in both.into_iter().zip([at::STATE, at::WORK]) {
             put(&mut places, place, value);
         }
+        if self.residual.is_some()
+            && let Some(state) = places.get(at::STATE).cloned()
+        {
+            put(&mut places, at::BEFORE, state);
+        }
         Ok(LineTrajectory {
             model: self.clone(),
             places,
             h,
+            spare: Value::Unit,
+            composed: None,
         })
     }
 }

@@ -4,7 +4,7 @@ use super::card::{Carded, Place};
 use super::{LineTrajectory, Unstarted};
 use crate::text;
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver};
-use clebsch::integrate::counted;
+use clebsch::integrate::{Offer, Residual, Way, counted};
 use clebsch::kinetic::KineticWarning;
 use clebsch::line::LineError;
 use clebsch::saved::{Saved, Words};
@@ -53,20 +53,7 @@ impl Carded {
         let card = &self.card;
         counted(card, parameters, initial)?;
         chosen_solver(settings, card.solvers)?;
-        if settings.compensated {
-            return Err(OpenError::Compensation {
-                order: settings.order.unwrap_or(card.order),
-                preprocessed: false,
-            });
-        }
-        if let Some(asked) = settings.order
-            && !card.orders.contains(&asked)
-        {
-            return Err(OpenError::Order {
-                asked,
-                offered: card.orders,
-            });
-        }
+        let way = Way::of(Offer::of(card), settings, card.orders)?;
         let mut given: BTreeMap<&str, Sites<'_>> = BTreeMap::new();
         let of_tables = [(&self.parameters, parameters), (&self.initial, initial)];
         for (places, lists) in of_tables {
@@ -113,9 +100,21 @@ impl Carded {
                 _ => None,
             }
         };
+        // The first part of a composed step is shorter than the whole.
+        let h = match way {
+            Way::Composed(order) => order
+                .factors()
+                .first()
+                .map_or(settings.h, |f| settings.h * f),
+            Way::Plain | Way::Modified(..) => settings.h,
+        };
         let started = match settings.projected {
-            true => (self.model).start_projected(&self.choice, settings.h, &numbers),
-            false => self.model.start(&self.choice, settings.h, &numbers),
+            true => self.model.start_projected(&self.choice, h, &numbers),
+            false => self.model.start(&self.choice, h, &numbers),
+        };
+        let started = match way {
+            Way::Composed(order) => started.and_then(|line| line.of_order(order, settings.h)),
+            Way::Plain | Way::Modified(..) => started,
         };
         let line = started.map_err(|e| self.refused(e))?;
         let sites = |name: &str| self.sites.get(name).copied();
@@ -316,6 +315,11 @@ impl Trajectory for Running {
 
     fn kinetic_warning(&self) -> Option<KineticWarning> {
         self.kinetic
+    }
+
+    fn residual(&self) -> Option<f64> {
+        let parts = self.line.borrow_mut().residual();
+        parts.map(|parts| Residual::largest(&parts))
     }
 
     fn invariants(&self, out: &mut [f64]) {

@@ -1,6 +1,7 @@
 //! A line on its way: its node, its steps, and what of it a checkpoint keeps. What it is asked stands in `asked`.
 //! Takes a model and the places of its routines; goes from node to node.
 
+use super::composed::Composed;
 use super::{LineModel, coordinates, run};
 use crate::code::Places;
 use crate::opened::at;
@@ -15,12 +16,20 @@ pub struct LineTrajectory {
     pub(super) model: Arc<LineModel>,
     pub(super) places: Places<f64>,
     pub(super) h: f64,
+    /// Where the state is put that a step begins with.
+    pub(super) spare: Value<f64>,
+    /// The parts of its steps, where they are composed.
+    pub(super) composed: Option<Composed>,
 }
 
 impl LineTrajectory {
     /// The number of the node.
     pub fn node(&self) -> u64 {
-        match self.places.get(at::STATE) {
+        self.node_at(at::STATE)
+    }
+
+    pub(super) fn node_at(&self, at: usize) -> u64 {
+        match self.places.get(at) {
             Some(Value::Struct(s)) => match s.field(self.model.node) {
                 Some(Value::Int(n)) => u64::try_from(*n).unwrap_or(0),
                 _ => 0,
@@ -40,19 +49,42 @@ impl LineTrajectory {
     /// [`LineError::Step`] names the site; the state is then unchanged.
     pub fn step(&mut self) -> Result<(), LineError> {
         let model = self.model.clone();
-        run(&model.step, &mut self.places)
-            .map(|_| ())
-            .map_err(|e| coordinates::named(&model.coordinates, e.line()))
+        let made = match self.composed {
+            Some(_) => self.composed_step(),
+            None => self.own_step(),
+        };
+        made.map_err(|e| coordinates::named(&model.coordinates, e))
+    }
+}
+
+impl LineTrajectory {
+    /// One step of the model, the state before it kept where something is asked of both.
+    fn own_step(&mut self) -> Result<(), LineError> {
+        let model = self.model.clone();
+        if model.residual.is_some()
+            && let Some(state) = self.places.get(at::STATE)
+        {
+            self.spare.clone_from(state);
+        }
+        run(&model.step, &mut self.places).map_err(|e| e.line())?;
+        if model.residual.is_some()
+            && let Some(before) = self.places.get_mut(at::BEFORE)
+        {
+            std::mem::swap(before, &mut self.spare);
+        }
+        Ok(())
     }
 }
 
 impl Saved for LineTrajectory {
     fn words(&mut self, words: &mut Words) {
-        for at in [at::STATE, at::WORK] {
+        for at in [at::STATE, at::BEFORE, at::WORK] {
             match self.places.get_mut(at) {
                 Some(value) => value.words(words),
                 None => words.refuse(),
             }
         }
+        let composed = self.composed.iter_mut().flat_map(|c| &mut c.works);
+        composed.for_each(|work| work.words(words));
     }
 }

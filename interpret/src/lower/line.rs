@@ -97,6 +97,14 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 };
                 (kind, Vec::new(), Some(range), body)
             }
+            ("line::worst_residual", [sites, body]) => {
+                let range = [whole(0), self.expression(sites, None)?];
+                (Kind::Worst, Vec::new(), Some(range), body)
+            }
+            ("line::residual_of_all", [sites, body]) => {
+                let range = [whole(0), self.expression(sites, None)?];
+                (Kind::OfAll, Vec::new(), Some(range), body)
+            }
             _ => return Ok(None),
         };
         let Code::Closure(parameters, body) = self.argument(body)? else {

@@ -26,6 +26,20 @@ pub(super) fn front(pull: &Pull) -> usize {
     pull.forces.iter().map(|f| f.site).max().unwrap_or(0)
 }
 
+/// The fields of what neighbours add, nothing yet.
+pub(super) fn none_yet(l: &Lines) -> Vec<TokenStream> {
+    let each = l.line.pulls.iter().enumerate().map(|(n, pull)| {
+        let (field, t) = (
+            format_ident!("pull_{}", n + 1),
+            l.item(&format!("Pull{}", n + 1)),
+        );
+        let front = number(front(pull));
+        let count = l.count_field(pull.label);
+        quote!(#field: line::Columns::filled(#t::none(), self.sites.#count + 1 + 2 * #front))
+    });
+    each.collect()
+}
+
 /// Structures and kernels.
 pub(super) fn pulls(l: &Lines) -> TokenStream {
     let name = l.item("");

@@ -85,15 +85,7 @@ pub(super) fn step(
             }
         })
         .collect();
-    let pull_values = l.line.pulls.iter().enumerate().map(|(n, pull)| {
-        let (field, t) = (
-            format_ident!("pull_{}", n + 1),
-            l.item(&format!("Pull{}", n + 1)),
-        );
-        let front = number(super::pulls::front(pull));
-        let count = l.count_field(pull.label);
-        quote!(#field: line::Columns::filled(#t::none(), self.sites.#count + 1 + 2 * #front))
-    });
+    let pull_values = super::pulls::none_yet(l);
     let mesh_values = of_meshes.map(|m| &m.zeros);
     let meshes_made = of_meshes.map(|_| quote!(meshes: self.meshes()?,));
     let none_reflected = walls.map(|_| quote!(reflections: 0,));

@@ -8,14 +8,16 @@ use quote::format_ident;
 use std::collections::BTreeSet;
 
 /// What kernels and the functions around them call their own.
-const KERNEL: [&str; 63] = [
+const KERNEL: [&str; 67] = [
     "a",
     "acting",
+    "added",
     "after",
     "at",
     "axis",
     "band",
     "before",
+    "carried",
     "contact",
     "domain",
     "each",
@@ -61,10 +63,12 @@ const KERNEL: [&str; 63] = [
     "setting",
     "site",
     "sites",
+    "size",
     "space",
     "state",
     "still",
     "there",
+    "tied",
     "to",
     "turn",
     "twice",
