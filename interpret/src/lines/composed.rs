@@ -7,7 +7,7 @@ use crate::code::Places;
 use crate::opened::at;
 use crate::value::Value;
 use clebsch::integrate::CompositionOrder;
-use clebsch::line::{LineError, shorter};
+use clebsch::line::{LineError, Stamp, shorter};
 
 /// The steps that one step is made of.
 #[derive(Clone, Debug)]
@@ -62,6 +62,7 @@ impl LineTrajectory {
         }
         let mut made = Ok(());
         for work in &mut composed.works {
+            self.begun_anew(work);
             exchange(&mut self.places, work);
             made = run(&model.step, &mut self.places).map(|_| ());
             exchange(&mut self.places, work);
@@ -110,6 +111,16 @@ impl LineTrajectory {
             exchange(&mut trial.places, &mut work);
             run(&trial.model.clone().step, &mut trial.places).is_ok()
         })
+    }
+
+    /// Marks a workspace as that of no state: what it holds is that of the same part of the step before, which a line that has
+    /// been written down and read cannot tell.
+    fn begun_anew(&self, work: &mut Value<f64>) {
+        if let Value::Struct(work) = work
+            && let Some(stamp) = work.field_mut(self.model.stamp)
+        {
+            *stamp = Value::Stamp(Stamp::none());
+        }
     }
 
     fn count(&mut self, node: u64) {

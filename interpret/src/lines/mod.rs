@@ -117,6 +117,7 @@ pub struct LineModel {
     /// What totals sum over all sites, as text, by their names.
     densities: Vec<(String, String)>,
     node: u32,
+    stamp: u32,
     places: usize,
     /// What the program keeps in coordinates.
     coordinates: Vec<Coordinates>,
@@ -282,7 +283,7 @@ impl LineModel {
             .collect()
         };
         let (totals, total_sizes) = (spelt(totals), spelt(total_sizes));
-        let node = shared.name("node");
+        let (node, stamp) = (shared.name("node"), shared.name("stamp"));
         let of_state = totals.iter().chain(&observers).chain(&total_sizes);
         let of_state = of_state.chain(&functionals).chain(&momenta);
         let of_state = of_state.map(|(_, r)| r.places);
@@ -325,6 +326,7 @@ impl LineModel {
             conserved: conserved.collect(),
             densities: densities.collect(),
             node,
+            stamp,
             places: places.unwrap_or(at::FIRST),
             coordinates: line.coordinates.clone(),
         }))

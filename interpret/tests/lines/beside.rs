@@ -237,5 +237,43 @@ pub fn go_on(lines: impl Iterator<Item = Line>) {
             let (one, other) = (one.expect("is there"), other.expect("is there"));
             assert_eq!(bits(&one), bits(&other), "{}: {name}", model.name());
         }
+        assert_eq!(whole.residual(), again.residual(), "{}", model.name());
+        go_on_composed(source, case, &data);
     }
+}
+
+/// The same of composed steps, by the card.
+fn go_on_composed(source: &str, case: &Case, data: &Data) {
+    let chosen = choice(source, case.n, case.ends);
+    let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("a card");
+    if !card.orders.contains(&4) {
+        return;
+    }
+    let settings = Settings {
+        order: Some(4),
+        ..Settings::step(case.h)
+    };
+    let (parameters, initial) = (values(card.parameters, data), values(card.initial, data));
+    let start = || (card.open)(&parameters, &initial, settings).expect("starts");
+    let (mut whole, mut again) = (start(), start());
+    for _ in 0..5 {
+        whole.step().expect("steps");
+    }
+    let mut words = Words::gathered();
+    whole.words(&mut words);
+    again.words(&mut Words::given(
+        words.into_list().expect("is written down"),
+    ));
+    let seen = [whole, again].map(|mut line| {
+        for _ in 0..5 {
+            line.step().expect("steps");
+        }
+        let mut all = vec![0.0; card.observable_count()];
+        line.observe(&mut all);
+        all
+    });
+    for list in &seen {
+        assert!(list.iter().all(|x| x.is_finite()), "{}", card.name);
+    }
+    assert!(bits(&seen[0]) == bits(&seen[1]), "{}", card.name);
 }
