@@ -51,11 +51,11 @@ macro_rules! apart {
 pub fn same_motions(n: usize) {
     apart!(
         toda_chain(n), toda_initial(n), 0.01, state => state.momentum_q().iter().map(|p| p[0]),
-        hand = toda_started(n) => hand.step(), hand.momenta()
+        hand = toda_started(n) => hand.step(), hand.momenta().iter().copied()
     );
     apart!(
         wire(n), wire_initial(n), 0.01, state => state.momentum_u().iter().map(|p| p[0]),
-        hand = wire_started(n) => hand.step(), hand.momenta()
+        hand = wire_started(n) => hand.step(), hand.momenta().iter().copied()
     );
     apart!(
         row(n), row_initial(n), 0.01,

@@ -39,8 +39,10 @@ pub struct CoupledTops {
     stiffness: Matrix,
     /// Attitudes; behind them that of the first top of a ring.
     q: Columns<4>,
-    /// Momenta of the edges that begin here, in space.
+    /// Momenta of the present node, in space.
     m: Columns<3>,
+    /// Momenta of the edges that begin here, in space.
+    edges: Columns<3>,
     /// Impulses of the bonds on the top before them, in space: before the first top, between tops, behind the last one.
     bonds: Columns<3>,
 }
@@ -63,6 +65,7 @@ impl CoupledTops {
             stiffness: scaled_matrix(h / row.spacing, &bodies.enter_matrix(&row.stiffness)),
             q: Columns::zeros(count + 1),
             m: Columns::zeros(count),
+            edges: Columns::zeros(count),
             bonds: Columns::zeros(count + 1),
             bodies,
         };
@@ -71,9 +74,9 @@ impl CoupledTops {
         }
         tops.bond();
         for (i, (q, momentum)) in attitudes.iter().zip(body_momenta).enumerate() {
-            let kick = tops.kick(i);
-            tops.m
-                .set(i, add_scaled(&apply(&q.matrix(), momentum), 0.5, &kick));
+            let (momentum, kick) = (apply(&q.matrix(), momentum), tops.kick(i));
+            tops.m.set(i, momentum);
+            tops.edges.set(i, add_scaled(&momentum, 0.5, &kick));
         }
         Ok(tops)
     }
@@ -128,14 +131,17 @@ impl CoupledTops {
 
     #[inline(always)]
     fn kick_of<const L: usize>(&mut self, first: usize) {
-        let (q, mut m) = (self.q.read::<L>(first), self.m.read::<L>(first));
+        let (q, mut edges) = (self.q.read::<L>(first), self.edges.read::<L>(first));
+        let mut m = [[0.0; L]; 3];
         let (before, after) = (self.bonds.read::<L>(first), self.bonds.read::<L>(first + 1));
         for at in 0..L {
             let kick = self.kicked(lane(&q, at), &lane(&before, at), &lane(&after, at));
-            let momentum = add_scaled(&lane(&m, at), 1.0, &kick);
-            put_lane(&mut m, at, momentum);
+            let edge = lane(&edges, at);
+            put_lane(&mut m, at, add_scaled(&edge, 0.5, &kick));
+            put_lane(&mut edges, at, add_scaled(&edge, 1.0, &kick));
         }
         self.m.write(first, &m);
+        self.edges.write(first, &edges);
     }
 
     /// Attitudes body -> space at the present node.
@@ -145,14 +151,14 @@ impl CoupledTops {
 
     /// Spatial momenta at the present node.
     pub fn spatial_momenta(&self) -> impl Iterator<Item = Vector> {
-        (0..self.count).map(|i| add_scaled(&self.m.get(i), -0.5, &self.kick(i)))
+        (0..self.count).map(|i| self.m.get(i))
     }
 }
 
 impl Steps for CoupledTops {
     #[inline(always)]
     fn stepped(&mut self) -> Result<(), Unsolvable> {
-        self.bodies.turn(&mut self.q, &self.m, self.count)?;
+        self.bodies.turn(&mut self.q, &self.edges, self.count)?;
         self.bond();
         of_sites!(self.count, self.kick_of);
         Ok(())

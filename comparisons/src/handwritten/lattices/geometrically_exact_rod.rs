@@ -96,12 +96,14 @@ pub struct ElasticRod {
     masses: Columns<2>,
     /// Places; behind them that of the first node once around.
     x: Columns<3>,
-    /// Momenta of the edges of the nodes.
+    /// Momenta of the nodes, and those of their edges.
     p: Columns<3>,
+    edges: Columns<3>,
     /// Attitudes; behind them that of the first section of a ring.
     q: Columns<4>,
-    /// Momenta of the edges of the sections, in space.
+    /// Momenta of the sections in space, and those of their edges.
     m: Columns<3>,
+    section_edges: Columns<3>,
     /// Impulses of the segments on the node before them: before the first node, of the segments, behind the last node.
     forces: Columns<3>,
     /// What they do to the section.
@@ -161,8 +163,10 @@ impl ElasticRod {
             },
             x: Columns::zeros(nodes + 1),
             p: Columns::zeros(nodes),
+            edges: Columns::zeros(nodes),
             q: Columns::zeros(segments + 1),
             m: Columns::zeros(segments),
+            section_edges: Columns::zeros(segments),
             forces: Columns::zeros(nodes + 1),
             torques: Columns::zeros(segments),
             bonds: Columns::zeros(segments + 1),
@@ -176,13 +180,15 @@ impl ElasticRod {
         }
         rod.pull();
         for (i, momentum) in momenta.iter().enumerate() {
-            rod.p
-                .set(i, add_scaled(momentum, 0.5, &rod.kick_of_node(i)));
+            let edge = add_scaled(momentum, 0.5, &rod.kick_of_node(i));
+            rod.p.set(i, *momentum);
+            rod.edges.set(i, edge);
         }
         for (i, (q, momentum)) in attitudes.iter().zip(body_momenta).enumerate() {
             let momentum = apply(&q.matrix(), momentum);
-            rod.m
-                .set(i, add_scaled(&momentum, 0.5, &rod.kick_of_section(i)));
+            let edge = add_scaled(&momentum, 0.5, &rod.kick_of_section(i));
+            rod.m.set(i, momentum);
+            rod.section_edges.set(i, edge);
         }
         rod.hold();
         Ok(rod)
@@ -258,16 +264,17 @@ impl ElasticRod {
     fn hold(&mut self) {
         for node in self.ends.iter().filter_map(|end| end.node) {
             self.p.set(node, [0.0; 3]);
+            self.edges.set(node, [0.0; 3]);
         }
     }
 
     #[inline(always)]
     fn move_nodes<const L: usize>(&mut self, first: usize) {
-        let (mut x, p) = (self.x.read::<L>(first), self.p.read::<L>(first));
+        let (mut x, edges) = (self.x.read::<L>(first), self.edges.read::<L>(first));
         let [_, rates] = self.masses.read::<L>(first);
-        for (x, p) in x.iter_mut().zip(&p) {
+        for (x, edge) in x.iter_mut().zip(&edges) {
             for at in 0..L {
-                x[at] += rates[at] * p[at];
+                x[at] += rates[at] * edge[at];
             }
         }
         self.x.write(first, &x);
@@ -275,7 +282,7 @@ impl ElasticRod {
 
     #[inline(always)]
     fn kick_nodes<const L: usize>(&mut self, first: usize) {
-        let mut p = self.p.read::<L>(first);
+        let (mut p, mut edges) = ([[0.0; L]; 3], self.edges.read::<L>(first));
         let (before, after) = (
             self.forces.read::<L>(first),
             self.forces.read::<L>(first + 1),
@@ -283,22 +290,29 @@ impl ElasticRod {
         let [masses, _] = self.masses.read::<L>(first);
         for k in 0..3 {
             for at in 0..L {
-                p[k][at] += (after[k][at] - before[k][at]) + masses[at] * self.gravity[k];
+                let kick = (after[k][at] - before[k][at]) + masses[at] * self.gravity[k];
+                p[k][at] = edges[k][at] + 0.5 * kick;
+                edges[k][at] += kick;
             }
         }
         self.p.write(first, &p);
+        self.edges.write(first, &edges);
     }
 
     #[inline(always)]
     fn kick_sections<const L: usize>(&mut self, first: usize) {
-        let (mut m, torques) = (self.m.read::<L>(first), self.torques.read::<L>(first));
+        let (mut m, mut edges) = ([[0.0; L]; 3], self.section_edges.read::<L>(first));
+        let torques = self.torques.read::<L>(first);
         let (before, after) = (self.bonds.read::<L>(first), self.bonds.read::<L>(first + 1));
         for k in 0..3 {
             for at in 0..L {
-                m[k][at] += torques[k][at] + (after[k][at] - before[k][at]);
+                let kick = torques[k][at] + (after[k][at] - before[k][at]);
+                m[k][at] = edges[k][at] + 0.5 * kick;
+                edges[k][at] += kick;
             }
         }
         self.m.write(first, &m);
+        self.section_edges.write(first, &edges);
     }
 
     /// Places of the nodes.
@@ -306,9 +320,9 @@ impl ElasticRod {
         (0..self.nodes).map(|i| self.x.get(i))
     }
 
-    /// Momenta of the nodes at the present one in time; of no meaning for those that are held.
+    /// Momenta of the nodes at the present one in time; none of those that are held.
     pub fn momenta(&self) -> impl Iterator<Item = Vector> {
-        (0..self.nodes).map(|i| add_scaled(&self.p.get(i), -0.5, &self.kick_of_node(i)))
+        (0..self.nodes).map(|i| self.p.get(i))
     }
 
     /// Attitudes section -> space at the present node.
@@ -318,14 +332,15 @@ impl ElasticRod {
 
     /// Spatial momenta of the sections at the present node.
     pub fn spatial_momenta(&self) -> impl Iterator<Item = Vector> {
-        (0..self.segments).map(|i| add_scaled(&self.m.get(i), -0.5, &self.kick_of_section(i)))
+        (0..self.segments).map(|i| self.m.get(i))
     }
 }
 
 impl Steps for ElasticRod {
     #[inline(always)]
     fn stepped(&mut self) -> Result<(), Unsolvable> {
-        self.bodies.turn(&mut self.q, &self.m, self.segments)?;
+        self.bodies
+            .turn(&mut self.q, &self.section_edges, self.segments)?;
         of_sites!(self.nodes, self.move_nodes);
         self.pull();
         of_sites!(self.nodes, self.kick_nodes);

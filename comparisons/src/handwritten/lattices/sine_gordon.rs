@@ -35,8 +35,10 @@ pub struct SineGordon {
     ends: Ends,
     /// Angles; behind them that of the first node once around.
     u: Vec<f64>,
-    /// Momenta of the edges that begin here.
+    /// Momenta of the present node.
     p: Vec<f64>,
+    /// Momenta of the edges that begin here.
+    edges: Vec<f64>,
     /// Step over weight; zero where a node is held.
     rates: Vec<f64>,
     /// Step times weight times the square of the frequency.
@@ -55,6 +57,7 @@ impl SineGordon {
             ends: wire.ends,
             u: [angles, &[0.0]].concat(),
             p: momenta.to_vec(),
+            edges: momenta.to_vec(),
             rates: wire.weights.iter().map(|w| h / w).collect(),
             weights: wire
                 .weights
@@ -78,7 +81,7 @@ impl SineGordon {
         }
         line.pulled();
         for i in 0..n {
-            line.p[i] += 0.5 * line.kick(i);
+            line.edges[i] += 0.5 * line.kick(i);
         }
         line
     }
@@ -109,12 +112,14 @@ impl SineGordon {
 
     /// One step.
     pub fn step(&mut self) {
-        for ((u, p), rate) in self.u.iter_mut().zip(&self.p).zip(&self.rates) {
-            *u += p * rate;
+        for ((u, edge), rate) in self.u.iter_mut().zip(&self.edges).zip(&self.rates) {
+            *u += edge * rate;
         }
         self.pulled();
         for i in 0..self.p.len() {
-            self.p[i] += self.kick(i);
+            let kick = self.kick(i);
+            self.p[i] = self.edges[i] + 0.5 * kick;
+            self.edges[i] += kick;
         }
     }
 
@@ -124,7 +129,7 @@ impl SineGordon {
     }
 
     /// Momenta of the nodes at the present one in time; of a held node the sum of what acted on it.
-    pub fn momenta(&self) -> impl Iterator<Item = f64> {
-        (0..self.p.len()).map(|i| self.p[i] - 0.5 * self.kick(i))
+    pub fn momenta(&self) -> &[f64] {
+        &self.p
     }
 }

@@ -29,8 +29,10 @@ pub struct TodaChain {
     h: f64,
     /// Places; behind them that of the first point once around.
     q: Vec<f64>,
-    /// Momenta of the edges that begin here.
+    /// Momenta of the present node.
     p: Vec<f64>,
+    /// Momenta of the edges that begin here.
+    edges: Vec<f64>,
     /// Impulses of the springs: before the first point, between the points, behind the last one.
     pull: Vec<f64>,
 }
@@ -44,11 +46,12 @@ impl TodaChain {
             h,
             q: [places, &[0.0]].concat(),
             p: momenta.to_vec(),
+            edges: momenta.to_vec(),
             pull: vec![0.0; places.len() + 1],
         };
         chain.pulled();
-        for (p, pull) in chain.p.iter_mut().zip(chain.pull.windows(2)) {
-            *p += 0.5 * (pull[1] - pull[0]);
+        for (edge, pull) in chain.edges.iter_mut().zip(chain.pull.windows(2)) {
+            *edge += 0.5 * (pull[1] - pull[0]);
         }
         chain
     }
@@ -79,12 +82,15 @@ impl TodaChain {
     /// One step.
     pub fn step(&mut self) {
         let rate = self.h / self.springs.mass;
-        for (q, p) in self.q.iter_mut().zip(&self.p) {
-            *q += p * rate;
+        for (q, edge) in self.q.iter_mut().zip(&self.edges) {
+            *q += edge * rate;
         }
         self.pulled();
-        for (p, pull) in self.p.iter_mut().zip(self.pull.windows(2)) {
-            *p += pull[1] - pull[0];
+        let nodes = self.p.iter_mut().zip(&mut self.edges);
+        for ((p, edge), pull) in nodes.zip(self.pull.windows(2)) {
+            let kick = pull[1] - pull[0];
+            *p = *edge + 0.5 * kick;
+            *edge += kick;
         }
     }
 
@@ -94,8 +100,7 @@ impl TodaChain {
     }
 
     /// Momenta of the points at the present node.
-    pub fn momenta(&self) -> impl Iterator<Item = f64> {
-        let edges = self.p.iter().zip(self.pull.windows(2));
-        edges.map(|(p, pull)| p - 0.5 * (pull[1] - pull[0]))
+    pub fn momenta(&self) -> &[f64] {
+        &self.p
     }
 }

@@ -74,7 +74,7 @@ impl System for Springs {
         let (q, p) = (&self.places, &self.momenta);
         let mut chain = springs::TodaChain::start(self.springs, self.ends, q, p, self.h);
         (0..steps).for_each(|_| chain.step());
-        Some(vec![chain.places().to_vec(), chain.momenta().collect()])
+        Some(vec![chain.places().to_vec(), chain.momenta().to_vec()])
     }
 
     fn generated(&self, steps: usize) -> Option<Shown> {
@@ -184,7 +184,7 @@ impl System for Pendulums {
         let mut line =
             pendulums::SineGordon::start(&self.wire, &self.angles, &self.momenta, self.h);
         (0..steps).for_each(|_| line.step());
-        let momenta = self.of_moving(line.momenta().collect());
+        let momenta = self.of_moving(line.momenta().to_vec());
         Some(vec![line.angles().to_vec(), momenta])
     }
 
