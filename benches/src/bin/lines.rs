@@ -1,5 +1,7 @@
 //! Time per site and step of lines that are compiled for every number of sites: Toda's chain, the sine-Gordon equation, coupled
-//! tops, an elastic rod, shallow water and bodies joined by their velocities beside the same by hand, tops and rod beside the lone heavy top, the rod in quaternions beside the one in rotations, lines with held constraints beside the elastic rod. Takes no arguments; prints a table.
+//! tops, an elastic rod, shallow water and bodies joined by their velocities beside the same by hand, tops and rod beside the
+//! lone heavy top, the rod in quaternions beside the one in rotations, lines with held constraints beside the elastic rod.
+//! Takes no arguments; prints a table.
 //! `cargo run --release --manifest-path benches/Cargo.toml --bin lines`, a minute.
 
 // The fields of the models are Greek letters, as in the papers.
