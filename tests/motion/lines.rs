@@ -11,6 +11,8 @@
 
 #[path = "lines/action.rs"]
 mod action;
+#[path = "lines/against_hand/mod.rs"]
+mod against_hand;
 #[path = "lines/experiments.rs"]
 mod experiments;
 #[path = "lines/flaschka.rs"]

@@ -1,18 +1,25 @@
-//! Time per site and step of lines that are compiled for every number of sites: Toda's chain and shallow water beside plain
-//! loops, coupled tops and an elastic rod beside the lone heavy top, the rod in quaternions beside the one in rotations, lines with held constraints beside the elastic rod, bodies joined by their velocities beside a plain loop. Takes no arguments; prints a table.
+//! Time per site and step of lines that are compiled for every number of sites: Toda's chain, the sine-Gordon equation, coupled
+//! tops, an elastic rod, shallow water and bodies joined by their velocities beside the same by hand, tops and rod beside the
+//! lone heavy top, the rod in quaternions beside the one in rotations, lines with held constraints beside the elastic rod.
+//! Takes no arguments; prints a table.
 //! `cargo run --release --manifest-path benches/Cargo.toml --bin lines`, a minute.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables, non_snake_case)]
 
+#[path = "lines/explicit.rs"]
+mod explicit;
+
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
 use clebsch::{BodyMomentum, Rotation, UnitQuaternion};
 use clebsch_benches::blocks::computed;
 use clebsch_benches::coupled_bodies::Row;
-use clebsch_models::heavy_top::{HeavyTop, HeavyTopInitial, HeavyTopParameters};
 use clebsch_models::lattices::{
-    coupled_body_chain::*, coupled_tops::*, geometrically_exact_rod::*, hanging_chain::*,
-    kirchhoff_rod::*, quaternion_rod::*, shallow_water_1d::*, toda_chain::*,
+    coupled_body_chain::*, hanging_chain::*, kirchhoff_rod::*, quaternion_rod::*,
+    shallow_water_1d::*,
+};
+use explicit::{
+    lone, rod, rod_by_hand, sine, sine_by_hand, toda, toda_by_hand, tops, tops_by_hand,
 };
 use std::hint::black_box;
 use std::time::Instant;
@@ -26,6 +33,7 @@ const BLOCKS: usize = 11;
 const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 
 fn main() {
+    explicit::same_motions(100);
     println!("{}", env!("RUSTC_VERSION"));
     println!(
         "nanoseconds of computing time per site and step, medians of {BLOCKS} blocks each way, interleaved\n"
@@ -35,6 +43,18 @@ fn main() {
     for n in SIZES {
         let (one, other) = both(&mut toda(n), &mut toda_by_hand(n));
         row("Toda's chain, a ring, beside a plain loop", n, one, other);
+    }
+    for n in SIZES {
+        let (one, other) = both(&mut sine(n), &mut sine_by_hand(n));
+        row("sine-Gordon, free ends, beside a plain loop", n, one, other);
+    }
+    for n in SIZES {
+        let (one, other) = both(&mut tops(n, 1), &mut tops_by_hand(n));
+        row("coupled tops, beside loops by hand", n, one, other);
+    }
+    for n in SIZES {
+        let (one, other) = both(&mut rod(n), &mut rod_by_hand(n));
+        row("elastic rod, beside loops by hand", n, one, other);
     }
     for n in SIZES {
         let (one, other) = both(&mut water(n), &mut water_by_hand(n));
@@ -121,63 +141,6 @@ fn number(x: f64) -> SMatrix<f64, 1, 1> {
     SMatrix::repeat(x)
 }
 
-fn toda(n: usize) -> impl FnMut() {
-    let sites = TodaChainSites {
-        N: n,
-        ends: TodaChainEnds::Ring { L: 0.0 },
-    };
-    let chain = TodaChain::new(
-        TodaChainParameters {
-            m: 1.0,
-            a: 1.0,
-            b: 1.0,
-        },
-        sites,
-    )
-    .expect("a chain");
-    let initial = TodaChainInitial {
-        q: (0..n)
-            .map(|i| number(0.1 * (0.3 * i as f64).sin()))
-            .collect(),
-        momentum_q: (0..n)
-            .map(|i| number(0.1 * (0.7 * i as f64).cos()))
-            .collect(),
-    };
-    let (mut state, mut work) = chain.start(initial, 0.01).expect("starts");
-    move || {
-        for _ in 0..WORK / n {
-            chain.step(&mut state, &mut work).expect("steps");
-        }
-        black_box(&state);
-    }
-}
-
-fn toda_by_hand(n: usize) -> impl FnMut() {
-    let (h, m, a, b) = black_box((0.01, 1.0, 1.0, 1.0));
-    let mut q: Vec<f64> = (0..n).map(|i| 0.1 * (0.3 * i as f64).sin()).collect();
-    let mut edge: Vec<f64> = (0..n).map(|i| 0.1 * (0.7 * i as f64).cos()).collect();
-    let (mut p, mut pull) = (vec![0.0; n], vec![0.0; n]);
-    move || {
-        for _ in 0..WORK / n {
-            for (q, e) in q.iter_mut().zip(&edge) {
-                *q += e * h / m;
-            }
-            for i in 0..n - 1 {
-                pull[i] = h * a * (1.0 - (-b * (q[i + 1] - q[i])).exp());
-            }
-            pull[n - 1] = h * a * (1.0 - (-b * (q[0] - q[n - 1])).exp());
-            let mut before = pull[n - 1];
-            for i in 0..n {
-                let kick = pull[i] - before;
-                before = pull[i];
-                p[i] = edge[i] + 0.5 * kick;
-                edge[i] += kick;
-            }
-        }
-        black_box((&q, &p));
-    }
-}
-
 fn water(n: usize) -> impl FnMut() {
     let sites = ShallowWater1DSites {
         N: n,
@@ -250,92 +213,6 @@ fn water_by_hand(n: usize) -> impl FnMut() {
 
 fn diagonal(a: f64, b: f64, c: f64) -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(a, b, c))
-}
-
-fn tops(n: usize, threads: usize) -> impl FnMut() {
-    let parameters = CoupledTopsParameters {
-        s: 1.0,
-        J: diagonal(0.5, 0.5, 1.5),
-        C: diagonal(0.3, 0.3, 0.3),
-        gU: Vector3::z(),
-        z: Vector3::z(),
-    };
-    let sites = CoupledTopsSites {
-        N: n - 1,
-        ends: CoupledTopsEnds::Open,
-    };
-    let tops = CoupledTops::new(parameters, sites)
-        .expect("tops")
-        .with_threads(threads);
-    let initial = CoupledTopsInitial {
-        Λ: (0..n)
-            .map(|i| Rotation::exp(&Vector3::new(0.2 * (0.1 * i as f64).sin(), 0.6, 0.0)))
-            .collect(),
-        body_momentum_Λ: vec![BodyMomentum(Vector3::new(0.1, 0.0, 3.0)); n],
-    };
-    let (mut state, mut work) = tops.start(initial, 0.01).expect("starts");
-    move || {
-        for _ in 0..WORK / n {
-            tops.step(&mut state, &mut work).expect("steps");
-        }
-        black_box(&state);
-    }
-}
-
-fn lone(n: usize) -> impl FnMut() {
-    let parameters = HeavyTopParameters {
-        J: diagonal(0.5, 0.5, 1.5),
-        gU: Vector3::z(),
-        z: Vector3::z(),
-    };
-    let top = HeavyTop::new(parameters).expect("a top");
-    let initial = HeavyTopInitial {
-        Λ: Rotation::exp(&Vector3::new(0.0, 0.6, 0.0)),
-        body_momentum: BodyMomentum(Vector3::new(0.1, 0.0, 3.0)),
-    };
-    let (mut state, mut work) = top.start(initial, 0.01).expect("starts");
-    let _ = n;
-    move || {
-        for _ in 0..WORK {
-            top.step(&mut state, &mut work).expect("steps");
-        }
-        black_box(&state);
-    }
-}
-
-fn rod(n: usize) -> impl FnMut() {
-    let s = 0.1;
-    let parameters = GeometricallyExactRodParameters {
-        s,
-        m: (0..=n)
-            .map(|i| s * if i == 0 || i == n { 0.5 } else { 1.0 })
-            .collect(),
-        J: vec![diagonal(0.01, 0.01, 0.02); n],
-        S: diagonal(100.0, 100.0, 200.0),
-        B: diagonal(1.0, 1.0, 2.0),
-        g: Vector3::zeros(),
-    };
-    let ends = GeometricallyExactRodEnds::Open {
-        first: GeometricallyExactRodFirst::Free,
-        last: GeometricallyExactRodLast::Free,
-    };
-    let rod = GeometricallyExactRod::new(parameters, GeometricallyExactRodSites { N: n, ends })
-        .expect("a rod");
-    let initial = GeometricallyExactRodInitial {
-        φ: (0..=n).map(|i| Vector3::z() * (s * i as f64)).collect(),
-        momentum_φ: (0..=n)
-            .map(|i| Vector3::x() * (1e-3 * (0.2 * i as f64).sin()))
-            .collect(),
-        Λ: vec![Rotation::identity(); n],
-        body_momentum_Λ: vec![BodyMomentum(Vector3::new(0.0, 1e-5, 1e-4)); n],
-    };
-    let (mut state, mut work) = rod.start(initial, 0.001).expect("starts");
-    move || {
-        for _ in 0..WORK / n {
-            rod.step(&mut state, &mut work).expect("steps");
-        }
-        black_box(&state);
-    }
 }
 
 /// The same rod in unit quaternions: stiffnesses and moments of inertia are those of the second moments there.

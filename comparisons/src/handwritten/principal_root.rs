@@ -46,6 +46,26 @@ impl Quartic {
     /// there is no root.
     #[inline(always)]
     pub fn principal_root(&self, squares: &Vector, a: f64) -> Result<f64, Unsolvable> {
+        let (kappa, terms) = self.once(squares, a);
+        // Written so that a NaN takes the slow way, which reports it.
+        if terms.energy <= self.easy {
+            Ok(kappa)
+        } else {
+            self.hard(kappa, &terms)
+        }
+    }
+
+    /// kappa by that one pass, and whether it is exact to rounding; of no meaning otherwise. There is no branch: a loop
+    /// over many bodies takes several of them together.
+    #[inline(always)]
+    pub fn root_at_once(&self, squares: &Vector, a: f64) -> (f64, bool) {
+        let (kappa, terms) = self.once(squares, a);
+        (kappa, terms.energy <= self.easy)
+    }
+
+    /// The two-term series, improved once.
+    #[inline(always)]
+    fn once(&self, squares: &Vector, a: f64) -> (f64, Terms) {
         let [p, q, r] = self.reciprocal;
         let [pp, qq, rr] = self.deviation;
         let energy = (squares[0] * p + squares[1] * q) + squares[2] * r;
@@ -57,12 +77,7 @@ impl Quartic {
             curvature: self.second + 2.0 * (self.fourth * a),
         };
         let kappa = self.improved((energy + energy * deviation) + terms.a_squared, &terms);
-        // Written so that a NaN takes the slow way, which reports it.
-        if energy <= self.easy {
-            Ok(kappa)
-        } else {
-            self.hard(kappa, &terms)
-        }
+        (kappa, terms)
     }
 
     /// One iteration of fourth order: Newton's change d with the next two terms of the inverse series,
