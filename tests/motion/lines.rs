@@ -11,6 +11,8 @@
 
 #[path = "lines/action.rs"]
 mod action;
+#[path = "lines/banded_by_hand.rs"]
+mod banded_by_hand;
 #[path = "lines/experiments.rs"]
 mod experiments;
 #[path = "lines/flaschka.rs"]

@@ -18,6 +18,7 @@ pub mod heavy_top;
 pub mod heavy_top_spatial;
 pub mod kepler;
 pub mod kirchhoff_body;
+pub mod lattices;
 pub mod mixed_four;
 pub mod neo_hooke;
 pub mod one_sided_top;
