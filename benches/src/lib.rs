@@ -6,6 +6,5 @@
 
 pub mod blocks;
 pub mod body;
-pub mod coupled_bodies;
 pub mod python;
 pub mod truth;

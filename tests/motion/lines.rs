@@ -13,6 +13,8 @@
 mod action;
 #[path = "lines/against_hand/mod.rs"]
 mod against_hand;
+#[path = "lines/banded_by_hand.rs"]
+mod banded_by_hand;
 #[path = "lines/experiments.rs"]
 mod experiments;
 #[path = "lines/flaschka.rs"]

@@ -1,7 +1,7 @@
 //! Time per site and step of lines that are compiled for every number of sites: Toda's chain, the sine-Gordon equation, coupled
-//! tops, an elastic rod, shallow water and bodies joined by their velocities beside the same by hand, tops and rod beside the
-//! lone heavy top, the rod in quaternions beside the one in rotations, lines with held constraints beside the elastic rod.
-//! Takes no arguments; prints a table.
+//! tops, elastic rods, inextensible rods, shallow water and bodies joined by their velocities beside the same by hand, tops and rod
+//! beside the lone heavy top, the rod in quaternions beside the one in rotations, lines with held constraints beside the elastic
+//! rod. Takes no arguments; prints a table.
 //! `cargo run --release --manifest-path benches/Cargo.toml --bin lines`, a minute.
 
 // The fields of the models are Greek letters, as in the papers.
@@ -13,7 +13,9 @@ mod explicit;
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
 use clebsch::{BodyMomentum, Rotation, UnitQuaternion};
 use clebsch_benches::blocks::computed;
-use clebsch_benches::coupled_bodies::Row;
+use clebsch_comparisons::handwritten::attitude::{Quaternion, Vector};
+use clebsch_comparisons::handwritten::lattices::body_chain::{Bodies, BodyChain};
+use clebsch_comparisons::handwritten::lattices::inextensible_rod::{self, InextensibleRod};
 use clebsch_models::lattices::{
     coupled_body_chain::*, hanging_chain::*, kirchhoff_rod::*, quaternion_rod::*,
     shallow_water_1d::*,
@@ -82,6 +84,10 @@ fn main() {
         row("inextensible rod, beside the elastic one", n, one, other);
     }
     for n in SIZES {
+        let (one, other) = both(&mut inextensible(n), &mut inextensible_by_hand(n));
+        row("inextensible rod, beside one by hand", n, one, other);
+    }
+    for n in SIZES {
         let (one, other) = both(&mut links(n), &mut rod(n));
         row(
             "chain of rigid links, beside the elastic rod",
@@ -93,7 +99,7 @@ fn main() {
     for n in SIZES {
         let (one, other) = both(&mut bodies(n), &mut bodies_by_hand(n));
         row(
-            "bodies joined by their velocities, beside a plain loop",
+            "bodies joined by their velocities, beside a stepper by hand",
             n,
             one,
             other,
@@ -250,14 +256,45 @@ fn in_quaternions(n: usize) -> impl FnMut() {
 }
 
 /// A rod that cannot be stretched, free, its sections turning in waves.
+struct Waves {
+    masses: Vec<f64>,
+    places: Vec<Vector>,
+    momenta: Vec<Vector>,
+    body_momenta: Vec<Vector>,
+}
+
+const SPACING: f64 = 0.1;
+const SECTION: [f64; 3] = [0.01, 0.01, 0.02];
+const BENDING: [f64; 3] = [1.0, 1.0, 2.0];
+
+fn waves(n: usize) -> Waves {
+    let mass = |i: usize| SPACING * if i == 0 || i == n { 0.5 } else { 1.0 };
+    let spin = |i: usize| Vector3::new(0.0, 1e-3 * (0.2 * i as f64).sin(), 1e-3);
+    let mut v = vec![Vector3::zeros()];
+    for i in 0..n {
+        v.push(v[i] + spin(i).cross(&Vector3::z()) * SPACING);
+    }
+    let turning = diagonal(0.03, 0.03, 0.02) * SPACING;
+    let plain = |v: Vector3<f64>| v.data.0[0];
+    Waves {
+        masses: (0..=n).map(mass).collect(),
+        places: (0..=n).map(|i| [0.0, 0.0, SPACING * i as f64]).collect(),
+        momenta: (0..=n).map(|i| plain(v[i] * mass(i))).collect(),
+        body_momenta: (0..n).map(|i| plain(turning * spin(i))).collect(),
+    }
+}
+
+fn vectors(all: &[Vector]) -> Vec<Vector3<f64>> {
+    all.iter().map(|x| Vector3::from(*x)).collect()
+}
+
 fn inextensible(n: usize) -> impl FnMut() {
-    let s = 0.1;
-    let mass = |i: usize| s * if i == 0 || i == n { 0.5 } else { 1.0 };
+    let waves = waves(n);
     let parameters = KirchhoffRodParameters {
-        s,
-        m: (0..=n).map(mass).collect(),
-        J: vec![diagonal(0.01, 0.01, 0.02); n],
-        B: diagonal(1.0, 1.0, 2.0),
+        s: SPACING,
+        m: waves.masses,
+        J: vec![Matrix3::from_diagonal(&SECTION.into()); n],
+        B: Matrix3::from_diagonal(&BENDING.into()),
         g: Vector3::zeros(),
     };
     let ends = KirchhoffRodEnds::Open {
@@ -265,24 +302,59 @@ fn inextensible(n: usize) -> impl FnMut() {
         last: KirchhoffRodLast::Free,
     };
     let rod = KirchhoffRod::new(parameters, KirchhoffRodSites { N: n, ends }).expect("a rod");
-    let spin = |i: usize| Vector3::new(0.0, 1e-3 * (0.2 * i as f64).sin(), 1e-3);
-    let mut v = vec![Vector3::zeros()];
-    for i in 0..n {
-        v.push(v[i] + spin(i).cross(&Vector3::z()) * s);
-    }
-    let turning = diagonal(0.03, 0.03, 0.02) * s;
+    let turning = vectors(&waves.body_momenta).into_iter();
     let initial = KirchhoffRodInitial {
-        φ: (0..=n).map(|i| Vector3::z() * (s * i as f64)).collect(),
-        momentum_φ: (0..=n).map(|i| v[i] * mass(i)).collect(),
+        φ: vectors(&waves.places),
+        momentum_φ: vectors(&waves.momenta),
         Λ: vec![Rotation::identity(); n],
-        body_momentum_Λ: (0..n).map(|i| BodyMomentum(turning * spin(i))).collect(),
+        body_momentum_Λ: turning.map(BodyMomentum).collect(),
     };
     let (mut state, mut work) = rod.start(initial, 0.001).expect("starts");
+    let mut own = unstretched(n);
+    for _ in 0..20 {
+        rod.step(&mut state, &mut work).expect("steps");
+        own.step().expect("steps");
+    }
+    // Twenty steps in each of which forces are found to some roundings of places, up to sites/10, by masses over the step.
+    let bound = 20.0 * 32.0 * f64::EPSILON * (SPACING * n as f64) * SPACING / 0.001;
+    let far = state.momentum_φ().iter().zip(own.momenta());
+    let far = clebsch::scalar::largest(far.map(|(x, y)| (x - Vector3::from(*y)).amax()));
+    assert!(far < bound, "both are the same motion: {far:e}");
     move || {
         for _ in 0..WORK / n {
             rod.step(&mut state, &mut work).expect("steps");
         }
         black_box(&state);
+    }
+}
+
+fn rows_of([a, b, c]: Vector) -> [Vector; 3] {
+    [[a, 0.0, 0.0], [0.0, b, 0.0], [0.0, 0.0, c]]
+}
+
+fn unstretched(n: usize) -> InextensibleRod {
+    let waves = waves(n);
+    let (first, last) = (inextensible_rod::First::Free, inextensible_rod::Last::Free);
+    let rod = inextensible_rod::Rod {
+        spacing: SPACING,
+        masses: waves.masses,
+        poinsots: vec![rows_of(SECTION)],
+        stiffness: rows_of(BENDING),
+        gravity: [0.0; 3],
+        ends: inextensible_rod::Ends::Open(first, last),
+    };
+    let turns = vec![Quaternion::IDENTITY; n];
+    let (places, momenta, turning) = (&waves.places, &waves.momenta, &waves.body_momenta);
+    InextensibleRod::start(&rod, places, momenta, &turns, turning, 0.001).expect("starts")
+}
+
+fn inextensible_by_hand(n: usize) -> impl FnMut() {
+    let mut rod = unstretched(n);
+    move || {
+        for _ in 0..WORK / n {
+            rod.step().expect("steps");
+        }
+        black_box(rod.momenta());
     }
 }
 
@@ -346,11 +418,11 @@ fn bodies(n: usize) -> impl FnMut() {
     let mut own = by_hand(n);
     for _ in 0..20 {
         row.step(&mut state, &mut work).expect("steps");
-        own.step();
+        own.step().expect("steps");
     }
     // Twenty steps of a few roundings each.
-    let far = state.spatial_momentum_Λ().zip(&own.momenta);
-    let far = clebsch::scalar::largest(far.map(|(x, y)| (x.0 - y).amax()));
+    let far = state.spatial_momentum_Λ().zip(own.spatial_momenta());
+    let far = clebsch::scalar::largest(far.map(|(x, y)| (x.0 - Vector3::from(y)).amax()));
     assert!(far < 1e-12, "both are the same motion: {far:e}");
     move || {
         for _ in 0..WORK / n {
@@ -360,24 +432,24 @@ fn bodies(n: usize) -> impl FnMut() {
     }
 }
 
-fn by_hand(n: usize) -> Row {
-    let [a, b, c] = MOMENTS;
+fn by_hand(n: usize) -> BodyChain {
     let (turns, momenta) = of_bodies(n);
-    let momenta = momenta
-        .iter()
-        .zip(&turns)
-        .map(|(m, x)| x.rotate(m))
-        .collect();
-    let turns = turns.iter().map(Rotation::quaternion).collect();
-    Row::new((diagonal(a, b, c), PLACE.into(), 0.4), 0.02, turns, momenta)
+    let turns: Vec<Quaternion> = turns.iter().map(|q| Quaternion(q.quaternion())).collect();
+    let momenta: Vec<Vector> = momenta.iter().map(|m| m.data.0[0]).collect();
+    let bodies = Bodies {
+        poinsot: rows_of(MOMENTS),
+        arm: PLACE,
+        eps: 0.4,
+    };
+    BodyChain::start(&bodies, false, &turns, &momenta, 0.02).expect("starts")
 }
 
 fn bodies_by_hand(n: usize) -> impl FnMut() {
     let mut row = by_hand(n);
     move || {
         for _ in 0..WORK / n {
-            row.step();
+            row.step().expect("steps");
         }
-        black_box(&row.momenta);
+        black_box(row.spatial_momenta().next());
     }
 }

@@ -190,6 +190,22 @@ impl<T: Real> Blocks<T> {
         self.clear_neighbours();
     }
 
+    /// Gives the blocks of a site: with the one before, with itself, with the one after, side by side. Those beyond an open end
+    /// stay zeros. Not for rings of one or two sites, whose neighbours are the same. The size `n` is given for where it is known
+    /// when a model is built.
+    #[inline(always)]
+    pub fn put_row(&mut self, n: usize, site: usize, row: &[T]) {
+        let size = n * n;
+        let here = size * site..size * (site + 1);
+        if self.closed || site > 0 {
+            self.before[here.clone()].copy_from_slice(&row[..size]);
+        }
+        self.own[here.clone()].copy_from_slice(&row[size..2 * size]);
+        if self.closed || site + 1 < self.sites {
+            self.after[here].copy_from_slice(&row[2 * size..3 * size]);
+        }
+    }
+
     /// Where a block begins.
     #[inline(always)]
     fn place(&mut self, row: usize, column: usize) -> (&mut [T], usize) {

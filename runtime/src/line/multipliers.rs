@@ -420,24 +420,35 @@ impl<T: Real> Multipliers<T> {
     where
         T: 'a,
     {
-        self.blocks.clear();
-        let (last, size) = (self.sites.saturating_sub(1), n * n);
-        for site in 0..self.sites {
-            let own = rows(site);
-            let before = if site > 0 { site - 1 } else { last };
-            let after = if site < last { site + 1 } else { 0 };
-            if self.ring || site > 0 {
-                self.blocks.add(site, before, &own[..size]);
-            }
-            self.blocks.add(site, site, &own[size..2 * size]);
-            if self.ring || site < last {
-                self.blocks.add(site, after, &own[2 * size..]);
+        match self.ring && self.sites <= 2 {
+            true => self.add_rows(n, rows),
+            false => {
+                for site in 0..self.sites {
+                    self.blocks.put_row(n, site, rows(site));
+                }
             }
         }
         for k in 0..n {
             for site in self.counts[k]..self.sites {
                 self.blocks.hold_component(site, k);
             }
+        }
+    }
+
+    /// Of a ring whose sites have their neighbours on either side.
+    fn add_rows<'a>(&mut self, n: usize, rows: impl Fn(usize) -> &'a [T])
+    where
+        T: 'a,
+    {
+        self.blocks.clear();
+        let (last, size) = (self.sites - 1, n * n);
+        for site in 0..self.sites {
+            let own = rows(site);
+            let before = if site > 0 { site - 1 } else { last };
+            let after = if site < last { site + 1 } else { 0 };
+            self.blocks.add(site, before, &own[..size]);
+            self.blocks.add(site, site, &own[size..2 * size]);
+            self.blocks.add(site, after, &own[2 * size..]);
         }
     }
 
