@@ -287,7 +287,7 @@ fn told(left_out: &[String]) -> String {
     let mut told =
         String::from("\nprogram              one for every number of sites, with loops over them");
     if !left_out.is_empty() {
-        told.push_str("; not computed are ");
+        told.push_str("; not computed: ");
         told.push_str(&left_out.join(", "));
     }
     told

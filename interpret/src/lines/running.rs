@@ -108,10 +108,21 @@ impl Carded {
                 .map_or(settings.h, |f| settings.h * f),
             Way::Plain | Way::Modified(..) => settings.h,
         };
-        let started = match settings.projected {
+        let start = |h: f64| match settings.projected {
             true => self.model.start_projected(&self.choice, h, &numbers),
             false => self.model.start(&self.choice, h, &numbers),
         };
+        let mut started = start(h);
+        // Where a part is refused, the whole step is, which says what can be made.
+        if let (
+            Way::Composed(_),
+            Err(Unstarted::Line(LineError::Step {
+                works: Some(works), ..
+            })),
+        ) = (&way, &started)
+        {
+            started = start(*works);
+        }
         let started = match way {
             Way::Composed(order) => started.and_then(|line| line.of_order(order, settings.h)),
             Way::Plain | Way::Modified(..) => started,

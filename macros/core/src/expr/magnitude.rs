@@ -5,8 +5,8 @@
 use super::shape::{Shape, Structure};
 use super::symbol::{Role, Symbols};
 use super::{
-    Expr, Letter, Map, Node, Rational, add, dot, integer, mul, number, places, power, quotient,
-    substitute, sum, trace, transpose,
+    Expr, Function, Letter, Map, Node, Rational, add, call, dot, integer, mul, number, places,
+    power, quotient, substitute, sum, trace, transpose,
 };
 
 /// How large the terms of an expression are.
@@ -172,6 +172,10 @@ impl Terms<'_> {
                     stored: rate.map_or_else(|| integer(0), |rate| mul(rate, of(a).stored)),
                 }
             }
+            Node::Call(f, a) if self.paths.is_some() => Size {
+                value: length(self.symbols, e),
+                stored: called(*f, a, e, self.of(a).stored, |x| length(self.symbols, x)),
+            },
             Node::Letter(_)
             | Node::Quotient(..)
             | Node::Power(..)
@@ -213,6 +217,21 @@ impl Terms<'_> {
             }
             _ => None,
         }
+    }
+}
+
+/// What the rounding of an argument changes a function by, or a bound of it.
+fn called(f: Function, a: &Expr, e: &Expr, stored: Expr, length: impl Fn(&Expr) -> Expr) -> Expr {
+    if stored.is_zero() {
+        return stored;
+    }
+    match f {
+        Function::Sin | Function::Cos | Function::Tanh | Function::Abs => stored,
+        Function::Sign => integer(0),
+        Function::Exp => mul(length(e), stored),
+        Function::Sinh => mul(call(Function::Cosh, a.clone()), stored),
+        Function::Cosh => mul(length(&call(Function::Sinh, a.clone())), stored),
+        Function::Log => quotient(stored, length(a)),
     }
 }
 
