@@ -113,11 +113,9 @@ impl Nudge {
 
     fn symmetric(&mut self, m: &mut Matrix) {
         let size = clebsch::scalar::largest(m.iter().flatten().map(|x| x.abs()));
-        for i in 0..3 {
-            for j in 0..=i {
-                m[i][j] += self.of(size);
-                m[j][i] = m[i][j];
-            }
+        for [i, j] in [[0, 0], [1, 0], [1, 1], [2, 0], [2, 1], [2, 2]] {
+            m[i][j] += self.of(size);
+            m[j][i] = m[i][j];
         }
     }
 
