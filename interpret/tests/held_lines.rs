@@ -165,6 +165,8 @@ fn a_composed_step_that_is_refused_leaves_the_line_where_it_was() {
 fn a_held_line_is_written_down_and_goes_on_to_the_last_bit() {
     beside::go_on(held::all().into_iter());
     beside::go_on(sums::all().into_iter());
+    beside::go_on_composed(held::all().into_iter());
+    beside::go_on_composed(sums::all().into_iter());
 }
 
 #[test]
