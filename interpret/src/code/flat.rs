@@ -190,8 +190,8 @@ pub struct Lists<'a, T: Real> {
     pub out: Option<(&'a mut Column<T>, usize)>,
     /// What is kept, from a site on.
     pub kept: Option<(&'a mut Column<T>, usize)>,
-    /// Values that are summed.
-    pub summed: Option<&'a mut Column<T>>,
+    /// Values that are put one after the other.
+    pub gathered: Option<&'a mut Column<T>>,
 }
 
 impl<T: Real> Lists<'_, T> {
@@ -200,7 +200,7 @@ impl<T: Real> Lists<'_, T> {
         Lists {
             out: None,
             kept: None,
-            summed: None,
+            gathered: None,
         }
     }
 
@@ -212,7 +212,7 @@ impl<T: Real> Lists<'_, T> {
         if let Some((column, from)) = &mut self.kept {
             r.store(column, *from + i, values.next()?)?;
         }
-        if let Some(column) = &mut self.summed {
+        if let Some(column) = &mut self.gathered {
             let [at] = values.next()?.as_slice() else {
                 return None;
             };
@@ -221,6 +221,7 @@ impl<T: Real> Lists<'_, T> {
                 (Column::Arrays(dims, all), At::Array(own, x)) if dims == own => {
                     all.extend(r.numbers.get(*x..*x + dims[0] * dims[1])?);
                 }
+                (Column::Values(all), At::Object(o)) => all.push(r.objects.get(*o)?.clone()),
                 _ => return None,
             }
         }

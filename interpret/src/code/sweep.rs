@@ -155,28 +155,7 @@ impl<T: Real> Sweep<T> {
                 Ok(Value::Unit)
             }
             (Kind::Sum | Kind::Sizes, []) => {
-                let [from, to] = self.whole(places)?;
-                let mut all = Column::Values(Vec::new());
-                let mut i = from;
-                while i < to {
-                    // The first says of what kind they are.
-                    if i > from {
-                        let lists = Lists {
-                            summed: Some(&mut all),
-                            ..Lists::none()
-                        };
-                        i = self.quick(places, [i, to], lists);
-                        if i == to {
-                            break;
-                        }
-                    }
-                    let value = self.at([site(i)].into_iter(), places)?;
-                    if i == from {
-                        all = Column::like(&value);
-                    }
-                    unfit(all.push(&value))?;
-                    i += 1;
-                }
+                let all = self.gathered(places)?;
                 unfit(summed(&all, self.kind == Kind::Sizes))
             }
             (Kind::Worst | Kind::OfAll, []) => self.left(places),
@@ -184,15 +163,44 @@ impl<T: Real> Sweep<T> {
         }
     }
 
+    /// The values of the body at all sites.
+    fn gathered(&self, places: &mut Places<T>) -> Result<Column<T>, Exit<T>> {
+        let [from, to] = self.whole(places)?;
+        let mut all = Column::Values(Vec::new());
+        let mut i = from;
+        while i < to {
+            // The first says of what kind they are.
+            if i > from {
+                let lists = Lists {
+                    gathered: Some(&mut all),
+                    ..Lists::none()
+                };
+                i = self.quick(places, [i, to], lists);
+                if i == to {
+                    break;
+                }
+            }
+            let value = self.at([site(i)].into_iter(), places)?;
+            if i == from {
+                all = Column::like(&value);
+            }
+            unfit(all.push(&value))?;
+            i += 1;
+        }
+        Ok(all)
+    }
+
     /// What is left of the equations of sites.
     fn left(&self, places: &mut Places<T>) -> Evaluated<T> {
-        let [from, to] = self.whole(places)?;
-        let mut parts = Vec::with_capacity(to.saturating_sub(from));
-        for i in from..to {
-            match self.at([site(i)].into_iter(), places)? {
-                Value::Residual(part) => parts.push(part),
-                _ => return Err(Exit::Unfit(WRONG)),
-            }
+        let Column::Values(all) = self.gathered(places)? else {
+            return Err(Exit::Unfit(WRONG));
+        };
+        let mut parts = Vec::with_capacity(all.len());
+        for value in &all {
+            let Value::Residual(part) = value else {
+                return Err(Exit::Unfit(WRONG));
+            };
+            parts.push(*part);
         }
         let left = |i: usize| parts[i];
         Ok(Value::Residual(match self.kind {
@@ -212,8 +220,8 @@ impl<T: Real> Sweep<T> {
             };
             let out = lists.out.iter().map(|(column, _)| shape(column));
             let kept_shape = lists.kept.iter().map(|(column, _)| shape(column));
-            let summed = lists.summed.iter().map(|column| shape(column));
-            let shapes: Vec<Option<[usize; 2]>> = out.chain(kept_shape).chain(summed).collect();
+            let gathered = lists.gathered.iter().map(|column| shape(column));
+            let shapes: Vec<Option<[usize; 2]>> = out.chain(kept_shape).chain(gathered).collect();
             let made = traced(places, &self.parameters, &self.body, from, kept, &shapes);
             made.map(Arc::new)
         });
@@ -262,7 +270,7 @@ impl<T: Real> Sweep<T> {
             let lists = Lists {
                 out: Some((&mut out.column, out.from)),
                 kept: Some((&mut kept.column, kept.from)),
-                summed: None,
+                gathered: None,
             };
             i = self.quick(places, [i, to], lists);
             if i == to {
