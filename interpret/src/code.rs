@@ -12,7 +12,7 @@ use apply::{apply, called, listed, made, many, matched, one, operation, repeated
 use clebsch::Real;
 pub use known::Known;
 use std::sync::{Arc, OnceLock};
-pub use sweep::{Kind, Slice, Sweep};
+pub use sweep::{Kind, Slice, Sweep, Terms};
 
 /// The places of a function that runs: parameters, then locals.
 pub type Places<T> = Vec<Value<T>>;

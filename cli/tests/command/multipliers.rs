@@ -162,3 +162,26 @@ fn light_bodies_on_a_hinge_stay_on_it() {
     let done = clebsch(&["run", &model, "--case", &case]);
     assert_eq!(done.code, 0, "{}{}", done.out, done.err);
 }
+
+/// Of one segment there is no pair of neighbouring sections to bend against one another: a sum of no terms, which is a number.
+#[test]
+fn a_held_rod_of_one_segment_has_an_energy() {
+    let folder = Folder::new("one-segment");
+    let case = "model = \"kirchhoff-rod\"\nname = \"one\"\nh = 0.001\nsteps = 5\n[labels]\ni = 1\n[ends]\ni = [\"pinned\", \"free\"]\n\
+        [parameters]\ns = 0.5\nm = 1.0\nJ = [[0.1, 0.0, 0.0], [0.0, 0.05, 0.0], [0.0, 0.0, 0.05]]\n\
+        B = [[0.1, 0.0, 0.0], [0.0, 0.05, 0.0], [0.0, 0.0, 0.05]]\ng = [0.0, 0.0, 9.81]\n[initial]\nphi = [0.0, 0.0, \"s*i\"]\n\
+        momentum_phi = [0.0, 0.0, 0.0]\nLambda = [1.0, 0.0, 0.0, 0.0]\nbody_momentum_Lambda = [0.0, 0.0, 0.0]\n";
+    let model = format!(
+        "{}/../models/lattices/kirchhoff-rod.clebsch",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let case = folder.write("one.toml", case);
+    let done = clebsch(&["run", &model, "--case", &case, "--json"]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    let object: serde_json::Value = serde_json::from_str(&done.out).expect("one JSON object");
+    let energy = &object["results"]["invariants"][0];
+    assert_eq!(energy["name"], "energy", "{energy}");
+    // It hangs at rest: the mass at the end, 1, times 9.81 over half a unit of length.
+    let scale = energy["scale"].as_f64().expect("a number");
+    assert!((scale - 4.905).abs() < 1e-14, "{energy}");
+}

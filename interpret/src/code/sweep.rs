@@ -23,13 +23,22 @@ pub enum Kind {
     /// `try_each`: tests, up to the first error.
     TryEach,
     /// `sum` and `total`.
-    Sum,
+    Sum(Terms),
     /// The same of the sizes of their terms: a scale of what is summed.
-    Sizes,
+    Sizes(Terms),
     /// `worst_residual`: what is left of the equations of sites by themselves.
     Worst,
     /// `residual_of_all`: what is left of those of all sites together.
     OfAll,
+}
+
+/// What is summed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Terms {
+    /// Numbers: of no site 0.
+    Numbers,
+    /// Arrays: of no site zeros, whatever their shape.
+    Arrays,
 }
 
 /// A list of sites or part of it.
@@ -154,9 +163,9 @@ impl<T: Real> Sweep<T> {
                 }
                 Ok(Value::Unit)
             }
-            (Kind::Sum | Kind::Sizes, []) => {
+            (Kind::Sum(terms) | Kind::Sizes(terms), []) => {
                 let all = self.gathered(places)?;
-                unfit(summed(&all, self.kind == Kind::Sizes))
+                unfit(summed(&all, terms, matches!(self.kind, Kind::Sizes(_))))
             }
             (Kind::Worst | Kind::OfAll, []) => self.left(places),
             _ => Err(Exit::Unfit(WRONG)),
@@ -299,7 +308,7 @@ fn site<T: Real>(i: usize) -> Value<T> {
 }
 
 /// The sum of numbers, or of arrays component by component.
-fn summed<T: Real>(all: &Column<T>, sizes: bool) -> Option<Value<T>> {
+fn summed<T: Real>(all: &Column<T>, terms: Terms, sizes: bool) -> Option<Value<T>> {
     let of = |x: T| if sizes { x.abs() } else { x };
     Some(match all {
         Column::Numbers(list) => Value::Real(line::sum(list.len(), |i| of(list[i]))),
@@ -312,8 +321,10 @@ fn summed<T: Real>(all: &Column<T>, sizes: bool) -> Option<Value<T>> {
                 data: (0..size).map(sum).collect(),
             })
         }
-        // A sum of no sites is of no shape.
-        Column::Values(none) if none.is_empty() => Value::Zeros,
+        Column::Values(none) if none.is_empty() => match terms {
+            Terms::Numbers => Value::Real(T::zero()),
+            Terms::Arrays => Value::Zeros,
+        },
         _ => return None,
     })
 }

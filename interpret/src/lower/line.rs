@@ -5,7 +5,7 @@ use super::expression::whole;
 use super::statement::is_place;
 use super::{Binding, Lower, Lowered, refuse};
 use crate::Refused;
-use crate::code::{Arm, Code, Kind, Known, Pattern, Slice, Sweep};
+use crate::code::{Arm, Code, Kind, Known, Pattern, Slice, Sweep, Terms};
 use crate::program::named;
 use crate::value::Value;
 use std::collections::BTreeMap;
@@ -89,21 +89,25 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 let range = [self.expression(first, None)?, self.expression(last, None)?];
                 (Kind::TryEach, Vec::new(), Some(range), body)
             }
-            ("line::sum" | "line::total", [sites, body]) => {
+            (name @ ("line::sum" | "line::total"), [sites, body]) => {
                 let range = [whole(0), self.expression(sites, None)?];
+                let terms = match name {
+                    "line::sum" => Terms::Numbers,
+                    _ => Terms::Arrays,
+                };
                 let kind = match self.shared.by_size {
-                    true => Kind::Sizes,
-                    false => Kind::Sum,
+                    true => Kind::Sizes(terms),
+                    false => Kind::Sum(terms),
                 };
                 (kind, Vec::new(), Some(range), body)
             }
-            ("line::worst_residual", [sites, body]) => {
+            (name @ ("line::worst_residual" | "line::residual_of_all"), [sites, body]) => {
                 let range = [whole(0), self.expression(sites, None)?];
-                (Kind::Worst, Vec::new(), Some(range), body)
-            }
-            ("line::residual_of_all", [sites, body]) => {
-                let range = [whole(0), self.expression(sites, None)?];
-                (Kind::OfAll, Vec::new(), Some(range), body)
+                let kind = match name {
+                    "line::worst_residual" => Kind::Worst,
+                    _ => Kind::OfAll,
+                };
+                (kind, Vec::new(), Some(range), body)
             }
             _ => return Ok(None),
         };
