@@ -114,7 +114,7 @@ fn a_wrong_sign_between_neighbours_is_warned_of() {
     }
 }
 
-/// Of a field, of rigid motions of the plane and of space and of linear maps in rows of springs: ω is that of the row of beads,
+/// Of a field, of rotations of the plane, of rigid motions and of linear maps in rows of springs: ω is that of the row of beads,
 /// 2 sqrt(k/m) sin(π n/(2n + 2)) of n + 1 free ones, whatever the unit of mass and however short the step that is asked for.
 #[test]
 fn rows_of_springs_have_one_limit_in_all_groups() {
@@ -127,8 +127,15 @@ fn rows_of_springs_have_one_limit_in_all_groups() {
     let motions = "group G: SE<3> at nodes velocity U; constraint next(G) = G*U; \
         let d = pos(next(G)) - pos(G); let e = pos(next(G, i)) - pos(G); \
         lagrangian = m*dot(d, d)/(2*h) - m*tr(rot(U))/h - h*k*dot(e, e)/2 + h*k*tr(rot(G)^T*rot(next(G, i)));";
+    let turns = "group R: SO<2> at nodes velocity W; constraint next(R) = R*W; \
+        lagrangian = -m*tr(W)/(2*h) + h*k*tr(R^T*next(R, i))/2;";
     let zero = "[0.0, 0.0]";
     let cases = [
+        (
+            "turns",
+            turns,
+            "R = [[1.0, 0.0], [0.0, 1.0]]\nbody_momentum_R = [[0.0, 0.0], [0.0, 0.0]]\n".to_owned(),
+        ),
         ("field", field, format!("q = {zero}\nmomentum_q = {zero}\n")),
         (
             "maps",
@@ -161,6 +168,36 @@ fn rows_of_springs_have_one_limit_in_all_groups() {
                 "{name} {n} {size:e} {h:e}: {found} {wanted}"
             );
         }
+    }
+}
+
+/// A chain of bodies that begins far from equilibrium, its bonds turned by up to forty radians: forces turn with the frames of the bodies
+/// there, and what resists is the symmetric part of their change. The numbers are square roots of the largest and of minus the least
+/// eigenvalue of the second derivative of the energy, against the inertia tensors, by numpy: of 40 sites the latter is 1.096802.
+#[test]
+fn a_bent_start_has_the_limit_of_the_symmetric_part() {
+    let folder = Folder::new("bent-start");
+    let text = "model Bent { label i in 0..N; param J: Sym<3>; param g, e: Vec<3>; group R: SO<3> at nodes velocity W; \
+        constraint next(R) = R*W; lagrangian = -tr(J*W)/h + h*tr(R^T*next(R, i)) + h*dot(g, R*e); \
+        end i = 0 { free; } end i = N { free; } }";
+    let model = folder.write("bent.clebsch", text);
+    let growth = "with the rate 1.097e0";
+    for (n, frequency) in [(5, 1.397_230), (40, 1.413_624)] {
+        let case = format!(
+            "model = \"bent\"\nname = \"own\"\nh = 0.01\nsteps = 1\n[labels]\ni = {n}\n[ends]\ni = [\"free\", \"free\"]\n\
+             [parameters]\nJ = [[1.0, 0.1, 0.0], [0.1, 1.5, 0.0], [0.0, 0.0, 2.0]]\ng = [0.0, 0.0, 1.0]\ne = [0.0, 0.0, 1.0]\n\
+             [initial]\nR = [\"cos(0.5*i^2)\", 0.0, \"sin(0.5*i^2)\", 0.0]\nbody_momentum_R = [0.0, 0.0, 0.0]\n"
+        );
+        let case = folder.write("case.toml", &case);
+        let found = 2.0 / printed(&model, &case, &[]);
+        // Of 18 freedoms to the digits that are printed; of 123, in the space of 60 vectors, to a hundredth beside that.
+        assert!(
+            (found / frequency - 1.0).abs() < 0.02,
+            "{n}: {found} {frequency}"
+        );
+        let done = clebsch(&["run", &model, "--case", &case]);
+        let told = done.err.contains(growth);
+        assert_eq!(told, n == 40, "{}", done.err);
     }
 }
 
@@ -219,10 +256,11 @@ fn of_one_body_that_is_unstable_no_sign_is_doubted() {
     };
     let long = run("0.3");
     assert_eq!(long.code, 0, "{}{}", long.out, long.err);
-    // The root of the force along the tangent, 0.01448, over the stiffness against bending, 0.002; 0.3 over that.
+    // With the force (0.00179, 0.00568, 0.01448) on the section: of its part along the tangent alone the root over the stiffness against
+    // bending, 0.002, is 2.6910; with half the other, which joins bending and twist, 2.7188 by numpy; 0.3 over that.
     for words in [
-        "rate 2.691",
-        "do not resolve how the start is left; those up to 1.115e-1 do",
+        "rate 2.719",
+        "do not resolve how the start is left; those up to 1.103e-1 do",
     ] {
         assert!(long.err.contains(words), "{}", long.err);
     }

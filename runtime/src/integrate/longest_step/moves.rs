@@ -16,6 +16,10 @@ pub(super) struct Moves {
     pub(super) spatial: bool,
     pub(super) place: Range<usize>,
     pub(super) momentum: Range<usize>,
+    /// Which numbers of the momentum are freedoms: of a skew matrix those below its diagonal.
+    freedoms: Vec<usize>,
+    /// Rows of the momentum of a rotation that is not one of space: a skew matrix.
+    skew: Option<usize>,
 }
 
 impl Moves {
@@ -31,10 +35,12 @@ impl Moves {
     fn of(card: &Card, at: usize, place: &Field) -> Option<Self> {
         let behind = momentum_of(card, place)?;
         let momentum = card.initial.get(behind)?;
+        let is_rotation = place.kind == Kind::Rotation && momentum.kind != Kind::FieldMomentum;
+        let skew = (is_rotation && place.count() == momentum.count()).then_some(place.rows);
         let known = match (place.kind, momentum.kind) {
             (_, Kind::FieldMomentum) => place.count() == momentum.count(),
             (Kind::Rotation, Kind::BodyMomentum | Kind::SpatialMomentum) => {
-                matches!((place.count(), momentum.count()), (9, 3) | (4, 1))
+                skew.is_some() || matches!((place.count(), momentum.count()), (9, 3) | (4, 1))
             }
             (Kind::UnitQuaternion, Kind::BodyMomentum | Kind::SpatialMomentum) => {
                 momentum.count() == 3
@@ -61,14 +67,42 @@ impl Moves {
             spatial: momentum.kind == Kind::SpatialMomentum,
             place: columns(card, place)?,
             momentum: columns(card, momentum)?,
+            freedoms: match skew {
+                Some(n) => below_diagonal(n).map(|(i, j)| n * i + j).collect(),
+                None => (0..momentum.count()).collect(),
+            },
+            skew,
         };
         known.then_some(own)
     }
 
     /// Its freedoms.
     pub(super) fn count(&self) -> usize {
-        self.momentum.len()
+        self.freedoms.len()
     }
+
+    /// The freedoms of its momentum in what is observed.
+    pub(super) fn momenta<'o>(&'o self, observed: &'o [f64]) -> impl Iterator<Item = f64> + 'o {
+        let own = &observed[self.momentum.clone()];
+        self.freedoms.iter().map(|k| own[*k])
+    }
+
+    /// The momentum with these freedoms, as it is given at the start.
+    pub(super) fn momentum_with(&self, freedoms: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut all = vec![0.0; self.momentum.len()];
+        for (k, x) in self.freedoms.iter().zip(freedoms) {
+            all[*k] = x;
+            if let Some(n) = self.skew {
+                all[n * (k % n) + k / n] = -x;
+            }
+        }
+        all
+    }
+}
+
+/// Rows and columns of what stands below the diagonal of a matrix.
+fn below_diagonal(n: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..n).flat_map(|i| (0..i).map(move |j| (i, j)))
 }
 
 fn is_momentum(field: &Field) -> bool {
@@ -148,14 +182,14 @@ fn rigid(value: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
     (attitude, place)
 }
 
-/// The small turn by an angle of the plane, or by those about the axes of space; to first order where it is not asked for a rotation.
+/// The small turn by an angle of the plane, by those about the axes of space, or by those of every plane of two axes; to first order
+/// where it is not asked for a rotation.
 fn turn_by(angles: &[f64], is_whole: bool) -> DMatrix<f64> {
     match *angles {
         [angle] if is_whole => {
             let (sin, cos) = angle.sin_cos();
             DMatrix::from_row_slice(2, 2, &[cos, -sin, sin, cos])
         }
-        [angle] => DMatrix::from_row_slice(2, 2, &[0.0, -angle, angle, 0.0]),
         [a, b, c] => {
             let about = Vector3::new(a, b, c);
             let turn = match is_whole {
@@ -164,7 +198,23 @@ fn turn_by(angles: &[f64], is_whole: bool) -> DMatrix<f64> {
             };
             DMatrix::from_row_slice(3, 3, turn.transpose().as_slice())
         }
-        _ => DMatrix::zeros(0, 0),
+        _ => {
+            let n = (1 + (8 * angles.len() + 1).isqrt()) / 2;
+            let mut rate = DMatrix::zeros(n, n);
+            for ((i, j), angle) in below_diagonal(n).zip(angles) {
+                rate[(i, j)] = *angle;
+                rate[(j, i)] = -angle;
+            }
+            match is_whole {
+                // Cayley's transform is a rotation, by these angles to second order.
+                true => {
+                    let (one, half) = (DMatrix::identity(n, n), rate * 0.5);
+                    let back = (&one - &half).try_inverse();
+                    back.map_or(one.clone(), |back| back * (one + half))
+                }
+                false => rate,
+            }
+        }
     }
 }
 
@@ -185,8 +235,8 @@ fn turn_between(from: &DMatrix<f64>, to: &DMatrix<f64>, spatial: bool) -> Vec<f6
     };
     let half = |i: usize, j: usize| 0.5 * (turn[(i, j)] - turn[(j, i)]);
     match turn.nrows() {
-        2 => vec![half(1, 0)],
-        _ => vec![half(2, 1), half(0, 2), half(1, 0)],
+        3 => vec![half(2, 1), half(0, 2), half(1, 0)],
+        n => below_diagonal(n).map(|(i, j)| half(i, j)).collect(),
     }
 }
 
