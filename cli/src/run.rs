@@ -404,6 +404,14 @@ fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
             residual.relative, residual.node
         )
     });
+    let order = run.plan.order.filter(|order| *order > run.card.order);
+    let residual = residual.or_else(|| {
+        order.filter(|_| made > 0).map(|order| {
+            format!(
+                "discrete Euler-Lagrange equations: no residual, since each step of order {order} is made of others"
+            )
+        })
+    });
     let stopped = run.stopped.as_ref().map(|stopped| {
         let time = axis::plain(stopped.time);
         let all = steps(run.plan.case.steps);

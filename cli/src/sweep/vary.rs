@@ -26,9 +26,9 @@ pub(super) struct Axis {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Place {
     Step,
-    /// Entries of a parameter, each with the sign that its kind asks for.
-    Parameter(usize, Vec<(usize, f64)>),
-    Initial(usize, Vec<(usize, f64)>),
+    /// Entries of a parameter, each with the sign that its kind asks for; along a line those of several sites.
+    Parameter(Vec<usize>, Vec<(usize, f64)>),
+    Initial(Vec<usize>, Vec<(usize, f64)>),
 }
 
 impl Axis {
@@ -54,17 +54,20 @@ impl Axis {
 
     /// Puts a value into a case.
     pub(super) fn put(&self, value: f64, case: &mut Case) {
-        let entries = |list: &mut Vec<Vec<f64>>, field: usize, entries: &[(usize, f64)]| {
-            for (entry, sign) in entries {
-                if let Some(x) = list.get_mut(field).and_then(|own| own.get_mut(*entry)) {
+        let entries = |list: &mut Vec<Vec<f64>>, fields: &[usize], entries: &[(usize, f64)]| {
+            for (field, (entry, sign)) in fields
+                .iter()
+                .flat_map(|field| entries.iter().map(move |entry| (field, entry)))
+            {
+                if let Some(x) = list.get_mut(*field).and_then(|own| own.get_mut(*entry)) {
                     *x = sign * value;
                 }
             }
         };
         match &self.place {
             Place::Step => case.h = value,
-            Place::Parameter(field, list) => entries(&mut case.parameters, *field, list),
-            Place::Initial(field, list) => entries(&mut case.initial, *field, list),
+            Place::Parameter(fields, list) => entries(&mut case.parameters, fields, list),
+            Place::Initial(fields, list) => entries(&mut case.initial, fields, list),
         }
     }
 }
@@ -77,10 +80,25 @@ fn place(name: &str, card: &Card) -> Result<Place, String> {
         Some((field, component)) => (field, Some(component)),
         None => (name, None),
     };
+    // Along a line a name without the number of a site is that of all sites, as in a case file.
     let find = |fields: &'static [Field]| {
-        let named = |f: &Field| f.name == field || f.ascii == field;
-        let at = fields.iter().position(named)?;
-        Some((at, *fields.get(at)?))
+        let named = |own: &str| own == field;
+        let of_sites = |own: &str| site(own).is_some_and(|(stem, _)| stem == field);
+        let all = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
+            let fields = fields.iter().enumerate();
+            let found = fields.filter(|(_, f)| is(f.name) || is(f.ascii));
+            found.map(|(at, _)| at).collect()
+        };
+        let found = Some(all(&named)).filter(|own| !own.is_empty());
+        // Of one site, an end's, or of all from 0 on.
+        let each = |own: &Vec<usize>| {
+            let numbers = own.iter().map(|at| site(fields.get(*at)?.ascii));
+            let mut numbers = numbers.map(|of| of.map(|(_, number)| number)).enumerate();
+            own.len() == 1 || numbers.all(|(at, number)| number == Some(at))
+        };
+        let found = found.or_else(|| Some(all(&of_sites)).filter(each))?;
+        let first = *fields.get(*found.first()?)?;
+        Some((found, first))
     };
     if let Some((at, field)) = find(card.parameters) {
         return Ok(Place::Parameter(at, entries(&field, component)?));
@@ -88,13 +106,24 @@ fn place(name: &str, card: &Card) -> Result<Place, String> {
     if let Some((at, field)) = find(card.initial) {
         return Ok(Place::Initial(at, entries(&field, component)?));
     }
-    let all = card.parameters.iter().chain(card.initial);
-    let names: Vec<&str> = all.map(|field| field.ascii).collect();
+    let mut names: Vec<&str> = Vec::new();
+    for own in card.parameters.iter().chain(card.initial) {
+        let name = site(own.ascii).map_or(own.ascii, |(stem, _)| stem);
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
     Err(format!(
         "`{}` has no such parameter or initial value; it has {} and the step h",
         card.kebab,
         names.join(", ")
     ))
+}
+
+/// The name of a list along a line, and the number of the site that is named.
+fn site(name: &str) -> Option<(&str, usize)> {
+    let (stem, number) = name.rsplit_once('_')?;
+    Some((stem, number.parse().ok()?))
 }
 
 /// The entries of a field that a component names: with its mirror image where the kind has one.

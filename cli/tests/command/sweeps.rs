@@ -106,6 +106,41 @@ fn a_row_is_the_run_of_its_point() {
     assert!(column(&out, "Lambda_11")[3] != column(&out, "Lambda_11")[0]);
 }
 
+/// As in a case file a name without the number of a site is that of all sites, and of an end that of its parameter.
+#[test]
+fn along_a_line_the_names_are_those_of_the_case_file() {
+    let folder = Folder::new("sweep-line");
+    let model = "model Beads { label i in 0..N; param m: Real at nodes; param k: Real; field x: Vec<2> at nodes; \
+        lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*k*dot(next(x, i) - x, next(x, i) - x)/2; \
+        end i = 0 { free; } end i = N { pulled { param F: Vec<2>; term h*dot(F, x); } } }";
+    let model = folder.write("beads.clebsch", model);
+    let case = "model = \"beads\"\nname = \"own\"\nh = 0.1\nsteps = 1\n[labels]\ni = 2\n[ends]\ni = [\"free\", \"pulled\"]\n\
+        [parameters]\nm = 1.0\nk = 1.0\nF = [1.0, 0.0]\n[initial]\nx = [0.0, 0.0]\nmomentum_x = [1.0, 0.0]\n";
+    let case = folder.write("own.toml", case);
+    let last = |vary: &str| {
+        let out = folder.path("out");
+        let arguments = [
+            "sweep", &model, "--case", &case, "--out", &out, "--force", "--vary", vary,
+        ];
+        let done = clebsch(&arguments);
+        assert_eq!(done.code, 0, "{vary}: {}", done.err);
+        ["x_0_1", "x_1_1", "x_2_1", "x_2_2"].map(|name| *column(&out, name).last().expect("a row"))
+    };
+    // One step moves by h p/m, at the end by h^2 F/(2 m) beside that.
+    let near = |found: [f64; 4], wanted: [f64; 4]| {
+        let apart = found
+            .iter()
+            .zip(wanted)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
+        assert!(apart < 1e-15, "{found:?} {wanted:?}");
+    };
+    near(last("m=1,2"), [0.05, 0.05, 0.0525, 0.0]);
+    near(last("m_1=1,2"), [0.1, 0.05, 0.105, 0.0]);
+    near(last("F.2=0,4"), [0.1, 0.1, 0.105, 0.02]);
+    near(last("momentum_x.1=0,3"), [0.3, 0.3, 0.305, 0.0]);
+}
+
 #[test]
 fn parts_are_joined_to_the_table_of_the_whole() {
     let folder = Folder::new("sweep-parts");
