@@ -1,8 +1,8 @@
 //! Time per site and step of lines that are compiled for every number of sites: Toda's chain, the sine-Gordon equation, coupled
 //! tops, elastic rods, inextensible rods, shallow water and bodies joined by their velocities beside the same by hand, tops and rod
 //! beside the lone heavy top, the rod in quaternions beside the one in rotations, lines with held constraints beside the elastic
-//! rod. Takes no arguments; prints a table.
-//! `cargo run --release --manifest-path benches/Cargo.toml --bin lines`, a minute.
+//! rod. Takes part of the name of a row, for those rows alone; prints a table.
+//! `cargo run --release --manifest-path benches/Cargo.toml --bin lines [-- ROW]`, two minutes.
 
 // The fields of the models are Greek letters, as in the papers.
 #![allow(mixed_script_confusables, non_snake_case)]
@@ -34,6 +34,9 @@ const BLOCKS: usize = 11;
 
 const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 
+/// The block of so many sites.
+type Block = fn(usize) -> Box<dyn FnMut()>;
+
 fn main() {
     explicit::same_motions(100);
     println!("{}", env!("RUSTC_VERSION"));
@@ -42,68 +45,77 @@ fn main() {
     );
     println!("| line | sites | generated | beside | ratio |");
     println!("|---|---|---|---|---|");
-    for n in SIZES {
-        let (one, other) = both(&mut toda(n), &mut toda_by_hand(n));
-        row("Toda's chain, a ring, beside a plain loop", n, one, other);
-    }
-    for n in SIZES {
-        let (one, other) = both(&mut sine(n), &mut sine_by_hand(n));
-        row("sine-Gordon, free ends, beside a plain loop", n, one, other);
-    }
-    for n in SIZES {
-        let (one, other) = both(&mut tops(n, 1), &mut tops_by_hand(n));
-        row("coupled tops, beside loops by hand", n, one, other);
-    }
-    for n in SIZES {
-        let (one, other) = both(&mut rod(n), &mut rod_by_hand(n));
-        row("elastic rod, beside loops by hand", n, one, other);
-    }
-    for n in SIZES {
-        let (one, other) = both(&mut water(n), &mut water_by_hand(n));
-        row("shallow water, a ring, beside a plain loop", n, one, other);
-    }
-    for n in SIZES {
-        let (one, other) = both(&mut tops(n, 1), &mut lone(n));
-        row("coupled tops, beside the lone heavy top", n, one, other);
-    }
-    for n in SIZES {
-        let (one, other) = both(&mut rod(n), &mut lone(n));
-        row("elastic rod, beside the lone heavy top", n, one, other);
-    }
-    for n in SIZES {
-        let (one, other) = both(&mut in_quaternions(n), &mut rod(n));
-        row(
+    let wanted = std::env::args().nth(1).unwrap_or_default();
+    let rows: [(&str, Block, Block); 12] = [
+        (
+            "Toda's chain, a ring, beside a plain loop",
+            |n| Box::new(toda(n)),
+            |n| Box::new(toda_by_hand(n)),
+        ),
+        (
+            "sine-Gordon, free ends, beside a plain loop",
+            |n| Box::new(sine(n)),
+            |n| Box::new(sine_by_hand(n)),
+        ),
+        (
+            "coupled tops, beside loops by hand",
+            |n| Box::new(tops(n, 1)),
+            |n| Box::new(tops_by_hand(n)),
+        ),
+        (
+            "elastic rod, beside loops by hand",
+            |n| Box::new(rod(n)),
+            |n| Box::new(rod_by_hand(n)),
+        ),
+        (
+            "shallow water, a ring, beside a plain loop",
+            |n| Box::new(water(n)),
+            |n| Box::new(water_by_hand(n)),
+        ),
+        (
+            "coupled tops, beside the lone heavy top",
+            |n| Box::new(tops(n, 1)),
+            |n| Box::new(lone(n)),
+        ),
+        (
+            "elastic rod, beside the lone heavy top",
+            |n| Box::new(rod(n)),
+            |n| Box::new(lone(n)),
+        ),
+        (
             "elastic rod in quaternions, beside the one in rotations",
-            n,
-            one,
-            other,
-        );
-    }
-    for n in SIZES {
-        let (one, other) = both(&mut inextensible(n), &mut rod(n));
-        row("inextensible rod, beside the elastic one", n, one, other);
-    }
-    for n in SIZES {
-        let (one, other) = both(&mut inextensible(n), &mut inextensible_by_hand(n));
-        row("inextensible rod, beside one by hand", n, one, other);
-    }
-    for n in SIZES {
-        let (one, other) = both(&mut links(n), &mut rod(n));
-        row(
+            |n| Box::new(in_quaternions(n)),
+            |n| Box::new(rod(n)),
+        ),
+        (
+            "inextensible rod, beside the elastic one",
+            |n| Box::new(inextensible(n)),
+            |n| Box::new(rod(n)),
+        ),
+        (
+            "inextensible rod, beside one by hand",
+            |n| Box::new(inextensible(n)),
+            |n| Box::new(inextensible_by_hand(n)),
+        ),
+        (
             "chain of rigid links, beside the elastic rod",
-            n,
-            one,
-            other,
-        );
-    }
-    for n in SIZES {
-        let (one, other) = both(&mut bodies(n), &mut bodies_by_hand(n));
-        row(
+            |n| Box::new(links(n)),
+            |n| Box::new(rod(n)),
+        ),
+        (
             "bodies joined by their velocities, beside a stepper by hand",
-            n,
-            one,
-            other,
-        );
+            |n| Box::new(bodies(n)),
+            |n| Box::new(bodies_by_hand(n)),
+        ),
+    ];
+    for (name, one, other) in rows.into_iter().filter(|(name, ..)| name.contains(&wanted)) {
+        for n in SIZES {
+            let (one, other) = both(&mut *one(n), &mut *other(n));
+            row(name, n, one, other);
+        }
+    }
+    if !wanted.is_empty() {
+        return;
     }
     let wall = |threads| {
         let mut block = tops(100_000, threads);
