@@ -214,13 +214,13 @@ impl<T: Real> Rotation<T> {
     }
 
     /// The unit quaternion `(w, x, y, z)`.
-    #[inline]
+    #[inline(always)]
     pub fn quaternion(&self) -> [T; 4] {
         self.q
     }
 
     /// The 3x3 matrix, body -> space.
-    #[inline]
+    #[inline(always)]
     pub fn matrix(&self) -> Matrix3<T> {
         let [w, x, y, z] = self.q;
         let one = T::one();

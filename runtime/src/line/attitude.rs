@@ -1,32 +1,23 @@
-//! The attitude of one site: a rotation, or a unit quaternion over it, with the matrix of the rotation, which
-//! the site and its neighbours read.
+//! The attitude of one site: a rotation, or a unit quaternion over it. Kept by four numbers, of which the matrix that the site
+//! and its neighbours read is made where it is read: lists of sites are longer than the caches are wide.
 
 use crate::saved::{Saved, Words};
 use crate::solvers::moser_veselov::Poinsot;
 use crate::{Real, Rotation, TurnedRotation, UnitQuaternion, linalg};
 use nalgebra::{Matrix3, Vector3};
 
-/// A rotation, body to space, and its matrix. The quaternion that it is kept by has a sign, which stays what
+/// A rotation, body to space. The quaternion that it is kept by has a sign, which stays what
 /// it is along a motion: read as a unit quaternion it is an element of SU(2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attitude<T = f64> {
     rotation: Rotation<T>,
-    matrix: Matrix3<T>,
 }
 
 impl<T: Real> Attitude<T> {
     /// The attitude of a rotation.
-    pub fn new(rotation: Rotation<T>) -> Self {
-        Self {
-            matrix: rotation.matrix(),
-            rotation,
-        }
-    }
-
-    /// The attitude that has been kept as both.
     #[inline(always)]
-    pub(super) fn kept(rotation: Rotation<T>, matrix: Matrix3<T>) -> Self {
-        Self { rotation, matrix }
+    pub fn new(rotation: Rotation<T>) -> Self {
+        Self { rotation }
     }
 
     /// The attitude of a unit quaternion.
@@ -39,7 +30,6 @@ impl<T: Real> Attitude<T> {
     pub fn turned(turned: &TurnedRotation<T>) -> Self {
         Self {
             rotation: turned.rotation(),
-            matrix: turned.matrix(),
         }
     }
 
@@ -63,7 +53,6 @@ impl<T: Real> Attitude<T> {
         let q = self.rotation.quaternion().map(|x| x * sign);
         Self {
             rotation: Rotation::from_unit(q),
-            matrix: self.matrix,
         }
     }
 
@@ -76,7 +65,7 @@ impl<T: Real> Attitude<T> {
     /// The matrix of the rotation.
     #[inline(always)]
     pub fn matrix(&self) -> Matrix3<T> {
-        self.matrix
+        self.rotation.matrix()
     }
 }
 
@@ -96,7 +85,7 @@ pub fn turned_by<T: Real>(
     from: &Attitude<T>,
     to: &Attitude<T>,
 ) -> Matrix3<T> {
-    let turn = from.matrix.tr_mul(&to.matrix);
+    let turn = from.matrix().tr_mul(&to.matrix());
     let factor = linalg::trace_complement(&(turn * body.matrix()));
     // The inverse by its adjugate: three columns that are cross products, over the determinant.
     let [a, b, c] = [0, 1, 2].map(|i| factor.row(i).transpose());
@@ -107,8 +96,7 @@ pub fn turned_by<T: Real>(
 
 impl Saved for Attitude<f64> {
     fn words(&mut self, words: &mut Words) {
-        let Self { rotation, matrix } = self;
+        let Self { rotation } = self;
         rotation.words(words);
-        matrix.words(words);
     }
 }

@@ -7,7 +7,7 @@ use crate::solvers::moser_veselov::Edge;
 use crate::{Real, Rotation};
 use core::marker::PhantomData;
 use core::ops::Range;
-use nalgebra::{Matrix3, SMatrix};
+use nalgebra::SMatrix;
 
 /// A value made of `N` numbers.
 pub trait Numbered<const N: usize>: Copy + Send + Sync {
@@ -33,7 +33,7 @@ pub struct Columns<V, T, const N: usize> {
 }
 
 /// A list with the attitude of each site.
-pub type Attitudes<T> = Columns<Attitude<T>, T, 13>;
+pub type Attitudes<T> = Columns<Attitude<T>, T, 4>;
 
 /// A list with the momenta of the edge that leaves each site.
 pub type Edges<T> = Columns<Edge<T>, T, 6>;
@@ -229,20 +229,17 @@ impl<V: Numbered<N, Number = f64> + Saved, const N: usize> Sites for Columns<V, 
     }
 }
 
-impl<T: Real> Numbered<13> for Attitude<T> {
+impl<T: Real> Numbered<4> for Attitude<T> {
     type Number = T;
 
     #[inline(always)]
-    fn numbers(&self) -> [T; 13] {
-        let [a, b, c, d] = self.rotation().quaternion();
-        let [[e, f, g], [h, i, j], [k, l, m]] = self.matrix().data.0;
-        [a, b, c, d, e, f, g, h, i, j, k, l, m]
+    fn numbers(&self) -> [T; 4] {
+        self.rotation().quaternion()
     }
 
     #[inline(always)]
-    fn of([a, b, c, d, e, f, g, h, i, j, k, l, m]: [T; 13]) -> Self {
-        let matrix = Matrix3::new(e, h, k, f, i, l, g, j, m);
-        Self::kept(Rotation::from_unit([a, b, c, d]), matrix)
+    fn of(numbers: [T; 4]) -> Self {
+        Self::new(Rotation::from_unit(numbers))
     }
 }
 
