@@ -7,7 +7,7 @@ use super::attitude::{
     Matrix, Quaternion, Vector, add_scaled, apply, apply_transposed, cross, dot,
 };
 use super::principal_axes::PrincipalAxes;
-use super::principal_root::Quartic;
+use super::principal_root::{self, Quartic};
 use super::spaced::{SpacedQuaternion, SpacedVector};
 
 /// A rotation as Id + scale E, so that products with E need not wait for the division that gives the scale.
@@ -180,15 +180,7 @@ impl<F: Field> BodyInField<F> {
         let squares = u.map(|c| c * c);
         let a = (squares[0] + squares[1]) + squares[2];
         let kappa = self.quartic.principal_root(&squares, a)?;
-        let [i1, i2, i3] = self.moments;
-        let (d1, d2, d3) = (i1 - kappa, i2 - kappa, i3 - kappa);
-        let d23 = d2 * d3;
-        let turn = Quaternion([
-            d1 * (d23 + squares[0]) + (d2 * squares[1] + d3 * squares[2]),
-            (d23 + a) * u[0] + self.gyration[0] * (u[1] * u[2]),
-            (d3 * d1 + a) * u[1] + self.gyration[1] * (u[2] * u[0]),
-            (d1 * d2 + a) * u[2] + self.gyration[2] * (u[0] * u[1]),
-        ]);
+        let turn = principal_root::turn(&self.moments, &self.gyration, &u, &squares, a, kappa);
         let q = self.q.get();
         let unscaled = q.times(&turn);
         // |q|^2 is one up to rounding; the numerator takes that rounding out again, to first order.

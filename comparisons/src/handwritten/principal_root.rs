@@ -3,7 +3,7 @@
 //! kappa^4 - s1 kappa^3 + (s2 + 2a) kappa^2 - (s3 + s1 a) kappa + e + a^2 = 0; kappa is its smallest positive root.
 
 use super::Unsolvable;
-use super::attitude::Vector;
+use super::attitude::{Quaternion, Vector};
 
 /// Functions of the moments of inertia alone; the quartic is divided by s3 throughout.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,28 @@ pub struct Quartic {
     third: f64,
     /// s2 / s3.
     second: f64,
+}
+
+/// The turn of the step as a quaternion of any length, of u with its squared components, their sum `a` and the root kappa;
+/// `gyration` are the differences I_2 - I_3, I_3 - I_1, I_1 - I_2 of the moments.
+#[inline(always)]
+pub fn turn(
+    moments: &Vector,
+    gyration: &Vector,
+    u: &Vector,
+    squares: &Vector,
+    a: f64,
+    kappa: f64,
+) -> Quaternion {
+    let [i1, i2, i3] = *moments;
+    let (d1, d2, d3) = (i1 - kappa, i2 - kappa, i3 - kappa);
+    let d23 = d2 * d3;
+    Quaternion([
+        d1 * (d23 + squares[0]) + (d2 * squares[1] + d3 * squares[2]),
+        (d23 + a) * u[0] + gyration[0] * (u[1] * u[2]),
+        (d3 * d1 + a) * u[1] + gyration[1] * (u[2] * u[0]),
+        (d1 * d2 + a) * u[2] + gyration[2] * (u[0] * u[1]),
+    ])
 }
 
 impl Quartic {

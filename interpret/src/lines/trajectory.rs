@@ -55,9 +55,7 @@ impl LineTrajectory {
         };
         made.map_err(|e| coordinates::named(&model.coordinates, e))
     }
-}
 
-impl LineTrajectory {
     /// One step of the model, the state before it kept where something is asked of both.
     fn own_step(&mut self) -> Result<(), LineError> {
         let model = self.model.clone();

@@ -7,7 +7,7 @@ use crate::handwritten::attitude::{
     inverse, product, scaled, transposed,
 };
 use crate::handwritten::principal_axes::PrincipalAxes;
-use crate::handwritten::principal_root::Quartic;
+use crate::handwritten::principal_root::{self, Quartic};
 
 /// A section, with what its data make once and for all.
 #[derive(Clone, Copy, Debug)]
@@ -123,15 +123,9 @@ impl Section {
         let squares = u.map(|c| c * c);
         let a = (squares[0] + squares[1]) + squares[2];
         let kappa = self.quartic.principal_root(&squares, a)?;
-        let [i1, i2, i3] = self.moments;
-        let (d1, d2, d3) = (i1 - kappa, i2 - kappa, i3 - kappa);
-        let d23 = d2 * d3;
-        let w = d1 * (d23 + squares[0]) + (d2 * squares[1] + d3 * squares[2]);
-        let mut n = [
-            (d23 + a) * u[0] + self.gyration[0] * (u[1] * u[2]),
-            (d3 * d1 + a) * u[1] + self.gyration[1] * (u[2] * u[0]),
-            (d1 * d2 + a) * u[2] + self.gyration[2] * (u[0] * u[1]),
-        ];
+        let turn = principal_root::turn(&self.moments, &self.gyration, &u, &squares, a, kappa);
+        let [w, x, y, z] = turn.0;
+        let mut n = [x, y, z];
         if let Some(frame) = &self.frame {
             n = apply(frame, &n);
         }

@@ -7,7 +7,7 @@ use crate::handwritten::attitude::{
     Matrix, Quaternion, Vector, add_scaled, cross, dot, product, scaled,
 };
 use crate::handwritten::principal_axes::PrincipalAxes;
-use crate::handwritten::principal_root::Quartic;
+use crate::handwritten::principal_root::{self, Quartic};
 use std::ops::Range;
 
 /// A body and the step.
@@ -46,15 +46,7 @@ impl Body {
     /// The turn for u in principal axes and kappa, not normalised.
     #[inline(always)]
     fn turn(&self, u: &Vector, squares: &Vector, a: f64, kappa: f64) -> Quaternion {
-        let [i1, i2, i3] = self.moments;
-        let (d1, d2, d3) = (i1 - kappa, i2 - kappa, i3 - kappa);
-        let d23 = d2 * d3;
-        Quaternion([
-            d1 * (d23 + squares[0]) + (d2 * squares[1] + d3 * squares[2]),
-            (d23 + a) * u[0] + self.gyration[0] * (u[1] * u[2]),
-            (d3 * d1 + a) * u[1] + self.gyration[1] * (u[2] * u[0]),
-            (d1 * d2 + a) * u[2] + self.gyration[2] * (u[0] * u[1]),
-        ])
+        principal_root::turn(&self.moments, &self.gyration, u, squares, a, kappa)
     }
 
     /// An attitude of the principal axes where the edge ends, and whether one pass found the root.

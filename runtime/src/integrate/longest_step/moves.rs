@@ -199,7 +199,7 @@ fn turn_by(angles: &[f64], is_whole: bool) -> DMatrix<f64> {
             DMatrix::from_row_slice(3, 3, turn.transpose().as_slice())
         }
         _ => {
-            let n = (1 + (8 * angles.len() + 1).isqrt()) / 2;
+            let n = (8 * angles.len() + 1).isqrt().div_ceil(2);
             let mut rate = DMatrix::zeros(n, n);
             for ((i, j), angle) in below_diagonal(n).zip(angles) {
                 rate[(i, j)] = *angle;
