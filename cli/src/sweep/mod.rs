@@ -95,15 +95,19 @@ pub(crate) fn sweep(
     let axes: Vec<Axis> = axes
         .map(|axis| Axis::read(axis, card))
         .collect::<Result<_, _>>()?;
-    if let Some(twice) = axes
+    let pairs = axes
         .iter()
         .enumerate()
-        .find_map(|(i, axis)| axes.iter().take(i).find(|other| other.place == axis.place))
-    {
-        return Err(Failure::Usage(format!(
-            "--vary {}: given twice",
-            shown(&twice.name)
-        )));
+        .flat_map(|(i, axis)| axes.iter().take(i).map(move |other| (other, axis)));
+    if let Some((other, axis)) = pairs.into_iter().find(|(other, axis)| axis.meets(other)) {
+        let name = shown(&axis.name);
+        return Err(Failure::Usage(match other.name == axis.name {
+            true => format!("--vary {name}: given twice"),
+            false => format!(
+                "--vary {name}: given twice, since --vary {} sets the same number; give one of them",
+                shown(&other.name)
+            ),
+        }));
     }
     let all = vary::points(&axes)?;
     let shard = matches.get_one::<Shard>("shard").copied();

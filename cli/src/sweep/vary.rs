@@ -52,6 +52,21 @@ impl Axis {
         })
     }
 
+    /// Whether both set a number that is the same one.
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        let meet = |a: &[usize], b: &[usize]| a.iter().any(|x| b.contains(x));
+        let entries =
+            |list: &[(usize, f64)]| list.iter().map(|(at, _)| *at).collect::<Vec<usize>>();
+        match (&self.place, &other.place) {
+            (Place::Step, Place::Step) => true,
+            (Place::Parameter(a, own), Place::Parameter(b, others))
+            | (Place::Initial(a, own), Place::Initial(b, others)) => {
+                meet(a, b) && meet(&entries(own), &entries(others))
+            }
+            _ => false,
+        }
+    }
+
     /// Puts a value into a case.
     pub(super) fn put(&self, value: f64, case: &mut Case) {
         let entries = |list: &mut Vec<Vec<f64>>, fields: &[usize], entries: &[(usize, f64)]| {
@@ -80,37 +95,21 @@ fn place(name: &str, card: &Card) -> Result<Place, String> {
         Some((field, component)) => (field, Some(component)),
         None => (name, None),
     };
-    // Along a line a name without the number of a site is that of all sites, as in a case file.
-    let find = |fields: &'static [Field]| {
-        let named = |own: &str| own == field;
-        let of_sites = |own: &str| site(own).is_some_and(|(stem, _)| stem == field);
-        let all = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
-            let fields = fields.iter().enumerate();
-            let found = fields.filter(|(_, f)| is(f.name) || is(f.ascii));
-            found.map(|(at, _)| at).collect()
-        };
-        let found = Some(all(&named)).filter(|own| !own.is_empty());
-        // Of one site, an end's, or of all from 0 on.
-        let each = |own: &Vec<usize>| {
-            let numbers = own.iter().map(|at| site(fields.get(*at)?.ascii));
-            let mut numbers = numbers.map(|of| of.map(|(_, number)| number)).enumerate();
-            own.len() == 1 || numbers.all(|(at, number)| number == Some(at))
-        };
-        let found = found.or_else(|| Some(all(&of_sites)).filter(each))?;
-        let first = *fields.get(*found.first()?)?;
-        Some((found, first))
-    };
-    if let Some((at, field)) = find(card.parameters) {
-        return Ok(Place::Parameter(at, entries(&field, component)?));
+    if let Some((at, own)) = found(field, card.parameters, card) {
+        return Ok(Place::Parameter(at, entries(&own, field, component)?));
     }
-    if let Some((at, field)) = find(card.initial) {
-        return Ok(Place::Initial(at, entries(&field, component)?));
+    if let Some((at, own)) = found(field, card.initial, card) {
+        return Ok(Place::Initial(at, entries(&own, field, component)?));
     }
     let mut names: Vec<&str> = Vec::new();
-    for own in card.parameters.iter().chain(card.initial) {
-        let name = site(own.ascii).map_or(own.ascii, |(stem, _)| stem);
-        if !names.contains(&name) {
-            names.push(name);
+    for fields in [card.parameters, card.initial] {
+        for own in fields {
+            let stem = site(own.ascii).map(|(stem, _)| stem);
+            let name = stem.filter(|stem| found(stem, fields, card).is_some());
+            let name = name.unwrap_or(own.ascii);
+            if !names.contains(&name) {
+                names.push(name);
+            }
         }
     }
     Err(format!(
@@ -120,6 +119,37 @@ fn place(name: &str, card: &Card) -> Result<Place, String> {
     ))
 }
 
+/// The fields of a name, and the first of them. Along a line a name is that of a case file: without the number of a site it is that of
+/// all sites or of both ends, with `N` that of the last end.
+fn found(name: &str, fields: &'static [Field], card: &Card) -> Option<(Vec<usize>, Field)> {
+    let all = card.parameters.iter().chain(card.initial);
+    let last = all.filter_map(|f| Some(site(f.ascii)?.1)).max();
+    let of = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
+        let fields = fields.iter().enumerate();
+        let found = fields.filter(|(_, f)| is(f.name) || is(f.ascii));
+        found.map(|(at, _)| at).collect()
+    };
+    let mut own = of(&|own| own == name);
+    if own.is_empty() {
+        own = of(&|own| site(own).is_some_and(|(stem, _)| stem == name));
+        let numbers: Vec<usize> = own
+            .iter()
+            .filter_map(|at| Some(site(fields.get(*at)?.ascii)?.1))
+            .collect();
+        let of_ends =
+            numbers.len() == 2 && numbers.first() == Some(&0) && numbers.last() == last.as_ref();
+        let of_all = numbers.iter().enumerate().all(|(at, number)| *number == at);
+        if !(numbers.len() == 1 || of_ends || of_all) {
+            own.clear();
+        }
+    }
+    if let (true, Some(stem)) = (own.is_empty(), name.strip_suffix("_N")) {
+        own = of(&|own| site(own).is_some_and(|(s, number)| s == stem && Some(number) == last));
+    }
+    let first = *fields.get(*own.first()?)?;
+    Some((own, first))
+}
+
 /// The name of a list along a line, and the number of the site that is named.
 fn site(name: &str) -> Option<(&str, usize)> {
     let (stem, number) = name.rsplit_once('_')?;
@@ -127,9 +157,12 @@ fn site(name: &str) -> Option<(&str, usize)> {
 }
 
 /// The entries of a field that a component names: with its mirror image where the kind has one.
-fn entries(field: &Field, component: Option<&str>) -> Result<Vec<(usize, f64)>, String> {
+fn entries(
+    field: &Field,
+    name: &str,
+    component: Option<&str>,
+) -> Result<Vec<(usize, f64)>, String> {
     let (rows, cols) = (field.rows, field.cols);
-    let name = field.ascii;
     let Some(component) = component else {
         return match rows * cols {
             1 => Ok(vec![(0, 1.0)]),
@@ -268,19 +301,19 @@ mod tests {
     fn mirror_images_follow_the_kind() {
         let field = |kind: Kind| kind.field("J", [3, 3], "");
         assert_eq!(
-            entries(&field(Kind::Symmetric), Some("12")),
+            entries(&field(Kind::Symmetric), "J", Some("12")),
             Ok(vec![(1, 1.0), (3, 1.0)])
         );
         assert_eq!(
-            entries(&field(Kind::Skew), Some("3_1")),
+            entries(&field(Kind::Skew), "J", Some("3_1")),
             Ok(vec![(6, 1.0), (2, -1.0)])
         );
         assert_eq!(
-            entries(&field(Kind::Matrix), Some("12")),
+            entries(&field(Kind::Matrix), "J", Some("12")),
             Ok(vec![(1, 1.0)])
         );
         assert_eq!(
-            entries(&field(Kind::Diagonal), Some("22")),
+            entries(&field(Kind::Diagonal), "J", Some("22")),
             Ok(vec![(4, 1.0)])
         );
         for (kind, component) in [
@@ -292,14 +325,14 @@ mod tests {
             (Kind::Matrix, "é"),
         ] {
             assert!(
-                entries(&field(kind), Some(component)).is_err(),
+                entries(&field(kind), "J", Some(component)).is_err(),
                 "{kind:?} {component}"
             );
         }
         let vector = Kind::Vector.field("g", [3, 1], "");
-        assert_eq!(entries(&vector, Some("z")), Ok(vec![(2, 1.0)]));
-        assert_eq!(entries(&vector, Some("1")), Ok(vec![(0, 1.0)]));
-        assert!(entries(&vector, None).is_err());
+        assert_eq!(entries(&vector, "J", Some("z")), Ok(vec![(2, 1.0)]));
+        assert_eq!(entries(&vector, "J", Some("1")), Ok(vec![(0, 1.0)]));
+        assert!(entries(&vector, "J", None).is_err());
     }
 
     #[test]

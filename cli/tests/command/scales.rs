@@ -1,7 +1,7 @@
 //! The natural scale of an invariant: the sum of the absolute values of its terms, the largest along the run. What is
 //! only rounding of the terms exceeds no bound, whatever the terms were at the start.
 
-use super::common::{Folder, on};
+use super::common::{Folder, clebsch, on};
 use clebsch_cli::gallery::Gallery;
 use serde_json::Value;
 
@@ -203,4 +203,35 @@ fn a_top_at_equilibrium_is_within_its_bounds() {
     // The impulse of a step, h |m g chi|, along each axis.
     let scale = number(&vertical["scale"]);
     assert!(scale > 0.1 && scale < 0.2, "{vertical}");
+}
+
+/// Components of a total that are zero but for rounding are measured by the whole of it, along a line that is stepped by loops as along
+/// one of as many bodies: the length of what all sites have.
+#[test]
+fn a_total_is_measured_as_a_whole_along_a_line_of_any_length() {
+    let folder = Folder::new("scale-of-a-total");
+    let model = "model Ring { label i in 0..N; periodic; param c: Real; group q: SU<2> at nodes velocity W; \
+        constraint next(q) = q*W; lagrangian = (2/h)*dot(im(W), im(W)) + 4*c*h*re(q^T*next(q, i)); }";
+    let model = folder.write("ring.clebsch", model);
+    for n in [32, 33] {
+        let case = format!(
+            "model = \"ring\"\nname = \"own\"\nh = 0.01\nsteps = 5\n[labels]\ni = {n}\n[ends]\ni = \"periodic\"\n\
+             [parameters]\nc = 1.0\n[initial]\nq = [\"cos(2*pi*2*i/N)\", \"sin(2*pi*2*i/N)\", 0.0, 0.0]\n\
+             body_momentum_q = [0.1, 0.0, 0.2]\n"
+        );
+        let case = folder.write("own.toml", &case);
+        let done = clebsch(&["run", &model, "--case", &case, "--json"]);
+        assert_eq!(done.code, 0, "{n}: {}{}", done.out, done.err);
+        let object: Value = serde_json::from_str(&done.out).expect("one JSON object");
+        let all = object["results"]["invariants"].as_array().expect("a list");
+        let total = all.iter().find(|own| own["name"] == "total_body_momentum");
+        let scale = total
+            .and_then(|own| own["scale"].as_f64())
+            .expect("a number");
+        let wanted = f64::from(n) * 0.05_f64.sqrt();
+        assert!(
+            (scale / wanted - 1.0).abs() < 1e-14,
+            "{n}: {scale} {wanted}"
+        );
+    }
 }

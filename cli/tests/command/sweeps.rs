@@ -128,17 +128,35 @@ fn along_a_line_the_names_are_those_of_the_case_file() {
     };
     // One step moves by h p/m, at the end by h^2 F/(2 m) beside that.
     let near = |found: [f64; 4], wanted: [f64; 4]| {
-        let apart = found
+        let apart: Vec<f64> = found
             .iter()
             .zip(wanted)
             .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max);
-        assert!(apart < 1e-15, "{found:?} {wanted:?}");
+            .collect();
+        assert!(apart.iter().all(|x| *x < 1e-15), "{found:?} {wanted:?}");
     };
     near(last("m=1,2"), [0.05, 0.05, 0.0525, 0.0]);
     near(last("m_1=1,2"), [0.1, 0.05, 0.105, 0.0]);
     near(last("F.2=0,4"), [0.1, 0.1, 0.105, 0.02]);
+    near(last("F_N.2=0,4"), [0.1, 0.1, 0.105, 0.02]);
     near(last("momentum_x.1=0,3"), [0.3, 0.3, 0.305, 0.0]);
+    for (vary, more, says) in [
+        (
+            "m=1,2",
+            "m_2=3",
+            "--vary m_2: given twice, since --vary m sets the same number",
+        ),
+        ("F.1=1", "F_N.1=1", "sets the same number"),
+        ("F=1", "k=1", "`F` has 2 numbers; name one, such as F.1"),
+        ("q=1", "k=1", "it has m, k, F, x, momentum_x and the step h"),
+    ] {
+        let (out, start) = (folder.path("none"), ["sweep", &model, "--case", &case]);
+        let done =
+            clebsch(&[&start[..], &["--out", &out, "--vary", vary, "--vary", more]].concat());
+        assert_eq!(done.code, 2, "{vary}: {}", done.err);
+        let all = done.err.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(all.contains(says), "{vary}: {all}");
+    }
 }
 
 #[test]

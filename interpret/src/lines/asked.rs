@@ -80,12 +80,14 @@ impl LineTrajectory {
         numbers(&self.ask(routine)?)
     }
 
-    /// The sums of the sizes of the terms of sites of a conserved total.
+    /// The length of the sums of the sizes of the terms of sites of a conserved total, for each of its components: one that is nothing but
+    /// rounding is measured by the others.
     pub fn total_sizes(&mut self, name: &str) -> Option<Vec<f64>> {
         let model = self.model.clone();
         let (_, routine) = model.total_sizes.iter().find(|(own, _)| own == name)?;
         let all = numbers(&self.ask(routine)?)?;
-        Some(all.into_iter().map(f64::abs).collect())
+        let length = all.iter().fold(0.0, |length, x| x.hypot(length));
+        Some(vec![length; all.len()])
     }
 
     /// What is observed at all sites, one site after the other, matrices row after row.
