@@ -345,6 +345,38 @@ fn chains_that_hang_have_the_limits_of_laguerre() {
     }
 }
 
+/// Chains of equal links let go from straight lines that lean: far from equilibrium, where forces are large beside what they change by. The
+/// numbers are square roots of the largest eigenvalue of the second derivative of the energy along the constraints, their
+/// reactions at rest included, by numpy.
+#[test]
+fn chains_that_lean_have_the_limits_along_their_constraints() {
+    let folder = Folder::new("leaning-chains");
+    let text = "model Leaning { label i in 0..N; param g: Vec<3>; field x: Vec<3> at nodes; \
+        hold l: dot(next(x, i) - x, next(x, i) - x) = 1; \
+        lagrangian = dot(next(x) - x, next(x) - x)/(2*h) + h*dot(g, x); \
+        end i = 0 { held { x = given; } } end i = N { free; } }";
+    let model = folder.write("leaning.clebsch", text);
+    for (n, lean, frequency) in [
+        (2, 1.4, 2.2853),
+        (2, 1.55, 0.79936),
+        (3, 1.5, 2.0011),
+        (4, 1.4, 3.791),
+        (6, 1.3, 6.2031),
+        (6, 1.55, 1.7295),
+    ] {
+        let case = format!(
+            "model = \"leaning\"\nname = \"own\"\nh = 0.01\nsteps = 1\n[labels]\ni = {n}\n[ends]\ni = [\"held\", \"free\"]\n\
+             [parameters]\ng = [0.0, 0.0, -9.0]\n[initial]\nx = [\"i*sin({lean})\", 0.0, \"-i*cos({lean})\"]\nmomentum_x = [0.0, 0.0, 0.0]\n"
+        );
+        let case = folder.write("own.toml", &case);
+        let found = 2.0 / printed(&model, &case, &[]);
+        assert!(
+            (found / frequency - 1.0).abs() < 0.01,
+            "{n} {lean}: {found} {frequency}"
+        );
+    }
+}
+
 /// What a constraint on a sum leaves swings: in a ring of springs the waves of the shortest length, of uniform mass, but not
 /// what moves all sites alike, which a stiff potential at each site would make the fastest.
 #[test]

@@ -13,6 +13,10 @@ const VECTORS: usize = 60;
 const VECTORS_OF_MANY: usize = 30;
 const MANY: usize = 1000;
 
+/// A coupling that is a smaller part than this of the largest square ends the space; the same where constraints are held.
+const WEAK: f64 = 1e-6;
+const WEAK_HELD: f64 = 1e-4;
+
 /// A small motion: its ω², and what moves with the kinetic energy one half.
 pub(super) struct Motion {
     pub(super) square: f64,
@@ -47,14 +51,19 @@ impl Probe<'_> {
                     p.iter_mut().zip(q).for_each(|(p, q)| *p -= part * q);
                 }
             }
-            let along = self.along(p).ok_or_else(nothing)?;
+            // What is left of an exhausted space may be across the constraints alone.
+            let Some(along) = self.along(p) else {
+                break;
+            };
             let Some(v) = self.velocity(&along) else {
                 break;
             };
             p = along;
             let square = dot(&v, &p);
-            // The space is exhausted: what is left of it is the rounding of the inquiry.
-            let least = 1e-6 * largest(alphas.iter().copied());
+            // The space is exhausted: what is left of it is the rounding of the inquiry, where constraints are held what disturbances of
+            // this size bend. What couples so weakly changes the squares that are looked for by 1e-8 of the largest.
+            let weak = if self.is_held() { WEAK_HELD } else { WEAK };
+            let least = weak * largest(alphas.iter().copied());
             if square.is_nan() || square <= 0.0 || (!alphas.is_empty() && square.sqrt() <= least) {
                 break;
             }
