@@ -2,7 +2,7 @@
 //! and what the case gives. Takes the formula of the value; gives the beginning of a message.
 
 use crate::case_file::labels::Stated;
-use crate::case_file::{line_of, quantity_of};
+use crate::case_file::{at_site, line_of, quantity_of};
 use crate::gallery::Case;
 use crate::plain::shown;
 use crate::plots::axis;
@@ -88,12 +88,11 @@ fn words(formula: &str) -> impl Iterator<Item = String> {
 /// The letter and the number of the site of which this is the value, if it has one.
 fn site_of(stated: Option<&Stated>, field: &Field) -> Option<(String, usize)> {
     let lattice = &stated?.lattice;
-    let quantity = quantity_of(field.ascii)?;
+    let (quantity, site) = at_site(field.ascii)?;
     let own = lattice.quantities.iter();
     let own = own.clone().find(|q| ascii(&q.name.text) == quantity)?;
-    let site = field.ascii.strip_prefix(quantity)?.strip_prefix('_')?;
     let index = lattice.labels.get(own.label)?.index.text.clone();
-    Some((index, site.parse().ok()?))
+    Some((index, site))
 }
 
 /// The expressions in the value of a parameter in a file, each once; it stands there under one of these names.

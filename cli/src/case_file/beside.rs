@@ -69,6 +69,13 @@ pub(crate) fn quantity_of(name: &str) -> Option<&str> {
     site.bytes().all(|b| b.is_ascii_digit()).then_some(quantity)
 }
 
+/// The same with the number of the site: `m` and 7 of `m_7`.
+pub(crate) fn at_site(name: &str) -> Option<(&str, usize)> {
+    let quantity = quantity_of(name)?;
+    let site = name.strip_prefix(quantity)?.strip_prefix('_')?;
+    Some((quantity, site.parse().ok()?))
+}
+
 #[cfg(test)]
 mod tests {
     use super::{Beside, line_of};

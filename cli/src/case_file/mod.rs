@@ -22,7 +22,7 @@ mod start;
 mod value;
 mod write;
 
-pub(crate) use beside::{line_of, quantity_of};
+pub(crate) use beside::{at_site, line_of, quantity_of};
 pub(crate) use chosen::choice;
 pub(crate) use lattice::write_lattice;
 pub use location::Located;

@@ -95,11 +95,11 @@ pub(crate) fn sweep(
     let axes: Vec<Axis> = axes
         .map(|axis| Axis::read(axis, card))
         .collect::<Result<_, _>>()?;
-    let pairs = axes
+    let mut pairs = axes
         .iter()
         .enumerate()
         .flat_map(|(i, axis)| axes.iter().take(i).map(move |other| (other, axis)));
-    if let Some((other, axis)) = pairs.into_iter().find(|(other, axis)| axis.meets(other)) {
+    if let Some((other, axis)) = pairs.find(|(other, axis)| axis.meets(other)) {
         let name = shown(&axis.name);
         return Err(Failure::Usage(match other.name == axis.name {
             true => format!("--vary {name}: given twice"),

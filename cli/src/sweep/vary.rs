@@ -2,6 +2,7 @@
 //! Takes texts and a card; gives the entries of parameters, initial values or the step that take the values, and the
 //! values of each point of the grid.
 
+use crate::case_file::at_site;
 use crate::failure::Failure;
 use crate::gallery::Case;
 use crate::plain::shown;
@@ -54,14 +55,14 @@ impl Axis {
 
     /// Whether both set a number that is the same one.
     pub(super) fn meets(&self, other: &Self) -> bool {
-        let meet = |a: &[usize], b: &[usize]| a.iter().any(|x| b.contains(x));
-        let entries =
-            |list: &[(usize, f64)]| list.iter().map(|(at, _)| *at).collect::<Vec<usize>>();
         match (&self.place, &other.place) {
             (Place::Step, Place::Step) => true,
             (Place::Parameter(a, own), Place::Parameter(b, others))
             | (Place::Initial(a, own), Place::Initial(b, others)) => {
-                meet(a, b) && meet(&entries(own), &entries(others))
+                let is_other = |at: usize| others.iter().any(|(other, _)| *other == at);
+                // Fields stand in their order, along a line a hundred thousand of them.
+                own.iter().any(|(at, _)| is_other(*at))
+                    && a.iter().any(|field| b.binary_search(field).is_ok())
             }
             _ => false,
         }
@@ -104,7 +105,11 @@ fn place(name: &str, card: &Card) -> Result<Place, String> {
     let mut names: Vec<&str> = Vec::new();
     for fields in [card.parameters, card.initial] {
         for own in fields {
-            let stem = site(own.ascii).map(|(stem, _)| stem);
+            let stem = at_site(own.ascii).map(|(stem, _)| stem);
+            // Of a hundred thousand sites the first one tells it.
+            if stem.is_some_and(|stem| names.contains(&stem)) {
+                continue;
+            }
             let name = stem.filter(|stem| found(stem, fields, card).is_some());
             let name = name.unwrap_or(own.ascii);
             if !names.contains(&name) {
@@ -123,7 +128,7 @@ fn place(name: &str, card: &Card) -> Result<Place, String> {
 /// all sites or of both ends, with `N` that of the last end.
 fn found(name: &str, fields: &'static [Field], card: &Card) -> Option<(Vec<usize>, Field)> {
     let all = card.parameters.iter().chain(card.initial);
-    let last = all.filter_map(|f| Some(site(f.ascii)?.1)).max();
+    let last = all.filter_map(|f| Some(at_site(f.ascii)?.1)).max();
     let of = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
         let fields = fields.iter().enumerate();
         let found = fields.filter(|(_, f)| is(f.name) || is(f.ascii));
@@ -131,10 +136,10 @@ fn found(name: &str, fields: &'static [Field], card: &Card) -> Option<(Vec<usize
     };
     let mut own = of(&|own| own == name);
     if own.is_empty() {
-        own = of(&|own| site(own).is_some_and(|(stem, _)| stem == name));
+        own = of(&|own| at_site(own).is_some_and(|(stem, _)| stem == name));
         let numbers: Vec<usize> = own
             .iter()
-            .filter_map(|at| Some(site(fields.get(*at)?.ascii)?.1))
+            .filter_map(|at| Some(at_site(fields.get(*at)?.ascii)?.1))
             .collect();
         let of_ends =
             numbers.len() == 2 && numbers.first() == Some(&0) && numbers.last() == last.as_ref();
@@ -144,16 +149,10 @@ fn found(name: &str, fields: &'static [Field], card: &Card) -> Option<(Vec<usize
         }
     }
     if let (true, Some(stem)) = (own.is_empty(), name.strip_suffix("_N")) {
-        own = of(&|own| site(own).is_some_and(|(s, number)| s == stem && Some(number) == last));
+        own = of(&|own| at_site(own).is_some_and(|(s, number)| s == stem && Some(number) == last));
     }
     let first = *fields.get(*own.first()?)?;
     Some((own, first))
-}
-
-/// The name of a list along a line, and the number of the site that is named.
-fn site(name: &str) -> Option<(&str, usize)> {
-    let (stem, number) = name.rsplit_once('_')?;
-    Some((stem, number.parse().ok()?))
 }
 
 /// The entries of a field that a component names: with its mirror image where the kind has one.
