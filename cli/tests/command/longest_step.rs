@@ -443,3 +443,42 @@ fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
         &format!("{not}the step does not move the fastest one"),
     );
 }
+
+/// Links that hang in a rotating plane swing along their constraints, where the force of Coriolis is none: neither it nor the
+/// origin from which its potential is measured changes their limit. At rest momenta are those of that potential.
+#[test]
+fn terms_linear_in_velocities_leave_the_limit_along_constraints() {
+    let folder = Folder::new("coriolis");
+    let text = "model Links { label i in 0..N; param m: Real at nodes; param f, g: Real; param l: Real at segments; \
+        field x: Vec<2> at nodes; hold n: dot(next(x, i) - x, next(x, i) - x) = l^2; let V = next(x) - x; \
+        lagrangian = m*dot(V, V)/(2*h) + (m*f/2)*dot(perp(x), V) - h*m*g*x[2]; \
+        end i = 0 { pinned { x = given; } } }";
+    let model = folder.write("links.clebsch", text);
+    let limit = |links: usize, f: f64, aside: f64, h: &str| {
+        let case = format!(
+            "model = \"links\"\nname = \"own\"\nh = {h}\nsteps = 1\n[labels]\ni = {links}\n\
+             [parameters]\nm = 1.0\nf = {f:?}\ng = 1.0\nl = 1.0\n\
+             [initial]\nx = [{aside:?}, \"-i\"]\nmomentum_x = [\"f/2*i\", {:?}]\n",
+            0.5 * f * aside
+        );
+        printed(&model, &folder.write("case.toml", &case), &[])
+    };
+    // Three links swing at most with the root of 6.29 (Laguerre); forty by loops over sites.
+    for (links, square) in [(3, Some(6.289_945)), (40, None)] {
+        let still = limit(links, 0.0, 0.0, "0.002");
+        if let Some(square) = square {
+            assert!((still * f64::sqrt(square) / 2.0 - 1.0).abs() < 0.01);
+        }
+        for (f, aside, h) in [
+            (0.7, 0.0, "0.002"),
+            (0.7, 10.0, "0.002"),
+            (2.0, 10.0, "0.0005"),
+        ] {
+            let found = limit(links, f, aside, h);
+            assert!(
+                (found / still - 1.0).abs() < 0.01,
+                "{links} {f} {aside}: {found} {still}"
+            );
+        }
+    }
+}

@@ -4,6 +4,7 @@
 mod extremes;
 mod moves;
 mod probe;
+mod resting;
 mod unknown;
 mod waves;
 

@@ -87,6 +87,12 @@ impl Moves {
         self.freedoms.iter().map(|k| own[*k])
     }
 
+    /// The freedoms of its momentum in a state.
+    pub(super) fn given<'o>(&'o self, state: &'o [Vec<f64>]) -> impl Iterator<Item = f64> + 'o {
+        let own = &state[self.behind];
+        self.freedoms.iter().map(|k| own[*k])
+    }
+
     /// The momentum with these freedoms, as it is given at the start.
     pub(super) fn momentum_with(&self, freedoms: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut all = vec![0.0; self.momentum.len()];

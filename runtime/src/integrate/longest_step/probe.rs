@@ -30,6 +30,8 @@ pub(super) struct Probe<'a> {
     parameters: &'a [Vec<f64>],
     /// At rest.
     initial: Vec<Vec<f64>>,
+    /// The momenta that it has there.
+    resting: Vec<f64>,
     pub(super) moves: Vec<Moves>,
     /// The step of the inquiry.
     h: f64,
@@ -68,6 +70,7 @@ impl<'a> Probe<'a> {
             parameters,
             base: initial.clone(),
             initial,
+            resting: Vec::new(),
             moves,
             h,
             units,
@@ -77,18 +80,28 @@ impl<'a> Probe<'a> {
             held: false,
             refused: Cell::new(false),
         };
+        probe.resting = probe.given(&probe.initial);
         let step = probe.after(&probe.initial, h);
         probe.rest = step.ok_or(Unknown::Start)?;
         let p = numbers(probe.count());
         let along = probe.projected(&p).ok_or(Unknown::Start)?;
         let taken = largest(p.iter().zip(&along).map(|(a, b)| a - b));
         probe.held = taken > TAKEN * largest(p.iter().copied());
+        if probe.held {
+            probe.part = PART_HELD / probe.moves.len() as f64;
+        }
+        let start = probe.rested(&probe.initial);
+        let start = start.unwrap_or_else(|| probe.initial.clone());
+        probe.initial = probe.settled(start).ok_or(Unknown::Start)?;
+        probe.resting = probe.given(&probe.initial);
+        let step = probe.after(&probe.initial, h);
+        probe.rest = step.ok_or(Unknown::Start)?;
         if !probe.held {
             // The base is the start.
+            probe.base.clone_from(&probe.initial);
             probe.pushed.clone_from(&probe.rest);
             return Ok(probe);
         }
-        probe.part = PART_HELD / probe.moves.len() as f64;
         let base = probe.at_rest(&probe.rest);
         probe.base = base.ok_or(Unknown::Start)?;
         let step = probe.after(&probe.base, h);
@@ -99,6 +112,11 @@ impl<'a> Probe<'a> {
     /// How many freedoms there are.
     pub(super) fn count(&self) -> usize {
         self.moves.iter().map(Moves::count).sum()
+    }
+
+    /// The step of the inquiry.
+    pub(super) fn step(&self) -> f64 {
+        self.h
     }
 
     /// Whether momenta are projected on constraints.
@@ -120,7 +138,7 @@ impl<'a> Probe<'a> {
     }
 
     /// What is observed of a trajectory after so many steps.
-    fn observed(&self, initial: &[Vec<f64>], h: f64, steps: usize) -> Option<Vec<f64>> {
+    pub(super) fn observed(&self, initial: &[Vec<f64>], h: f64, steps: usize) -> Option<Vec<f64>> {
         let mut trajectory = self.open(initial, h).ok()?;
         for _ in 0..steps {
             trajectory.step().ok()?;
@@ -142,16 +160,31 @@ impl<'a> Probe<'a> {
         self.moves.iter().flat_map(|body| body.momenta(observed))
     }
 
+    /// The momenta of a state, in the order of freedoms.
+    fn given(&self, state: &[Vec<f64>]) -> Vec<f64> {
+        let each = self.moves.iter();
+        each.flat_map(|body| body.given(state)).collect()
+    }
+
+    /// Gives a state these momenta.
+    fn give(&self, state: &mut [Vec<f64>], mut momenta: impl Iterator<Item = f64>) -> Option<()> {
+        for body in &self.moves {
+            *state.get_mut(body.behind)? = body.momentum_with(momenta.by_ref().take(body.count()));
+        }
+        Some(())
+    }
+
+    /// Adds these momenta to those of a state.
+    pub(super) fn push(&self, state: &mut [Vec<f64>], added: &[f64]) -> Option<()> {
+        let own = self.given(state);
+        self.give(state, own.iter().zip(added).map(|(own, p)| own + p))
+    }
+
     /// The start with momenta.
     fn thrown(&self, p: &[f64], scale: f64) -> Option<Vec<Vec<f64>>> {
         let mut moved = self.initial.clone();
-        let mut from = 0;
-        for body in &self.moves {
-            let own = &p[from..from + body.count()];
-            from += body.count();
-            let target = moved.get_mut(body.behind)?;
-            *target = body.momentum_with(own.iter().map(|x| x * scale));
-        }
+        let momenta = self.resting.iter().zip(p);
+        self.give(&mut moved, momenta.map(|(own, x)| own + x * scale))?;
         Some(moved)
     }
 
@@ -161,6 +194,16 @@ impl<'a> Probe<'a> {
         for body in &self.moves {
             let place = observed.get(body.place.clone())?;
             *state.get_mut(body.initial)? = place.to_vec();
+        }
+        self.settled(state)
+    }
+
+    /// A state with its momenta as the constraints leave them: without any they may be those of a velocity off the constraints,
+    /// where terms of the Lagrangian are linear in velocities.
+    fn settled(&self, mut state: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
+        if self.held {
+            let along = self.observed(&state, self.h, 0)?;
+            self.give(&mut state, self.momenta(&along))?;
         }
         Some(state)
     }
@@ -174,7 +217,8 @@ impl<'a> Probe<'a> {
         }
         for _ in 0..SCALES {
             if let Some(start) = self.observed(&self.thrown(p, scale)?, self.h, 0) {
-                return Some(self.momenta(&start).map(|x| x / scale).collect());
+                let along = self.momenta(&start).zip(&self.resting);
+                return Some(along.map(|(x, own)| (x - own) / scale).collect());
             }
             scale *= SLOWER;
         }
@@ -193,10 +237,22 @@ impl<'a> Probe<'a> {
     /// the stiffness times `v`, and the step.
     pub(super) fn stiffness(&self, v: &[f64], p: &[f64]) -> Option<Vec<f64>> {
         let scale = self.part / self.size(v);
-        let after = self.after(&self.disturbed(v, p, scale)?, self.h)?;
-        let change = self.momenta(&self.pushed).zip(self.momenta(&after));
-        let change = change.map(|(rest, after)| (rest - after) / (scale * self.h));
-        Some(change.collect())
+        let disturbed = self.disturbed(v, p, scale)?;
+        let after = self.after(&disturbed, self.h)?;
+        let rest = self.forces(&self.base, &self.pushed);
+        let change = rest.zip(self.forces(&disturbed, &after));
+        Some(change.map(|(rest, after)| (rest - after) / scale).collect())
+    }
+
+    /// What has acted in a step from a state to what is observed.
+    fn forces<'o>(
+        &'o self,
+        state: &'o [Vec<f64>],
+        after: &'o [f64],
+    ) -> impl Iterator<Item = f64> + 'o {
+        let before = self.moves.iter().flat_map(|body| body.given(state));
+        let acted = self.momenta(after).zip(before);
+        acted.map(|(after, before)| (after - before) / self.h)
     }
 
     /// The velocity of a momentum `p`: by how much a step with it goes farther than one from rest.
@@ -252,10 +308,9 @@ impl<'a> Probe<'a> {
     /// A state with the momentum that the forces of its node at the start take away in the first half of a step: a start that is no
     /// equilibrium stays where it is, so that a long step tells of disturbances alone.
     fn braced(&self, mut state: Vec<Vec<f64>>, h: f64) -> Option<Vec<Vec<f64>>> {
-        for body in &self.moves {
-            let forces = body.momenta(&self.pushed).map(|p| p / self.h);
-            *state.get_mut(body.behind)? = body.momentum_with(forces.map(|f| -0.5 * h * f));
-        }
+        let forces = self.forces(&self.base, &self.pushed);
+        let against: Vec<f64> = forces.map(|f| -0.5 * h * f).collect();
+        self.push(&mut state, &against)?;
         Some(state)
     }
 
@@ -275,7 +330,7 @@ impl<'a> Probe<'a> {
     }
 
     /// From the configurations of one observation to those of another.
-    fn change(&self, from: &[f64], to: &[f64]) -> Vec<f64> {
+    pub(super) fn change(&self, from: &[f64], to: &[f64]) -> Vec<f64> {
         let each = self.moves.iter().flat_map(|body| {
             let place = body.place.clone();
             moves::difference(body, &from[place.clone()], &to[place])

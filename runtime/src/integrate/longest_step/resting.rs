@@ -1,0 +1,61 @@
+//! Momenta of the start at rest: zero but where terms of the Lagrangian are linear in velocities, as those of magnetic fields
+//! and of rotating frames. Takes a state; gives it with the momenta with which it does not move.
+
+use super::extremes::dot;
+use super::probe::Probe;
+
+/// Velocities are known from this many steps of the inquiry.
+const LONG: f64 = 100.0;
+
+/// What moves by less than this part of its unit in a step of the inquiry is at rest.
+const STILL: f64 = 1e-9;
+
+/// By which part of the velocities of zero momenta it may still move, and how many directions are tried.
+const LEFT: f64 = 1e-5;
+const DIRECTIONS: usize = 50;
+
+impl Probe<'_> {
+    /// The velocities with which a state leaves, by a long step and one half as long: what forces add grows with the square.
+    fn leaving(&self, state: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let h = LONG * self.step();
+        let at = self.observed(state, h, 0)?;
+        let whole = self.change(&at, &self.observed(state, h, 1)?);
+        let half = self.change(&at, &self.observed(state, 0.5 * h, 1)?);
+        let both = half.iter().zip(&whole);
+        Some(both.map(|(half, whole)| (4.0 * half - whole) / h).collect())
+    }
+
+    /// A state with the momenta with which it does not move, as near to rest as is found; `None` where it is at rest as it is.
+    /// By conjugate gradients for the inverse of the mass.
+    pub(super) fn rested(&self, state: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+        let mut left = self.leaving(state)?;
+        let first = self.size(&left);
+        if first * self.step().abs() < STILL {
+            return None;
+        }
+        let (mut slowest, mut found) = (first, None);
+        let (mut now, mut direction, mut before) = (state.to_vec(), vec![0.0; left.len()], 0.0);
+        for _ in 0..DIRECTIONS.min(self.count()) {
+            let square = dot(&left, &left);
+            let again = if before > 0.0 { square / before } else { 0.0 };
+            before = square;
+            let next = left.iter().zip(&direction);
+            direction = next.map(|(v, d)| again * d - v).collect();
+            let length = square / dot(&direction, &self.velocity(&direction)?);
+            if !length.is_finite() {
+                break;
+            }
+            let push: Vec<f64> = direction.iter().map(|d| length * d).collect();
+            self.push(&mut now, &push)?;
+            left = self.leaving(&now)?;
+            if self.size(&left) < slowest {
+                slowest = self.size(&left);
+                found = Some(now.clone());
+            }
+            if slowest <= LEFT * first {
+                break;
+            }
+        }
+        found
+    }
+}
