@@ -185,3 +185,43 @@ fn a_held_rod_of_one_segment_has_an_energy() {
     let scale = energy["scale"].as_f64().expect("a number");
     assert!((scale - 4.905).abs() < 1e-14, "{energy}");
 }
+
+/// Of a line that ends hold but for one site the momentum is that of this site: it moves, and one off the constraint is refused.
+#[test]
+fn the_one_site_that_moves_has_its_momentum() {
+    let folder = Folder::new("one-site");
+    let model = |last: &str| {
+        format!(
+            "model Links {{ label i in 0..N; param m: Real at nodes; param l: Real at segments; field x: Vec<2> at nodes; \
+             hold n: dot(next(x, i) - x, next(x, i) - x) = l^2; let V = next(x) - x; \
+             lagrangian = m*dot(V, V)/(2*h) - h*m*x[2]; end i = 0 {{ pinned {{ x = given; }} }} {last} }}"
+        )
+    };
+    let case = |links: usize, x: &str, p: [f64; 2]| {
+        format!(
+            "model = \"links\"\nname = \"own\"\nh = 0.001\nsteps = 1\n[labels]\ni = {links}\n\
+             [parameters]\nm = 1.0\nl = 1.0\n[initial]\nx = {x}\nmomentum_x = [{:?}, {:?}]\n",
+            p[0], p[1]
+        )
+    };
+    // A pendulum that leans: along its circle it goes on, along its link it cannot.
+    let leaning = "[\"0.6*i\", \"-0.8*i\"]";
+    let at = two_nodes(&folder, &model(""), &case(1, leaning, [0.8, 0.6]));
+    let (x, p) = (at("x_1_1", 1), at("momentum_x_1_1", 0));
+    // The way of a step but for a few squares of it.
+    assert!((x - 0.6 - 0.8e-3).abs() < 3e-6 && p == 0.8, "{x} {p}");
+    let refused = |last: &str, case: &str| {
+        let (model, case) = (
+            folder.write("links.clebsch", &model(last)),
+            folder.write("case.toml", case),
+        );
+        let done = clebsch(&["run", &model, "--case", &case]);
+        assert_eq!(done.code, 1, "{}", done.out);
+        assert!(done.err.contains("would move"), "{}", done.err);
+    };
+    refused("", &case(1, leaning, [0.6, -0.8]));
+    // Between two ends that are held the joint of two links in the plane cannot move.
+    let joint = "[\"0.6*i\", \"-0.8*i*(2 - i)\"]";
+    let held = "end i = N { pinned { x = given; } }";
+    refused(held, &case(2, joint, [0.1, 0.0]));
+}

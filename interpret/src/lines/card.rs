@@ -329,7 +329,7 @@ fn split(all: Vec<(Field, Place)>) -> Fields {
 
 impl Short<'_> {
     /// The momentum of a single configuration on the short line, which is named without it.
-    fn alone(&self, field: &Field) -> Option<Placed> {
+    fn alone(&self, field: &Field, fields: &[Field]) -> Option<Placed> {
         if !["momentum", "body_momentum", "spatial_momentum"].contains(&field.ascii) {
             return None;
         }
@@ -338,11 +338,17 @@ impl Short<'_> {
         let (own, None) = (moving.next()?, moving.next()) else {
             return None;
         };
+        let name = ascii(&own.name.text);
+        // Where an end holds it at the first site it moves at another.
+        let mut places = fields.iter().filter_map(|place| {
+            let (of, site) = place.ascii.rsplit_once('_')?;
+            site.parse().ok().filter(|_| of == name)
+        });
         Some(Placed {
             field: *field,
             place: Place {
-                key: format!("{}_{}", field.ascii, ascii(&own.name.text)),
-                site: Some(0),
+                key: format!("{}_{name}", field.ascii),
+                site: Some(places.next()?),
             },
             of: own.name.text.clone(),
             label: own.label,
@@ -369,8 +375,8 @@ impl Short<'_> {
     }
 
     /// What a field is a copy of.
-    fn placed(&self, field: &Field) -> Option<Placed> {
-        if let Some(alone) = self.alone(field) {
+    fn placed(&self, field: &Field, fields: &[Field]) -> Option<Placed> {
+        if let Some(alone) = self.alone(field, fields) {
             return Some(alone);
         }
         let (key, digits) = field.ascii.rsplit_once('_')?;
@@ -438,7 +444,7 @@ impl Short<'_> {
         let mut out = Vec::new();
         let mut block: Vec<Placed> = Vec::new();
         for field in fields {
-            let placed = self.placed(field);
+            let placed = self.placed(field, fields);
             let goes_on = match (&placed, block.last()) {
                 (Some(here), Some(last)) => here.of == last.of,
                 _ => false,
