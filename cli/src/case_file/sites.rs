@@ -55,12 +55,22 @@ pub(super) fn numbers(top: &DeTable<'_>, parameters: Option<&DeTable<'_>>) -> Ve
     }
 }
 
+/// What expressions read.
+const READS: &str = ": an expression of a site reads its label, the number of sites, and numbers of the case that are the same at \
+                     all sites";
+
 /// The value as TOML, texts in it evaluated.
 pub(super) fn plain(value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, String> {
     match value {
         DeValue::String(text) => {
             let value = SiteData::read(text).and_then(|data| data.value(of));
-            let value = value.map_err(|why| format!("\"{text}\": {why}"))?;
+            let value = value.map_err(|why| {
+                let reads = match why.ends_with("has no value here") {
+                    true => READS,
+                    false => "",
+                };
+                format!("\"{text}\": {why}{reads}")
+            })?;
             Ok(spelt(value))
         }
         DeValue::Array(list) => {
