@@ -100,7 +100,6 @@ impl Saved for Column<f64> {
                 list.iter_mut().for_each(|x| x.words(words));
             }
             Column::Attitudes(list) => list.iter_mut().for_each(|x| x.words(words)),
-            Column::Edges(list) => list.iter_mut().for_each(|x| x.words(words)),
             Column::Structs(_, fields, _) => fields.iter_mut().for_each(|f| f.words(words)),
             Column::Values(list) => list.iter_mut().for_each(|x| x.words(words)),
         }

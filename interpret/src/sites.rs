@@ -3,7 +3,6 @@
 
 use crate::value::{Layout, Struct, Value};
 use clebsch::Real;
-use clebsch::emitted::Edge;
 use clebsch::linalg::Dense;
 use clebsch::line::Attitude;
 use std::ops::Range;
@@ -18,8 +17,6 @@ pub enum Column<T: Real> {
     Arrays([usize; 2], Vec<T>),
     /// Attitudes.
     Attitudes(Vec<Attitude<T>>),
-    /// Momenta of edges on SO(3).
-    Edges(Vec<Edge<T>>),
     /// Structs, a list for each field, and how many they are.
     Structs(Arc<Layout>, Vec<Column<T>>, usize),
     /// Any others.
@@ -35,7 +32,6 @@ impl<T: Real> Column<T> {
             Value::Matrix(_) => Column::Arrays([3, 3], Vec::new()),
             Value::Dense(a) => Column::Arrays([a.rows, a.cols], Vec::new()),
             Value::Attitude(_) => Column::Attitudes(Vec::new()),
-            Value::Edge(_) => Column::Edges(Vec::new()),
             Value::Struct(s) => {
                 let fields = s.values.iter().map(Column::like).collect();
                 Column::Structs(s.layout.clone(), fields, 0)
@@ -77,7 +73,6 @@ impl<T: Real> Column<T> {
             Column::Numbers(all) => all.len(),
             Column::Arrays([rows, cols], all) => all.len() / (rows * cols).max(1),
             Column::Attitudes(all) => all.len(),
-            Column::Edges(all) => all.len(),
             Column::Structs(_, _, count) => *count,
             Column::Values(all) => all.len(),
         }
@@ -90,7 +85,6 @@ impl<T: Real> Column<T> {
             Column::Numbers(all) => Value::Real(*all.get(site)?),
             Column::Arrays(dims, all) => array(*dims, part(*dims, all, site)?),
             Column::Attitudes(all) => Value::Attitude(Box::new(*all.get(site)?)),
-            Column::Edges(all) => Value::Edge(*all.get(site)?),
             Column::Structs(layout, fields, _) => Value::Struct(Struct {
                 layout: layout.clone(),
                 values: fields.iter().map(|f| f.get(site)).collect::<Option<_>>()?,
@@ -129,7 +123,6 @@ impl<T: Real> Column<T> {
                 put(*dims, out, value)?;
             }
             (Column::Attitudes(all), Value::Attitude(x)) => *all.get_mut(site)? = **x,
-            (Column::Edges(all), Value::Edge(x)) => *all.get_mut(site)? = *x,
             (Column::Structs(_, fields, count), Value::Struct(s)) => {
                 if site >= *count {
                     return None;
@@ -154,7 +147,6 @@ impl<T: Real> Column<T> {
                 put([*rows, *cols], all.get_mut(from..)?, value)?;
             }
             (Column::Attitudes(all), Value::Attitude(x)) => all.push(**x),
-            (Column::Edges(all), Value::Edge(x)) => all.push(*x),
             (Column::Structs(_, fields, count), Value::Struct(s)) => {
                 for (field, value) in fields.iter_mut().zip(&s.values) {
                     field.push(value)?;
@@ -181,7 +173,6 @@ impl<T: Real> Column<T> {
             Column::Numbers(all) => all.truncate(to),
             Column::Arrays([rows, cols], all) => all.truncate(to * *rows * *cols),
             Column::Attitudes(all) => all.truncate(to),
-            Column::Edges(all) => all.truncate(to),
             Column::Structs(_, fields, count) => {
                 fields.iter_mut().for_each(|f| f.truncate(to));
                 *count = (*count).min(to);
@@ -200,7 +191,6 @@ impl<T: Real> Column<T> {
                 Column::Arrays([*rows, *cols], all.to_vec())
             }
             Column::Attitudes(all) => Column::Attitudes(all.get(range)?.to_vec()),
-            Column::Edges(all) => Column::Edges(all.get(range)?.to_vec()),
             Column::Structs(layout, fields, _) => {
                 let own = fields.iter().map(|f| f.part(range.clone()));
                 Column::Structs(

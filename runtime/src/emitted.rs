@@ -34,8 +34,8 @@ pub use crate::solvers::left_factor::{
 pub use crate::solvers::moser_veselov::{Edge, Free, MoserVeselovError, Order, Poinsot, forced};
 pub use crate::solvers::newton;
 pub use crate::solvers::two_sided::{
-    displaced, divided, increment_before, increment_behind, increment_between, left_sided,
-    right_sided, two_sided, two_sided_increment,
+    displaced, divided, divided_at_once, increment_before, increment_behind, increment_between,
+    left_sided, right_sided, two_sided, two_sided_increment,
 };
 pub use crate::solvers::unit_quaternions::{QuaternionBody, QuaternionError};
 pub use crate::validate;

@@ -176,6 +176,12 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             };
             Some(Value::Edge(Edge::new(part(a.first()?)?, part(a.get(1)?)?)))
         },
+        ("Edge::of_space", 2) => |a, _| match (a.first()?, a.get(1)?) {
+            (space, Value::Rotation(attitude)) => {
+                Some(Value::Edge(Edge::of_space(vector(space)?, attitude)))
+            }
+            _ => None,
+        },
         ("space", 1) => |a, _| match a.first()? {
             Value::Edge(edge) => Some(Value::Vector(edge.space())),
             _ => None,

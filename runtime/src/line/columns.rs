@@ -3,11 +3,10 @@
 
 use super::Attitude;
 use crate::saved::{Saved, Sites, Words};
-use crate::solvers::moser_veselov::Edge;
 use crate::{Real, Rotation};
 use core::marker::PhantomData;
 use core::ops::Range;
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, Vector3};
 
 /// A value made of `N` numbers.
 pub trait Numbered<const N: usize>: Copy + Send + Sync {
@@ -35,8 +34,8 @@ pub struct Columns<V, T, const N: usize> {
 /// A list with the attitude of each site.
 pub type Attitudes<T> = Columns<Attitude<T>, T, 4>;
 
-/// A list with the momenta of the edge that leaves each site.
-pub type Edges<T> = Columns<Edge<T>, T, 6>;
+/// A list with the momentum in space of the edge that leaves each site.
+pub type Edges<T> = Columns<Vector3<T>, T, 3>;
 
 /// From so many numbers on, columns do not begin at the same place of a page of memory: a processor that compares addresses by
 /// their place in a page takes what it writes to one column for what it is to read of another.
@@ -243,18 +242,18 @@ impl<T: Real> Numbered<4> for Attitude<T> {
     }
 }
 
-impl<T: Real> Numbered<6> for Edge<T> {
+impl<T: Real> Numbered<3> for Vector3<T> {
     type Number = T;
 
     #[inline(always)]
-    fn numbers(&self) -> [T; 6] {
-        let ([[a, b, c]], [[d, e, f]]) = (self.body().data.0, self.space().data.0);
-        [a, b, c, d, e, f]
+    fn numbers(&self) -> [T; 3] {
+        let [numbers] = self.data.0;
+        numbers
     }
 
     #[inline(always)]
-    fn of([a, b, c, d, e, f]: [T; 6]) -> Self {
-        Self::new([a, b, c].into(), [d, e, f].into())
+    fn of(numbers: [T; 3]) -> Self {
+        numbers.into()
     }
 }
 
@@ -312,15 +311,11 @@ pub fn array_from<T: Real, const R: usize, const C: usize>(
 mod tests {
     use super::{Columns, Edges, once};
     use crate::line::Part;
-    use crate::solvers::moser_veselov::Edge;
     use nalgebra::Vector3;
 
-    fn edge(i: usize) -> Edge<f64> {
+    fn edge(i: usize) -> Vector3<f64> {
         let x = i as f64;
-        Edge::new(
-            Vector3::new(x, x + 0.1, x + 0.2),
-            Vector3::new(-x, 1.0, 2.0 * x),
-        )
+        Vector3::new(x, x + 0.1, 1.0 - 2.0 * x)
     }
 
     #[test]

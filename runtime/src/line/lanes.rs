@@ -6,7 +6,6 @@ use super::part::{InColumns, LANES};
 use super::sweep::{Threads, Two, try_fill_part, try_in_parts, update_part};
 use crate::Real;
 use crate::integrate::{InstructionSet, Work};
-use crate::solvers::moser_veselov::Edge;
 use core::ops::Range;
 use nalgebra::SMatrix;
 
@@ -49,13 +48,6 @@ impl<T: Real, const R: usize, const C: usize> Finite for SMatrix<T, R, C> {
         // One branch at the end: none of the tests is worth one of its own.
         let each = self.as_slice().iter();
         each.fold(true, |all, x| all & x.is_finite())
-    }
-}
-
-impl<T: Real> Finite for Edge<T> {
-    #[inline(always)]
-    fn is_finite(&self) -> bool {
-        Finite::is_finite(&self.space())
     }
 }
 
@@ -236,9 +228,8 @@ macro_rules! in_lanes {
                 let mut all = true;
                 for lane in 0..$crate::line::LANES {
                     let $site = first + lane;
-                    let made: Option<$one> = $body;
-                    all &= made.is_some();
-                    let made = made.unwrap_or(P::lane(out, lane));
+                    let (made, found): ($one, bool) = $body;
+                    all &= found;
                     P::put_lane(out, lane, made);
                 }
                 all
@@ -303,14 +294,14 @@ mod tests {
         /// Differences.
         Differences(row: Row<T>) -> SMatrix<T, 2, 1>
         { at: 1 = row.list }
-        |site| Some((at.at(site + 1) - at.at(site)) * row.factor)
+        |site| ((at.ahead::<1>(site) - at.at(site)) * row.factor, true)
     }
 
     crate::in_lanes! {
         /// Values, of what is kept and a difference.
         Shifted(row: Row<T>) -> SMatrix<T, 2, 1>, SMatrix<T, 2, 1>
         { at: 1 = row.list }
-        |site, kept| (kept + at.at(site), kept + at.at(site + 1) * row.factor)
+        |site, kept| (kept + at.at(site), kept + at.ahead::<1>(site) * row.factor)
     }
 
     const COUNTS: [usize; 8] = [0, 1, 15, 16, 17, 31, 100, 5000];
@@ -396,11 +387,10 @@ mod tests {
                 let at: Attitudes<f64> = (0..count)
                     .map(|i| Attitude::new(Rotation::exp(&Vector3::new(0.1 * i as f64, 0.6, 0.0))))
                     .collect();
-                let edges: Edges<f64> = (0..count)
-                    .map(|i| Edge::new(momentum(i), Vector3::zeros()))
-                    .collect();
+                let edges: Edges<f64> = (0..count).map(momentum).collect();
                 let turned = |i: usize| {
-                    let made = edges.at(i).turn(&body, h, &at.at(i).rotation());
+                    let attitude = at.at(i).rotation();
+                    let made = Edge::of_space(edges.at(i), &attitude).turn(&body, h, &attitude);
                     made.map(|t| Attitude::turned(&t)).map_err(|_| ())
                 };
                 let (mut one, mut other) = (at.clone(), at.clone());

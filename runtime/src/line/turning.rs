@@ -5,13 +5,13 @@ use super::part::{InColumns, LANES};
 use super::window::Windowed;
 use super::{Attitude, Attitudes, Edges, Stage};
 use crate::Real;
-use crate::solvers::moser_veselov::Poinsot;
+use crate::solvers::moser_veselov::{Edge, Poinsot};
 
 /// The stage in which bodies turn by the principal solution of the Moser-Veselov equation.
 pub struct Turning<'a, T: Real> {
     /// Attitudes at the nodes where edges begin.
     pub at: &'a Attitudes<T>,
-    /// Momenta of the edges.
+    /// Momenta of the edges, in space.
     pub edges: &'a Edges<T>,
     /// The bodies: one where all are alike.
     pub bodies: &'a [Poinsot<T>],
@@ -33,7 +33,8 @@ impl<T: Real> Turning<'_, T> {
         let edges = Windowed::<LANES>::window(self.edges, first);
         let mut all = true;
         for lane in 0..LANES {
-            let (attitude, edge) = (at.at(first + lane).rotation(), edges.at(first + lane));
+            let attitude = at.at(first + lane).rotation();
+            let edge = Edge::of_space(edges.at(first + lane), &attitude);
             let (turned, found) = edge.turn_at_once::<DIAGONAL>(body, self.h, &attitude);
             P::put_lane(out, lane, Attitude::turned(&turned));
             all &= found;

@@ -2,6 +2,7 @@
 //! side, as many of them as the compiler is told, so that no index is tested.
 
 use super::columns::{Columns, Numbered, of_length};
+use super::part::LANES;
 use crate::Real;
 use num_traits::Zero;
 
@@ -26,13 +27,20 @@ pub struct Window<'a, V: Numbered<N>, const N: usize, const M: usize> {
 }
 
 impl<V: Numbered<N>, const N: usize, const M: usize> Window<'_, V, N, M> {
-    /// The value at a site.
+    /// The value at one of the [`LANES`] sites that are computed together.
     #[inline(always)]
     pub fn at(&self, site: usize) -> V {
+        self.ahead::<0>(site)
+    }
+
+    /// The value `ON` sites on. The index is tested as that of the loop is: a test of its own may keep half of the sites from
+    /// being computed together.
+    #[inline(always)]
+    pub fn ahead<const ON: usize>(&self, site: usize) -> V {
         // A loop: `map` of an array is not always inlined.
         let mut numbers = [V::Number::zero(); N];
         for (number, column) in numbers.iter_mut().zip(&self.columns) {
-            *number = column[site - self.first];
+            *number = lanes::<_, ON, M>(column)[site - self.first];
         }
         V::of(numbers)
     }
@@ -62,11 +70,23 @@ pub struct Stretch<'a, V, const M: usize> {
 }
 
 impl<V: Copy, const M: usize> Stretch<'_, V, M> {
-    /// The value at a site.
+    /// The value at one of the [`LANES`] sites that are computed together.
     #[inline(always)]
     pub fn at(&self, site: usize) -> V {
-        self.list[site - self.first]
+        self.ahead::<0>(site)
     }
+
+    /// The value `ON` sites on.
+    #[inline(always)]
+    pub fn ahead<const ON: usize>(&self, site: usize) -> V {
+        lanes::<_, ON, M>(self.list)[site - self.first]
+    }
+}
+
+/// Of a window the part that lies `ON` sites on from those computed together.
+#[inline(always)]
+fn lanes<T, const ON: usize, const M: usize>(window: &[T; M]) -> &[T; LANES] {
+    of_length(&window[ON..ON + LANES])
 }
 
 impl<V: Copy, const M: usize> Windowed<M> for Vec<V> {

@@ -170,9 +170,19 @@ pub fn divided<T: Real, const R: usize, const C: usize>(
     number: T,
     name: &'static str,
 ) -> Result<Additive<R, C, T>, SingularFactor> {
-    let inverse = T::one() / number;
-    match inverse.is_finite() && number.is_finite() {
-        true => Ok(Additive::new(known * inverse)),
-        false => Err(SingularFactor { factor: name }),
+    match divided_at_once(known, number) {
+        (solved, true) => Ok(Additive::new(solved)),
+        _ => Err(SingularFactor { factor: name }),
     }
+}
+
+/// The same, and whether there is one: there is no branch, a loop over many sites vectorises.
+#[inline(always)]
+pub fn divided_at_once<T: Real, const R: usize, const C: usize>(
+    known: &SMatrix<T, R, C>,
+    number: T,
+) -> (SMatrix<T, R, C>, bool) {
+    let inverse = T::one() / number;
+    let found = inverse.is_finite() & number.is_finite();
+    (known * inverse, found)
 }

@@ -72,6 +72,12 @@ impl<T: Real> Edge<T> {
         }
     }
 
+    /// The edge with momentum `space` in space, at a first node of this attitude.
+    #[inline(always)]
+    pub fn of_space(space: Vector3<T>, attitude: &Rotation<T>) -> Self {
+        Self::new(attitude.matrix().tr_mul(&space), space)
+    }
+
     /// The momentum of the edge, in the frame at its first node.
     #[inline(always)]
     pub fn body(&self) -> Vector3<T> {

@@ -1,7 +1,7 @@
 //! Kernels of what acts on a site at a node: its own potential and what neighbours add, before the node
 //! and after it; of blocks of fields, what the edge adds. The loop over sites that puts it all to the momenta.
 
-use super::arguments::Argument;
+use super::arguments::{Argument, seen_at};
 use super::lanes::{Windows, are_together};
 use super::locals::{Places, step};
 use super::pulls::{field, front};
@@ -96,9 +96,8 @@ impl Pulled {
 
     /// In the window of its list.
     fn seen(&self) -> TokenStream {
-        let (window, by) = (self.window(), number(self.by));
-        let field = self.field.iter();
-        quote!(#window.at(site + #by) #(.#field)*)
+        let (at, field) = (seen_at(&self.window(), self.by), self.field.iter());
+        quote!(#at #(.#field)*)
     }
 
     fn window(&self) -> Ident {
@@ -311,37 +310,22 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
 /// of the edge that came.
 fn arrived(l: &Lines, m: &Moving) -> TokenStream {
     let (kernel, t, edge) = (arrived_kernel(m), m.covector(), m.edge());
-    let (acting, done) = match (m.is_rotation(), l.acting(m)) {
-        (true, Acting::Halves) => (
+    let turned = m.is_rotation().then(|| quote!(turn *));
+    let in_space = m.is_rotation().then(|| quote!(let acting = turn * acting;));
+    let (acting, done) = match l.acting(m) {
+        Acting::Halves => (
             quote!(#t),
             quote! {
-                let space = edge.space();
-                let kick = turn * acting;
-                let momentum = space + kick * T::from_f64(0.5);
-                (momentum, Edge::new(turn.tr_mul(&space) + acting, space + kick))
-            },
-        ),
-        (true, Acting::Both) => (
-            quote!([#t; 2]),
-            quote! {
-                let [before, after] = acting;
-                let space = edge.space();
-                let momentum = space + turn * before;
-                (momentum, Edge::new(turn.tr_mul(&space) + before + after, momentum + turn * after))
-            },
-        ),
-        (false, Acting::Halves) => (
-            quote!(#t),
-            quote! {
+                #in_space
                 (edge + acting * T::from_f64(0.5), edge + acting)
             },
         ),
-        (false, Acting::Both) => (
+        Acting::Both => (
             quote!([#t; 2]),
             quote! {
                 let [before, after] = acting;
-                let momentum = edge + before;
-                (momentum, momentum + after)
+                let momentum = edge + #turned before;
+                (momentum, momentum + #turned after)
             },
         ),
     };
@@ -372,10 +356,9 @@ fn arriving(m: &Moving) -> Ident {
 fn arrived_call(m: &Moving, acting: &TokenStream) -> TokenStream {
     let (kernel, name) = (arrived_kernel(m), m.name());
     let turn = m.is_rotation().then(|| quote!(at.#name.at(site).matrix(),));
-    let space = m.is_rotation().then(|| quote!(.space()));
     quote! {
         let (momentum, edge) = self.#kernel(#acting, #turn edge);
-        all_finite(&edge #space).then_some((momentum, edge))
+        all_finite(&edge).then_some((momentum, edge))
     }
 }
 
@@ -479,10 +462,7 @@ pub(super) fn arrive(l: &Lines, m: &Moving) -> TokenStream {
     };
     let (edge_kernel, tied) = (edge_kernel(m), super::tied::added(l, m));
     let of_edge = quote!(self.#edge_kernel(h, site, &state.places, at, &work.#field[site])#tied);
-    let added = match m.is_rotation() {
-        true => quote!(let edge = Edge::new(edge.body(), edge.space() + #of_edge);),
-        false => quote!(let edge = edge + #of_edge;),
-    };
+    let added = quote!(let edge = edge + #of_edge;);
     let arrived = arrived_call(m, &call(l, m, &quote!(at)));
     let part = m.part(&quote!(work.edges.#name));
     quote! {

@@ -98,8 +98,8 @@ impl Argument {
 
     /// Its value in the window of its list.
     pub(super) fn seen(&self) -> TokenStream {
-        let (window, part, index) = (self.window(), &self.part, self.index(&quote!(site)));
-        quote!(#window.at(#index) #part)
+        let (at, part) = (seen_at(&self.window(), self.on), &self.part);
+        quote!(#at #part)
     }
 
     /// The name of the window of its list.
@@ -113,6 +113,17 @@ impl Argument {
         match self.list {
             List::Given => quote!(model.parameters.#field),
             _ => quote!(at.#field),
+        }
+    }
+}
+
+/// The value in a window, so many sites on.
+pub(super) fn seen_at(window: &Ident, on: usize) -> TokenStream {
+    match on {
+        0 => quote!(#window.at(site)),
+        n => {
+            let n = number(n);
+            quote!(#window.ahead::<#n>(site))
         }
     }
 }

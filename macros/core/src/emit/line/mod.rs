@@ -204,7 +204,7 @@ impl Moving<'_> {
     /// The type of the momentum of its edge.
     fn edge(&self) -> TokenStream {
         match self.is_rotation() {
-            true => quote!(Edge<T>),
+            true => quote!(SMatrix<T, 3, 1>),
             false => self.covector(),
         }
     }

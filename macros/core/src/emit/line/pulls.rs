@@ -149,7 +149,7 @@ fn stage(l: &Lines, n: usize, arguments: &[Argument]) -> TokenStream {
             /// What a term adds, of several sites together.
             #name(model: #model<T>, h: T, at: #places<T>) -> #made<T>
             #windows
-            |site| Some(model.#kernel(*h, #(#values),*))
+            |site| (model.#kernel(*h, #(#values),*), true)
         }
     }
 }

@@ -272,8 +272,7 @@ fn kicked(l: &Lines, m: &Moving) -> TokenStream {
     let kernel = format_ident!("reacted_{}", m.mover.name);
     let value = match m.is_rotation() {
         true => quote! {
-            let edge = edges.at(site);
-            Edge::new(edge.body() + kick, edge.space() + at.#name.at(site).matrix() * kick)
+            edges.at(site) + at.#name.at(site).matrix() * kick
         },
         false => quote!(edges[site] + kick),
     };
@@ -441,7 +440,7 @@ pub(super) fn project(l: &Lines) -> TokenStream {
         let value = match m.is_rotation() {
             true => quote! {
                 let turned = at.#name.at(site).matrix() * kick;
-                Some((momenta[site] - turned, Edge::new(edge.body() - kick, edge.space() - turned)))
+                Some((momenta[site] - turned, edge - turned))
             },
             false => quote!(Some((momenta[site] - kick, edge - kick))),
         };

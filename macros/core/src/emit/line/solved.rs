@@ -6,6 +6,7 @@ use super::lanes::Windows;
 use super::locals::{Places, step};
 use super::velocities::{as_array, taken_apart, width};
 use super::{Lines, Moving, number};
+use crate::derive::explicit::Explicit;
 use crate::emit::blocks::linear_solution;
 use crate::emit::element;
 use crate::expr::{self, Expr};
@@ -89,13 +90,15 @@ fn rotation(l: &Lines, m: Moving) -> TokenStream {
         m.mover.name
     );
     let turn = match m.is_quaternion() {
-        true => quote!(edge.turn_in_quaternions(factor, #h, &at.#name.at(site).unit_quaternion())),
-        false => quote!(edge.turn(factor, #h, &at.#name.at(site).rotation())),
+        true => quote!(edge.turn_in_quaternions(factor, #h, &attitude.unit_quaternion())),
+        false => quote!(edge.turn(factor, #h, &attitude.rotation())),
     };
     quote! {
         #[doc = #doc]
         #[inline(always)]
-        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, edge: &Edge<T>) -> Result<line::Attitude<T>, StepCause> {
+        fn #kernel(&self, #h: T, site: usize, at: &#places<T>, edge: &SMatrix<T, 3, 1>) -> Result<line::Attitude<T>, StepCause> {
+            let attitude = at.#name.at(site);
+            let edge = Edge::of_space(*edge, &attitude.rotation());
             let factor = &self.#factor[site.min(self.#factor.len() - 1)];
             match #turn {
                 Ok(turned) => Ok(line::Attitude::turned(&turned)),
@@ -117,7 +120,8 @@ fn field(l: &Lines, m: Moving) -> TokenStream {
     let values: Vec<Expr> = factors.iter().map(|e| d.defined(e)).collect();
     let read = l.read(s, &l.of_site(d, &values));
     let (lets, results) = l.program(s, &values, &read.bindings);
-    let (known_once, arguments) = (&read.lets, read.arguments.iter().map(Argument::declared));
+    let arguments: Vec<TokenStream> = read.arguments.iter().map(Argument::declared).collect();
+    let known_once = &read.lets;
     let [left, right] = results.as_slice() else {
         return TokenStream::new();
     };
@@ -132,6 +136,19 @@ fn field(l: &Lines, m: Moving) -> TokenStream {
         " `{}` where the edge that leaves a site ends.",
         m.mover.name
     );
+    let at_once = is_divided(form).then(|| {
+        let (kernel, arguments) = (at_once(&m), arguments.clone());
+        quote! {
+            /// The same without a branch, and whether there is one.
+            #[inline(always)]
+            fn #kernel(&self, #h: T, place: #t, edge: #t, #(#arguments),*) -> (#t, bool) {
+                #known_once
+                #lets
+                let (velocity, found) = divided_at_once(&edge, #left);
+                (place + velocity, found)
+            }
+        }
+    });
     quote! {
         #[doc = #doc]
         #[inline(always)]
@@ -143,7 +160,17 @@ fn field(l: &Lines, m: Moving) -> TokenStream {
                 Err(e) => Err(StepCause::Singular(e)),
             }
         }
+        #at_once
     }
+}
+
+/// Whether the momentum is a number times the velocity.
+fn is_divided(form: &Explicit) -> bool {
+    [&form.left, &form.right].map(|e| e.shape().is_scalar()) == [true; 2]
+}
+
+fn at_once(m: &Moving) -> Ident {
+    format_ident!("at_once_{}", m.mover.name)
 }
 
 /// What the kernel of a field reads of its site beside place and edge.
@@ -166,13 +193,25 @@ fn stage(l: &Lines, m: &Moving) -> Option<TokenStream> {
     windows.add(own.window(), own.list(), 0);
     windows.add(format_ident!("leaving"), quote!(*edges), 0);
     let (windows, place) = (windows.stated(), own.seen());
-    let values = arguments.iter().map(Argument::seen);
+    let values: Vec<TokenStream> = arguments.iter().map(Argument::seen).collect();
+    let reached = match &m.mover.how {
+        How::Field { form, .. } if is_divided(form) => {
+            let kernel = at_once(m);
+            quote!(model.#kernel(*h, #place, leaving.at(site), #(#values),*))
+        }
+        _ => quote! {
+            match model.#kernel(*h, #place, leaving.at(site), #(#values),*) {
+                Ok(reached) => (reached, true),
+                Err(_) => (#place, false),
+            }
+        },
+    };
     Some(quote! {
         ::clebsch::in_lanes! {
             /// Where edges end, of several sites together.
             #name(model: #model<T>, h: T, at: #places<T>, edges: #edges) -> #t
             #windows
-            |site| model.#kernel(*h, #place, leaving.at(site), #(#values),*).ok()
+            |site| #reached
         }
     })
 }
@@ -323,7 +362,7 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
         let momentum = results.next().map(|(_, value)| m.array(value));
         fill.extend(quote!(made.fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&(#momentum));));
         let edge = match m.is_rotation() {
-            true => quote!(edges.#name.at(site).body()),
+            true => quote!(at.#name.at(site).matrix().tr_mul(&edges.#name.at(site))),
             false => quote!(edges.#name[site]),
         };
         given.extend(quote!(known.fixed_view_mut::<#rows, 1>(#at_row, 0).copy_from(&#edge);));
@@ -342,7 +381,8 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
             quote! {
                 #[doc = #doc]
                 #[inline(always)]
-                fn #given_of(&self, site: usize, edges: &#edges<T>) -> SVector<T, #size> {
+                fn #given_of(&self, site: usize, at: &#places<T>, edges: &#edges<T>) -> SVector<T, #size> {
+                    let _ = at;
                     let mut known = SVector::<T, #size>::zeros();
                     #given
                     known

@@ -80,7 +80,7 @@ pub(super) fn step(
         .map(|m| {
             let own = m.name();
             match m.is_rotation() {
-                true => quote!(line::Columns::filled(Edge::new(SVector::zeros(), SVector::zeros()), state.momenta.#own.len())),
+                true => quote!(line::Columns::filled(SVector::zeros(), state.momenta.#own.len())),
                 false => quote!(state.momenta.#own.clone()),
             }
         })
@@ -493,7 +493,7 @@ fn begin(l: &Lines, m: &Moving) -> TokenStream {
     let edge = match m.is_rotation() {
         true => quote! {
             let turn = state.places.#name.at(site).matrix();
-            Edge::new(turn.tr_mul(&momentum) + after, momentum + turn * after)
+            momentum + turn * after
         },
         false => quote!(momentum + after),
     };

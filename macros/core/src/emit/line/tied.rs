@@ -177,7 +177,7 @@ pub(super) fn solve(l: &Lines, field: &Ident, members: &[Moving]) -> TokenStream
             let (at, edges) = (&state.places, &work.edges);
             let made = work.band.solve_along(
                 self.#range(),
-                |site| self.#given(site, edges),
+                |site| self.#given(site, at, edges),
                 |site, velocity| self.#own(h, site, at, velocity).0,
                 |site, velocity| self.#own(h, site, at, velocity),
                 |rows| { #(#each)* },

@@ -8,12 +8,13 @@ use quote::format_ident;
 use std::collections::BTreeSet;
 
 /// What kernels and the functions around them call their own.
-const KERNEL: [&str; 67] = [
+const KERNEL: [&str; 69] = [
     "a",
     "acting",
     "added",
     "after",
     "at",
+    "attitude",
     "axis",
     "band",
     "before",
@@ -26,6 +27,7 @@ const KERNEL: [&str; 67] = [
     "energy",
     "factor",
     "first",
+    "found",
     "from",
     "h",
     "held",
