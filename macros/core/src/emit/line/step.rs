@@ -80,7 +80,7 @@ pub(super) fn step(
         .map(|m| {
             let own = m.name();
             match m.is_rotation() {
-                true => quote!(line::Columns::filled(SVector::zeros(), state.momenta.#own.len())),
+                true => quote!(line::Columns::filled(SMatrix::<T, 3, 1>::zeros(), state.momenta.#own.len())),
                 false => quote!(state.momenta.#own.clone()),
             }
         })
