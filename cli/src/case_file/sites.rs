@@ -64,13 +64,7 @@ pub(super) fn plain(value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, Str
     match value {
         DeValue::String(text) => {
             let value = SiteData::read(text).and_then(|data| data.value(of));
-            let value = value.map_err(|why| {
-                let reads = match why.ends_with("has no value here") {
-                    true => READS,
-                    false => "",
-                };
-                format!("\"{text}\": {why}{reads}")
-            })?;
+            let value = value.map_err(|why| format!("\"{text}\": {why}"))?;
             Ok(spelt(value))
         }
         DeValue::Array(list) => {
@@ -101,6 +95,13 @@ pub(super) fn spelt(value: f64) -> String {
 
 /// The value at one site.
 pub(super) fn at(site: &Site<'_>, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, String> {
+    found(site, value, of).map_err(|why| match why.ends_with("has no value here") {
+        true => format!("{why}{READS}"),
+        false => why,
+    })
+}
+
+fn found(site: &Site<'_>, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, String> {
     let DeValue::Array(list) = value else {
         return plain(value, of);
     };

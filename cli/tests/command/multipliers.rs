@@ -206,7 +206,8 @@ fn the_one_site_that_moves_has_its_momentum() {
     };
     // A pendulum that leans: along its circle it goes on, along its link it cannot.
     let leaning = "[\"0.6*i\", \"-0.8*i\"]";
-    let at = two_nodes(&folder, &model(""), &case(1, leaning, [0.8, 0.6]));
+    let (free, along) = (model(""), case(1, leaning, [0.8, 0.6]));
+    let at = two_nodes(&folder, &free, &along);
     let (x, p) = (at("x_1_1", 1), at("momentum_x_1_1", 0));
     // The way of a step but for a few squares of it.
     assert!((x - 0.6 - 0.8e-3).abs() < 3e-6 && p == 0.8, "{x} {p}");
@@ -216,7 +217,7 @@ fn the_one_site_that_moves_has_its_momentum() {
             folder.write("case.toml", case),
         );
         let done = clebsch(&["run", &model, "--case", &case]);
-        assert_eq!(done.code, 1, "{}", done.out);
+        assert_eq!(done.code, 2, "{}", done.out);
         assert!(done.err.contains("would move"), "{}", done.err);
     };
     refused("", &case(1, leaning, [0.6, -0.8]));

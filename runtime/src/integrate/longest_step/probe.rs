@@ -87,21 +87,19 @@ impl<'a> Probe<'a> {
         let along = probe.projected(&p).ok_or(Unknown::Start)?;
         let taken = largest(p.iter().zip(&along).map(|(a, b)| a - b));
         probe.held = taken > TAKEN * largest(p.iter().copied());
-        if probe.held {
-            probe.part = PART_HELD / probe.moves.len() as f64;
+        if !probe.held {
+            // The base is the start.
+            probe.pushed.clone_from(&probe.rest);
+            return Ok(probe);
         }
+        probe.part = PART_HELD / probe.moves.len() as f64;
+        // Constraints turn with what moves: a velocity at the start would be felt as a force.
         let start = probe.rested(&probe.initial);
         let start = start.unwrap_or_else(|| probe.initial.clone());
         probe.initial = probe.settled(start).ok_or(Unknown::Start)?;
         probe.resting = probe.given(&probe.initial);
         let step = probe.after(&probe.initial, h);
         probe.rest = step.ok_or(Unknown::Start)?;
-        if !probe.held {
-            // The base is the start.
-            probe.base.clone_from(&probe.initial);
-            probe.pushed.clone_from(&probe.rest);
-            return Ok(probe);
-        }
         let base = probe.at_rest(&probe.rest);
         probe.base = base.ok_or(Unknown::Start)?;
         let step = probe.after(&probe.base, h);
@@ -201,10 +199,8 @@ impl<'a> Probe<'a> {
     /// A state with its momenta as the constraints leave them: without any they may be those of a velocity off the constraints,
     /// where terms of the Lagrangian are linear in velocities.
     fn settled(&self, mut state: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
-        if self.held {
-            let along = self.observed(&state, self.h, 0)?;
-            self.give(&mut state, self.momenta(&along))?;
-        }
+        let along = self.observed(&state, self.h, 0)?;
+        self.give(&mut state, self.momenta(&along))?;
         Some(state)
     }
 

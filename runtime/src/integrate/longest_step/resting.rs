@@ -1,5 +1,5 @@
-//! Momenta of the start at rest: zero but where terms of the Lagrangian are linear in velocities, as those of magnetic fields
-//! and of rotating frames. Takes a state; gives it with the momenta with which it does not move.
+//! Momenta of a held start at rest: zero but where terms of the Lagrangian are linear in velocities, as those of magnetic
+//! fields and of rotating frames. Takes a state; gives it with the momenta with which it does not move.
 
 use super::extremes::dot;
 use super::probe::Probe;
