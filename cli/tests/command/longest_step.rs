@@ -482,3 +482,21 @@ fn terms_linear_in_velocities_leave_the_limit_along_constraints() {
         }
     }
 }
+
+/// A charge in a magnetic field and a trap: at the limit of the trap alone neighbouring steps are opposite, and the field does
+/// nothing. The potential of the field may be written with any multiple `c` of a difference that adds up to a constant.
+#[test]
+fn a_magnetic_field_leaves_the_limit_of_the_trap() {
+    let folder = Folder::new("magnetic");
+    let text = "model Charge { param K: Sym<2>; param f, c: Real; field x: Vec<2>; let V = next(x) - x; let X = (x + next(x))/2; \
+        lagrangian = dot(V, V)/(2*h) + f*((1/2 + c)*X[1]*V[2] - (1/2 - c)*X[2]*V[1]) - (h/2)*dot(x, K*x); }";
+    let model = folder.write("charge.clebsch", text);
+    for (f, c) in [(0.0, 0.0), (1.0, 0.0), (1.0, -0.5)] {
+        let case = format!(
+            "model = \"charge\"\nname = \"own\"\nh = 0.9\nsteps = 1\n[parameters]\nK = [[1.0, 0.0], [0.0, 4.0]]\n\
+             f = {f:?}\nc = {c:?}\n[initial]\nx = [0.0, 0.0]\nmomentum = [0.0, 0.0]\n"
+        );
+        let found = printed(&model, &folder.write("case.toml", &case), &[]);
+        assert!((found - 1.0).abs() < 0.01, "{f} {c}: {found}");
+    }
+}

@@ -38,6 +38,7 @@ impl Probe<'_> {
         }
         let (mut velocities, mut momenta) = (Vec::<Vec<f64>>::new(), Vec::<Vec<f64>>::new());
         let (mut alphas, mut forces) = (Vec::<f64>::new(), Vec::<Vec<f64>>::new());
+        let mut led = Vec::<Vec<f64>>::new();
         let most = if count > MANY {
             VECTORS_OF_MANY
         } else {
@@ -71,7 +72,9 @@ impl Probe<'_> {
             let v: Vec<f64> = v.iter().map(|x| x / length).collect();
             momenta.push(p.iter().map(|x| x / length).collect());
             let own = momenta.last().ok_or(Unknown::Still)?;
-            p = self.stiffness(&v, own).ok_or_else(nothing)?;
+            let [force, moved] = self.stiffness(&v, own).ok_or_else(nothing)?;
+            p = force;
+            led.push(moved);
             // Nothing resists: no step is too long for that.
             if velocities.is_empty() && p.iter().all(|x| *x == 0.0) {
                 return Err(Unknown::Still);
@@ -83,9 +86,16 @@ impl Probe<'_> {
         if alphas.is_empty() {
             return Err(nothing());
         }
+        // At the same momenta a disturbed state moves where terms are linear in velocities, and twice the energy of that, which
+        // depends on how they are written, is no stiffness: as far as the space holds it.
+        let shares = led
+            .iter()
+            .map(|w| momenta.iter().map(|q| dot(q, w)).collect());
+        let shares: Vec<Vec<f64>> = shares.collect();
         // Where the start is no equilibrium, forces turn with the frames that they are seen from: of what resists only the
         // symmetric part has an energy.
-        let part = |i: usize, j: usize| dot(&velocities[i], &forces[j]);
+        let part =
+            |i: usize, j: usize| dot(&velocities[i], &forces[j]) - dot(&shares[i], &shares[j]);
         let at = |i: usize, j: usize| 0.5 * (part(i, j) + part(j, i));
         let small = SymmetricEigen::new(DMatrix::from_fn(alphas.len(), alphas.len(), at));
         let motion = |k: usize| {

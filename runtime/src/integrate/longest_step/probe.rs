@@ -47,6 +47,8 @@ pub(super) struct Probe<'a> {
     part: f64,
     /// Whether momenta are projected on constraints.
     held: bool,
+    /// The velocities with which the base leaves, where disturbed states leave with others.
+    drift: Option<Vec<f64>>,
     /// Whether the model refused a state that it was asked of.
     refused: Cell<bool>,
 }
@@ -78,6 +80,7 @@ impl<'a> Probe<'a> {
             pushed: Vec::new(),
             part: PART,
             held: false,
+            drift: None,
             refused: Cell::new(false),
         };
         probe.resting = probe.given(&probe.initial);
@@ -90,6 +93,7 @@ impl<'a> Probe<'a> {
         if !probe.held {
             // The base is the start.
             probe.pushed.clone_from(&probe.rest);
+            probe.drift = probe.drifting();
             return Ok(probe);
         }
         probe.part = PART_HELD / probe.moves.len() as f64;
@@ -104,12 +108,28 @@ impl<'a> Probe<'a> {
         probe.base = base.ok_or(Unknown::Start)?;
         let step = probe.after(&probe.base, h);
         probe.pushed = step.ok_or(Unknown::Start)?;
+        probe.drift = probe.drifting();
         Ok(probe)
     }
 
     /// How many freedoms there are.
     pub(super) fn count(&self) -> usize {
         self.moves.iter().map(Moves::count).sum()
+    }
+
+    /// The state where forces are compared.
+    pub(super) fn base(&self) -> &[Vec<f64>] {
+        &self.base
+    }
+
+    /// Disturbances in parts of what is disturbed.
+    pub(super) fn part(&self) -> f64 {
+        self.part
+    }
+
+    /// The velocities with which the base leaves, where disturbed states leave with others.
+    pub(super) fn drift(&self) -> Option<&[f64]> {
+        self.drift.as_deref()
     }
 
     /// The step of the inquiry.
@@ -230,14 +250,16 @@ impl<'a> Probe<'a> {
     }
 
     /// Of momenta after a step from rest, disturbed by the velocity `v` with momentum `p`, what the disturbance adds: minus
-    /// the stiffness times `v`, and the step.
-    pub(super) fn stiffness(&self, v: &[f64], p: &[f64]) -> Option<Vec<f64>> {
+    /// the stiffness times `v`, and the step. With the velocities that it gives, at the same momenta, and that are part of
+    /// this stiffness.
+    pub(super) fn stiffness(&self, v: &[f64], p: &[f64]) -> Option<[Vec<f64>; 2]> {
         let scale = self.part / self.size(v);
         let disturbed = self.disturbed(v, p, scale)?;
         let after = self.after(&disturbed, self.h)?;
         let rest = self.forces(&self.base, &self.pushed);
         let change = rest.zip(self.forces(&disturbed, &after));
-        Some(change.map(|(rest, after)| (rest - after) / scale).collect())
+        let change = change.map(|(rest, after)| (rest - after) / scale).collect();
+        Some([change, self.led(&disturbed, scale)?])
     }
 
     /// What has acted in a step from a state to what is observed.
@@ -296,9 +318,10 @@ impl<'a> Probe<'a> {
     fn left(&self, motion: &Motion, h: f64) -> Option<(f64, f64)> {
         let scale = self.part / self.size(&motion.velocity);
         let moved = self.disturbed(&motion.velocity, &motion.momentum, scale)?;
+        let led = dot(&motion.momentum, &self.led(&moved, scale)?);
         let [from, to] = [self.base.clone(), moved].map(|state| self.braced(state, h));
         let change = self.change(&self.after(&from?, h)?, &self.after(&to?, h)?);
-        Some((h, dot(&motion.momentum, &change) / scale))
+        Some((h, dot(&motion.momentum, &change) / scale - h * led))
     }
 
     /// A state with the momentum that the forces of its node at the start take away in the first half of a step: a start that is no
@@ -336,7 +359,7 @@ impl<'a> Probe<'a> {
 
     /// The start with a disturbance `scale` times `v`; of a held model what a step with its momentum `p` leads to, which is
     /// on the constraints.
-    fn disturbed(&self, v: &[f64], p: &[f64], scale: f64) -> Option<Vec<Vec<f64>>> {
+    pub(super) fn disturbed(&self, v: &[f64], p: &[f64], scale: f64) -> Option<Vec<Vec<f64>>> {
         if self.held {
             let thrown = self.thrown(p, scale / self.h)?;
             return self.at_rest(&self.after(&thrown, self.h)?);

@@ -1,7 +1,8 @@
-//! Momenta of a held start at rest: zero but where terms of the Lagrangian are linear in velocities, as those of magnetic
-//! fields and of rotating frames. Takes a state; gives it with the momenta with which it does not move.
+//! Where terms of the Lagrangian are linear in velocities, as those of magnetic fields and of rotating frames: momenta of a
+//! held start at rest, which are not zero, and what a disturbance moves with the same momenta. Takes states; gives
+//! momenta and velocities.
 
-use super::extremes::dot;
+use super::extremes::{dot, numbers};
 use super::probe::Probe;
 
 /// Velocities are known from this many steps of the inquiry.
@@ -14,6 +15,10 @@ const STILL: f64 = 1e-9;
 const LEFT: f64 = 1e-5;
 const DIRECTIONS: usize = 50;
 
+/// A disturbed state that moves by more than this part of the disturbance in a long step does so by terms linear in
+/// velocities: by forces it moves by hundred times less.
+const LED: f64 = 1e-3;
+
 impl Probe<'_> {
     /// The velocities with which a state leaves, by a long step and one half as long: what forces add grows with the square.
     fn leaving(&self, state: &[Vec<f64>]) -> Option<Vec<f64>> {
@@ -23,6 +28,32 @@ impl Probe<'_> {
         let half = self.change(&at, &self.observed(state, 0.5 * h, 1)?);
         let both = half.iter().zip(&whole);
         Some(both.map(|(half, whole)| (4.0 * half - whole) / h).collect())
+    }
+
+    /// The velocities with which the base leaves, where disturbed states leave with others.
+    pub(super) fn drifting(&self) -> Option<Vec<f64>> {
+        let p = self.along(numbers(self.count()))?;
+        let v = self.velocity(&p)?;
+        let disturbed = self.disturbed(&v, &p, self.part() / self.size(&v))?;
+        let from = self.leaving(self.base())?;
+        let to = self.leaving(&disturbed)?;
+        let led: Vec<f64> = to.iter().zip(&from).map(|(to, from)| to - from).collect();
+        let moved = self.size(&led) * LONG * self.step().abs();
+        (moved > LED * self.part()).then_some(from)
+    }
+
+    /// What a state disturbed by the part `scale` of a motion has more of velocity than the base at the same momenta, in that part.
+    pub(super) fn led(&self, disturbed: &[Vec<f64>], scale: f64) -> Option<Vec<f64>> {
+        let Some(from) = self.drift() else {
+            return Some(vec![0.0; self.count()]);
+        };
+        let to = self.leaving(disturbed)?;
+        Some(
+            to.iter()
+                .zip(from)
+                .map(|(to, from)| (to - from) / scale)
+                .collect(),
+        )
     }
 
     /// A state with the momenta with which it does not move, as near to rest as is found; `None` where it is at rest as it is.
