@@ -36,8 +36,7 @@ impl Probe<'_> {
         let v = self.velocity(&p)?;
         let disturbed = self.disturbed(&v, &p, self.part() / self.size(&v))?;
         let from = self.leaving(self.base())?;
-        let to = self.leaving(&disturbed)?;
-        let led: Vec<f64> = to.iter().zip(&from).map(|(to, from)| to - from).collect();
+        let led = self.faster(&disturbed, &from)?;
         let moved = self.size(&led) * LONG * self.step().abs();
         (moved > LED * self.part()).then_some(from)
     }
@@ -47,13 +46,14 @@ impl Probe<'_> {
         let Some(from) = self.drift() else {
             return Some(vec![0.0; self.count()]);
         };
-        let to = self.leaving(disturbed)?;
-        Some(
-            to.iter()
-                .zip(from)
-                .map(|(to, from)| (to - from) / scale)
-                .collect(),
-        )
+        let led = self.faster(disturbed, from)?;
+        Some(led.iter().map(|w| w / scale).collect())
+    }
+
+    /// By how much faster than with these velocities a state leaves.
+    fn faster(&self, state: &[Vec<f64>], from: &[f64]) -> Option<Vec<f64>> {
+        let to = self.leaving(state)?;
+        Some(to.iter().zip(from).map(|(to, from)| to - from).collect())
     }
 
     /// A state with the momenta with which it does not move, as near to rest as is found; `None` where it is at rest as it is.

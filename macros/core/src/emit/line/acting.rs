@@ -309,7 +309,7 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
 /// The kernel of what is done with what acts: the momentum at the node and that of the edge that leaves, given that
 /// of the edge that came.
 fn arrived(l: &Lines, m: &Moving) -> TokenStream {
-    let (kernel, t, edge) = (arrived_kernel(m), m.covector(), m.edge());
+    let (kernel, t) = (arrived_kernel(m), m.covector());
     let turned = m.is_rotation().then(|| quote!(turn *));
     let in_space = m.is_rotation().then(|| quote!(let acting = turn * acting;));
     let (acting, done) = match l.acting(m) {
@@ -337,7 +337,7 @@ fn arrived(l: &Lines, m: &Moving) -> TokenStream {
     quote! {
         #[doc = #doc]
         #[inline(always)]
-        fn #kernel(&self, acting: #acting, #turn edge: #edge) -> (#t, #edge) {
+        fn #kernel(&self, acting: #acting, #turn edge: #t) -> (#t, #t) {
             #done
         }
     }
@@ -368,7 +368,7 @@ fn stage(l: &Lines, m: &Moving) -> Option<TokenStream> {
         return None;
     }
     let [model, places, pulls] = ["", "Places", "Pulls"].map(|x| l.item(x));
-    let (name, edge, t) = (stage_name(l, m), m.edge(), m.covector());
+    let (name, t) = (stage_name(l, m), m.covector());
     let (acted, arrived) = (kernel(m), arrived_kernel(m));
     let (own, pulled) = (reads(l, m), l.pulled(&m.mover.name));
     let mut windows = Windows::of(&own);
@@ -390,7 +390,7 @@ fn stage(l: &Lines, m: &Moving) -> Option<TokenStream> {
     Some(quote! {
         ::clebsch::in_lanes! {
             /// Momenta that arrive, of several sites together.
-            #name(model: #model<T>, h: T, at: #places<T>, pulls: #pulls<T>) -> #t, #edge
+            #name(model: #model<T>, h: T, at: #places<T>, pulls: #pulls<T>) -> #t, #t
             #windows
             |site, edge| model.#arrived(model.#acted(*h, #(#values),*), #turn edge)
         }

@@ -201,14 +201,6 @@ impl Moving<'_> {
         }
     }
 
-    /// The type of the momentum of its edge.
-    fn edge(&self) -> TokenStream {
-        match self.is_rotation() {
-            true => quote!(SMatrix<T, 3, 1>),
-            false => self.covector(),
-        }
-    }
-
     /// Whether it is a number.
     fn is_number(&self) -> bool {
         let c = &self.d().spec.configurations[self.mover.index];
