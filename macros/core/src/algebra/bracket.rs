@@ -141,7 +141,7 @@ impl Algebra<'_> {
         let mut out = Poly::zero(Shape::SCALAR);
         for (t, c) in &self.hat_word(&z).terms {
             let whole = [&t.word[..], x].concat();
-            let value = self.trace_word(&whole);
+            let value = self.trace_word(&whole, Dim::Fixed(3));
             let Some(c) = c.times(half) else {
                 self.exhaust();
                 return Some(out);
@@ -183,8 +183,9 @@ impl Algebra<'_> {
         Some((true, self.cancelled(swapped)))
     }
 
-    /// The trace of a word.
-    pub(super) fn trace_word(&self, word: &[Factor]) -> Poly {
+    /// The trace of a word whose value has `rows` rows. A word that cancels to the identity has the
+    /// trace `rows`.
+    pub(super) fn trace_word(&self, word: &[Factor], rows: Dim) -> Poly {
         let zero = Poly::zero(Shape::SCALAR);
         if !self.spend(1 + word.len()) {
             return zero;
@@ -193,6 +194,12 @@ impl Algebra<'_> {
         while word.len() > 1 && self.cancel(&word[word.len() - 1], &word[0]) {
             word.pop();
             word.remove(0);
+        }
+        if word.is_empty() {
+            return match rows {
+                Dim::Fixed(n) => Poly::constant(Shape::SCALAR, Rational::integer(i64::from(n))),
+                Dim::Named(i) => self.atom(Rational::ONE, Atom::Dimension(i)),
+            };
         }
         // A cut between a column and a row: the trace is a bracket.
         if let Some(i) = word
@@ -302,14 +309,7 @@ impl Algebra<'_> {
     pub(super) fn trace_poly(&self, a: &Poly) -> Poly {
         let mut out = Poly::zero(Shape::SCALAR);
         for (t, c) in &a.terms {
-            let value = if t.word.is_empty() {
-                match a.shape.rows {
-                    Dim::Fixed(n) => Poly::constant(Shape::SCALAR, Rational::integer(i64::from(n))),
-                    Dim::Named(i) => self.atom(Rational::ONE, Atom::Dimension(i)),
-                }
-            } else {
-                self.trace_word(&t.word)
-            };
+            let value = self.trace_word(&t.word, a.shape.rows);
             for (t2, c2) in &value.terms {
                 match (
                     super::monomial::times(&t.monomial, &t2.monomial),

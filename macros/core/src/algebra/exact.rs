@@ -23,6 +23,9 @@ pub(crate) const POINTS: u64 = 6;
 /// Attempts to find a point where every root exists and every divisor is non-zero.
 pub(crate) const ATTEMPTS: u64 = 100;
 
+/// Attempts of a check that may find no point.
+const FEW_ATTEMPTS: u64 = 4;
+
 /// What a dimension that has only a name stands for.
 #[derive(Clone, Copy)]
 enum Size {
@@ -441,6 +444,22 @@ pub fn vanishes(symbols: &Symbols, e: &Expr) -> bool {
         }
     }
     false
+}
+
+/// Whether the expression has a value other than zero at one random point. `false` where that proves nothing:
+/// functionals of sites have no value here, and of two roots modulo a prime none is the positive one.
+pub fn differs_from_zero(symbols: &Symbols, e: &Expr) -> bool {
+    if has_root(e) {
+        return false;
+    }
+    let value = (0..FEW_ATTEMPTS).find_map(|attempt| Point::new(symbols, attempt).value(e));
+    value.is_some_and(|value| !value.vanishes())
+}
+
+/// Whether a fractional power stands in the expression.
+fn has_root(e: &Expr) -> bool {
+    let is_root = matches!(e.node(), Node::Power(_, q) if q.as_integer().is_none());
+    is_root || e.children().into_iter().any(has_root)
 }
 
 #[cfg(test)]

@@ -68,6 +68,8 @@ enum Excess {
     Coefficient,
     /// So many nodes to be evaluated at points.
     Evaluated(u64),
+    /// A normal form that has another value than the expression at a random point.
+    Contradiction,
 }
 
 /// The normal-form engine of one model: its symbols, the opaque quantities met so far (inverses
@@ -176,17 +178,32 @@ impl<'a> Algebra<'a> {
             return None;
         }
         if normal.is_zero() {
-            return Some(Known::NormalForm);
+            return self.unless_contradicted(e);
         }
         let summed = self.by_parts(&normal);
         if !self.exhausted() && summed.is_some_and(|p| p.is_zero()) {
-            return Some(Known::NormalForm);
+            return self.unless_contradicted(e);
         }
         let in_blocks = self.lower_in_blocks(e);
         if !self.exhausted() && in_blocks.is_some_and(|p| p.is_zero()) {
-            return Some(Known::NormalForm);
+            return self.unless_contradicted(e);
         }
         self.vanishes_at_points(e).then_some(Known::ExactEvaluation)
+    }
+
+    /// `NormalForm`, unless exact evaluation at one random point says that the normal form is wrong.
+    fn unless_contradicted(&self, e: &Expr) -> Option<Known> {
+        if exact::differs_from_zero(self.symbols, e) {
+            self.contradicted();
+            return None;
+        }
+        Some(Known::NormalForm)
+    }
+
+    /// Ends the derivation: a normal form is wrong, so nothing that follows from one can be trusted.
+    pub(crate) fn contradicted(&self) {
+        self.note(Excess::Contradiction);
+        self.work.set(u64::MAX);
     }
 
     fn vanishes_at_points(&self, e: &Expr) -> bool {
@@ -248,6 +265,11 @@ impl<'a> Algebra<'a> {
             ),
             Some(Excess::Coefficient) => {
                 "a coefficient of its normal form is no fraction of whole numbers below 2^127"
+                    .to_owned()
+            }
+            Some(Excess::Contradiction) => {
+                "a normal form has another value than the expression it stands for, which is a fault of clebsch: please report \
+                 this model"
                     .to_owned()
             }
             _ if spent > work_limit() => format!(

@@ -153,14 +153,20 @@ impl Algebra<'_> {
         Some(normal)
     }
 
-    /// The smallest expression that the normal forms give.
+    /// The smallest expression that the normal forms give. A form that has another value at a random
+    /// point ends the derivation.
     pub fn shortest(&self, e: &Expr) -> Expr {
         let whole = self.raise(&self.lower(e));
         let blocks = self.lower_in_blocks(e).map(|p| self.raise(&p));
-        match blocks {
+        let found = match blocks {
             Some(blocks) if blocks.size() < whole.size() => blocks,
             _ => whole,
+        };
+        let difference = crate::expr::sub(e.clone(), found.clone());
+        if !self.exhausted() && super::exact::differs_from_zero(self.symbols, &difference) {
+            self.contradicted();
         }
+        found
     }
 
     /// What two adjacent constant factors make: nothing to say, a shorter word, or zero.

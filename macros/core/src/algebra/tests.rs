@@ -273,3 +273,53 @@ fn fractional_powers_multiply_to_whole_ones() {
         }
     }
 }
+
+/// A product of orthogonal letters that cancels to the identity has the trace 3, also where the product
+/// comes out of two axial vectors.
+#[test]
+fn squares_of_axial_vectors_keep_the_trace_of_the_identity() {
+    let mut symbols = Symbols::default();
+    let square = Shape::square(Dim::Fixed(3));
+    for (name, structure) in [
+        ("R", Structure::Orthogonal),
+        ("S", Structure::Orthogonal),
+        ("A", Structure::General),
+        ("B", Structure::General),
+    ] {
+        symbols.add(name, square, structure, Role::Parameter);
+    }
+    let at = |name: &str| expr::here(&symbols, symbols.find(name).unwrap());
+    let t = |e: Expr| expr::transpose(&symbols, e);
+    let axial = |a: Expr, b: Expr| expr::dot(expr::vee(a), expr::vee(b));
+    // 4 vee(A) . vee(B) = tr(A B^T) - tr(A B).
+    let by_traces = |a: Expr, b: Expr| {
+        let difference = expr::sub(
+            expr::trace(expr::mul(a.clone(), t(b.clone()))),
+            expr::trace(expr::mul(a, b)),
+        );
+        expr::scale(Rational::QUARTER, difference)
+    };
+    let (r, s) = (at("R"), at("S"));
+    let product = expr::mul(r.clone(), s.clone());
+    for (a, b) in [
+        (r.clone(), r.clone()),
+        (r.clone(), t(r.clone())),
+        (r.clone(), s.clone()),
+        (product.clone(), product.clone()),
+        (product, expr::mul(t(s), t(r.clone()))),
+        (at("A"), at("B")),
+        (at("A"), at("A")),
+        (expr::mul(r.clone(), at("A")), expr::mul(r, at("A"))),
+    ] {
+        let algebra = Algebra::new(&symbols);
+        let (given, wanted) = (axial(a.clone(), b.clone()), by_traces(a, b));
+        let whole = expr::mul(given.clone(), given.clone());
+        assert!(algebra.equal(&given, &wanted), "{given:?}");
+        let squared = expr::mul(wanted.clone(), wanted);
+        assert!(algebra.equal(&whole, &squared), "{given:?}");
+        assert!(
+            algebra.agree(&given, &algebra.shortest(&given)),
+            "{given:?}"
+        );
+    }
+}
