@@ -5,6 +5,7 @@
 use super::Letters;
 use super::action::Action;
 use super::far;
+use super::rounding::{Displacements, Rounding};
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
 use crate::check::spec::{Configuration, Spec};
@@ -96,11 +97,9 @@ fn balance(
                 terms.push(pairing(letters, &g, &change));
             }
         }
-        let total = expr::sum(terms, Shape::SCALAR);
-        let value = dual(total);
-        shorter(algebra, value)
+        dual(expr::sum(terms, Shape::SCALAR))
     };
-    let nodes = |shift| nodes_of(l, shift);
+    let nodes_short = |l: &Expr, shift| shorter(algebra, nodes_of(l, shift));
     let advected_gradients = spec
         .advected
         .iter()
@@ -110,19 +109,31 @@ fn balance(
         })
         .collect();
     let before = expr::shift_time(s, l, Shift::PREVIOUS.time);
-    let (edge_out, edge_in) = (shorter(algebra, edge_out), shorter(algebra, edge_in));
-    let (node_out, node_in) = (expr::neg(nodes(Shift::HERE)), nodes(Shift::NEXT));
-    let total = |a: &Expr, b: &Expr| {
+    let (derived_out, derived_in) = (edge_out, edge_in);
+    let (edge_out, edge_in) = (
+        shorter(algebra, derived_out.clone()),
+        shorter(algebra, derived_in.clone()),
+    );
+    let (node_out, node_in) = (
+        expr::neg(nodes_short(l, Shift::HERE)),
+        nodes_short(l, Shift::NEXT),
+    );
+    let total = |a: &Expr, b: &Expr, derived: &dyn Fn() -> Expr| {
         let whole = shorter(algebra, expr::add(a.clone(), b.clone()));
-        without_zeros(algebra, whole)
+        rounded_least(spec, s, without_zeros(algebra, whole), derived)
     };
-    let (outgoing, incoming) = (total(&edge_out, &node_out), total(&edge_in, &node_in));
+    let outgoing = total(&edge_out, &node_out, &|| {
+        expr::sub(derived_out.clone(), nodes_of(l, Shift::HERE))
+    });
+    let incoming = total(&edge_in, &node_in, &|| {
+        expr::add(derived_in.clone(), nodes_of(l, Shift::NEXT))
+    });
     // What potentials add, if that is all that the step adds.
     let acting = || {
         if c.side.is_body() {
             return None;
         }
-        let at = |shift| nodes_of(&action.distributed, shift);
+        let at = |shift| nodes_short(&action.distributed, shift);
         let added = shorter(algebra, expr::add(at(Shift::HERE), at(Shift::NEXT)));
         let step = expr::sub(incoming.clone(), outgoing.clone());
         let rest = forward(spec, s, &expr::sub(step, added.clone()));
@@ -150,6 +161,47 @@ fn balance(
         advected_gradients,
         variation_out: expr::directional(s, l, &v.on_outgoing()),
         variation_in: expr::directional(s, &before, &v.on_incoming()),
+    }
+}
+
+/// Rounding of a momentum that is linear in the velocity: a rounded matrix, divided by the step.
+const LINEAR: f64 = -1.0;
+
+/// Largest momentum of which several forms are compared.
+const LARGEST: u32 = 2_000;
+
+/// The short form of a momentum, or another one that rounds less at small steps: as it is derived, where powers of
+/// `vee(Ω)` stay products of small numbers, or by velocities less the identity. The short form stays where it rounds no
+/// more than a momentum that is linear in the velocity, unless the derived one is not rounded more at small steps at all.
+fn rounded_least(spec: &Spec, symbols: &Symbols, short: Expr, derived: &dyn Fn() -> Expr) -> Expr {
+    if short.size() > LARGEST || !expr::contains_role(symbols, &short, Role::Velocity) {
+        return short;
+    }
+    let displacements = Displacements::of(spec, symbols);
+    let algebra = Algebra::new(&displacements.symbols);
+    let rounding = Rounding {
+        spec,
+        symbols: &displacements.symbols,
+        algebra: &algebra,
+    };
+    let known = rounding.error(&short);
+    if known >= 0.0 {
+        return short;
+    }
+    let derived = derived();
+    // It reads as the Lagrangian does.
+    let least = if known < LINEAR { LINEAR } else { 0.0 };
+    if rounding.error(&derived) >= least {
+        return derived;
+    }
+    if known >= LINEAR {
+        return short;
+    }
+    let small = displacements.normal_form(spec, &algebra, &short);
+    let best = rounding.best(vec![short.clone(), derived, small]);
+    match algebra.exhausted() {
+        true => short,
+        false => best,
     }
 }
 

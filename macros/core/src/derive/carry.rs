@@ -6,14 +6,13 @@ use super::Letters;
 use super::action::Action;
 use super::axial::Axial;
 use super::balance::{Balance, shorter};
-use super::far;
-use super::rounding::Rounding;
+use super::rounding::{Displacements, Rounding};
 use super::transport::Transport;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
 use crate::check::spec::{Configuration, Spec};
-use crate::expr::shape::{Shape, Structure};
-use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::expr::shape::Shape;
+use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 
 /// How the node momentum of one configuration is carried, covectors in the frame of its side.
@@ -71,25 +70,14 @@ pub struct Inputs<'a> {
 
 /// How every momentum is carried.
 pub fn carries(inputs: &Inputs) -> Vec<Carry> {
-    // Velocities less the identity, in which small terms are small.
-    let mut symbols = inputs.letters.symbols.clone();
-    let configurations = inputs.spec.configurations.iter();
-    let small: Vec<Option<SymbolId>> = configurations
-        .map(|c| {
-            let matrices = c.group.coordinates().is_none() && !c.group.is_additive();
-            matrices.then(|| {
-                let name = symbols.fresh_name("D");
-                let shape = c.group.shape();
-                symbols.add(&name, shape, Structure::General, Role::Velocity)
-            })
-        })
-        .collect();
-    let algebra = Algebra::new(&symbols);
+    let displacements = Displacements::of(inputs.spec, &inputs.letters.symbols);
+    let symbols = &displacements.symbols;
+    let algebra = Algebra::new(symbols);
     let work = Work {
         inputs,
-        symbols: &symbols,
+        symbols,
         algebra: &algebra,
-        small: &small,
+        displacements: &displacements,
     };
     (0..inputs.balances.len()).map(|i| work.carry(i)).collect()
 }
@@ -98,7 +86,7 @@ struct Work<'a> {
     inputs: &'a Inputs<'a>,
     symbols: &'a Symbols,
     algebra: &'a Algebra<'a>,
-    small: &'a [Option<SymbolId>],
+    displacements: &'a Displacements,
 }
 
 impl Work<'_> {
@@ -166,7 +154,7 @@ impl Work<'_> {
             let changes: Vec<(Letter, Expr)> = changes.collect();
             let derived = self.covector(i, c, &self.inputs.action.total, &changes);
             let all = [e, derived].into_iter().flat_map(|e| self.forms(&e));
-            self.best(all.collect())
+            self.rounding().best(all.collect())
         };
         Carry::Through {
             leave: least(leave, Shift::HERE.time),
@@ -218,12 +206,13 @@ impl Work<'_> {
         let apart = each.iter().zip(&terms).map(|(e, t)| {
             let turned = axial.as_ref().and_then(|axial| axial.covector(t));
             let all = turned.into_iter().chain([e.clone()]);
-            self.best(all.flat_map(|e| self.forms(&e)).collect())
+            self.rounding()
+                .best(all.flat_map(|e| self.forms(&e)).collect())
         });
         let apart = expr::sum(apart.collect::<Vec<_>>(), shape);
         let mut all = vec![apart];
         all.extend(self.forms(&total));
-        self.best(all)
+        self.rounding().best(all)
     }
 
     /// How everything on the edge changes when its two ends are moved alike.
@@ -335,41 +324,11 @@ impl Work<'_> {
     /// The same covector as it was derived, in its normal form, and in that of velocities less the
     /// identity.
     fn forms(&self, e: &Expr) -> Vec<Expr> {
-        let s = self.symbols;
-        let (mut there, mut back) = (Vec::new(), Vec::new());
-        for (c, small) in self.inputs.spec.configurations.iter().zip(self.small) {
-            if let Some(small) = small {
-                let (velocity, one) = (at(c.velocity, Shift::HERE), c.group.identity());
-                let whole = expr::add(expr::here(s, *small), one.clone());
-                there.push((velocity, whole));
-                let less = expr::sub(expr::here(s, c.velocity), one);
-                back.push((at(*small, Shift::HERE), less));
-            }
-        }
-        let in_small = expr::substitute(s, e, &there);
-        let in_small = self.algebra.shortest(&in_small);
         vec![
             e.clone(),
             shorter(self.algebra, e.clone()),
-            expr::substitute(s, &in_small, &back),
+            self.displacements
+                .normal_form(self.inputs.spec, self.algebra, e),
         ]
-    }
-
-    /// The one that rounds least at small steps, of those least far from the origin, and of those
-    /// the shortest.
-    fn best(&self, forms: Vec<Expr>) -> Expr {
-        let rounding = self.rounding();
-        let mut best: Option<((f64, f64), Expr)> = None;
-        for form in forms {
-            let small = rounding.error(&form).min(0.0);
-            let kept = (small, -far::error(self.algebra, &form));
-            let better = best.as_ref().is_none_or(|(least, known)| {
-                kept > *least || kept == *least && form.size() < known.size()
-            });
-            if better {
-                best = Some((kept, form));
-            }
-        }
-        best.map_or_else(|| expr::integer(0), |(_, form)| form)
     }
 }

@@ -2,10 +2,13 @@
 //! and `(Ω - 1) a / h` keeps sixteen digits of what `Ω a / h - a / h` loses. Takes expressions; gives
 //! the power of the step that they are of, and that of their rounding.
 
+use super::far;
 use crate::algebra::Algebra;
 use crate::check::spec::Spec;
-use crate::expr::symbol::{Role, Symbols};
+use crate::expr::shape::Structure;
+use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Map, Node, Shift};
+use crate::schedule;
 
 /// Powers of the step: `size` that of the value, `error` that of its rounding, in units of
 /// `EPSILON`. What is exact has an infinite one.
@@ -27,7 +30,73 @@ pub struct Rounding<'a> {
     pub algebra: &'a Algebra<'a>,
 }
 
+/// Letters for velocities less the identity: small terms are small when they are written in these.
+pub struct Displacements {
+    /// The letters of the model and those of the displacements.
+    pub symbols: Symbols,
+    /// One for each configuration whose velocity is a matrix that keeps its own coordinates.
+    letters: Vec<Option<SymbolId>>,
+}
+
+impl Displacements {
+    /// Adds the letters for a model.
+    pub fn of(spec: &Spec, symbols: &Symbols) -> Displacements {
+        let mut symbols = symbols.clone();
+        let configurations = spec.configurations.iter();
+        let letters = configurations
+            .map(|c| {
+                let matrices = c.group.coordinates().is_none() && !c.group.is_additive();
+                matrices.then(|| {
+                    let name = symbols.fresh_name("D");
+                    let shape = c.group.shape();
+                    symbols.add(&name, shape, Structure::General, Role::Velocity)
+                })
+            })
+            .collect();
+        Displacements { symbols, letters }
+    }
+
+    /// The normal form of an expression in displacements, written by velocities again.
+    pub fn normal_form(&self, spec: &Spec, algebra: &Algebra, e: &Expr) -> Expr {
+        let s = &self.symbols;
+        let (mut there, mut back) = (Vec::new(), Vec::new());
+        for (c, small) in spec.configurations.iter().zip(&self.letters) {
+            if let Some(small) = small {
+                let here = |symbol| Letter {
+                    symbol,
+                    shift: Shift::HERE,
+                };
+                let one = c.group.identity();
+                there.push((
+                    here(c.velocity),
+                    expr::add(expr::here(s, *small), one.clone()),
+                ));
+                back.push((here(*small), expr::sub(expr::here(s, c.velocity), one)));
+            }
+        }
+        let in_small = expr::substitute(s, e, &there);
+        expr::substitute(s, &algebra.shortest(&in_small), &back)
+    }
+}
+
 impl Rounding<'_> {
+    /// The form that rounds least at small steps, of those least far from the origin, and of those
+    /// the shortest.
+    pub fn best(&self, forms: Vec<Expr>) -> Expr {
+        let mut best: Option<((f64, f64), Expr)> = None;
+        for form in forms {
+            let small = self.error(&form).min(0.0);
+            let kept = (small, -far::error(self.algebra, &form));
+            let better = best.as_ref().is_none_or(|(least, known)| {
+                kept > *least || kept == *least && form.size() < known.size()
+            });
+            if better {
+                best = Some((kept, form));
+            }
+        }
+        best.map_or_else(|| expr::integer(0), |(_, form)| form)
+    }
+
     /// The power of the step that the rounding of an expression is of.
     pub fn error(&self, e: &Expr) -> f64 {
         self.order(e).error
@@ -76,6 +145,10 @@ impl Rounding<'_> {
             size,
             error: f64::INFINITY,
         };
+        let small = Order {
+            size: 1.0,
+            error: 1.0,
+        };
         match e.node() {
             Node::Number(_)
             | Node::Constant(_)
@@ -84,10 +157,15 @@ impl Rounding<'_> {
             | Node::Unit(..)
             | Node::Inclusion(..) => exact(0.0),
             Node::Letter(l) => {
-                let small = self.symbols.get(l.symbol).role == Role::Step || self.is_increment(l);
-                let size = f64::from(u8::from(small));
+                let is_small =
+                    self.symbols.get(l.symbol).role == Role::Step || self.is_increment(l);
+                let size = f64::from(u8::from(is_small));
                 Order { size, error: size }
             }
+            // Emitted with all digits of the difference.
+            Node::Sum(_) if schedule::is_difference(self.symbols, e) => small,
+            // Entries off the diagonal have digits of their own.
+            Node::Vee(a) if schedule::at_rest(self.symbols, a).is_some() => small,
             Node::Sum(terms) => {
                 let all = terms.iter().map(|t| self.order(t));
                 let inside = all.fold(exact(f64::INFINITY), |a, b| Order {
@@ -110,10 +188,7 @@ impl Rounding<'_> {
             Node::Map(Map::Imaginary | Map::Translation, a)
                 if matches!(a.node(), Node::Letter(_)) && self.moves(a) =>
             {
-                Order {
-                    size: 1.0,
-                    error: 1.0,
-                }
+                small
             }
             Node::Map(_, a) => self.cancelling(e, self.order(a)),
             Node::Inverse(a) | Node::Det(a) | Node::Adjugate(a) | Node::Call(_, a) => Order {
