@@ -116,7 +116,11 @@ pub fn summands(symbols: &Symbols, e: &Expr) -> Vec<Expr> {
             let (Some((i, only)), None) = (sums.next(), sums.next()) else {
                 return vec![e.clone()];
             };
-            let terms = joined(symbols, summands(symbols, only));
+            let mut terms = joined(symbols, summands(symbols, only));
+            let others = factors.iter().enumerate().filter(|(k, _)| *k != i);
+            if others.clone().any(|(_, f)| moves(symbols, f)) {
+                terms = with_constants(symbols, terms);
+            }
             if terms.len() < 2 {
                 return vec![e.clone()];
             }
@@ -130,6 +134,31 @@ pub fn summands(symbols: &Symbols, e: &Expr) -> Vec<Expr> {
         _ if e.is_zero() => Vec::new(),
         _ => vec![e.clone()],
     }
+}
+
+fn moves(symbols: &Symbols, e: &Expr) -> bool {
+    !matches!(place(symbols, e), Place::Constant)
+}
+
+/// Terms with the constant ones added to the first that lives on the edge. In `q^2*(3 - tr(Ω))` both belong to one
+/// kinetic energy: taken apart, `3*q^2` would be a term at one node, and half of it would move to another edge.
+fn with_constants(symbols: &Symbols, terms: Vec<Expr>) -> Vec<Expr> {
+    let is_edge = |t: &Expr| matches!(place(symbols, t), Place::Edge);
+    if !terms.iter().any(is_edge) {
+        return terms;
+    }
+    let (mut moving, constant): (Vec<Expr>, Vec<Expr>) =
+        terms.into_iter().partition(|t| moves(symbols, t));
+    if let Some(edge) = moving.iter_mut().find(|t| is_edge(t)) {
+        *edge = expr::sum(
+            constant
+                .into_iter()
+                .chain([edge.clone()])
+                .collect::<Vec<_>>(),
+            Shape::SCALAR,
+        );
+    }
+    moving
 }
 
 /// Terms with each that is another one a step later, the other way, added to that one: `F(next(X)) - F(X)`.
