@@ -85,6 +85,8 @@ pub struct Lattice {
     pub(super) numbers: BTreeSet<String>,
     /// Names that move, at sites or not.
     pub(super) moving: BTreeSet<String>,
+    /// Velocities of groups, at sites or not.
+    pub(super) velocities: BTreeSet<String>,
     /// Every name that is declared.
     pub(super) declared: BTreeSet<String>,
 }
@@ -264,6 +266,7 @@ impl Lattice {
                 Statement::Group { name, velocity, .. } => {
                     self.moving.insert(name.text.clone());
                     self.moving.insert(velocity.text.clone());
+                    self.velocities.insert(velocity.text.clone());
                 }
                 Statement::End { alternatives, .. } => {
                     for (names, shape) in alternatives.iter().flat_map(|a| &a.params) {

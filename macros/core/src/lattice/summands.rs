@@ -100,7 +100,15 @@ fn product(lattice: &Lattice, e: &Expression, factors: &[Expression]) -> Vec<Exp
     if !factors.iter().all(|f| is_number(lattice, f)) {
         return vec![e.clone()];
     }
-    let split = factors.iter().map(|f| split(lattice, f, false));
+    let moves = |e: &Expression| contains(e, &|e| is_moving(lattice, e));
+    let split = factors.iter().enumerate().map(|(i, f)| {
+        let others = factors.iter().enumerate().filter(|(k, _)| *k != i);
+        let terms = split(lattice, f, false);
+        match others.map(|(_, other)| other).any(moves) {
+            true => with_constants(lattice, f, terms),
+            false => terms,
+        }
+    });
     let split: Vec<Vec<Expression>> = split.collect();
     let mut sums = (0..split.len()).filter(|i| split[*i].len() > 1);
     let (Some(place), None) = (sums.next(), sums.next()) else {
@@ -112,6 +120,44 @@ fn product(lattice: &Lattice, e: &Expression, factors: &[Expression]) -> Vec<Exp
         with(e, Kind::Product(list))
     });
     parts.collect()
+}
+
+/// Terms with the constant ones added to the first that holds a velocity: `3 - tr(Ω)` is one kinetic energy, whose
+/// constant is no term of a node in time.
+fn with_constants(lattice: &Lattice, e: &Expression, terms: Vec<Expression>) -> Vec<Expression> {
+    let on_edge = |e: &Expression| contains(e, &|e| is_of_the_edge(lattice, e));
+    if !terms.iter().any(on_edge) {
+        return terms;
+    }
+    let moves = |e: &Expression| contains(e, &|e| is_moving(lattice, e));
+    let (mut moving, constant): (Vec<_>, Vec<_>) = terms.into_iter().partition(moves);
+    if let Some(edge) = moving
+        .iter_mut()
+        .find(|t| on_edge(t))
+        .filter(|_| !constant.is_empty())
+    {
+        let all = constant.into_iter().chain([edge.clone()]);
+        *edge = with(e, Kind::Sum(all.map(|t| (false, t)).collect()));
+    }
+    moving
+}
+
+/// Whether this holds for an expression or a part of it.
+fn contains(e: &Expression, holds: &dyn Fn(&Expression) -> bool) -> bool {
+    holds(e) || e.parts().into_iter().any(|part| contains(part, holds))
+}
+
+fn is_moving(lattice: &Lattice, e: &Expression) -> bool {
+    matches!(&e.kind, Kind::Name(n) if lattice.moving.contains(n))
+}
+
+/// Whether it is a velocity, or something at the next node in time.
+fn is_of_the_edge(lattice: &Lattice, e: &Expression) -> bool {
+    match &e.kind {
+        Kind::Name(n) => lattice.velocities.contains(n),
+        Kind::Call(f, arguments) => f.text == "next" && arguments.len() == 1,
+        _ => false,
+    }
 }
 
 fn with(e: &Expression, kind: Kind) -> Expression {
