@@ -8,6 +8,7 @@
 pub mod action;
 pub mod dual;
 pub mod eval;
+pub mod pair;
 pub mod points;
 pub mod random;
 pub mod sides;
