@@ -13,4 +13,5 @@ pub mod points;
 pub mod random;
 pub mod sides;
 pub mod square;
+pub mod step;
 pub mod wide;
