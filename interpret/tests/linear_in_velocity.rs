@@ -4,7 +4,10 @@
 
 #![allow(missing_docs, deprecated)]
 
+#[path = "steps/rotations.rs"]
+mod rotations;
 mod side_by_side;
+mod steps;
 
 use clebsch::card::{Card, Field, Settings, Trajectory};
 use clebsch::scalar::largest;

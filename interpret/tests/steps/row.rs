@@ -1,0 +1,84 @@
+//! A model of the table: its text, its action typed by hand, and what is known of its steps.
+
+use clebsch_oracle::oracle::step::Action;
+
+/// Values by the names of fields.
+pub type Named = std::collections::BTreeMap<&'static str, Vec<f64>>;
+
+/// A model.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Its text.
+    pub text: &'static str,
+    /// Its action.
+    pub action: Action,
+    /// Parameters that are inertias: positive, and of the scale of masses.
+    pub inertias: &'static [&'static str],
+    /// Numbers and places that stay positive.
+    pub positive: &'static [&'static str],
+    /// Puts random data where constraints hold them.
+    pub settle: fn(&mut Named),
+    /// Data on which no motion depends.
+    pub idle: &'static [&'static str],
+    /// How many of the steps are refused.
+    pub refused: usize,
+    /// What is off beyond the bound, where that is known.
+    pub known: Option<f64>,
+}
+
+impl Row {
+    /// A model whose steps are all made.
+    pub const fn of(text: &'static str, action: Action, inertias: &'static [&'static str]) -> Self {
+        Self {
+            text,
+            action,
+            inertias,
+            positive: &[],
+            settle: |_| {},
+            idle: &[],
+            refused: 0,
+            known: None,
+        }
+    }
+
+    /// With what stays positive.
+    #[must_use]
+    pub const fn positive(self, positive: &'static [&'static str]) -> Self {
+        Self { positive, ..self }
+    }
+
+    /// With data that are put where constraints hold them.
+    #[must_use]
+    pub const fn settled(self, settle: fn(&mut Named)) -> Self {
+        Self { settle, ..self }
+    }
+
+    /// With data on which no motion depends.
+    #[must_use]
+    pub const fn idle(self, idle: &'static [&'static str]) -> Self {
+        Self { idle, ..self }
+    }
+
+    /// With so many steps that are refused.
+    #[must_use]
+    pub const fn refused(self, refused: usize) -> Self {
+        Self { refused, ..self }
+    }
+
+    /// With what it misses.
+    #[must_use]
+    pub const fn misses(self, off: f64) -> Self {
+        Self {
+            known: Some(off),
+            ..self
+        }
+    }
+
+    /// The name of the model.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        let mut words = self.text.split_whitespace();
+        words.find(|w| *w == "model");
+        words.next().unwrap_or("")
+    }
+}
