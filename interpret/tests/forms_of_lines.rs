@@ -3,6 +3,10 @@
 
 #![allow(missing_docs, mixed_script_confusables)]
 
+#[path = "steps/lines.rs"]
+mod lines_table;
+mod steps;
+
 use clebsch::scalar::largest;
 use clebsch::{Dual, Real};
 use clebsch_core::lattice::{Choice, Lattice};
