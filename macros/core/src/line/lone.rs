@@ -9,6 +9,7 @@ use crate::check::{self, spec::Side};
 use crate::derive::carry::Carry;
 use crate::derive::explicit::Explicit;
 use crate::derive::recognise::{MoserVeselov, Riccati};
+use crate::derive::transport::Transport;
 use crate::derive::{self, Derivation, Outline};
 use crate::diagnostic::Errors;
 use crate::expr::symbol::Role;
@@ -130,6 +131,7 @@ fn one(
     let terms: Vec<Expression> = terms.map(|t| t.stated.clone()).collect();
     let spec = check::check_written_out(&alone(model, lattice, (label, sites), terms)?)?;
     let d = derive::derive(spec).map_err(Errors::first_at_each_place)?;
+    without_carried(&d)?;
     let blocks: Vec<Vec<usize>> = match d.solve.blocks.as_slice() {
         [] => vec![(0..d.spec.configurations.len()).collect()],
         blocks => blocks.iter().map(|b| b.members.clone()).collect(),
@@ -185,6 +187,22 @@ fn one(
         movers,
         blocks,
     })
+}
+
+/// Refuses terms with quantities that no definition gives: a line keeps no values of them from step to step.
+fn without_carried(d: &Derivation) -> Result<(), Refused> {
+    let s = &d.letters.symbols;
+    let stated = expr::letters(&d.spec.lagrangian);
+    for (a, transport) in d.spec.advected.iter().zip(&d.transports) {
+        let is_used = stated.iter().any(|l| l.symbol == a.quantity);
+        if is_used && !matches!(transport, Transport::Defined(_)) {
+            return Err(Refused::Form(format!(
+                "`{}` is carried from its value at the start: loops over sites take what its definition gives",
+                s.get(a.quantity).name
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// The model of one site: what is declared there, and the terms that it has by itself.

@@ -282,6 +282,25 @@ fn loops_over_sites_keep_no_time() {
     assert!(why.contains("goes on with the step by itself"), "{why}");
 }
 
+#[test]
+fn what_no_definition_gives_is_refused_where_a_site_sees_it() {
+    let fields =
+        "field x: Real at nodes; advected y: Real at nodes; constraint next(y) = y + (next(x) - x);
+        lagrangian = m*(next(x) - x)^2/(2*h) - h*m*y^2 - h*(next(x, i) - x)^2";
+    let turned = "group Λ: SO<3> at nodes velocity Ω; constraint next(Λ) = Λ*Ω; param J: Sym<3>;
+        advected y: Vec<3> at nodes; constraint next(y) = Ω^T*y;
+        lagrangian = (1/h)*tr((Id - Ω)*((tr(J)/2)*Id - J)) - h*m*dot(y, E1) + h*tr(Λ^T*next(Λ, i))";
+    for text in [fields, turned] {
+        let refused = line(&format!(
+            "model M {{ label i in 0..N; param m: Real at nodes; {text}; }}"
+        ));
+        let Err(Refused::Form(why)) = refused else {
+            panic!("what is carried is taken");
+        };
+        assert!(why.contains("`y` is carried from its value"), "{why}");
+    }
+}
+
 /// Beads in space that springs join, with these ends at either side.
 fn strung(first: &str, last: &str) -> Line {
     let text = format!(
