@@ -3,6 +3,10 @@
 
 #![allow(missing_docs)]
 
+#[path = "lattices/between_walls.rs"]
+mod between_walls;
+#[path = "lattices/prescribed.rs"]
+mod prescribed;
 mod side_by_side;
 
 use clebsch::card::{Card, Settings, Trajectory};
@@ -28,19 +32,22 @@ clebsch::model! {
     }
 }
 
-fn card(source: &str, count: usize, ring: bool, ends: [&str; 2]) -> Card {
+fn choice(source: &str, count: usize, ring: bool, ends: [&str; 2]) -> Choice {
     let model = pipeline::parse_source(source).unwrap();
     let lattice = Lattice::read(&model).unwrap();
     let choice = Choice::representative(&lattice, 1);
     let choice = choice.with_count(&lattice, "i", count).unwrap();
-    let choice = match ring {
+    match ring {
         true => choice.with_ring(&lattice).unwrap(),
         false => {
             let first = choice.with_end(&lattice, false, ends[0]).unwrap();
             first.with_end(&lattice, true, ends[1]).unwrap()
         }
-    };
-    clebsch_interpret::card_on_lattice(source, &choice)
+    }
+}
+
+fn card(source: &str, count: usize, ring: bool, ends: [&str; 2]) -> Card {
+    clebsch_interpret::card_on_lattice(source, &choice(source, count, ring, ends))
         .expect("is read")
         .0
 }

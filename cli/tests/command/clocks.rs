@@ -54,3 +54,40 @@ fn a_clock_tells_the_time_after_many_steps() {
     }
     assert_eq!(last, 200.0);
 }
+
+/// A bead on a spring to a bead that an end holds, at rest at the start and driven by `F sin(ω t)`.
+#[test]
+fn a_clock_goes_on_where_an_end_prescribes_a_value() {
+    let folder = Folder::new("driven-bead");
+    let model = folder.write(
+        "driven.clebsch",
+        "model Driven {
+            label i in 0..N;
+            param m, k, F, w: Real;
+            field q: Real at nodes;
+            advected t: Real at nodes;
+            constraint next(t) = t + h;
+            lagrangian = m*(next(q) - q)^2/(2*h) - h*k*(next(q, i) - q)^2/2 + h*F*sin(w*t)*q;
+            end i = 0 { free; pinned { q = given; } }
+        }",
+    );
+    let case = folder.write(
+        "driven.toml",
+        "model = \"driven\"\nname = \"d\"\ndoc = \"d\"\nh = 0.01\nsteps = 1000\n[labels]\ni = 1\n\
+         [ends]\ni = [\"pinned\", \"free\"]\n[parameters]\nm = 1.0\nk = 1.0\nF = 1.0\nw = 0.5\n\
+         [initial]\nq = 0.0\nmomentum_q = 0.0\nt = 0.0\n",
+    );
+    let out = folder.path("out");
+    let done = clebsch(&["run", &model, "--case", &case, "--out", &out]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    let table = std::fs::read_to_string(folder.path("out/trajectory.csv")).expect("written");
+    let mut lines = table.lines().filter(|line| !line.starts_with('#'));
+    let head: Vec<&str> = lines.next().expect("a head").split(',').collect();
+    let last: Vec<&str> = lines.next_back().expect("a row").split(',').collect();
+    let at = head.iter().position(|x| *x == "q_1").expect("q_1");
+    let found: f64 = last[at].parse().expect("a number");
+    let (w, t) = (0.5_f64, 10.0_f64);
+    let wanted = ((w * t).sin() - w * t.sin()) / (1.0 - w * w);
+    // The step is of second order, and h² is 1e-4.
+    assert!((found - wanted).abs() < 1e-4, "{found} for {wanted}");
+}

@@ -70,6 +70,13 @@ pub fn sides(model: &Model, a: &Expression, b: &Expression) -> Option<(Expr, Exp
     Elaborator::new(&names, Vec::new()).pair(a, b).ok()
 }
 
+/// Whether two expressions are the same, in the names of a model; `false` where they have no common shape.
+pub fn are_same(model: &Model, a: &Expression, b: &Expression) -> bool {
+    let names = declare::declare(model, &mut Errors::new());
+    let both = Elaborator::new(&names, Vec::new()).pair(a, b);
+    both.is_ok_and(|(a, b)| crate::algebra::Algebra::new(&names.symbols).equal(&a, &b))
+}
+
 /// The shape of a parameter as declared, where it is one.
 pub fn parameter_shape(symbols: &Symbols, declared: &Kindred) -> Option<(Shape, Structure)> {
     shapes::shape(symbols, declared, &mut Errors::new())

@@ -113,6 +113,16 @@ impl Lattice {
         self.quantities.iter().find(|q| q.name.text == name)
     }
 
+    /// The quantity that a name of the model written out is a copy of.
+    pub(super) fn of_copy(&self, name: &str) -> Option<&Quantity> {
+        if self.declared.contains(name) {
+            return None;
+        }
+        let (base, site) = name.rsplit_once('_')?;
+        site.parse::<usize>().ok()?;
+        self.find(base)
+    }
+
     /// The field whose values lie in a domain.
     pub fn places(&self) -> Option<&Quantity> {
         self.quantities.iter().find(|q| q.domain.is_some())

@@ -192,13 +192,10 @@ impl Put<'_> {
 
     /// Whether something in an expression that is written out moves.
     pub(super) fn is_moving(&self, e: &Expression) -> bool {
-        let copy = |n: &str| {
-            let base = n.rsplit_once('_').map_or(n, |(base, _)| base);
-            let moves = self.lattice.moving.contains(base) && self.lattice.find(base).is_some();
-            moves && !self.pinned.contains_key(n)
-        };
-        let global = |n: &str| self.lattice.moving.contains(n) && self.lattice.find(n).is_none();
-        any_name(e, &|n| copy(n) || global(n))
+        any_name(e, &|n| match self.lattice.of_copy(n) {
+            Some(q) => self.lattice.moving.contains(&q.name.text) && !self.pinned.contains_key(n),
+            None => self.lattice.moving.contains(n) && self.lattice.find(n).is_none(),
+        })
     }
 
     fn moves(&self, e: &Expression, names: &std::collections::BTreeSet<String>) -> bool {

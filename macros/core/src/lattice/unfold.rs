@@ -6,6 +6,8 @@ mod holds;
 mod lagrangian;
 mod mesh;
 mod pinned;
+#[cfg(test)]
+mod pinned_tests;
 mod totals;
 mod warned;
 #[cfg(test)]

@@ -271,15 +271,20 @@ fn rotations_whose_equation_is_another_are_found_by_newtons_method_at_their_site
 
 #[test]
 fn loops_over_sites_keep_no_time() {
-    let refused = line(
-        "model M { label i in 0..N; param m, K: Real at nodes; param c, A, w: Real; field x: Real at nodes; \
-         advected τ: Real at nodes; constraint next(τ) = τ + h; let V = (next(x) - x)/h; \
-         lagrangian = h*m*V^2/2 - (h*c/2)*(next(x, i) - x)^2 - (h*K/2)*(x - A*sin(w*τ))^2; }",
-    );
-    let Err(Refused::Form(why)) = refused else {
-        panic!("a clock is taken");
-    };
-    assert!(why.contains("goes on with the step by itself"), "{why}");
+    for ends in [
+        "",
+        "end i = 0 { pinned { x = given; } free; } end i = N { pinned { x = given; } }",
+    ] {
+        let refused = line(&format!(
+            "model M {{ label i in 0..N; param m, K: Real at nodes; param c, A, w: Real; field x: Real at nodes;
+             advected τ: Real at nodes; constraint next(τ) = τ + h; let V = (next(x) - x)/h;
+             lagrangian = h*m*V^2/2 - (h*c/2)*(next(x, i) - x)^2 - (h*K/2)*(x - A*sin(w*τ))^2; {ends} }}"
+        ));
+        let Err(Refused::Form(why)) = refused else {
+            panic!("a clock is taken");
+        };
+        assert!(why.contains("goes on with the step by itself"), "{why}");
+    }
 }
 
 #[test]

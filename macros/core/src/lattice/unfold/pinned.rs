@@ -2,10 +2,13 @@
 
 use super::definitions::inlined;
 use super::{Writer, velocity_of};
+use crate::check::are_same;
 use crate::lattice::declared::Kind as Role;
 use crate::lattice::names::copy_name;
+use crate::lattice::parts::names;
 use crate::lattice::put::{Still, any_name};
-use crate::syntax::ast::{Expression, Kind, Model, Statement};
+use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Statement};
+use std::collections::BTreeSet;
 
 impl Writer<'_> {
     /// Finds what does not move.
@@ -26,9 +29,16 @@ impl Writer<'_> {
                 }
             }
         }
-        // What follows a configuration that is given stands still with it.
+        if !self.pinned.is_empty() {
+            while self.followers(model) {}
+        }
+    }
+
+    /// Finds advected quantities that follow what stands still; whether there were more of them than known before.
+    fn followers(&mut self, model: &Model) -> bool {
+        let before = self.pinned.len();
         for q in self.lattice.quantities.iter() {
-            if q.kind != Role::Advected || self.pinned.is_empty() {
+            if q.kind != Role::Advected {
                 continue;
             }
             let update = model.statements.iter().find_map(|s| match s {
@@ -40,15 +50,15 @@ impl Writer<'_> {
             let Some(update) = update.map(|u| inlined(u, self.lets)) else {
                 continue;
             };
+            // What goes on by itself, as a clock does, follows nothing.
+            let follows = |n: &str| n != q.name.text && self.lattice.moving.contains(n);
+            if !any_name(&update, &follows) {
+                continue;
+            }
             for site in 0..self.choice.sites_of(self.lattice, q) {
                 let at = isize::try_from(site).unwrap_or(isize::MAX);
                 let own = copy_name(&q.name.text, site);
-                let Ok(put) = self.put(at).put(&update) else {
-                    continue;
-                };
-                let others =
-                    |n: &str| n != own && self.put(at).is_moving(&name_expression(n, &put));
-                if any_name(&put, &others) {
+                if self.pinned.contains_key(&own) || !self.stands_still(model, &own, &update, at) {
                     continue;
                 }
                 let definition = model.statements.iter().find_map(|s| match s {
@@ -62,7 +72,10 @@ impl Writer<'_> {
                 let still = match definition {
                     Some(value) => match self.put(at).put(&inlined(value, self.lets)) {
                         Ok(defined) => Still::Defined(defined),
-                        Err(d) => return self.errors.push(*d),
+                        Err(d) => {
+                            self.errors.push(*d);
+                            return false;
+                        }
                     },
                     None => {
                         self.out.given.push(own.clone());
@@ -72,12 +85,65 @@ impl Writer<'_> {
                 self.pinned.insert(own, still);
             }
         }
+        self.pinned.len() > before
     }
-}
 
-fn name_expression(n: &str, like: &Expression) -> Expression {
-    Expression {
-        kind: Kind::Name(n.to_owned()),
-        place: like.place,
+    /// Whether the constraint of a copy leaves it as it is: nothing else that moves stands in it, and with what
+    /// is given put in, it gives the copy itself.
+    fn stands_still(&self, model: &Model, own: &str, update: &Expression, at: isize) -> bool {
+        let Ok(put) = self.put(at).put(update) else {
+            return false;
+        };
+        let named = |n: &str| Expression {
+            kind: Kind::Name(n.to_owned()),
+            place: put.place,
+        };
+        let moves = |n: &str| n != own && self.put(at).is_moving(&named(n));
+        if any_name(&put, &moves) {
+            return false;
+        }
+        are_same(&self.of_parameters(model, &put), &put, &named(own))
+    }
+
+    /// A model in whose names an expression of copies can be read: each of them is a parameter.
+    fn of_parameters(&self, model: &Model, put: &Expression) -> Model {
+        let mut out = Model {
+            statements: Vec::new(),
+            remarks: Vec::new(),
+            ..model.clone()
+        };
+        let mut declare = |statement| {
+            out.statements.push(statement);
+            out.remarks.push(Vec::new());
+        };
+        let parameter = |name: Name, shape: Kindred| Statement::Param {
+            names: vec![name],
+            shape,
+            at: None,
+        };
+        for statement in &model.statements {
+            match statement {
+                Statement::Label {
+                    step: Some(step), ..
+                } => declare(parameter(step.clone(), Kindred::number(step.place))),
+                Statement::Param { at: None, .. }
+                | Statement::Time { .. }
+                | Statement::Dim { .. }
+                | Statement::Given { .. } => declare(statement.clone()),
+                _ => {}
+            }
+        }
+        let copies: BTreeSet<&str> = names(put).into_iter().collect();
+        for copy in copies {
+            if let Some(q) = self.lattice.of_copy(copy) {
+                let name = Name {
+                    text: copy.to_owned(),
+                    place: q.name.place,
+                    typeset: None,
+                };
+                declare(parameter(name, q.shape.clone()));
+            }
+        }
+        out
     }
 }
