@@ -4,7 +4,7 @@
 //! expression; gives an equal one.
 
 use crate::algebra::Rational;
-use crate::expr::shape::{self, Shape};
+use crate::expr::shape::{self, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::*;
 
@@ -105,7 +105,49 @@ pub fn displaced(symbols: &Symbols, e: &Expr) -> Expr {
     let e = rebuild(symbols, e, &mut |x| displaced(symbols, x));
     match e.node() {
         Node::Sum(terms) => of_sum(symbols, terms, e.shape()),
+        Node::Vee(a) => of_axial(symbols, a).unwrap_or(e),
         _ => e,
+    }
+}
+
+/// `vee(A Ω)` as `vee(A (Ω - Id)) + vee(A)`, where the latter is known: a symmetric `A` has no axial vector, and its
+/// large entries then meet small ones alone.
+fn of_axial(symbols: &Symbols, a: &Expr) -> Option<Expr> {
+    differences(symbols, a)
+        .into_iter()
+        .find_map(|(rest, moved)| Some(add(vee(moved), axial(symbols, &rest)?)))
+}
+
+/// The axial vector of a matrix that is made of symmetric matrices and of hats; nothing for others.
+fn axial(symbols: &Symbols, e: &Expr) -> Option<Expr> {
+    let vector = Shape::vector(shape::Dim::Fixed(3));
+    match e.node() {
+        Node::Identity(_) => Some(zero(vector)),
+        Node::Letter(l) => matches!(
+            symbols.get(l.symbol).structure,
+            Structure::Symmetric | Structure::Diagonal
+        )
+        .then(|| zero(vector)),
+        Node::Hat(v) => Some(v.clone()),
+        Node::Neg(a) => axial(symbols, a).map(neg),
+        Node::Quotient(a, b) => Some(quotient(axial(symbols, a)?, b.clone())),
+        Node::Sum(terms) => {
+            let terms: Option<Vec<Expr>> = terms.iter().map(|t| axial(symbols, t)).collect();
+            Some(sum(terms?, vector))
+        }
+        Node::Product(factors) => {
+            let mut matrices = factors
+                .iter()
+                .enumerate()
+                .filter(|(_, f)| !f.shape().is_scalar());
+            let (Some((at, only)), None) = (matrices.next(), matrices.next()) else {
+                return None;
+            };
+            let mut all = factors.clone();
+            all[at] = axial(symbols, only)?;
+            Some(product(all))
+        }
+        _ => None,
     }
 }
 
