@@ -1,0 +1,194 @@
+//! Held constraints: they are zero at both nodes, and their reactions act along their gradients. Takes the residuals of the momenta of
+//! a node; gives what no multiplier explains.
+
+use crate::evaluate::Here;
+use crate::judge::Part;
+use crate::number::{Number, UNIT};
+use crate::scene::Scene;
+use crate::setup::Setup;
+use crate::sites::{Moving, indices};
+use crate::stated::{Hold, Stated};
+use crate::terms::Lives;
+use crate::value::Value;
+
+/// Sums over more sites than this are not summed: their gradients at the sites that are judged are those of single terms.
+const SUMMED: usize = 4096;
+
+/// The gradient of one held number at one node, by variables of the step.
+pub struct Gradient(Vec<(usize, f64, f64)>);
+
+/// All held numbers at a node: how far each is from zero, and its gradient.
+///
+/// # Errors
+/// One cannot be evaluated.
+pub fn held(
+    scene: &Scene<'_>,
+    stated: &Stated,
+    setup: &Setup,
+    moving: &[Moving<'_>],
+    node: usize,
+) -> Result<(Vec<Part>, Vec<Gradient>), String> {
+    let (mut parts, mut gradients) = (Vec::new(), Vec::new());
+    for hold in &stated.holds {
+        for (index, value) in values(scene, stated, setup, (hold, moving), node)? {
+            let entries: Vec<Number> = match value {
+                Value::Known(m) => m.entries,
+                Value::Open(_) => return Err(format!("`{}` holds what has no size", hold.name)),
+            };
+            for x in entries {
+                let slopes = x
+                    .slopes
+                    .iter()
+                    .filter_map(|s| Some((usize::try_from(s.of).ok()?, s.value, s.error)));
+                let gradient: Vec<_> = slopes.collect();
+                // What stands still needs no multiplier.
+                if gradient.is_empty() {
+                    continue;
+                }
+                gradients.push(Gradient(gradient));
+                if x.error.is_finite() && !(hold.of_sums && is_long(stated, setup, hold)) {
+                    parts.push(Part::held(&hold.name, index, node, &x));
+                }
+            }
+        }
+    }
+    Ok((parts, gradients))
+}
+
+fn is_long(stated: &Stated, setup: &Setup, hold: &Hold) -> bool {
+    let count = hold
+        .value
+        .label
+        .map_or(0, |l| setup.counts.get(l).copied().unwrap_or(0));
+    stated.line.is_some() && count > SUMMED
+}
+
+type Indexed = Vec<(Option<i64>, Value)>;
+
+fn values(
+    scene: &Scene<'_>,
+    stated: &Stated,
+    setup: &Setup,
+    (hold, moving): (&Hold, &[Moving<'_>]),
+    node: usize,
+) -> Result<Indexed, String> {
+    let time = i32::try_from(node).unwrap_or(1);
+    let level = match hold.value.lives {
+        Lives::Node(level) => level,
+        _ => 0,
+    };
+    let at = |index: i64| Here::at(index).later(time - level);
+    let term = &hold.value;
+    if hold.of_sums {
+        let long = is_long(stated, setup, hold);
+        let over = long.then(|| indices(stated, setup, term, moving));
+        let value = scene.value_with_sums(&term.value, at(0), over)?;
+        return Ok(vec![(None, value)]);
+    }
+    let all = indices(stated, setup, term, moving).into_iter();
+    all.map(|i| {
+        Ok((
+            Some(i).filter(|_| term.label.is_some()),
+            scene.value(&term.value, at(i))?,
+        ))
+    })
+    .collect()
+}
+
+/// Takes from the residuals of a node what multipliers explain: a projection in units of the bounds. The bound of what is left is
+/// what the projection makes of them.
+pub fn without_reactions(residuals: &mut [Part], variables: &[usize], gradients: &[Gradient]) {
+    let unit: Vec<f64> = residuals
+        .iter()
+        .map(|r| r.bound.max(f64::MIN_POSITIVE))
+        .collect();
+    let mut frame: Vec<Vec<f64>> = Vec::new();
+    let place = |of: usize| variables.iter().position(|v| *v == of);
+    let mut columns: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+    for Gradient(slopes) in gradients {
+        let (mut column, mut wrong) = (vec![0.0; unit.len()], vec![0.0; unit.len()]);
+        for (of, value, error) in slopes {
+            if let Some(i) = place(*of) {
+                (column[i], wrong[i]) = (value / unit[i], *error);
+            }
+        }
+        columns.push((column, wrong));
+    }
+    for (column, _) in &columns {
+        let mut direction = column.clone();
+        let before = length(&direction);
+        // Twice: once leaves rounding of what is taken away.
+        for _ in 0..2 {
+            for known in &frame {
+                let along = dot(known, &direction);
+                direction
+                    .iter_mut()
+                    .zip(known)
+                    .for_each(|(x, y)| *x -= along * y);
+            }
+        }
+        let left = length(&direction);
+        if left > 1e-9 * before && left > 0.0 {
+            direction.iter_mut().for_each(|x| *x /= left);
+            frame.push(direction);
+        }
+    }
+    let mut scaled: Vec<f64> = residuals
+        .iter()
+        .zip(&unit)
+        .map(|(r, u)| r.residual / u)
+        .collect();
+    // The sizes of multipliers, for the errors of gradients.
+    let reaction: Vec<f64> = columns
+        .iter()
+        .map(|(c, _)| {
+            let size = dot(c, c);
+            if size > 0.0 {
+                dot(c, &scaled).abs() / size
+            } else {
+                0.0
+            }
+        })
+        .collect();
+    let before = length(&scaled);
+    for _ in 0..2 {
+        for known in &frame {
+            let along = dot(known, &scaled);
+            scaled
+                .iter_mut()
+                .zip(known)
+                .for_each(|(x, y)| *x -= along * y);
+        }
+    }
+    for (i, part) in residuals.iter_mut().enumerate() {
+        let overlap = |j: usize| -> f64 { frame.iter().map(|f| f[i] * f[j]).sum() };
+        let spread: f64 = (0..unit.len())
+            .map(|j| (f64::from(u8::from(i == j)) - overlap(j)).abs())
+            .sum();
+        let of_gradients: f64 = columns
+            .iter()
+            .zip(&reaction)
+            .map(|((_, w), size)| w[i] * size)
+            .sum();
+        part.residual = scaled[i] * unit[i];
+        part.bound = unit[i] * (spread.max(1.0) + 16.0 * UNIT * before) + of_gradients;
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn length(a: &[f64]) -> f64 {
+    let most = a.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    match most > 0.0 && most.is_finite() {
+        true => {
+            most * a
+                .iter()
+                .map(|x| (x / most) * (x / most))
+                .sum::<f64>()
+                .sqrt()
+        }
+        false => 0.0,
+    }
+}

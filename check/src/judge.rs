@@ -1,0 +1,241 @@
+//! The judgement of one step. Takes the numbers of two nodes; gives what is left of every equation beside the bound on its rounding.
+
+use crate::group::MOST_OF_A_DEFECT;
+use crate::holds;
+use crate::lagrangian::derivatives;
+use crate::number::{Number, UNIT};
+use crate::scene::Scene;
+use crate::setup::Setup;
+use crate::sites::{Moving, moving, varied};
+use crate::stated::{Role, Side, Stated};
+use crate::statements;
+use clebsch_core::syntax::ast::Model;
+
+/// Roundings of the terms of an equation that a solver may leave of it, beside those of its own evaluation.
+const LEFT_BY_SOLVERS: f64 = 4.0;
+
+/// Significant bits of terms whose sums and products are exact: a zero of such terms proves nothing.
+const EXACT_BITS: u32 = 26;
+
+/// What is left of one equation.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// What it is the equation of.
+    pub what: String,
+    /// The site, of a quantity that has one.
+    pub site: Option<usize>,
+    /// The component, counted from 1.
+    pub component: usize,
+    /// The end of the edge: 0 or 1.
+    pub node: usize,
+    /// What is left.
+    pub residual: f64,
+    /// The bound on what rounding leaves.
+    pub bound: f64,
+    /// The sizes of its terms, summed.
+    pub terms: f64,
+    /// Whether an exact zero is to be expected of it.
+    pub is_exact: bool,
+}
+
+impl Part {
+    /// The residual in units of its bound: zero where nothing is left, NaN where a number is.
+    #[must_use]
+    pub fn ratio(&self) -> f64 {
+        match self.residual == 0.0 && !self.bound.is_nan() {
+            true => 0.0,
+            false => self.residual.abs() / self.bound,
+        }
+    }
+
+    /// Whether the equation tests anything: rounding is to be expected of its terms.
+    #[must_use]
+    pub fn tests(&self) -> bool {
+        self.terms > 0.0 && !self.is_exact
+    }
+
+    /// The residual in roundings of its own terms.
+    #[must_use]
+    pub fn roundings(&self) -> f64 {
+        self.residual.abs() / (UNIT * self.terms)
+    }
+
+    /// A held number.
+    #[must_use]
+    pub fn held(name: &str, index: Option<i64>, node: usize, x: &Number) -> Self {
+        Self {
+            what: name.to_owned(),
+            site: index.and_then(|i| usize::try_from(i).ok()),
+            component: 1,
+            node,
+            residual: x.value,
+            // A solver corrects as far as the rounding of the configuration is seen.
+            bound: LEFT_BY_SOLVERS * x.error,
+            terms: 0.0,
+            is_exact: true,
+        }
+    }
+}
+
+/// The judgement of a step.
+#[derive(Clone, Debug)]
+pub struct Judged {
+    /// The equation whose residual is largest beside its bound.
+    pub worst: Option<Part>,
+    /// How many equations test something.
+    pub tested: u64,
+    /// The largest residual of these, in roundings of its own terms.
+    pub roundings: f64,
+}
+
+/// Judges steps of one model and case.
+#[derive(Clone, Debug)]
+pub struct Judge {
+    stated: Stated,
+    setup: Setup,
+}
+
+impl Judge {
+    /// For a model with these sizes by name.
+    ///
+    /// # Errors
+    /// Why it cannot be judged.
+    pub fn new(model: &Model, sizes: &[(String, usize)], setup: Setup) -> Result<Self, String> {
+        let stated = Stated::read(model, sizes)?;
+        Ok(Self { stated, setup })
+    }
+
+    /// The step number `step`, from the numbers of one node to those of the next.
+    ///
+    /// # Errors
+    /// What of the statement cannot be evaluated.
+    pub fn step(&self, step: u64, before: &[f64], after: &[f64]) -> Result<Judged, String> {
+        let parts = self.parts(step, before, after)?;
+        let tested = parts.iter().filter(|p| p.tests());
+        let mut out = Judged {
+            worst: None,
+            tested: tested.clone().count() as u64,
+            roundings: tested.map(Part::roundings).fold(0.0, f64::max),
+        };
+        let worse = |a: &Part, b: &Part| a.ratio().is_nan() || b.ratio() <= a.ratio();
+        for part in parts {
+            if !out.worst.as_ref().is_some_and(|w| worse(w, &part)) {
+                out.worst = Some(part);
+            }
+        }
+        Ok(out)
+    }
+
+    /// What is left of every equation of a step.
+    ///
+    /// # Errors
+    /// What of the statement cannot be evaluated.
+    pub fn parts(&self, step: u64, before: &[f64], after: &[f64]) -> Result<Vec<Part>, String> {
+        let (stated, setup) = (&self.stated, &self.setup);
+        let moving = moving(stated, setup, step);
+        if moving.is_empty() {
+            return Err("nothing of what moves is observed".to_owned());
+        }
+        let varied = varied(&moving);
+        let nodes = [before, after];
+        let slopes = derivatives(stated, setup, nodes, &moving, &varied)?;
+        let scene = Scene::new(stated, setup, nodes, &varied);
+        let mut out = statements::carried(stated, setup, (before, after), &moving)?;
+        for node in [0, 1] {
+            let (mut parts, mut variables) = (Vec::new(), Vec::new());
+            for m in &moving {
+                out.extend(self.orthonormal(m, nodes[node], node));
+                let momentum = self.momentum(m, nodes[node])?;
+                let first = usize::try_from(m.first).unwrap_or(usize::MAX);
+                for (i, p) in momentum.numbers.iter().enumerate() {
+                    let of = first + node * m.components + i;
+                    let slope = slopes.get(of).copied().unwrap_or_default();
+                    let brought = if node == 0 { -slope.value } else { slope.value };
+                    let residual = p - brought;
+                    let terms = p.abs() + slope.terms;
+                    variables.push(of);
+                    parts.push(Part {
+                        what: format!("momentum of {}", m.name),
+                        site: m.site,
+                        component: i + 1,
+                        node,
+                        residual,
+                        bound: slope.error
+                            + momentum.error
+                            + UNIT * residual.abs()
+                            + LEFT_BY_SOLVERS * UNIT * terms,
+                        terms,
+                        is_exact: is_short(*p) && is_short(brought),
+                    });
+                }
+            }
+            if !stated.holds.is_empty() {
+                let (held, gradients) = holds::held(&scene, stated, setup, &moving, node)?;
+                out.extend(held);
+                holds::without_reactions(&mut parts, &variables, &gradients);
+            }
+            out.append(&mut parts);
+        }
+        Ok(out)
+    }
+
+    /// How far an element of a group of rotations is from one.
+    fn orthonormal(&self, m: &Moving<'_>, numbers: &[f64], node: usize) -> Option<Part> {
+        let q = self.stated.quantities.get(m.name)?;
+        let Role::Element(group, _) = &q.role else {
+            return None;
+        };
+        let own = self.setup.observed(m.name, m.site)?;
+        Some(Part {
+            what: format!("orthonormality of {}", m.name),
+            site: m.site,
+            component: 1,
+            node,
+            residual: group.defect(own.of(numbers)),
+            bound: MOST_OF_A_DEFECT * UNIT,
+            terms: 0.0,
+            is_exact: true,
+        })
+    }
+
+    /// The momentum of a configuration at a node, and how uncertain its components are.
+    fn momentum(&self, m: &Moving<'_>, node: &[f64]) -> Result<Momentum, String> {
+        let missing = || format!("the momentum of `{}` is not observed", m.name);
+        let q = self.stated.quantities.get(m.name).ok_or_else(missing)?;
+        let base = match &q.role {
+            Role::Element(_, Side::Body) => "body_momentum",
+            Role::Element(_, Side::Space) => "spatial_momentum",
+            _ => "momentum",
+        };
+        let own = self
+            .setup
+            .momentum(base, m.name, m.site)
+            .ok_or_else(missing)?;
+        let numbers = own.of(node);
+        let size = numbers.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+        let numbers = match &q.role {
+            Role::Element(group, _) => group.momentum(numbers),
+            _ => Some(numbers.to_vec()),
+        };
+        let numbers = numbers
+            .filter(|n| n.len() == m.components)
+            .ok_or_else(missing)?;
+        // Momenta of groups are kept in one frame and turned into the other.
+        let error = match &q.role {
+            Role::Element(..) => 4.0 * UNIT * size,
+            _ => UNIT * size,
+        };
+        Ok(Momentum { numbers, error })
+    }
+}
+
+struct Momentum {
+    numbers: Vec<f64>,
+    error: f64,
+}
+
+/// Whether a number has so few bits that sums and products with its like are exact.
+fn is_short(x: f64) -> bool {
+    let bits = x.to_bits() & ((1 << 52) - 1);
+    x == 0.0 || 53 - bits.trailing_zeros().min(52) <= EXACT_BITS
+}

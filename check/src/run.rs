@@ -1,0 +1,244 @@
+//! The verdict on a run: which steps are judged, and what came out. Takes judgements of steps; gives one verdict, in words and numbers.
+
+use crate::judge::{Judged, Part};
+use crate::sites::mixed;
+use std::collections::BTreeSet;
+use std::fmt;
+
+/// Steps that are judged of a long run, beside the last.
+const SAMPLE: usize = 100;
+
+/// Equations that must test something before it counts that all of them hold exactly: of one or two that is chance.
+const ENOUGH: u64 = 8;
+
+/// A residual below this part of one rounding of its terms is no result of rounding.
+const FAR_BELOW: f64 = 1e-3;
+
+/// Which steps are judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// A hundred at random, and the last.
+    Sample,
+    /// Every step.
+    All,
+    /// None.
+    None,
+}
+
+/// The steps that are judged, by their numbers: step n ends at node n. They depend on the number of steps alone, so that a run
+/// that is gone on with judges the same ones.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    which: Which,
+    steps: BTreeSet<u64>,
+}
+
+impl Chosen {
+    /// Of so many steps.
+    #[must_use]
+    pub fn new(which: Which, total: u64) -> Self {
+        let mut steps = BTreeSet::new();
+        if which == Which::Sample && total > 0 {
+            if total <= SAMPLE as u64 + 1 {
+                steps.extend(1..=total);
+            } else {
+                let mut draws = (0..).map(|i| 1 + mixed(i) % (total - 1));
+                while steps.len() < SAMPLE {
+                    steps.extend(draws.next());
+                }
+                steps.insert(total);
+            }
+        }
+        Self { which, steps }
+    }
+
+    /// Whether this step is judged.
+    #[must_use]
+    pub fn contains(&self, step: u64) -> bool {
+        match self.which {
+            Which::All => true,
+            Which::None => false,
+            Which::Sample => self.steps.contains(&step),
+        }
+    }
+}
+
+/// What came out of the judged steps.
+#[derive(Clone, Debug, Default)]
+pub struct Verdict {
+    /// How many steps were judged.
+    pub judged: u64,
+    /// The worst equation, and the node at the end of its step.
+    pub worst: Option<(u64, Part)>,
+    /// How many equations tested something.
+    pub tested: u64,
+    /// The largest residual of these, in roundings of its own terms.
+    pub roundings: f64,
+    /// Why steps were not judged, if they were not.
+    pub not_judged: Option<String>,
+}
+
+impl Verdict {
+    /// Takes the judgement of the step that ends at `node`.
+    pub fn take(&mut self, node: u64, judged: Result<Judged, String>) {
+        match judged {
+            Ok(judged) => {
+                self.judged += 1;
+                self.tested += judged.tested;
+                self.roundings = match judged.roundings.is_nan() {
+                    true => f64::INFINITY,
+                    false => self.roundings.max(judged.roundings),
+                };
+                let ratio = |w: &Option<(u64, Part)>| w.as_ref().map(|(_, part)| part.ratio());
+                let worst = judged.worst.map(|part| (node, part));
+                let better = match (ratio(&self.worst), ratio(&worst)) {
+                    (_, None) => false,
+                    (None, _) => true,
+                    (Some(old), Some(new)) => !old.is_nan() && (new.is_nan() || new > old),
+                };
+                if better {
+                    self.worst = worst;
+                }
+            }
+            Err(why) => self.not_judged = Some(why),
+        }
+    }
+
+    /// The largest residual in units of its bound.
+    #[must_use]
+    pub fn ratio(&self) -> f64 {
+        self.worst.as_ref().map_or(0.0, |(_, part)| part.ratio())
+    }
+
+    /// Whether an equation is left by more than rounding explains.
+    #[must_use]
+    pub fn is_broken(&self) -> bool {
+        !(self.ratio() <= 1.0)
+    }
+
+    /// Whether all residuals are far below rounding though their terms are rounded: then the check has measured nothing. A
+    /// residual of terms that are zero, or have so few bits that their arithmetic is exact, may well be zero.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.tested >= ENOUGH && self.roundings < FAR_BELOW
+    }
+
+    /// Whether the run passes.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        !self.is_broken() && !self.is_empty()
+    }
+
+    /// The same as numbers, from which it is made again by [`Verdict::of_numbers`].
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)]
+    pub fn numbers(&self) -> Vec<f64> {
+        let mut out = vec![self.judged as f64, self.tested as f64, self.roundings];
+        if let Some((node, p)) = &self.worst {
+            let site = p.site.map_or(-1.0, |s| s as f64);
+            out.extend([*node as f64, p.residual, p.bound, p.terms, site]);
+            out.extend([
+                p.component as f64,
+                p.node as f64,
+                f64::from(u8::from(p.is_exact)),
+            ]);
+            out.extend(p.what.chars().map(|c| f64::from(u32::from(c))));
+        }
+        out
+    }
+
+    /// A verdict that was kept as numbers; the first one where they are none.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    pub fn of_numbers(numbers: &[f64]) -> Self {
+        let [judged, tested, roundings, rest @ ..] = numbers else {
+            return Self::default();
+        };
+        let worst = match rest {
+            [
+                node,
+                residual,
+                bound,
+                terms,
+                site,
+                component,
+                end,
+                exact,
+                what @ ..,
+            ] => {
+                let part = Part {
+                    what: what
+                        .iter()
+                        .filter_map(|c| char::from_u32(*c as u32))
+                        .collect(),
+                    site: (*site >= 0.0).then_some(*site as usize),
+                    component: *component as usize,
+                    node: *end as usize,
+                    residual: *residual,
+                    bound: *bound,
+                    terms: *terms,
+                    is_exact: *exact != 0.0,
+                };
+                Some((*node as u64, part))
+            }
+            _ => None,
+        };
+        Self {
+            judged: *judged as u64,
+            tested: *tested as u64,
+            roundings: *roundings,
+            worst,
+            not_judged: None,
+        }
+    }
+}
+
+/// A sentence for the summary of a run.
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "action as stated: ")?;
+        if let Some(why) = &self.not_judged {
+            return write!(f, "not judged: {why}");
+        }
+        let Some((node, part)) = &self.worst else {
+            return write!(f, "no step judged");
+        };
+        let steps = if self.judged == 1 { "step" } else { "steps" };
+        let ratio = self.ratio();
+        write!(
+            f,
+            "{} {steps} judged, largest residual {} of its rounding bound, at node {node}",
+            self.judged,
+            short(ratio)
+        )?;
+        if self.is_broken() {
+            let site = part
+                .site
+                .map_or_else(String::new, |s| format!(" at site {s}"));
+            let end = if part.node == 0 { "start" } else { "end" };
+            return write!(
+                f,
+                ". It does NOT hold: {}{site}, component {}, at the {end} of that step is off by {:.3e}, rounding explains {:.3e}",
+                part.what, part.component, part.residual, part.bound
+            );
+        }
+        if self.is_empty() {
+            return write!(
+                f,
+                ". FAILURE OF THE CHECK: {} equations with rounded terms are left by at most {} of one rounding, far below \
+                 rounding: this check measures nothing",
+                self.tested,
+                short(self.roundings)
+            );
+        }
+        Ok(())
+    }
+}
+
+fn short(x: f64) -> String {
+    match x {
+        x if x == 0.0 => "0".to_owned(),
+        x if (0.01..1000.0).contains(&x) => format!("{x:.2}"),
+        x => format!("{x:.1e}"),
+    }
+}

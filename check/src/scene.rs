@@ -1,0 +1,401 @@
+//! The values of names on one edge: stored numbers of both nodes, varied about them. Takes the model and the numbers of a state; gives
+//! elements, velocities, fields, and what is carried by its own constraint from the stored to the varied configuration.
+
+use crate::evaluate::{Evaluated, Here};
+use crate::group::{Entries, Group, LEFT};
+use crate::matrix::Matrix;
+use crate::number::{Number, UNIT};
+use crate::setup::{Numbers, Setup};
+use crate::sites::range;
+use crate::stated::{Layout, Quantity, Role, Side, Sites, Stated};
+use crate::terms::Term;
+use crate::value::Value;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, HashMap};
+
+/// A quantity at a site: its name, and the site if it has any.
+pub type Copy<'a> = (&'a str, Option<usize>);
+
+/// What is varied: the first variable of each configuration; those of the second node come behind those of the first.
+pub type Varied<'a> = BTreeMap<Copy<'a>, u32>;
+
+type Key<'a> = (&'a str, Option<usize>, i32, Option<usize>);
+
+/// One edge.
+pub struct Scene<'a> {
+    /// The model.
+    stated: &'a Stated,
+    /// Sites, ends and constants.
+    setup: &'a Setup,
+    /// The numbers of both nodes.
+    nodes: [&'a [f64]; 2],
+    /// What is varied.
+    varied: &'a Varied<'a>,
+    /// Parameters of an end condition, at this site.
+    local: Option<(&'a [String], usize)>,
+    /// What sums over sites go over, while a constraint on them is evaluated.
+    sums: RefCell<Option<Option<Vec<i64>>>>,
+    known: RefCell<HashMap<Key<'a>, Value>>,
+}
+
+impl<'a> Scene<'a> {
+    /// An edge between two nodes.
+    #[must_use]
+    pub fn new(
+        stated: &'a Stated,
+        setup: &'a Setup,
+        nodes: [&'a [f64]; 2],
+        varied: &'a Varied<'a>,
+    ) -> Self {
+        Self {
+            stated,
+            setup,
+            nodes,
+            varied,
+            local: None,
+            sums: RefCell::new(None),
+            known: RefCell::new(HashMap::new()),
+        }
+    }
+
+    /// With the parameters of an end condition.
+    #[must_use]
+    pub fn with_end(mut self, names: &'a [String], site: usize) -> Self {
+        self.local = Some((names, site));
+        self
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn stated(&self) -> &'a Stated {
+        self.stated
+    }
+
+    /// From now on sums go over these sites, or over all where none are named; or a sum is what stands at one site.
+    pub fn sum_over(&self, over: Option<Option<Vec<i64>>>) {
+        *self.sums.borrow_mut() = over;
+    }
+
+    /// What sums go over.
+    #[must_use]
+    pub fn summed_over(&self) -> Option<Option<Vec<i64>>> {
+        self.sums.borrow().clone()
+    }
+
+    /// The indices over which a term is summed.
+    #[must_use]
+    pub fn range_of(&self, term: &Term) -> Vec<i64> {
+        range(self.stated, self.setup, term).map_or_else(|| vec![0], Iterator::collect)
+    }
+
+    /// The value of a name.
+    ///
+    /// # Errors
+    /// It is not known here.
+    pub fn name(&self, n: &str, here: Here) -> Evaluated {
+        if n == self.stated.step {
+            // Nothing takes time between the stored and the varied configuration.
+            return Ok(Value::number(Number::exact(match here.carried {
+                None => self.setup.h,
+                Some(_) => 0.0,
+            })));
+        }
+        if let Some((names, site)) = self.local
+            && names.iter().any(|own| own == n)
+        {
+            return self.parameter(n, Some(site), false);
+        }
+        let velocity = self.stated.velocities.get_key_value(n);
+        let element = velocity.map_or(n, |(_, element)| element.as_str());
+        let Some((name, q)) = self.stated.quantities.get_key_value(element) else {
+            return plain(n).ok_or_else(|| format!("`{n}` is not known here"));
+        };
+        let (site, turns) = self.site(q, here)?;
+        let key_name = velocity.map_or(name.as_str(), |(own, _)| own.as_str());
+        let key = (key_name, site, here.time, here.carried);
+        if let Some(value) = self.known.borrow().get(&key) {
+            return self.offset(q, turns, value.clone());
+        }
+        let value = match velocity {
+            Some(_) => self.velocity(q, site, here),
+            None => self.quantity(q, site, here),
+        }?;
+        self.known.borrow_mut().insert(key, value.clone());
+        self.offset(q, turns, value)
+    }
+
+    /// The site of a quantity, and how often the ring was gone around to it.
+    fn site(&self, q: &Quantity, here: Here) -> Result<(Option<usize>, i64), String> {
+        let Some((label, sites)) = q.at else {
+            return Ok((None, 0));
+        };
+        let count = self.setup.sites(self.stated, label, sites);
+        let size = i64::try_from(count).unwrap_or(i64::MAX);
+        let back = i64::from(here.at_last && sites == Sites::Segments);
+        let mut at = here.index - back;
+        let mut turns = 0;
+        if self.setup.periodic && self.stated.line == Some(label) && size > 0 {
+            (turns, at) = (at.div_euclid(size), at.rem_euclid(size));
+        }
+        match usize::try_from(at).ok().filter(|s| *s < count) {
+            Some(site) => Ok((Some(site), turns)),
+            None => Err(format!("`{}` does not exist at site {at}", q.name)),
+        }
+    }
+
+    fn offset(&self, q: &Quantity, turns: i64, value: Value) -> Evaluated {
+        let Some(offset) = q.offset.as_ref().filter(|_| turns != 0) else {
+            return Ok(value);
+        };
+        #[allow(clippy::cast_precision_loss)]
+        let turns = Number::exact(turns as f64);
+        let step = self
+            .parameter(offset, None, false)?
+            .map(|x| x.times(&turns));
+        value
+            .plus(&step)
+            .ok_or_else(|| format!("`{offset}` does not fit"))
+    }
+
+    fn quantity(&self, q: &'a Quantity, site: Option<usize>, here: Here) -> Evaluated {
+        let node = match (here.carried, here.time) {
+            (None, 0) => 0,
+            (None, 1) => 1,
+            (Some(node), 0 | 1) => node,
+            _ => {
+                return Err(format!(
+                    "`{}` at another node than those of the step",
+                    q.name
+                ));
+            }
+        };
+        let own = self.setup.observed(&q.name, site);
+        let moves = here.carried.is_none() || here.time == 1;
+        match (&q.role, own) {
+            (Role::Parameter, _) => self.parameter(&q.name, site, q.is_quaternion),
+            // What an end holds.
+            (Role::Element(..) | Role::Field(_), None) => {
+                self.parameter(&q.name, site, q.is_quaternion)
+            }
+            (Role::Element(group, side), Some(own)) => {
+                let numbers = own.of(self.nodes[node]);
+                let element = group
+                    .element(numbers, UNIT)
+                    .ok_or_else(|| misread(&q.name))?;
+                let first = self.varied.get(&(q.name.as_str(), site)).filter(|_| moves);
+                Ok(Value::Known(match first {
+                    Some(first) => {
+                        varied_element(&element, *group, *side, first + of_node(*group, node))
+                    }
+                    None => element,
+                }))
+            }
+            (Role::Field(layout), Some(own)) => {
+                let first = self.varied.get(&(q.name.as_str(), site)).filter(|_| moves);
+                let numbers = own.of(self.nodes[node]);
+                let first = first.map(|f| f + small(numbers.len() * node));
+                field(*layout, own, numbers, first).ok_or_else(|| misread(&q.name))
+            }
+            (Role::Advected, Some(own)) => match (here.carried, here.time, &q.update) {
+                (Some(_), 0, _) | (None, _, None) => {
+                    Ok(stored(own, own.of(self.nodes[node]), q.is_quaternion))
+                }
+                (None, _, Some(update)) => self.value(
+                    update,
+                    Here {
+                        time: 0,
+                        index: site.map_or(here.index, |s| i64::try_from(s).unwrap_or(0)),
+                        at_last: false,
+                        carried: Some(node),
+                    },
+                ),
+                _ => Err(format!("`{}` after a variation", q.name)),
+            },
+            (Role::Advected, None) => match &q.definition {
+                Some(definition) => self.value(
+                    definition,
+                    Here {
+                        index: site.map_or(here.index, |s| i64::try_from(s).unwrap_or(0)),
+                        at_last: false,
+                        ..here
+                    },
+                ),
+                None => self.parameter(&q.name, site, q.is_quaternion),
+            },
+        }
+    }
+
+    /// The velocity of the edge, by the stated constraint, or that from the stored to the varied configuration.
+    fn velocity(&self, q: &'a Quantity, site: Option<usize>, here: Here) -> Evaluated {
+        let Role::Element(group, side) = &q.role else {
+            return Err(format!("`{}` has no velocity", q.name));
+        };
+        let identity = Matrix::identity(group.rows());
+        if here.time != 0 {
+            return Err(format!("the velocity of `{}` on another edge", q.name));
+        }
+        if self.setup.observed(&q.name, site).is_none() {
+            return Ok(Value::Known(identity));
+        }
+        if let Some(node) = here.carried {
+            let first = self.varied.get(&(q.name.as_str(), site));
+            return Ok(Value::Known(match first {
+                Some(first) => {
+                    varied_element(&identity, *group, *side, first + of_node(*group, node))
+                }
+                None => identity,
+            }));
+        }
+        let at = |time: i32| match self.quantity(q, site, Here { time, ..here })? {
+            Value::Known(m) => Ok(m),
+            Value::Open(_) => Err(misread(&q.name)),
+        };
+        let (start, end) = (at(0)?, at(1)?);
+        let back = group.inverse(&start).ok_or_else(|| misread(&q.name))?;
+        let product = match side {
+            Side::Body => back.times(&end),
+            Side::Space => end.times(&back),
+        };
+        product.map(Value::Known).ok_or_else(|| misread(&q.name))
+    }
+
+    /// A parameter, as it was given.
+    fn parameter(&self, name: &str, site: Option<usize>, is_quaternion: bool) -> Evaluated {
+        let found = self.setup.parameter(name, site);
+        let (own, numbers) = found.ok_or_else(|| format!("`{name}` is not given"))?;
+        if is_quaternion && numbers.len() == 4 {
+            let unit = |i: usize, j: usize| {
+                let (which, sign) = LEFT[i][j];
+                Number::within(sign * numbers[which], UNIT)
+            };
+            return Ok(Value::Known(Matrix::from_entries(4, 4, unit)));
+        }
+        Ok(Value::Known(Matrix {
+            rows: own.rows,
+            cols: own.cols,
+            entries: numbers.iter().map(|x| Number::exact(*x)).collect(),
+        }))
+    }
+}
+
+fn misread(name: &str) -> String {
+    format!("the numbers of `{name}` do not fit its shape")
+}
+
+fn small(n: usize) -> u32 {
+    u32::try_from(n).unwrap_or(u32::MAX)
+}
+
+/// How many variables come before those of a node.
+fn of_node(group: Group, node: usize) -> u32 {
+    small(group.basis().len() * node)
+}
+
+/// The constants of the language.
+fn plain(n: &str) -> Option<Value> {
+    if n == "Id" {
+        return Some(Value::identity());
+    }
+    let direction: usize = n.strip_prefix('E')?.parse().ok()?;
+    (1..=8)
+        .contains(&direction)
+        .then(|| Value::unit(direction - 1))
+}
+
+/// What is carried, as it is stored: as uncertain as its largest entry.
+fn stored(own: &Numbers, numbers: &[f64], is_quaternion: bool) -> Value {
+    let size = numbers.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+    let of = |x: f64| Number::within(x, UNIT * size);
+    if is_quaternion && numbers.len() == 4 {
+        let entry = |i: usize, j: usize| of(LEFT[i][j].1 * numbers[LEFT[i][j].0]);
+        return Value::Known(Matrix::from_entries(4, 4, entry));
+    }
+    Value::Known(Matrix {
+        rows: own.rows,
+        cols: own.cols,
+        entries: numbers.iter().map(|x| of(*x)).collect(),
+    })
+}
+
+/// An element with its variations: `R (Id + xi)` or `(Id + xi) R`, by the basis of the Lie algebra.
+fn varied_element(r: &Matrix, group: Group, side: Side, first: u32) -> Matrix {
+    let mut out = r.clone();
+    for (which, direction) in group.basis().iter().enumerate() {
+        let moved = moved(r, direction, side);
+        let of = first + small(which);
+        let each = out.entries.iter_mut().zip(moved.entries);
+        each.for_each(|(x, by)| {
+            let plain = std::mem::take(x);
+            *x = plain.with_slope(of, by.value, by.error);
+        });
+    }
+    out
+}
+
+fn moved(r: &Matrix, direction: &Entries, side: Side) -> Matrix {
+    let n = r.rows;
+    let mut out = Matrix::from_entries(n, n, |_, _| Number::default());
+    for (k, l, c) in direction {
+        for i in 0..n {
+            let (from, to) = match side {
+                Side::Body => ((i, *k), (i, *l)),
+                Side::Space => ((*l, i), (*k, i)),
+            };
+            let by = r.at(from.0, from.1).constant().times(&Number::exact(*c));
+            if let Some(entry) = out.entries.get_mut(to.0 * n + to.1) {
+                *entry = entry.plus(&by);
+            }
+        }
+    }
+    out
+}
+
+/// A field from its numbers, each a variable.
+fn field(layout: Layout, own: &Numbers, numbers: &[f64], first: Option<u32>) -> Option<Value> {
+    let entry = |k: usize, sign: f64| {
+        let x = numbers.get(k).copied().unwrap_or(f64::NAN);
+        let n = Number::within(sign * x, UNIT * x.abs());
+        match first {
+            Some(first) => n.with_slope(first + small(k), sign, 0.0),
+            None => n,
+        }
+    };
+    let of_size = |count: &dyn Fn(usize) -> usize| (1..=64).find(|n| count(*n) == numbers.len());
+    let matrix = match layout {
+        Layout::Entries => {
+            Matrix::from_entries(own.rows, own.cols, |i, j| entry(i * own.cols + j, 1.0))
+        }
+        Layout::Diagonal => {
+            let n = numbers.len();
+            Matrix::from_entries(n, n, |i, j| {
+                if i == j {
+                    entry(i, 1.0)
+                } else {
+                    Number::default()
+                }
+            })
+        }
+        Layout::Symmetric => {
+            let n = of_size(&|n| n * (n + 1) / 2)?;
+            let place = |i: usize, j: usize| i * n - i * (i + 1) / 2 + j;
+            Matrix::from_entries(n, n, |i, j| entry(place(i.min(j), i.max(j)), 1.0))
+        }
+        Layout::Skew if numbers.len() == 3 => {
+            Matrix::from_entries(3, 3, |i, j| match (3 + j - i) % 3 {
+                1 => entry(3 - i - j, -1.0),
+                2 => entry(3 - i - j, 1.0),
+                _ => Number::default(),
+            })
+        }
+        Layout::Skew => {
+            let n = of_size(&|n| n * n.saturating_sub(1) / 2)?;
+            let place = |i: usize, j: usize| i * (i - 1) / 2 + j;
+            Matrix::from_entries(n, n, |i, j| match i.cmp(&j) {
+                std::cmp::Ordering::Greater => entry(place(i, j), 1.0),
+                std::cmp::Ordering::Less => entry(place(j, i), -1.0),
+                std::cmp::Ordering::Equal => Number::default(),
+            })
+        }
+    };
+    Some(Value::Known(matrix))
+}

@@ -1,0 +1,106 @@
+//! What a case adds to a statement: numbers of parameters, where the numbers of a state stand, how many sites there are, how a
+//! line ends.
+
+use crate::stated::{Sites, Stated};
+use std::collections::HashMap;
+
+/// Where numbers of a quantity stand, and their shape.
+#[derive(Clone, Copy, Debug)]
+pub struct Numbers {
+    /// The first of them.
+    pub from: usize,
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of columns.
+    pub cols: usize,
+}
+
+impl Numbers {
+    /// The numbers themselves.
+    #[must_use]
+    pub fn of<'n>(&self, all: &'n [f64]) -> &'n [f64] {
+        all.get(self.from..self.from + self.rows * self.cols)
+            .unwrap_or_default()
+    }
+}
+
+/// A field by its name, with rows and columns.
+pub type Field<'a> = (&'a str, usize, usize);
+
+/// What a case says.
+#[derive(Clone, Debug, Default)]
+pub struct Setup {
+    /// The step.
+    pub h: f64,
+    /// The count of each label, in the order of the statement.
+    pub counts: Vec<usize>,
+    /// Whether the line is a ring.
+    pub periodic: bool,
+    /// Which end condition holds at the first and at the last site.
+    pub ends: [usize; 2],
+    parameters: HashMap<String, Numbers>,
+    given: Vec<f64>,
+    observables: HashMap<String, Numbers>,
+}
+
+impl Setup {
+    /// Steps of `h` with these parameters, and states of these observables, all row by row.
+    pub fn new<'a>(
+        h: f64,
+        parameters: impl Iterator<Item = (Field<'a>, &'a [f64])>,
+        observables: impl Iterator<Item = Field<'a>>,
+    ) -> Self {
+        let mut out = Self {
+            h,
+            ..Self::default()
+        };
+        for ((name, rows, cols), numbers) in parameters {
+            let from = out.given.len();
+            out.given.extend(numbers);
+            out.given.resize(from + rows * cols, f64::NAN);
+            out.parameters
+                .insert(name.to_owned(), Numbers { from, rows, cols });
+        }
+        let mut from = 0;
+        for (name, rows, cols) in observables {
+            out.observables
+                .insert(name.to_owned(), Numbers { from, rows, cols });
+            from += rows * cols;
+        }
+        out
+    }
+
+    /// How many sites of this kind a label has.
+    #[must_use]
+    pub fn sites(&self, stated: &Stated, label: usize, sites: Sites) -> usize {
+        let open = stated.line == Some(label) && !self.periodic;
+        let count = self.counts.get(label).copied().unwrap_or(0);
+        count + usize::from(open && sites == Sites::Nodes)
+    }
+
+    /// Where the numbers of a quantity stand in a state, if it moves.
+    #[must_use]
+    pub fn observed(&self, name: &str, site: Option<usize>) -> Option<&Numbers> {
+        match site {
+            None => self.observables.get(name),
+            Some(site) => self.observables.get(&format!("{name}_{site}")),
+        }
+    }
+
+    /// Where a momentum stands in a state: by the name of its configuration, or alone.
+    #[must_use]
+    pub fn momentum(&self, base: &str, name: &str, site: Option<usize>) -> Option<&Numbers> {
+        let own = self.observed(&format!("{base}_{name}"), site);
+        own.or_else(|| self.observables.get(base))
+    }
+
+    /// The numbers of a parameter.
+    #[must_use]
+    pub fn parameter(&self, name: &str, site: Option<usize>) -> Option<(&Numbers, &[f64])> {
+        let own = match site {
+            None => self.parameters.get(name),
+            Some(site) => self.parameters.get(&format!("{name}_{site}")),
+        }?;
+        Some((own, own.of(&self.given)))
+    }
+}

@@ -1,0 +1,424 @@
+//! The terms of a Lagrangian: over which sites each is summed, and whether it lives on the edge or at one node in time.
+//! Takes an expression with definitions put in; gives its terms.
+
+use crate::stated::{Role, Sites, Stated};
+use clebsch_core::syntax::ast::{Expression, Kind};
+
+/// Where a term lives in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lives {
+    /// Nothing in it moves.
+    Nowhere,
+    /// At one node, so many steps after the first of the edge.
+    Node(i32),
+    /// On the edge.
+    Edge,
+}
+
+/// A letter along a label: at which sites it lives, and how far from the index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Letter {
+    /// Its sites.
+    pub sites: Sites,
+    /// Its distance from the index.
+    pub offset: i64,
+}
+
+/// A term, with a sign and factors of its own.
+#[derive(Clone, Debug)]
+pub struct Term {
+    /// The term.
+    pub value: Expression,
+    /// Where it lives in time.
+    pub lives: Lives,
+    /// The label along which it is summed.
+    pub label: Option<usize>,
+    /// Its letters along that label, and those of what it was split from.
+    pub letters: Vec<Letter>,
+    /// The sites that the statement sums over.
+    pub over: Option<Sites>,
+    /// Whether something that belongs to no site moves in it.
+    pub global: bool,
+}
+
+/// Splits expressions.
+pub struct Terms<'a>(&'a Stated);
+
+/// What a walk through an expression finds.
+#[derive(Default)]
+struct Found {
+    label: Option<usize>,
+    letters: Vec<Letter>,
+    over: Option<Sites>,
+    global: bool,
+    times: Vec<i32>,
+    velocity: bool,
+}
+
+impl<'a> Terms<'a> {
+    /// Those of a model.
+    #[must_use]
+    pub fn of(stated: &'a Stated) -> Self {
+        Self(stated)
+    }
+
+    /// The terms of a Lagrangian.
+    ///
+    /// # Errors
+    /// A term cannot be judged.
+    pub fn of_lagrangian(&self, value: &Expression) -> Result<Vec<Term>, String> {
+        let mut out = Vec::new();
+        let parts = match self.0.labels.is_empty() {
+            true => vec![value.clone()],
+            false => self.by_sites(value, true),
+        };
+        for part in parts {
+            let range = self.whole(part.clone())?;
+            for value in self.in_time(&part) {
+                let own = self.whole(value)?;
+                out.push(Term {
+                    label: range.label,
+                    letters: range.letters.clone(),
+                    over: range.over,
+                    ..own
+                });
+            }
+        }
+        Ok(out)
+    }
+
+    /// The terms of an end condition, which stand once.
+    ///
+    /// # Errors
+    /// A term cannot be judged.
+    pub fn of_end(&self, value: &Expression) -> Result<Vec<Term>, String> {
+        self.in_time(value)
+            .into_iter()
+            .map(|e| self.whole(e))
+            .collect()
+    }
+
+    /// An expression as one term.
+    ///
+    /// # Errors
+    /// It cannot be judged.
+    pub fn whole(&self, value: Expression) -> Result<Term, String> {
+        let mut found = Found::default();
+        self.walk(&value, 0, 0, &mut found)?;
+        found.letters.sort_unstable();
+        found.letters.dedup();
+        let first = found.times.first().copied();
+        let lives = match (found.velocity, first) {
+            (true, _) => Lives::Edge,
+            (false, None) => Lives::Nowhere,
+            (false, Some(t)) if found.times.iter().all(|o| *o == t) => Lives::Node(t),
+            (false, Some(_)) => Lives::Edge,
+        };
+        Ok(Term {
+            value,
+            lives,
+            label: found.label,
+            letters: found.letters,
+            over: found.over,
+            global: found.global,
+        })
+    }
+
+    fn walk(&self, e: &Expression, time: i32, by: i64, found: &mut Found) -> Result<(), String> {
+        match &e.kind {
+            Kind::Name(n) => self.name(n, time, by, found),
+            Kind::Call(f, arguments) => match (f.text.as_str(), arguments.as_slice()) {
+                ("next", [inner]) => self.walk(inner, time + 1, by, found),
+                ("prev", [inner]) => self.walk(inner, time - 1, by, found),
+                ("next", [inner, _]) => self.walk(inner, time, by + 1, found),
+                ("prev", [inner, _]) => self.walk(inner, time, by - 1, found),
+                ("sum", [inner, rest @ ..]) => {
+                    found.label = found.label.or(self.0.line);
+                    found.over = rest.first().map(|s| match &s.kind {
+                        Kind::Name(n) if n == "segments" => Sites::Segments,
+                        _ => Sites::Nodes,
+                    });
+                    self.walk(inner, time, by, found)
+                }
+                _ => arguments
+                    .iter()
+                    .try_for_each(|a| self.walk(a, time, by, found)),
+            },
+            _ => e
+                .parts()
+                .into_iter()
+                .try_for_each(|p| self.walk(p, time, by, found)),
+        }
+    }
+
+    fn name(&self, n: &str, time: i32, by: i64, found: &mut Found) -> Result<(), String> {
+        let of = self.0.velocities.get(n);
+        let Some(q) = self.0.quantities.get(of.map_or(n, String::as_str)) else {
+            return Ok(());
+        };
+        let moves = !matches!(q.role, Role::Parameter);
+        found.velocity |= of.is_some();
+        if moves && of.is_none() {
+            found.times.push(time);
+        }
+        let Some((label, sites)) = q.at else {
+            found.global |= moves;
+            return Ok(());
+        };
+        if found.label.is_some_and(|l| l != label) {
+            return Err("a term joins two labels".to_owned());
+        }
+        found.label = Some(label);
+        found.letters.push(Letter { sites, offset: by });
+        Ok(())
+    }
+
+    /// The summands that are summed over sites by themselves: numbers before a bracket are multiplied in, a bracket with a term
+    /// of one neighbour stays whole below the top, and so does a difference in time.
+    fn by_sites(&self, e: &Expression, top: bool) -> Vec<Expression> {
+        match &e.kind {
+            Kind::Sum(terms) => {
+                if !top && terms.iter().any(|(_, t)| self.of_one_neighbour(t)) {
+                    return vec![e.clone()];
+                }
+                let signed = terms.iter().map(|(minus, t)| {
+                    let parts = self.by_sites(t, false);
+                    (*minus, t, parts)
+                });
+                let mut out = Vec::new();
+                for (minus, t, parts) in signed {
+                    let whole = !top && self.is_in_a_difference(t, minus, terms);
+                    let parts = if whole { vec![t.clone()] } else { parts };
+                    out.extend(parts.into_iter().map(|p| with_sign(p, minus)));
+                }
+                match top {
+                    true => out,
+                    false => self.joined(out),
+                }
+            }
+            Kind::Neg(a) => self
+                .by_sites(a, top)
+                .into_iter()
+                .map(|p| with_sign(p, true))
+                .collect(),
+            Kind::Quotient(a, b) => {
+                let parts = self.by_sites(a, false).into_iter();
+                parts.map(|p| quotient(e, p, b)).collect()
+            }
+            Kind::Product(list) if list.iter().all(|f| self.is_number(f)) => {
+                let split: Vec<_> = list.iter().map(|f| self.by_sites(f, false)).collect();
+                self.multiplied(e, list, &split)
+            }
+            _ => vec![e.clone()],
+        }
+    }
+
+    fn is_in_a_difference(&self, t: &Expression, minus: bool, all: &[(bool, Expression)]) -> bool {
+        let opposite = |(other, o): &(bool, Expression)| {
+            *other != minus
+                && self.steps(t).is_some_and(|(level, words)| {
+                    self.steps(o).is_some_and(|(l, w)| l != level && w == words)
+                })
+        };
+        all.iter().any(opposite)
+    }
+
+    fn of_one_neighbour(&self, e: &Expression) -> bool {
+        let Ok(term) = self.whole(e.clone()) else {
+            return false;
+        };
+        let first = term.letters.first().map(|l| l.offset);
+        first.is_some_and(|o| o != 0 && term.letters.iter().all(|l| l.offset == o))
+    }
+
+    /// The summands, each of which lives on the edge or at one node: a common factor or divisor is multiplied in.
+    fn in_time(&self, e: &Expression) -> Vec<Expression> {
+        match &e.kind {
+            Kind::Sum(terms) => {
+                let each = terms.iter().flat_map(|(minus, t)| {
+                    let parts = self.in_time(t).into_iter();
+                    parts.map(|p| with_sign(p, *minus))
+                });
+                each.collect()
+            }
+            Kind::Neg(a) => self
+                .in_time(a)
+                .into_iter()
+                .map(|p| with_sign(p, true))
+                .collect(),
+            Kind::Call(f, list) if f.text == "sum" => {
+                list.first().map_or(Vec::new(), |a| self.in_time(a))
+            }
+            Kind::Shaped(a, shape) if shape.name.text == "Real" => self.in_time(a),
+            Kind::Quotient(a, b) => {
+                let parts = self.joined(self.in_time(a)).into_iter();
+                parts.map(|p| quotient(e, p, b)).collect()
+            }
+            Kind::Product(list) if list.iter().all(|f| self.is_number(f)) => {
+                let list = flat(list);
+                let split = list.iter().map(|f| match f.kind {
+                    Kind::Product(_) => vec![f.clone()],
+                    _ => self.joined(self.in_time(f)),
+                });
+                let split: Vec<_> = split.collect();
+                self.multiplied(e, &list, &split)
+            }
+            _ => vec![e.clone()],
+        }
+    }
+
+    /// A product of which one factor has several summands, multiplied out; one of several such factors stays one term.
+    fn multiplied(
+        &self,
+        e: &Expression,
+        list: &[Expression],
+        split: &[Vec<Expression>],
+    ) -> Vec<Expression> {
+        let mut sums = (0..split.len()).filter(|i| split[*i].len() > 1);
+        let (Some(place), None) = (sums.next(), sums.next()) else {
+            return vec![e.clone()];
+        };
+        let parts = split[place].iter().map(|part| {
+            let mut factors = list.to_vec();
+            factors[place] = part.clone();
+            with(e, Kind::Product(factors))
+        });
+        parts.collect()
+    }
+
+    /// Summands with each that is another one a step later, the other way, added to that one.
+    fn joined(&self, terms: Vec<Expression>) -> Vec<Expression> {
+        let mut left: Vec<Option<Expression>> = terms.into_iter().map(Some).collect();
+        let mut out = Vec::new();
+        for i in 0..left.len() {
+            let Some(term) = left[i].take() else { continue };
+            let own = self.steps(&term);
+            let partner = left[i + 1..].iter_mut().find(|other| {
+                let other = other.as_ref().map(|o| without_sign(o));
+                let (minus, plain) = without_sign(&term);
+                other.is_some_and(|(sign, o)| {
+                    sign != minus
+                        && self
+                            .steps(plain)
+                            .zip(self.steps(o))
+                            .is_some_and(|((a, x), (b, y))| a != b && x == y)
+                })
+            });
+            out.push(
+                match partner.and_then(Option::take).filter(|_| own.is_some()) {
+                    Some(other) => {
+                        let place = term.clone();
+                        with(&place, Kind::Sum(vec![(false, term), (false, other)]))
+                    }
+                    None => term,
+                },
+            );
+        }
+        out
+    }
+
+    /// The level of an expression at one node, and its words without that.
+    fn steps(&self, e: &Expression) -> Option<(i32, String)> {
+        let term = self.whole(without_sign(e).1.clone()).ok()?;
+        match term.lives {
+            Lives::Node(level) => Some((level, words(&term.value))),
+            _ => None,
+        }
+    }
+
+    /// Whether an expression is a number, as its form and the declarations say.
+    fn is_number(&self, e: &Expression) -> bool {
+        match &e.kind {
+            Kind::Number(_) | Kind::Constant(_) | Kind::Component(..) => true,
+            Kind::Name(n) => {
+                *n == self.0.step || self.0.quantities.get(n).is_some_and(|q| q.is_number)
+            }
+            Kind::Shaped(_, shape) => shape.name.text == "Real",
+            Kind::Sum(terms) => terms.iter().all(|(_, t)| self.is_number(t)),
+            Kind::Product(list) => list.iter().all(|f| self.is_number(f)),
+            Kind::Quotient(a, _) | Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) => {
+                self.is_number(a)
+            }
+            Kind::Call(f, list) => match f.text.as_str() {
+                "next" | "prev" | "sum" => list.first().is_some_and(|a| self.is_number(a)),
+                "inv" | "sym" | "skew" | "diag" | "perp" | "hat" | "vee" | "cross" | "im"
+                | "quat" | "rot" | "pos" => false,
+                _ => true,
+            },
+        }
+    }
+}
+
+/// Factors with those of products among them.
+fn flat(list: &[Expression]) -> Vec<Expression> {
+    let each = list.iter().flat_map(|f| match &f.kind {
+        Kind::Product(inner) => flat(inner),
+        _ => vec![f.clone()],
+    });
+    each.collect()
+}
+
+fn with(e: &Expression, kind: Kind) -> Expression {
+    Expression {
+        kind,
+        place: e.place,
+    }
+}
+
+fn quotient(e: &Expression, top: Expression, bottom: &Expression) -> Expression {
+    with(e, Kind::Quotient(Box::new(top), Box::new(bottom.clone())))
+}
+
+fn with_sign(e: Expression, minus: bool) -> Expression {
+    match (minus, e.kind) {
+        (true, Kind::Neg(inner)) => *inner,
+        (true, kind) => {
+            let place = e.place;
+            let inner = Expression { kind, place };
+            Expression {
+                kind: Kind::Neg(Box::new(inner)),
+                place,
+            }
+        }
+        (false, kind) => Expression {
+            kind,
+            place: e.place,
+        },
+    }
+}
+
+fn without_sign(e: &Expression) -> (bool, &Expression) {
+    match &e.kind {
+        Kind::Neg(inner) => {
+            let (minus, plain) = without_sign(inner);
+            (!minus, plain)
+        }
+        _ => (false, e),
+    }
+}
+
+/// The words of an expression, those of steps in time left out.
+fn words(e: &Expression) -> String {
+    let head = match &e.kind {
+        Kind::Call(f, list) if f.text == "next" && list.len() == 1 => {
+            return list.iter().map(words).collect();
+        }
+        Kind::Number(q) => format!("{}/{}", q.numerator(), q.denominator()),
+        Kind::Constant(c) => c.to_string(),
+        Kind::Name(n) => n.clone(),
+        Kind::Sum(terms) => terms
+            .iter()
+            .map(|(minus, _)| if *minus { '-' } else { '+' })
+            .collect(),
+        Kind::Product(_) => "*".to_owned(),
+        Kind::Quotient(..) => "/".to_owned(),
+        Kind::Neg(_) => "neg".to_owned(),
+        Kind::Transpose(_) => "^T".to_owned(),
+        Kind::Power(_, q) => format!("^{}/{}", q.numerator(), q.denominator()),
+        Kind::Call(f, _) => f.text.clone(),
+        Kind::Component(_, at) => format!("{at:?}"),
+        Kind::Shaped(..) => ":".to_owned(),
+    };
+    let parts: Vec<String> = e.parts().into_iter().map(words).collect();
+    format!("{head}({})", parts.join(", "))
+}
