@@ -2,13 +2,13 @@
 //! what of it cannot be evaluated here.
 
 use crate::calls::called;
+use crate::expression::{Expression, Kind};
 use crate::functions;
 use crate::matrix::Matrix;
 use crate::number::{Number, UNIT};
 use crate::scene::Scene;
 use crate::terms::Terms;
 use crate::value::Value;
-use clebsch_core::syntax::ast::{Expression, Kind, Kindred, Size};
 
 /// Where an expression stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -69,13 +69,10 @@ impl Scene<'_> {
     /// What of it cannot be evaluated.
     pub fn value(&self, e: &Expression, here: Here) -> Evaluated {
         match &e.kind {
-            Kind::Number(q) => Ok(Value::number(rational(q.numerator(), q.denominator()))),
-            Kind::Constant(c) => Ok(Value::number(Number::within(
-                c.value(),
-                UNIT * c.value().abs(),
-            ))),
+            Kind::Number(a, b) => Ok(Value::number(rational(*a, *b))),
+            Kind::Constant(c) => Ok(Value::number(Number::within(*c, UNIT * c.abs()))),
             Kind::Name(n) => self.name(n, here),
-            Kind::Shaped(a, shape) => self.shaped(a, shape, here),
+            Kind::Shaped(a, _, size) => self.shaped(a, *size, here),
             Kind::Sum(terms) => {
                 let mut sum: Option<Value> = None;
                 for (minus, t) in terms {
@@ -96,15 +93,12 @@ impl Scene<'_> {
             }
             Kind::Neg(a) => Ok(self.value(a, here)?.negated()),
             Kind::Transpose(a) => Ok(self.value(a, here)?.transposed()),
-            Kind::Power(a, q) => {
-                let a = self.value(a, here)?;
-                power(&a, q.numerator(), q.denominator())
-            }
+            Kind::Power(a, above, below) => power(&self.value(a, here)?, *above, *below),
             Kind::Component(a, at) => {
                 let a = self.value(a, here)?;
                 component(&a, at).ok_or_else(|| misfit("component"))
             }
-            Kind::Call(f, list) => match (f.text.as_str(), list.as_slice()) {
+            Kind::Call(f, list) => match (f.as_str(), list.as_slice()) {
                 ("next", [inner]) => self.value(inner, here.later(1)),
                 ("prev", [inner]) => self.value(inner, here.later(-1)),
                 ("next", [inner, _]) => self.value(inner, here.beside(1)),
@@ -181,23 +175,14 @@ impl Scene<'_> {
         fold(values).ok_or_else(|| misfit("product"))
     }
 
-    fn shaped(&self, a: &Expression, shape: &Kindred, here: Here) -> Evaluated {
-        let value = self.value(a, here)?;
-        let Value::Open(_) = value else {
-            return Ok(value);
-        };
-        let size = |i: usize| match shape.sizes.get(i) {
-            Some(Size::Number(n, _)) => usize::try_from(*n).ok(),
-            Some(Size::Name(n)) => self.stated().sizes.get(&n.text).copied(),
-            None => None,
-        };
-        let rows = size(0).unwrap_or(1);
-        let cols = match shape.name.text.as_str() {
-            "Vec" => 1,
-            _ => size(1).unwrap_or(rows),
-        };
-        let sized = value.sized(rows, cols);
-        Ok(Value::Known(sized.ok_or_else(|| misfit("shape"))?))
+    fn shaped(&self, a: &Expression, [rows, cols]: [usize; 2], here: Here) -> Evaluated {
+        match self.value(a, here)? {
+            value @ Value::Known(_) => Ok(value),
+            value @ Value::Open(_) => {
+                let sized = value.sized(rows, cols);
+                Ok(Value::Known(sized.ok_or_else(|| misfit("shape"))?))
+            }
+        }
     }
 
     /// Whether what stands first in an expression is a unit quaternion.
@@ -209,7 +194,7 @@ impl Scene<'_> {
                 return;
             }
             match &part.kind {
-                Kind::Call(f, _) if f.text == "quat" => first = Some(true),
+                Kind::Call(f, _) if f == "quat" => first = Some(true),
                 Kind::Name(n) => {
                     let name = stated.velocities.get(n).unwrap_or(n);
                     let own = stated.quantities.get(name);

@@ -9,6 +9,7 @@
 mod calls;
 mod carlson;
 mod evaluate;
+mod expression;
 mod functions;
 mod group;
 mod holds;

@@ -197,7 +197,7 @@ impl Verdict {
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "action as stated: ")?;
-        if let Some(why) = &self.not_judged {
+        if let Some(why) = self.not_judged.as_ref().filter(|_| !self.is_broken()) {
             return write!(f, "not judged: {why}");
         }
         let Some((node, part)) = &self.worst else {

@@ -1,11 +1,10 @@
 //! What a model states, by name: quantities, constraints, end conditions, the Lagrangian with its definitions put in.
 //! Takes a syntax tree; gives the statements sorted, or why they cannot be judged.
 
+use crate::expression::{Expression, Kind, Sizes as Dimensions};
 use crate::group::Group;
 use crate::terms::{Term, Terms};
-use clebsch_core::syntax::ast::{
-    At, Expression, Kind, Kindred, Model, NodeRule, Site, Size, Statement,
-};
+use clebsch_core::syntax::ast::{self, At, Kindred, Model, NodeRule, Site, Size, Statement};
 use std::collections::BTreeMap;
 
 /// How deep definitions may stand in one another.
@@ -153,7 +152,7 @@ impl Stated {
         for statement in &model.statements {
             out.declare(statement)?;
         }
-        let lets = Lets::of(model);
+        let lets = Lets::of(model, &out.sizes);
         for statement in &model.statements {
             out.constrain(statement, &lets)?;
         }
@@ -341,13 +340,13 @@ impl Stated {
             Statement::Hold {
                 name, left, right, ..
             } => {
+                let both = vec![(false, lets.put(left)?), (true, lets.put(right)?)];
                 let value = Expression {
-                    kind: Kind::Sum(vec![(false, lets.put(left)?), (true, lets.put(right)?)]),
-                    place: left.place,
+                    kind: Kind::Sum(both),
                 };
                 let mut of_sums = false;
                 value.each(&mut |e| {
-                    of_sums |= matches!(&e.kind, Kind::Call(f, _) if f.text == "sum");
+                    of_sums |= matches!(&e.kind, Kind::Call(f, _) if f == "sum");
                 });
                 let value = Terms::of(self).whole(value)?;
                 let name = name.text.clone();
@@ -415,23 +414,29 @@ fn side_of(
     }
 }
 
-/// Definitions by name.
-struct Lets(BTreeMap<String, Expression>);
+/// Definitions by name, and sizes by name.
+struct Lets(BTreeMap<String, Expression>, Dimensions);
 
 impl Lets {
-    fn of(model: &Model) -> Self {
+    fn of(model: &Model, sizes: &Dimensions) -> Self {
         let each = model.statements.iter().filter_map(|s| match s {
-            Statement::Let { name, value } => Some((name.text.clone(), value.clone())),
+            Statement::Let { name, value } => {
+                Some((name.text.clone(), Expression::of(value, sizes)))
+            }
             _ => None,
         });
-        Self(each.collect())
+        Self(each.collect(), sizes.clone())
     }
 
     /// An expression with definitions put in, to the last one.
-    fn put(&self, e: &Expression) -> Result<Expression, String> {
-        let mut out = e.clone();
+    fn put(&self, e: &ast::Expression) -> Result<Expression, String> {
+        let mut out = Expression::of(e, &self.1);
         for _ in 0..DEEPEST {
-            if out.name_that(&|n| self.0.contains_key(n)).is_none() {
+            let mut there = false;
+            out.each(&mut |e| {
+                there |= matches!(&e.kind, Kind::Name(n) if self.0.contains_key(n));
+            });
+            if !there {
                 return Ok(out);
             }
             out.replace(&|e| match &e.kind {

@@ -1,8 +1,8 @@
 //! The terms of a Lagrangian: over which sites each is summed, and whether it lives on the edge or at one node in time.
 //! Takes an expression with definitions put in; gives its terms.
 
+use crate::expression::{Expression, Kind};
 use crate::stated::{Role, Sites, Stated};
-use clebsch_core::syntax::ast::{Expression, Kind};
 
 /// Where a term lives in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,7 +127,7 @@ impl<'a> Terms<'a> {
     fn walk(&self, e: &Expression, time: i32, by: i64, found: &mut Found) -> Result<(), String> {
         match &e.kind {
             Kind::Name(n) => self.name(n, time, by, found),
-            Kind::Call(f, arguments) => match (f.text.as_str(), arguments.as_slice()) {
+            Kind::Call(f, arguments) => match (f.as_str(), arguments.as_slice()) {
                 ("next", [inner]) => self.walk(inner, time + 1, by, found),
                 ("prev", [inner]) => self.walk(inner, time - 1, by, found),
                 ("next", [inner, _]) => self.walk(inner, time, by + 1, found),
@@ -203,7 +203,7 @@ impl<'a> Terms<'a> {
                 .collect(),
             Kind::Quotient(a, b) => {
                 let parts = self.by_sites(a, false).into_iter();
-                parts.map(|p| quotient(e, p, b)).collect()
+                parts.map(|p| quotient(p, b)).collect()
             }
             Kind::Product(list) if list.iter().all(|f| self.is_number(f)) => {
                 let split: Vec<_> = list.iter().map(|f| self.by_sites(f, false)).collect();
@@ -246,13 +246,13 @@ impl<'a> Terms<'a> {
                 .into_iter()
                 .map(|p| with_sign(p, true))
                 .collect(),
-            Kind::Call(f, list) if f.text == "sum" => {
+            Kind::Call(f, list) if f == "sum" => {
                 list.first().map_or(Vec::new(), |a| self.in_time(a))
             }
-            Kind::Shaped(a, shape) if shape.name.text == "Real" => self.in_time(a),
+            Kind::Shaped(a, shape, _) if shape == "Real" => self.in_time(a),
             Kind::Quotient(a, b) => {
                 let parts = self.joined(self.in_time(a)).into_iter();
-                parts.map(|p| quotient(e, p, b)).collect()
+                parts.map(|p| quotient(p, b)).collect()
             }
             Kind::Product(list) if list.iter().all(|f| self.is_number(f)) => {
                 let list = flat(list);
@@ -281,7 +281,7 @@ impl<'a> Terms<'a> {
         let parts = split[place].iter().map(|part| {
             let mut factors = list.to_vec();
             factors[place] = part.clone();
-            with(e, Kind::Product(factors))
+            of_kind(Kind::Product(factors))
         });
         parts.collect()
     }
@@ -306,10 +306,7 @@ impl<'a> Terms<'a> {
             });
             out.push(
                 match partner.and_then(Option::take).filter(|_| own.is_some()) {
-                    Some(other) => {
-                        let place = term.clone();
-                        with(&place, Kind::Sum(vec![(false, term), (false, other)]))
-                    }
+                    Some(other) => of_kind(Kind::Sum(vec![(false, term), (false, other)])),
                     None => term,
                 },
             );
@@ -329,17 +326,17 @@ impl<'a> Terms<'a> {
     /// Whether an expression is a number, as its form and the declarations say.
     fn is_number(&self, e: &Expression) -> bool {
         match &e.kind {
-            Kind::Number(_) | Kind::Constant(_) | Kind::Component(..) => true,
+            Kind::Number(..) | Kind::Constant(_) | Kind::Component(..) => true,
             Kind::Name(n) => {
                 *n == self.0.step || self.0.quantities.get(n).is_some_and(|q| q.is_number)
             }
-            Kind::Shaped(_, shape) => shape.name.text == "Real",
+            Kind::Shaped(_, shape, _) => shape == "Real",
             Kind::Sum(terms) => terms.iter().all(|(_, t)| self.is_number(t)),
             Kind::Product(list) => list.iter().all(|f| self.is_number(f)),
-            Kind::Quotient(a, _) | Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, _) => {
+            Kind::Quotient(a, _) | Kind::Neg(a) | Kind::Transpose(a) | Kind::Power(a, ..) => {
                 self.is_number(a)
             }
-            Kind::Call(f, list) => match f.text.as_str() {
+            Kind::Call(f, list) => match f.as_str() {
                 "next" | "prev" | "sum" => list.first().is_some_and(|a| self.is_number(a)),
                 "inv" | "sym" | "skew" | "diag" | "perp" | "hat" | "vee" | "cross" | "im"
                 | "quat" | "rot" | "pos" => false,
@@ -358,32 +355,19 @@ fn flat(list: &[Expression]) -> Vec<Expression> {
     each.collect()
 }
 
-fn with(e: &Expression, kind: Kind) -> Expression {
-    Expression {
-        kind,
-        place: e.place,
-    }
+fn of_kind(kind: Kind) -> Expression {
+    Expression { kind }
 }
 
-fn quotient(e: &Expression, top: Expression, bottom: &Expression) -> Expression {
-    with(e, Kind::Quotient(Box::new(top), Box::new(bottom.clone())))
+fn quotient(top: Expression, bottom: &Expression) -> Expression {
+    of_kind(Kind::Quotient(Box::new(top), Box::new(bottom.clone())))
 }
 
 fn with_sign(e: Expression, minus: bool) -> Expression {
     match (minus, e.kind) {
         (true, Kind::Neg(inner)) => *inner,
-        (true, kind) => {
-            let place = e.place;
-            let inner = Expression { kind, place };
-            Expression {
-                kind: Kind::Neg(Box::new(inner)),
-                place,
-            }
-        }
-        (false, kind) => Expression {
-            kind,
-            place: e.place,
-        },
+        (true, kind) => of_kind(Kind::Neg(Box::new(of_kind(kind)))),
+        (false, kind) => of_kind(kind),
     }
 }
 
@@ -400,10 +384,10 @@ fn without_sign(e: &Expression) -> (bool, &Expression) {
 /// The words of an expression, those of steps in time left out.
 fn words(e: &Expression) -> String {
     let head = match &e.kind {
-        Kind::Call(f, list) if f.text == "next" && list.len() == 1 => {
+        Kind::Call(f, list) if f == "next" && list.len() == 1 => {
             return list.iter().map(words).collect();
         }
-        Kind::Number(q) => format!("{}/{}", q.numerator(), q.denominator()),
+        Kind::Number(a, b) => format!("{a}/{b}"),
         Kind::Constant(c) => c.to_string(),
         Kind::Name(n) => n.clone(),
         Kind::Sum(terms) => terms
@@ -414,8 +398,8 @@ fn words(e: &Expression) -> String {
         Kind::Quotient(..) => "/".to_owned(),
         Kind::Neg(_) => "neg".to_owned(),
         Kind::Transpose(_) => "^T".to_owned(),
-        Kind::Power(_, q) => format!("^{}/{}", q.numerator(), q.denominator()),
-        Kind::Call(f, _) => f.text.clone(),
+        Kind::Power(_, a, b) => format!("^{a}/{b}"),
+        Kind::Call(f, _) => f.clone(),
         Kind::Component(_, at) => format!("{at:?}"),
         Kind::Shaped(..) => ":".to_owned(),
     };

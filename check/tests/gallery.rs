@@ -1,7 +1,7 @@
 //! Every model and case of the gallery is judged to be within its bound, step by step, and a wrong number is seen.
 
-use clebsch::card::{Card, Settings};
-use clebsch_check::{Judge, Judged, Setup};
+use clebsch::card::{Card, Field, Kind, Settings};
+use clebsch_check::{Judge, Judged, Setup, Verdict};
 use clebsch_core::pipeline::parse_source;
 use clebsch_models::{Case, gallery};
 
@@ -79,4 +79,177 @@ fn steps_of_the_gallery_hold() {
         }
     });
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A part of a millionth, of a number or of its neighbours.
+const WRONG: f64 = 1e-6;
+
+/// The observables that start a run, by their place: elements, momenta of the side of the statement, what is carried.
+fn of_the_state(card: &Card) -> Vec<(Field, usize)> {
+    let mut from = 0;
+    let mut out = Vec::new();
+    for field in card.observables {
+        if card.initial.iter().any(|f| f.name == field.name) {
+            out.push((*field, from));
+        }
+        from += field.count();
+    }
+    out
+}
+
+/// The numbers of a field after a turn or a change of one coordinate; nothing beyond its coordinates.
+fn changed(field: &Field, own: &[f64], which: usize) -> Option<Vec<f64>> {
+    let mut out = own.to_vec();
+    let (n, size) = (field.rows, own.iter().fold(0.0, |a: f64, x| a.max(x.abs())));
+    let mut turn = |n: usize, rows: usize| {
+        let pairs: Vec<_> = (0..n)
+            .flat_map(|i| (i + 1..n).map(move |j| (i, j)))
+            .collect();
+        let (i, j) = *pairs.get(which)?;
+        for row in 0..rows {
+            let (a, b) = (own[row * field.cols + i], own[row * field.cols + j]);
+            out[row * field.cols + i] = a * WRONG.cos() + b * WRONG.sin();
+            out[row * field.cols + j] = b * WRONG.cos() - a * WRONG.sin();
+        }
+        Some(())
+    };
+    match field.kind {
+        Kind::Rotation => turn(n, n)?,
+        Kind::UnitQuaternion => {
+            // Multiplied by cos + sin of a unit quaternion of direction `which`.
+            let unit = [[-1, 0, 3, -2], [-2, -3, 0, 1], [-3, 2, -1, 0]].get(which)?;
+            let (cosine, sine) = ((WRONG / 2.0).cos(), (WRONG / 2.0).sin());
+            let moved = [
+                -own[which + 1],
+                signed(own, unit[1]) + f64::from(u8::from(which == 0)) * own[0],
+                signed(own, unit[2]) + f64::from(u8::from(which == 1)) * own[0],
+                signed(own, unit[3]) + f64::from(u8::from(which == 2)) * own[0],
+            ];
+            out.iter_mut()
+                .zip(moved)
+                .for_each(|(x, m)| *x = *x * cosine + m * sine);
+        }
+        Kind::RigidMotion if which < 3 => turn(3, 3)?,
+        Kind::RigidMotion => {
+            *out.get_mut((which - 3) * 4 + 3).filter(|_| which < 6)? += WRONG * (1.0 + size)
+        }
+        // A momentum of rotations is skew.
+        Kind::BodyMomentum | Kind::SpatialMomentum if is_skew(field, own) => {
+            let all = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+            let (i, j) = all.skip(which).next()?;
+            out[i * n + j] += WRONG * size;
+            out[j * n + i] -= WRONG * size;
+        }
+        _ => {
+            let x = out.get_mut(which)?;
+            *x += WRONG * if *x == 0.0 { size.max(1.0) } else { *x };
+        }
+    }
+    Some(out)
+}
+
+fn is_skew(field: &Field, own: &[f64]) -> bool {
+    let n = field.rows;
+    let opposite = |i: usize, j: usize| own[i * n + j] == -own[j * n + i];
+    field.cols == n && n > 1 && (0..n * n).all(|k| opposite(k / n, k % n))
+}
+
+/// The component of this number, counted from 1, with the sign of the number; zero of none.
+fn signed(own: &[f64], which: i32) -> f64 {
+    match usize::try_from(which.abs()) {
+        Ok(0) | Err(_) => 0.0,
+        Ok(i) => own[i] * f64::from(which.signum()),
+    }
+}
+
+#[test]
+fn every_number_of_a_state_that_is_wrong_is_seen() {
+    of_all(&mut |card, case, judge, nodes| {
+        for (field, from) in of_the_state(card) {
+            let to = from + field.count();
+            for end in [0, 1] {
+                for which in 0..field.count() {
+                    let mut both = nodes[3..5].to_vec();
+                    let Some(numbers) = changed(&field, &both[end][from..to], which) else {
+                        break;
+                    };
+                    both[end][from..to].copy_from_slice(&numbers);
+                    let part = step(judge, 4, &both).worst.expect("equations");
+                    let named = (card.name, &case.name, field.name, which, end);
+                    assert!(part.ratio() > 1.0, "{named:?}: {part:?}");
+                    assert!(
+                        !part.what.starts_with("orthonormality"),
+                        "{named:?}: {part:?}"
+                    );
+                }
+            }
+        }
+    });
+}
+
+/// A constant that an equation has lost: `dot(vee(O), vee(O))` is (3 - tr(O^2))/4, and a number beside it feels the 3.
+#[test]
+fn a_step_of_a_wrong_equation_is_told() {
+    let text = "model Spun {
+        param m: Real;
+        param J: Sym<3>;
+        field q: Real;
+        group R: SO<3> velocity O;
+        constraint next(R) = R*O;
+        lagrangian = m*(next(q) - q)^2/(2*h) - tr(J*O)/h + (h/2)*q*dot(vee(O), vee(O))/h^2;
+    }";
+    let model = parse_source(text).expect("reads");
+    let unit = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    let parameters = [(("m", 1, 1), &[1.3][..]), (("J", 3, 3), &unit[..])];
+    let observables = [
+        ("q", 1, 1),
+        ("momentum_q", 1, 1),
+        ("R", 3, 3),
+        ("body_momentum_R", 3, 1),
+    ];
+    let setup = Setup::new(0.1, parameters.into_iter(), observables.into_iter());
+    let judge = Judge::new(&model, &[], setup).expect("is judged");
+    let node = |q: f64, p: f64| {
+        let mut out = vec![q, p];
+        out.extend(unit);
+        out.extend([0.0; 3]);
+        out
+    };
+    let p = 1.3 * 0.001 / 0.1;
+    let right = judge
+        .step(1, &node(0.0, p), &node(0.001, p))
+        .expect("judged");
+    assert!(right.worst.expect("equations").ratio() <= 1.0);
+    let wrong = judge
+        .step(1, &node(0.0, p), &node(0.25, p))
+        .expect("judged");
+    let mut verdict = Verdict::default();
+    verdict.take(1, Ok(wrong));
+    let said = verdict.to_string();
+    assert!(verdict.is_broken() && !verdict.holds(), "{said}");
+    assert!(
+        said.contains("does NOT hold") && said.contains("momentum of q"),
+        "{said}"
+    );
+    assert_eq!(Verdict::of_numbers(&verdict.numbers()).to_string(), said);
+}
+
+/// A check whose residuals are far below rounding shares what it judges with what it is judged by.
+#[test]
+fn residuals_far_below_rounding_are_a_failure() {
+    let mut verdict = Verdict::default();
+    let judged = |tested, roundings| {
+        Ok(Judged {
+            worst: None,
+            tested,
+            roundings,
+        })
+    };
+    verdict.take(1, judged(30, 1e-4));
+    assert!(verdict.is_empty() && !verdict.holds());
+    verdict.take(2, judged(30, 0.4));
+    assert!(!verdict.is_empty() && verdict.holds());
+    let mut at_rest = Verdict::default();
+    at_rest.take(1, judged(0, 0.0));
+    assert!(at_rest.holds());
 }

@@ -96,6 +96,16 @@ fn run() -> Command {
         .requires("out"),
     )
     .arg(
+        option(
+            "check",
+            "STEPS",
+            "Which steps are judged by the action as stated, independently of derivation and program: a sample of a \
+             hundred and the last, all, or none",
+        )
+        .value_parser(["sample", "all", "none"])
+        .default_value("sample"),
+    )
+    .arg(
         checkpoint
             .requires("out")
             .default_value("60")

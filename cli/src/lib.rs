@@ -30,6 +30,7 @@ pub mod plots;
 mod record;
 mod run;
 mod sample;
+mod stated;
 mod step_limit;
 mod suggestion;
 mod sweep;

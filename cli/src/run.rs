@@ -15,14 +15,16 @@ use crate::plain::{shown, steps};
 use crate::plan::Plan;
 use crate::plots::axis;
 use crate::record::{LARGEST, Recorder};
+use crate::stated::JudgedTrajectory;
 use crate::step_limit::StepLimit;
 use crate::verdict::{Verdict, judge, table};
 use crate::waiting::Waiting;
 use crate::width::paragraph;
 use clap::ArgMatches;
-use clebsch::card::Card;
+use clebsch::card::{Card, Trajectory as _};
 use clebsch::integrate::{self, Halved, RunError, Watch};
 use clebsch::record::Record;
+use clebsch_check::Which;
 use serde_json::json;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -36,7 +38,7 @@ const OPENING_NUMBERS: u64 = 1 << 25;
 /// Where the texts of a summary begin, behind their names.
 const SUMMARY: usize = 21;
 
-/// Runs the command; the code is 0, 3 when an invariant exceeded its bound, or 1 when a step after the
+/// Runs the command; the code is 0, 3 when an invariant exceeded its bound or the action as stated refutes a step, or 1 when a step after the
 /// first failed: what was computed before is shown and written then, marked as stopped.
 ///
 /// # Errors
@@ -103,9 +105,11 @@ pub fn run(
         plan.open(card)
     };
     // Where the first step is refused, that it is too long is why, mostly.
-    let mut trajectory = started.inspect_err(|_| {
+    let trajectory = started.inspect_err(|_| {
         too_long.iter().for_each(|warning| warn(warning));
     })?;
+    let which = judged_steps(matches);
+    let mut trajectory = JudgedTrajectory::new(card, &plan, which, trajectory);
     let kinetic = trajectory.kinetic_warning().map(|w| w.to_string());
     let warnings: Vec<String> = kinetic.into_iter().chain(too_long).collect();
     warnings.iter().for_each(|warning| warn(warning));
@@ -123,9 +127,9 @@ pub fn run(
         }
     }
     let steps = plan.case.steps;
-    let watch = Watch::new(trajectory.as_ref(), steps, plan.every);
+    let watch = Watch::new(&trajectory, steps, plan.every);
     let mut following = Run {
-        trajectory: trajectory.as_mut(),
+        trajectory: &mut trajectory,
         watch,
         steps,
         progress: streams.progress,
@@ -162,6 +166,7 @@ pub fn run(
     let end = following.follow(kept.as_mut())?;
     let summary = following.watch.summary();
     let halvings = following.trajectory.halvings();
+    let stated = (which != Which::None).then(|| trajectory.verdict().clone());
     let why = match &end {
         End::Whole => None,
         // A run without a step has no results.
@@ -184,6 +189,7 @@ pub fn run(
         samples: summary.samples,
         residual: summary.residual,
         halvings,
+        stated,
         stopped,
     };
     let stream = kept.map(|kept| kept.stream);
@@ -222,7 +228,9 @@ pub fn run(
         .map(|outcome| outcome.invariant.name)
         .collect();
     let lost = run.residual.filter(|residual| residual.relative.is_nan());
-    let code = match (&run.stopped, left.is_empty() && lost.is_none()) {
+    let refuted = run.stated.as_ref().filter(|verdict| !verdict.holds());
+    let kept = left.is_empty() && lost.is_none() && refuted.is_none();
+    let code = match (&run.stopped, kept) {
         (Some(_), _) if matches!(end, End::Interrupted(_)) => match end {
             End::Interrupted(signal) => BY_SIGNAL.saturating_add(signal),
             _ => FAILED,
@@ -268,10 +276,22 @@ pub fn run(
             residual.node
         );
     }
+    if let Some(verdict) = refuted {
+        let _ = writeln!(streams.err, "clebsch: {verdict}");
+    }
     if let Some(stopped) = &run.stopped {
         let _ = writeln!(streams.err, "clebsch: {}", stopped.why);
     }
     Ok(code)
+}
+
+/// Which steps are judged by the action as stated.
+fn judged_steps(matches: &ArgMatches) -> Which {
+    match matches.get_one::<String>("check").map(String::as_str) {
+        Some("all") => Which::All,
+        Some("none") => Which::None,
+        _ => Which::Sample,
+    }
 }
 
 /// The samples of a run that is gone on with.
@@ -428,7 +448,9 @@ fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
             h.parts
         )
     });
-    residual.into_iter().chain(halved).chain(stopped).collect()
+    let stated = run.stated.as_ref().map(ToString::to_string);
+    let first = residual.into_iter().chain(stated);
+    first.chain(halved).chain(stopped).collect()
 }
 
 /// The beginning of the run once more with every node kept, when the record is sparser than that.

@@ -28,6 +28,7 @@ use crate::verdict::Outcome;
 use clebsch::card::Card;
 use clebsch::integrate::{Halvings, LargestResidual};
 use clebsch::record::{Record, Rows as _, npz, write_csv};
+use clebsch_check::Verdict;
 use samples::Rows;
 use std::io::Write;
 use std::path::Path;
@@ -56,6 +57,8 @@ pub struct Finished<'a> {
     pub residual: Option<LargestResidual>,
     /// Steps that were made by parts; none where a refused step ends a run.
     pub halvings: Option<Halvings>,
+    /// What the action as stated says of the judged steps; none where none was to be judged.
+    pub stated: Option<Verdict>,
     /// Where it stopped; none for a run that has come to its end.
     pub stopped: Option<Stopped>,
 }

@@ -17,6 +17,7 @@ pub fn run_json(run: &Finished<'_>, files: &[String]) -> Value {
         samples,
         residual,
         halvings,
+        stated,
         stopped,
     } = run;
     let mut object = plan_json(card, plan);
@@ -32,6 +33,10 @@ pub fn run_json(run: &Finished<'_>, files: &[String]) -> Value {
     if let (Some(h), Some(results)) = (halvings, results.as_object_mut()) {
         let made = json!({"steps": h.steps, "most": h.parts, "symplectic": h.steps == 0});
         results.insert("made_by_parts".to_owned(), made);
+    }
+    if let (Some(verdict), Some(results)) = (stated, results.as_object_mut()) {
+        let verdict = crate::stated::verdict_json(verdict);
+        results.insert("action_as_stated".to_owned(), verdict);
     }
     if let Some(object) = object.as_object_mut() {
         object.insert("results".to_owned(), results);

@@ -4,7 +4,7 @@ use super::ast::{Expression, Extent, Kind, Name, Statement};
 
 impl Expression {
     /// What it is made of directly, in order.
-    pub fn parts(&self) -> Vec<&Expression> {
+    pub(crate) fn parts(&self) -> Vec<&Expression> {
         match &self.kind {
             Kind::Number(_) | Kind::Constant(_) | Kind::Name(_) => Vec::new(),
             Kind::Sum(terms) => terms.iter().map(|(_, t)| t).collect(),
@@ -38,7 +38,7 @@ impl Expression {
     }
 
     /// The first name of a quantity that is such a one.
-    pub fn name_that(&self, is: &dyn Fn(&str) -> bool) -> Option<&str> {
+    pub(crate) fn name_that(&self, is: &dyn Fn(&str) -> bool) -> Option<&str> {
         match &self.kind {
             Kind::Name(n) => is(n).then_some(n),
             _ => self.parts().into_iter().find_map(|part| part.name_that(is)),
@@ -59,7 +59,7 @@ impl Expression {
     }
 
     /// Visits it and everything in it.
-    pub fn each(&self, visit: &mut dyn FnMut(&Expression)) {
+    pub(crate) fn each(&self, visit: &mut dyn FnMut(&Expression)) {
         visit(self);
         for part in self.parts() {
             part.each(visit);
@@ -72,14 +72,14 @@ impl Expression {
     }
 
     /// The same with what `of` puts in the place of parts, larger ones first; into what is put in it does not look.
-    pub fn replaced(&self, of: &dyn Fn(&Expression) -> Option<Expression>) -> Expression {
+    pub(crate) fn replaced(&self, of: &dyn Fn(&Expression) -> Option<Expression>) -> Expression {
         let mut out = self.clone();
         out.replace(of);
         out
     }
 
     /// The same in place.
-    pub fn replace(&mut self, of: &dyn Fn(&Expression) -> Option<Expression>) {
+    pub(crate) fn replace(&mut self, of: &dyn Fn(&Expression) -> Option<Expression>) {
         match of(self) {
             Some(put) => *self = put,
             None => self

@@ -1,0 +1,170 @@
+//! The verdict by the action as stated: a trajectory whose chosen steps are judged by `clebsch-check`, which shares nothing with
+//! derivation and emission but the text. Takes a card, a plan and a trajectory; gives the same trajectory, watched.
+
+use crate::plan::Plan;
+use clebsch::StepError;
+use clebsch::card::{Card, Trajectory};
+use clebsch::integrate::Halvings;
+use clebsch::kinetic::KineticWarning;
+use clebsch::saved::{Saved, Words};
+use clebsch_check::{Chosen, Judge, Setup, Verdict, Which};
+use clebsch_core::pipeline;
+use serde_json::{Value, json};
+
+/// A trajectory whose steps are judged.
+pub(crate) struct JudgedTrajectory {
+    inner: Box<dyn Trajectory>,
+    chosen: Chosen,
+    judge: Result<Judge, String>,
+    verdict: Verdict,
+    /// The numbers of the node before a judged step, and after it.
+    nodes: [Vec<f64>; 2],
+}
+
+impl JudgedTrajectory {
+    /// Of the run that is planned.
+    pub(crate) fn new(card: &Card, plan: &Plan, which: Which, inner: Box<dyn Trajectory>) -> Self {
+        let judge = match which {
+            Which::None => Err("not asked for".to_owned()),
+            _ => judge(card, plan),
+        };
+        let none = vec![0.0; card.observable_count()];
+        let mut verdict = Verdict::default();
+        verdict.not_judged = judge.as_ref().err().cloned();
+        Self {
+            inner,
+            chosen: Chosen::new(which, plan.case.steps),
+            judge,
+            verdict,
+            nodes: [none.clone(), none],
+        }
+    }
+
+    /// What came out.
+    pub(crate) fn verdict(&self) -> &Verdict {
+        &self.verdict
+    }
+
+    /// How many steps were made by parts.
+    fn parts(&self) -> u64 {
+        self.inner.halvings().map_or(0, |h| h.steps)
+    }
+}
+
+/// What judges steps of this case.
+fn judge(card: &Card, plan: &Plan) -> Result<Judge, String> {
+    if let Some(order) = plan.order.filter(|order| *order > card.order) {
+        return Err(format!(
+            "a step of order {order} is made of others, or of modified moments"
+        ));
+    }
+    let model = pipeline::parse_source(card.source);
+    let model = model.map_err(|_| "the text of the model is not at hand".to_owned())?;
+    let sizes = card.dimensions.iter();
+    let sizes: Vec<_> = sizes.map(|d| (d.name.to_owned(), d.value)).collect();
+    let fields = card.parameters.iter().map(|f| (f.name, f.rows, f.cols));
+    let parameters = fields.zip(plan.case.parameters.iter().map(Vec::as_slice));
+    let observables = card.observables.iter().map(|f| (f.name, f.rows, f.cols));
+    let mut setup = Setup::new(plan.case.h, parameters, observables);
+    if let Some(choice) = &plan.choice {
+        setup.counts.clone_from(&choice.counts);
+        (setup.periodic, setup.ends) = (choice.periodic, choice.ends);
+    }
+    Judge::new(&model, &sizes, setup)
+}
+
+impl Trajectory for JudgedTrajectory {
+    fn node(&self) -> u64 {
+        self.inner.node()
+    }
+
+    fn time(&self) -> f64 {
+        self.inner.time()
+    }
+
+    fn step(&mut self) -> Result<(), StepError> {
+        let number = self.inner.node() + 1;
+        let Some(judge) = self
+            .judge
+            .as_ref()
+            .ok()
+            .filter(|_| self.chosen.contains(number))
+        else {
+            return self.inner.step();
+        };
+        let parts = self.parts();
+        let [before, after] = &mut self.nodes;
+        self.inner.observe(before);
+        self.inner.step()?;
+        // A step that is made by parts solves other equations.
+        if self.inner.halvings().map_or(0, |h| h.steps) == parts {
+            self.inner.observe(after);
+            let judged = judge.step(number, before, after);
+            self.verdict.take(number, judged);
+        }
+        Ok(())
+    }
+
+    fn card(&self) -> &'static Card {
+        self.inner.card()
+    }
+
+    fn kinetic_warning(&self) -> Option<KineticWarning> {
+        self.inner.kinetic_warning()
+    }
+
+    fn residual(&self) -> Option<f64> {
+        self.inner.residual()
+    }
+
+    fn halvings(&self) -> Option<Halvings> {
+        self.inner.halvings()
+    }
+
+    fn observe(&self, out: &mut [f64]) {
+        self.inner.observe(out);
+    }
+
+    fn invariants(&self, out: &mut [f64]) {
+        self.inner.invariants(out);
+    }
+
+    fn scales(&self, out: &mut [f64]) {
+        self.inner.scales(out);
+    }
+
+    /// The verdict so far is kept with the trajectory, so that a run that is gone on with tells of all its steps.
+    fn words(&mut self, words: &mut Words) {
+        self.inner.words(words);
+        let mut numbers = self.verdict.numbers();
+        numbers.words(words);
+        if words.are_given() {
+            let not_judged = self.verdict.not_judged.take();
+            self.verdict = Verdict::of_numbers(&numbers);
+            self.verdict.not_judged = not_judged;
+        }
+    }
+}
+
+/// The verdict for files.
+pub(crate) fn verdict_json(verdict: &Verdict) -> Value {
+    let worst = verdict.worst.as_ref().map(|(node, part)| {
+        json!({
+            "ratio": part.ratio(),
+            "node": node,
+            "of": part.what,
+            "site": part.site,
+            "component": part.component,
+            "at_end": part.node == 1,
+            "residual": part.residual,
+            "bound": part.bound,
+        })
+    });
+    json!({
+        "judged": verdict.judged,
+        "holds": verdict.not_judged.is_none().then(|| verdict.holds()),
+        "measures_nothing": verdict.is_empty(),
+        "not_judged": verdict.not_judged,
+        "worst": worst,
+    })
+}
