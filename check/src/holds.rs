@@ -30,6 +30,7 @@ pub fn held(
 ) -> Result<(Vec<Part>, Vec<Gradient>), String> {
     let (mut parts, mut gradients) = (Vec::new(), Vec::new());
     for hold in &stated.holds {
+        let own = parts.len();
         for (index, value) in values(scene, stated, setup, (hold, moving), node)? {
             let entries: Vec<Number> = match value {
                 Value::Known(m) => m.entries,
@@ -51,6 +52,13 @@ pub fn held(
                 }
             }
         }
+        // The multipliers of a line are found together, as far as the site is seen that is rounded most.
+        let most = parts
+            .iter()
+            .skip(own)
+            .map(|p: &Part| p.bound)
+            .fold(0.0, f64::max);
+        parts.iter_mut().skip(own).for_each(|p| p.bound = most);
     }
     Ok((parts, gradients))
 }

@@ -12,7 +12,10 @@ use crate::statements;
 use clebsch_core::syntax::ast::Model;
 
 /// Roundings of the terms of an equation that a solver may leave of it, beside those of its own evaluation.
-const LEFT_BY_SOLVERS: f64 = 4.0;
+const LEFT_BY_SOLVERS: f64 = 8.0;
+
+/// The same of what is held: searches for multipliers end when corrections are no more than 32 double roundings of its terms.
+const LEFT_OF_WHAT_IS_HELD: f64 = 128.0;
 
 /// Significant bits of terms whose sums and products are exact: a zero of such terms proves nothing.
 const EXACT_BITS: u32 = 26;
@@ -69,8 +72,7 @@ impl Part {
             component: 1,
             node,
             residual: x.value,
-            // A solver corrects as far as the rounding of the configuration is seen.
-            bound: LEFT_BY_SOLVERS * x.error,
+            bound: LEFT_OF_WHAT_IS_HELD * x.error,
             terms: 0.0,
             is_exact: true,
         }
@@ -165,7 +167,8 @@ impl Judge {
                             + UNIT * residual.abs()
                             + LEFT_BY_SOLVERS * UNIT * terms,
                         terms,
-                        is_exact: is_short(*p) && is_short(brought),
+                        // Of a body at rest forces and reactions cancel, which may be exact.
+                        is_exact: is_short(*p),
                     });
                 }
             }

@@ -116,8 +116,8 @@ impl Verdict {
         !(self.ratio() <= 1.0)
     }
 
-    /// Whether all residuals are far below rounding though their terms are rounded: then the check has measured nothing. A
-    /// residual of terms that are zero, or have so few bits that their arithmetic is exact, may well be zero.
+    /// Whether all residuals are far below rounding though their terms are rounded: then the check has measured nothing. The
+    /// residual of a momentum that is zero, or has so few bits that its arithmetic is exact, may well be zero.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.tested >= ENOUGH && self.roundings < FAR_BELOW

@@ -1,0 +1,112 @@
+//! The verdict by the action as stated: every model file with its cases holds, what is not judged is said not to be, and the numbers
+//! stand in the object too.
+
+use crate::common::{Folder, program as clebsch};
+use serde_json::Value;
+
+fn shipped(file: &str) -> String {
+    format!("{}/../models/{file}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The verdict on a few steps of every case of a model file.
+fn judged(name: &str, steps: &str, words: &str) {
+    let model = shipped(&format!("{name}.clebsch"));
+    let own = std::path::PathBuf::from(shipped(&format!("{name}.toml")));
+    let folder = std::fs::read_dir(shipped(name)).into_iter().flatten();
+    let mut cases: Vec<_> = folder.flatten().map(|entry| entry.path()).collect();
+    cases.push(own);
+    for case in cases.iter().filter(|case| case.is_file()) {
+        let case = case.display().to_string();
+        let done = clebsch(&["run", &model, "--case", &case, "--steps", steps]);
+        assert_eq!(done.code, 0, "{case}: {}{}", done.out, done.err);
+        let line = done.out.split("action as stated: ").nth(1);
+        let line = line.unwrap_or_else(|| panic!("{case}: {}", done.out));
+        assert!(line.contains(words), "{case}: {line}");
+        assert!(!line.contains("NOT hold"), "{case}: {line}");
+    }
+}
+
+macro_rules! judged {
+    ($($test:ident: $file:literal $steps:literal $words:literal;)*) => {
+        $(#[test]
+        fn $test() {
+            judged($file, $steps, $words);
+        })*
+    };
+}
+judged! {
+    fluid_ellipsoid: "elastic/fluid-ellipsoid" "10" "10 steps judged";
+    kirchhoff_static: "elastic/kirchhoff-static" "40" "40 steps judged";
+    mooney_rivlin: "elastic/mooney-rivlin" "40" "40 steps judged";
+    neo_hooke: "elastic/neo-hooke" "40" "40 steps judged";
+    pseudo_rigid: "elastic/pseudo-rigid" "5" "5 steps judged";
+    pseudo_rigid_anisotropic: "elastic/pseudo-rigid-anisotropic" "2" "2 steps judged";
+    pseudo_rigid_bipolar: "elastic/pseudo-rigid-bipolar" "1" "1 step judged";
+    pseudo_rigid_positive: "elastic/pseudo-rigid-positive" "2" "2 steps judged";
+    spherical_pendulum: "elastic/spherical-pendulum" "40" "40 steps judged";
+    circular_rod: "lattices/circular-rod" "5" "5 steps judged";
+    coupled_body_chain: "lattices/coupled-body-chain" "5" "5 steps judged";
+    coupled_tops: "lattices/coupled-tops" "5" "5 steps judged";
+    geometrically_exact_rod: "lattices/geometrically-exact-rod" "5" "5 steps judged";
+    hanging_chain: "lattices/hanging-chain" "5" "5 steps judged";
+    kirchhoff_rod: "lattices/kirchhoff-rod" "5" "5 steps judged";
+    quaternion_rod: "lattices/quaternion-rod" "5" "5 steps judged";
+    shallow_water_1d: "lattices/shallow-water-1d" "5" "5 steps judged";
+    sine_gordon: "lattices/sine-gordon" "5" "5 steps judged";
+    toda_chain: "lattices/toda-chain" "5" "5 steps judged";
+    uniform_tension_rod: "lattices/uniform-tension-rod" "5" "5 steps judged";
+    particle_mesh: "fluids/particle-mesh-1d" "2" "not judged: functionals of all sites";
+}
+
+/// Which steps are judged, and what the object says of them.
+#[test]
+fn the_steps_that_are_judged_are_those_asked_for() {
+    let object = |check: &str| -> Value {
+        let done = clebsch(&[
+            "run",
+            "heavy-top",
+            "--steps",
+            "300",
+            "--check",
+            check,
+            "--json",
+        ]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        done.out.parse().expect("an object")
+    };
+    let of = |check: &str| object(check)["results"]["action_as_stated"].clone();
+    let sample = of("sample");
+    assert_eq!(sample["judged"], 101);
+    assert_eq!(sample["holds"], true);
+    assert!(
+        sample["worst"]["ratio"]
+            .as_f64()
+            .is_some_and(|r| r > 1e-3 && r < 1.0)
+    );
+    assert_eq!(of("all")["judged"], 300);
+    assert!(of("none").is_null());
+    let done = clebsch(&["run", "free-body", "--steps", "10", "--order", "4"]);
+    assert!(
+        done.out
+            .contains("action as stated: not judged: a step of order 4")
+    );
+}
+
+/// A body at rest has residuals that are exactly zero, of which nothing follows.
+#[test]
+fn a_body_at_rest_is_no_failure_of_the_check() {
+    let folder = Folder::new("stated-at-rest");
+    let text = "model Rest { param m, k: Real; field x: Vec<3>;
+        lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - (h*k/2)*dot(x, x); }";
+    let model = folder.write("rest.clebsch", text);
+    let case = "model = \"rest\"\nh = 0.1\nsteps = 20\n[parameters]\nm = 1.3\nk = 0.7\n\
+        [initial]\nx = [0.0, 0.0, 0.0]\nmomentum_x = [0.0, 0.0, 0.0]\n";
+    let case = folder.write("rest.toml", case);
+    let done = clebsch(&["run", &model, "--case", &case]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    assert!(
+        done.out.contains("20 steps judged, largest residual 0 of"),
+        "{}",
+        done.out
+    );
+}
