@@ -174,7 +174,9 @@ impl Group {
                     .basis()
                     .into_iter()
                     .filter_map(|entries| entries.first().copied());
-                own.map(|(i, j, _)| numbers.get(i * n + j).copied())
+                // Both halves are looked at.
+                let at = |i: usize, j: usize| numbers.get(i * n + j).copied();
+                own.map(|(i, j, _)| Some(0.5 * (at(i, j)? - at(j, i)?)))
                     .collect()
             }
             _ => (numbers.len() == self.basis().len()).then(|| numbers.to_vec()),

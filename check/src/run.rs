@@ -113,7 +113,8 @@ impl Verdict {
     /// Whether an equation is left by more than rounding explains.
     #[must_use]
     pub fn is_broken(&self) -> bool {
-        !(self.ratio() <= 1.0)
+        let ratio = self.ratio();
+        ratio > 1.0 || ratio.is_nan()
     }
 
     /// Whether all residuals are far below rounding though their terms are rounded: then the check has measured nothing. The
@@ -237,7 +238,7 @@ impl fmt::Display for Verdict {
 
 fn short(x: f64) -> String {
     match x {
-        x if x == 0.0 => "0".to_owned(),
+        0.0 => "0".to_owned(),
         x if (0.01..1000.0).contains(&x) => format!("{x:.2}"),
         x => format!("{x:.1e}"),
     }

@@ -2,14 +2,15 @@
 //! elements, velocities, fields, and what is carried by its own constraint from the stored to the varied configuration.
 
 use crate::evaluate::{Evaluated, Here};
-use crate::group::{Entries, Group, LEFT};
+use crate::group::{Group, LEFT};
 use crate::matrix::Matrix;
 use crate::number::{Number, UNIT};
-use crate::setup::{Numbers, Setup};
+use crate::setup::Setup;
 use crate::sites::range;
-use crate::stated::{Layout, Quantity, Role, Side, Sites, Stated};
+use crate::stated::{Quantity, Role, Side, Sites, Stated};
 use crate::terms::Term;
 use crate::value::Value;
+use crate::varied::{field, small, stored, varied_element};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 
@@ -282,10 +283,6 @@ fn misread(name: &str) -> String {
     format!("the numbers of `{name}` do not fit its shape")
 }
 
-fn small(n: usize) -> u32 {
-    u32::try_from(n).unwrap_or(u32::MAX)
-}
-
 /// How many variables come before those of a node.
 fn of_node(group: Group, node: usize) -> u32 {
     small(group.basis().len() * node)
@@ -300,102 +297,4 @@ fn plain(n: &str) -> Option<Value> {
     (1..=8)
         .contains(&direction)
         .then(|| Value::unit(direction - 1))
-}
-
-/// What is carried, as it is stored: as uncertain as its largest entry.
-fn stored(own: &Numbers, numbers: &[f64], is_quaternion: bool) -> Value {
-    let size = numbers.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
-    let of = |x: f64| Number::within(x, UNIT * size);
-    if is_quaternion && numbers.len() == 4 {
-        let entry = |i: usize, j: usize| of(LEFT[i][j].1 * numbers[LEFT[i][j].0]);
-        return Value::Known(Matrix::from_entries(4, 4, entry));
-    }
-    Value::Known(Matrix {
-        rows: own.rows,
-        cols: own.cols,
-        entries: numbers.iter().map(|x| of(*x)).collect(),
-    })
-}
-
-/// An element with its variations: `R (Id + xi)` or `(Id + xi) R`, by the basis of the Lie algebra.
-fn varied_element(r: &Matrix, group: Group, side: Side, first: u32) -> Matrix {
-    let mut out = r.clone();
-    for (which, direction) in group.basis().iter().enumerate() {
-        let moved = moved(r, direction, side);
-        let of = first + small(which);
-        let each = out.entries.iter_mut().zip(moved.entries);
-        each.for_each(|(x, by)| {
-            let plain = std::mem::take(x);
-            *x = plain.with_slope(of, by.value, by.error);
-        });
-    }
-    out
-}
-
-fn moved(r: &Matrix, direction: &Entries, side: Side) -> Matrix {
-    let n = r.rows;
-    let mut out = Matrix::from_entries(n, n, |_, _| Number::default());
-    for (k, l, c) in direction {
-        for i in 0..n {
-            let (from, to) = match side {
-                Side::Body => ((i, *k), (i, *l)),
-                Side::Space => ((*l, i), (*k, i)),
-            };
-            let by = r.at(from.0, from.1).constant().times(&Number::exact(*c));
-            if let Some(entry) = out.entries.get_mut(to.0 * n + to.1) {
-                *entry = entry.plus(&by);
-            }
-        }
-    }
-    out
-}
-
-/// A field from its numbers, each a variable.
-fn field(layout: Layout, own: &Numbers, numbers: &[f64], first: Option<u32>) -> Option<Value> {
-    let entry = |k: usize, sign: f64| {
-        let x = numbers.get(k).copied().unwrap_or(f64::NAN);
-        let n = Number::within(sign * x, UNIT * x.abs());
-        match first {
-            Some(first) => n.with_slope(first + small(k), sign, 0.0),
-            None => n,
-        }
-    };
-    let of_size = |count: &dyn Fn(usize) -> usize| (1..=64).find(|n| count(*n) == numbers.len());
-    let matrix = match layout {
-        Layout::Entries => {
-            Matrix::from_entries(own.rows, own.cols, |i, j| entry(i * own.cols + j, 1.0))
-        }
-        Layout::Diagonal => {
-            let n = numbers.len();
-            Matrix::from_entries(n, n, |i, j| {
-                if i == j {
-                    entry(i, 1.0)
-                } else {
-                    Number::default()
-                }
-            })
-        }
-        Layout::Symmetric => {
-            let n = of_size(&|n| n * (n + 1) / 2)?;
-            let place = |i: usize, j: usize| i * n - i * (i + 1) / 2 + j;
-            Matrix::from_entries(n, n, |i, j| entry(place(i.min(j), i.max(j)), 1.0))
-        }
-        Layout::Skew if numbers.len() == 3 => {
-            Matrix::from_entries(3, 3, |i, j| match (3 + j - i) % 3 {
-                1 => entry(3 - i - j, -1.0),
-                2 => entry(3 - i - j, 1.0),
-                _ => Number::default(),
-            })
-        }
-        Layout::Skew => {
-            let n = of_size(&|n| n * n.saturating_sub(1) / 2)?;
-            let place = |i: usize, j: usize| i * (i - 1) / 2 + j;
-            Matrix::from_entries(n, n, |i, j| match i.cmp(&j) {
-                std::cmp::Ordering::Greater => entry(place(i, j), 1.0),
-                std::cmp::Ordering::Less => entry(place(j, i), -1.0),
-                std::cmp::Ordering::Equal => Number::default(),
-            })
-        }
-    };
-    Some(Value::Known(matrix))
 }

@@ -1,132 +1,13 @@
 //! What a model states, by name: quantities, constraints, end conditions, the Lagrangian with its definitions put in.
 //! Takes a syntax tree; gives the statements sorted, or why they cannot be judged.
 
-use crate::expression::{Expression, Kind, Sizes as Dimensions};
+use crate::expression::{Expression, Kind};
 use crate::group::Group;
-use crate::terms::{Term, Terms};
-use clebsch_core::syntax::ast::{self, At, Kindred, Model, NodeRule, Site, Size, Statement};
+use crate::lets::Lets;
+pub use crate::records::{End, Hold, Layout, Quantity, Role, Side, Sites, Stated};
+use crate::terms::Terms;
+use clebsch_core::syntax::ast::{At, Kindred, Model, NodeRule, Site, Size, Statement};
 use std::collections::BTreeMap;
-
-/// How deep definitions may stand in one another.
-const DEEPEST: usize = 64;
-
-/// Where a quantity lives along a label.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Sites {
-    /// At nodes of the line, or at the members of a set.
-    Nodes,
-    /// At segments.
-    Segments,
-}
-
-/// On which side of an element its velocity stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// `next(R) = R*O`.
-    Body,
-    /// `next(R) = O*R`.
-    Space,
-}
-
-/// What a quantity is.
-#[derive(Clone, Debug)]
-pub enum Role {
-    /// Constant.
-    Parameter,
-    /// An element of a group, with the side of its velocity.
-    Element(Group, Side),
-    /// Values that are added.
-    Field(Layout),
-    /// Carried by the configurations.
-    Advected,
-}
-
-/// How a field is kept as numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Layout {
-    /// Entry by entry.
-    Entries,
-    /// The diagonal of a matrix.
-    Diagonal,
-    /// The entries on and above the diagonal, by rows.
-    Symmetric,
-    /// An axial vector, or the entries below the diagonal.
-    Skew,
-}
-
-/// A quantity of the model.
-#[derive(Clone, Debug)]
-pub struct Quantity {
-    /// Its name.
-    pub name: String,
-    /// What it is.
-    pub role: Role,
-    /// The label that it lives along, by its number, and at which sites.
-    pub at: Option<(usize, Sites)>,
-    /// The parameter by which it grows around a ring.
-    pub offset: Option<String>,
-    /// How it goes on, of what is advected.
-    pub update: Option<Expression>,
-    /// What it is, of what is advected by definition.
-    pub definition: Option<Expression>,
-    /// Whether it is a number.
-    pub is_number: bool,
-    /// Whether its four rows are those of a quaternion.
-    pub is_quaternion: bool,
-}
-
-/// A way to end a line.
-#[derive(Clone, Debug)]
-pub struct End {
-    /// Its name.
-    pub name: String,
-    /// Parameters of its own, and whether each is a quaternion.
-    pub params: Vec<String>,
-    /// Configurations that are given.
-    pub given: Vec<String>,
-    /// Terms that it adds.
-    pub terms: Vec<Term>,
-}
-
-/// A constraint that is held: zero, and the sites that it is counted over.
-#[derive(Clone, Debug)]
-pub struct Hold {
-    /// The name of its multiplier.
-    pub name: String,
-    /// Left side less right side.
-    pub value: Term,
-    /// Whether it holds sums over sites.
-    pub of_sums: bool,
-}
-
-/// A model, sorted.
-#[derive(Clone, Debug)]
-pub struct Stated {
-    /// Quantities by name.
-    pub quantities: BTreeMap<String, Quantity>,
-    /// The element of each velocity.
-    pub velocities: BTreeMap<String, String>,
-    /// The name of the step.
-    pub step: String,
-    /// Sizes by name.
-    pub sizes: BTreeMap<String, usize>,
-    /// Functions by path of Rust.
-    pub functions: BTreeMap<String, String>,
-    /// The index of each label.
-    pub labels: Vec<String>,
-    /// The terms of the Lagrangian.
-    pub terms: Vec<Term>,
-    /// By what the typed Lagrangian is divided.
-    pub scale: Option<Expression>,
-    /// The node rule.
-    pub rule: NodeRule,
-    /// What is held.
-    pub holds: Vec<Hold>,
-    /// End conditions at the first and at the last site.
-    pub ends: [Vec<End>; 2],
-    /// Whether there is a line, by the number of its label.
-    pub line: Option<usize>,
-}
 
 impl Stated {
     /// Reads a model.
@@ -411,39 +292,5 @@ fn side_of(
             )),
         },
         _ => Err(format!("the constraint of `{element}` is no product")),
-    }
-}
-
-/// Definitions by name, and sizes by name.
-struct Lets(BTreeMap<String, Expression>, Dimensions);
-
-impl Lets {
-    fn of(model: &Model, sizes: &Dimensions) -> Self {
-        let each = model.statements.iter().filter_map(|s| match s {
-            Statement::Let { name, value } => {
-                Some((name.text.clone(), Expression::of(value, sizes)))
-            }
-            _ => None,
-        });
-        Self(each.collect(), sizes.clone())
-    }
-
-    /// An expression with definitions put in, to the last one.
-    fn put(&self, e: &ast::Expression) -> Result<Expression, String> {
-        let mut out = Expression::of(e, &self.1);
-        for _ in 0..DEEPEST {
-            let mut there = false;
-            out.each(&mut |e| {
-                there |= matches!(&e.kind, Kind::Name(n) if self.0.contains_key(n));
-            });
-            if !there {
-                return Ok(out);
-            }
-            out.replace(&|e| match &e.kind {
-                Kind::Name(n) => self.0.get(n).cloned(),
-                _ => None,
-            });
-        }
-        Err("definitions stand in one another too deep".to_owned())
     }
 }

@@ -3,6 +3,7 @@
 
 use crate::expression::{Expression, Kind};
 use crate::stated::{Role, Sites, Stated};
+use crate::words::{flat, of_kind, quotient, with_sign, without_sign, words};
 
 /// Where a term lives in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -294,7 +295,7 @@ impl<'a> Terms<'a> {
             let Some(term) = left[i].take() else { continue };
             let own = self.steps(&term);
             let partner = left[i + 1..].iter_mut().find(|other| {
-                let other = other.as_ref().map(|o| without_sign(o));
+                let other = other.as_ref().map(without_sign);
                 let (minus, plain) = without_sign(&term);
                 other.is_some_and(|(sign, o)| {
                     sign != minus
@@ -344,65 +345,4 @@ impl<'a> Terms<'a> {
             },
         }
     }
-}
-
-/// Factors with those of products among them.
-fn flat(list: &[Expression]) -> Vec<Expression> {
-    let each = list.iter().flat_map(|f| match &f.kind {
-        Kind::Product(inner) => flat(inner),
-        _ => vec![f.clone()],
-    });
-    each.collect()
-}
-
-fn of_kind(kind: Kind) -> Expression {
-    Expression { kind }
-}
-
-fn quotient(top: Expression, bottom: &Expression) -> Expression {
-    of_kind(Kind::Quotient(Box::new(top), Box::new(bottom.clone())))
-}
-
-fn with_sign(e: Expression, minus: bool) -> Expression {
-    match (minus, e.kind) {
-        (true, Kind::Neg(inner)) => *inner,
-        (true, kind) => of_kind(Kind::Neg(Box::new(of_kind(kind)))),
-        (false, kind) => of_kind(kind),
-    }
-}
-
-fn without_sign(e: &Expression) -> (bool, &Expression) {
-    match &e.kind {
-        Kind::Neg(inner) => {
-            let (minus, plain) = without_sign(inner);
-            (!minus, plain)
-        }
-        _ => (false, e),
-    }
-}
-
-/// The words of an expression, those of steps in time left out.
-fn words(e: &Expression) -> String {
-    let head = match &e.kind {
-        Kind::Call(f, list) if f == "next" && list.len() == 1 => {
-            return list.iter().map(words).collect();
-        }
-        Kind::Number(a, b) => format!("{a}/{b}"),
-        Kind::Constant(c) => c.to_string(),
-        Kind::Name(n) => n.clone(),
-        Kind::Sum(terms) => terms
-            .iter()
-            .map(|(minus, _)| if *minus { '-' } else { '+' })
-            .collect(),
-        Kind::Product(_) => "*".to_owned(),
-        Kind::Quotient(..) => "/".to_owned(),
-        Kind::Neg(_) => "neg".to_owned(),
-        Kind::Transpose(_) => "^T".to_owned(),
-        Kind::Power(_, a, b) => format!("^{a}/{b}"),
-        Kind::Call(f, _) => f.clone(),
-        Kind::Component(_, at) => format!("{at:?}"),
-        Kind::Shaped(..) => ":".to_owned(),
-    };
-    let parts: Vec<String> = e.parts().into_iter().map(words).collect();
-    format!("{head}({})", parts.join(", "))
 }

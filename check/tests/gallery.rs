@@ -39,7 +39,7 @@ fn nodes(card: &Card, case: &Case) -> Vec<Vec<f64>> {
     out
 }
 
-fn of_all(what: &mut dyn FnMut(&Card, &Case, &Judge, &[Vec<f64>])) {
+fn of_all(mut what: impl FnMut(&Card, &Case, &Judge, &[Vec<f64>])) {
     for entry in gallery() {
         for case in &entry.cases {
             let card = entry.card_of(case);
@@ -57,13 +57,13 @@ fn step(judge: &Judge, number: u64, both: &[Vec<f64>]) -> Judged {
 #[test]
 fn steps_of_the_gallery_hold() {
     let mut wrong = Vec::new();
-    of_all(&mut |card, case, judge, nodes| {
+    of_all(|card, case, judge, nodes| {
         let mut worst = 0.0;
         let mut told = String::new();
         for (k, both) in nodes.windows(2).enumerate() {
             let judged = step(judge, k as u64 + 1, both);
             let part = judged.worst.expect("equations");
-            if !(part.ratio() <= worst) {
+            if part.ratio() > worst || part.ratio().is_nan() {
                 worst = part.ratio();
                 told = format!("{part:?}");
             }
@@ -74,7 +74,7 @@ fn steps_of_the_gallery_hold() {
             case.name,
             if worst > 0.5 { &told } else { "" }
         );
-        if !(worst <= 1.0) {
+        if worst > 1.0 || worst.is_nan() {
             wrong.push(format!("{} {}: {worst} {told}", card.name, case.name));
         }
     });
@@ -135,8 +135,8 @@ fn changed(field: &Field, own: &[f64], which: usize) -> Option<Vec<f64>> {
         }
         // A momentum of rotations is skew.
         Kind::BodyMomentum | Kind::SpatialMomentum if is_skew(field, own) => {
-            let all = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
-            let (i, j) = all.skip(which).next()?;
+            let mut all = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+            let (i, j) = all.nth(which)?;
             out[i * n + j] += WRONG * size;
             out[j * n + i] -= WRONG * size;
         }
@@ -164,7 +164,7 @@ fn signed(own: &[f64], which: i32) -> f64 {
 
 #[test]
 fn every_number_of_a_state_that_is_wrong_is_seen() {
-    of_all(&mut |card, case, judge, nodes| {
+    of_all(|card, case, judge, nodes| {
         for (field, from) in of_the_state(card) {
             let to = from + field.count();
             for end in [0, 1] {

@@ -29,8 +29,10 @@ impl JudgedTrajectory {
             _ => judge(card, plan),
         };
         let none = vec![0.0; card.observable_count()];
-        let mut verdict = Verdict::default();
-        verdict.not_judged = judge.as_ref().err().cloned();
+        let verdict = Verdict {
+            not_judged: judge.as_ref().err().cloned(),
+            ..Verdict::default()
+        };
         Self {
             inner,
             chosen: Chosen::new(which, plan.case.steps),

@@ -1,0 +1,125 @@
+//! What is known of the quantities and statements of a model, once they are sorted.
+
+use crate::expression::Expression;
+use crate::group::Group;
+use crate::terms::Term;
+use clebsch_core::syntax::ast::NodeRule;
+use std::collections::BTreeMap;
+
+/// Where a quantity lives along a label.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Sites {
+    /// At nodes of the line, or at the members of a set.
+    Nodes,
+    /// At segments.
+    Segments,
+}
+
+/// On which side of an element its velocity stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// `next(R) = R*O`.
+    Body,
+    /// `next(R) = O*R`.
+    Space,
+}
+
+/// What a quantity is.
+#[derive(Clone, Debug)]
+pub enum Role {
+    /// Constant.
+    Parameter,
+    /// An element of a group, with the side of its velocity.
+    Element(Group, Side),
+    /// Values that are added.
+    Field(Layout),
+    /// Carried by the configurations.
+    Advected,
+}
+
+/// How a field is kept as numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// Entry by entry.
+    Entries,
+    /// The diagonal of a matrix.
+    Diagonal,
+    /// The entries on and above the diagonal, by rows.
+    Symmetric,
+    /// An axial vector, or the entries below the diagonal.
+    Skew,
+}
+
+/// A quantity of the model.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub role: Role,
+    /// The label that it lives along, by its number, and at which sites.
+    pub at: Option<(usize, Sites)>,
+    /// The parameter by which it grows around a ring.
+    pub offset: Option<String>,
+    /// How it goes on, of what is advected.
+    pub update: Option<Expression>,
+    /// What it is, of what is advected by definition.
+    pub definition: Option<Expression>,
+    /// Whether it is a number.
+    pub is_number: bool,
+    /// Whether its four rows are those of a quaternion.
+    pub is_quaternion: bool,
+}
+
+/// A way to end a line.
+#[derive(Clone, Debug)]
+pub struct End {
+    /// Its name.
+    pub name: String,
+    /// Parameters of its own, and whether each is a quaternion.
+    pub params: Vec<String>,
+    /// Configurations that are given.
+    pub given: Vec<String>,
+    /// Terms that it adds.
+    pub terms: Vec<Term>,
+}
+
+/// A constraint that is held: zero, and the sites that it is counted over.
+#[derive(Clone, Debug)]
+pub struct Hold {
+    /// The name of its multiplier.
+    pub name: String,
+    /// Left side less right side.
+    pub value: Term,
+    /// Whether it holds sums over sites.
+    pub of_sums: bool,
+}
+
+/// A model, sorted.
+#[derive(Clone, Debug)]
+pub struct Stated {
+    /// Quantities by name.
+    pub quantities: BTreeMap<String, Quantity>,
+    /// The element of each velocity.
+    pub velocities: BTreeMap<String, String>,
+    /// The name of the step.
+    pub step: String,
+    /// Sizes by name.
+    pub sizes: BTreeMap<String, usize>,
+    /// Functions by path of Rust.
+    pub functions: BTreeMap<String, String>,
+    /// The index of each label.
+    pub labels: Vec<String>,
+    /// The terms of the Lagrangian.
+    pub terms: Vec<Term>,
+    /// By what the typed Lagrangian is divided.
+    pub scale: Option<Expression>,
+    /// The node rule.
+    pub rule: NodeRule,
+    /// What is held.
+    pub holds: Vec<Hold>,
+    /// End conditions at the first and at the last site.
+    pub ends: [Vec<End>; 2],
+    /// Whether there is a line, by the number of its label.
+    pub line: Option<usize>,
+}
