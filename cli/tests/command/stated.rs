@@ -100,7 +100,7 @@ fn a_body_at_rest_is_no_failure_of_the_check() {
         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - (h*k/2)*dot(x, x); }";
     let model = folder.write("rest.clebsch", text);
     let case = "model = \"rest\"\nh = 0.1\nsteps = 20\n[parameters]\nm = 1.3\nk = 0.7\n\
-        [initial]\nx = [0.0, 0.0, 0.0]\nmomentum_x = [0.0, 0.0, 0.0]\n";
+        [initial]\nx = [0.0, 0.0, 0.0]\nmomentum = [0.0, 0.0, 0.0]\n";
     let case = folder.write("rest.toml", case);
     let done = clebsch(&["run", &model, "--case", &case]);
     assert_eq!(done.code, 0, "{}{}", done.out, done.err);
