@@ -258,7 +258,8 @@ impl<T: Real> MixedFour<T> {
                 if iteration.wants_residual()
                     && iteration
                         .assess({
-                            (axial_of_difference(&(W_rot * A)) * k1 + k2) - momenta[0]
+                            (axial_of_difference(&(less_identity(&W_rot) * A)) * k1 + k2)
+                                - momenta[0]
                         })
                 {
                     iteration
@@ -610,7 +611,7 @@ impl<T: Real> MixedFour<T> {
             6,
         >(
             &[
-                (axial_of_difference(&(W_rot * A)) * t1
+                (axial_of_difference(&(less_identity(&W_rot) * A)) * t1
                     + s.cross(&(t3 * (t4 - X))) * (T::from_f64(0.5) * h * k))
                     - momenta[0],
                 (W_pos * (M * t1) + t3 * (t4 - X + t2 * s) * (T::from_f64(0.5) * h * k))
@@ -1040,34 +1041,48 @@ impl<T: Real> MixedFour<T> {
         let ΔX = here.X.spatial_velocity(&after.X).matrix();
         let t1 = h.powi(-1);
         let t2 = p.cross(&(relative_R_q * e_));
-        let t3 = motion_rotation(&W_before);
-        let t4 = motion_rotation(&G);
-        let t5 = t4.transpose();
-        let t6 = motion_translation(&G);
-        let t7 = s.cross(&(t5 * (t6 - X))) * (T::from_f64(0.5) * h * k);
-        let t8 = t5 * (t6 + t4 * s - X) * (T::from_f64(0.5) * h * k);
-        let t9 = h.powi(-3);
+        let t3 = motion_rotation(&G);
+        let t4 = t3.transpose();
+        let t5 = motion_translation(&G);
+        let t6 = s.cross(&(t4 * (t5 - X))) * (T::from_f64(0.5) * h * k);
+        let t7 = t4 * (t5 + t3 * s - X) * (T::from_f64(0.5) * h * k);
+        let t8 = h.powi(-3);
         {
             let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-                axial_of_difference(&(J * V_before)) * t1
+                axial_of_difference(&(J * less_identity(&V_before))) * t1
                     + p.cross(&(R.tr_mul(&X))) * (h * k) - t2 * (h * k)
-                    + axial_of_difference(&(J * V.transpose())) * t1,
-                into_rows::<T, 6, 3, 1>(&(axial_of_difference(&(A * t3)) * t1 - t7), 0)
+                    + axial_of_difference(&(J * less_identity(&V.transpose()))) * t1,
+                into_rows::<
+                    T,
+                    6,
+                    3,
+                    1,
+                >(
+                    &(axial_of_difference(
+                        &(A * less_identity(&motion_rotation(&W_before))),
+                    ) * t1 - t6),
+                    0,
+                )
                     + into_rows::<
                         T,
                         6,
                         3,
                         1,
-                    >(&(t3.tr_mul(&motion_translation(&W_before)) * (t1 * M) - t8), 3)
+                    >(
+                        &(motion_rotation(&W_before)
+                            .tr_mul(&motion_translation(&W_before)) * (t1 * M) - t7),
+                        3,
+                    )
                     - into_rows::<
                         T,
                         6,
                         3,
                         1,
                     >(
-                        &(t7
-                            - axial_of_difference(&(A * motion_rotation(&W).transpose()))
-                                * t1),
+                        &(t6
+                            - axial_of_difference(
+                                &(A * less_identity(&motion_rotation(&W).transpose())),
+                            ) * t1),
                         0,
                     )
                     - into_rows::<
@@ -1075,7 +1090,7 @@ impl<T: Real> MixedFour<T> {
                         6,
                         3,
                         1,
-                    >(&(motion_translation(&W) * (t1 * M) + t8), 3),
+                    >(&(motion_translation(&W) * (t1 * M) + t7), 3),
                 quaternion_imaginary(
                     &(Y_before
                         .tr_mul(
@@ -1090,10 +1105,10 @@ impl<T: Real> MixedFour<T> {
                                 &(diagonal_times(&I, &quaternion_imaginary(&Y))),
                             )),
                     ) * (T::from_f64(2.0) * t1),
-                ΔX_before * (T::from_f64(4.0) * t9 * b * ΔX_before.dot(&ΔX_before))
+                ΔX_before * (T::from_f64(4.0) * t8 * b * ΔX_before.dot(&ΔX_before))
                     + ΔX_before * (t1 * m) + g * (h * m) + R * p * (h * k)
-                    - X * (T::from_f64(2.0) * h * k) + t4 * s * (h * k) + t6 * (h * k)
-                    - ΔX * (T::from_f64(4.0) * t9 * b * ΔX.dot(&ΔX)) - ΔX * (t1 * m),
+                    - X * (T::from_f64(2.0) * h * k) + t3 * s * (h * k) + t5 * (h * k)
+                    - ΔX * (T::from_f64(4.0) * t8 * b * ΔX.dot(&ΔX)) - ΔX * (t1 * m),
             );
             let mut all = SVector::<T, 15>::zeros();
             let rest = all.as_mut_slice();
@@ -1132,14 +1147,14 @@ impl<T: Real> MixedFour<T> {
         let X_next = after.X.matrix();
         let t1 = h.powi(-1);
         let t2 = p.cross(&(relative_R_q_next * e_));
-        let t3 = motion_rotation(&W_matrix);
-        let t4 = motion_rotation(&G_next);
-        let t5 = t4.transpose();
-        let t6 = motion_translation(&G_next);
-        let t7 = t6 - X_next;
-        let t8 = t3.transpose();
+        let t3 = motion_rotation(&G_next);
+        let t4 = t3.transpose();
+        let t5 = motion_translation(&G_next);
+        let t6 = t5 - X_next;
+        let t7 = motion_rotation(&W_matrix);
+        let t8 = t7.transpose();
         let t9 = motion_translation(&W_matrix);
-        let t10 = t6 + t4 * s - X_next;
+        let t10 = t5 + t3 * s - X_next;
         let t11 = quaternion_imaginary(&Y_matrix);
         let t12 = h.powi(-3);
         let t13 = ΔX_matrix.dot(&ΔX_matrix);
@@ -1151,10 +1166,10 @@ impl<T: Real> MixedFour<T> {
         let t19 = X_next.dot(&X_next).sqrt();
         let t20 = (relative_R_q_next.tr_mul(&relative_R_q_next)).trace().sqrt();
         let t21 = e_.dot(&e_).sqrt();
-        let t22 = (t8 * t3).trace().sqrt();
+        let t22 = (t8 * t7).trace().sqrt();
         let t23 = s.dot(&s).sqrt();
-        let t24 = (t5 * t4).trace().sqrt();
-        let t25 = t6.dot(&t6).sqrt();
+        let t24 = (t4 * t3).trace().sqrt();
+        let t25 = t5.dot(&t5).sqrt();
         let t26 = (Y_matrix.tr_mul(&Y_matrix)).trace().sqrt();
         let t27 = (diagonal_times(&I, &I)).trace().sqrt();
         let t28 = t13.sqrt();
@@ -1162,7 +1177,7 @@ impl<T: Real> MixedFour<T> {
         [
             Residual::between(
                 &(after.momentum_R.to_body(&after.R).0),
-                &(axial_of_difference(&(J * V_matrix)) * t1
+                &(axial_of_difference(&(J * less_identity(&V_matrix))) * t1
                     + p.cross(&(R_next.tr_mul(&X_next))) * (T::from_f64(0.5) * h * k)
                     - t2 * (T::from_f64(0.5) * h * k)),
                 T::from_f64(2.0) * t14 * (J * J).trace().sqrt()
@@ -1172,15 +1187,15 @@ impl<T: Real> MixedFour<T> {
             ),
             Residual::between(
                 &(rows_from::<T, 6, 3, 1>(&after.momentum_G.to_body(&after.G).0, 0)),
-                &(axial_of_difference(&(A * t3)) * t1
-                    - s.cross(&(t5 * t7)) * (T::from_f64(0.5) * h * k)),
+                &(axial_of_difference(&(A * less_identity(&motion_rotation(&W_matrix))))
+                    * t1 - s.cross(&(t4 * t6)) * (T::from_f64(0.5) * h * k)),
                 T::from_f64(2.0) * t14 * (A * A).trace().sqrt() * t22
-                    + T::from_f64(0.5) * t15 * t16 * t23 * t24 * t7.dot(&t7).sqrt()
+                    + T::from_f64(0.5) * t15 * t16 * t23 * t24 * t6.dot(&t6).sqrt()
                     + T::from_f64(0.5) * t15 * t16 * t23 * t24 * (t25 + t19),
             ),
             Residual::between(
                 &(rows_from::<T, 6, 3, 1>(&after.momentum_G.to_body(&after.G).0, 3)),
-                &(t8 * t9 * (t1 * M) - t5 * t10 * (T::from_f64(0.5) * h * k)),
+                &(t8 * t9 * (t1 * M) - t4 * t10 * (T::from_f64(0.5) * h * k)),
                 t14 * (M * M).sqrt() * t22 * t9.dot(&t9).sqrt()
                     + T::from_f64(0.5) * t15 * t16 * t24 * t10.dot(&t10).sqrt()
                     + T::from_f64(0.5) * t15 * t16 * t24 * (t25 + t24 * t23 + t19),
@@ -1200,8 +1215,8 @@ impl<T: Real> MixedFour<T> {
                 &(ΔX_matrix * (T::from_f64(4.0) * t12 * b * t13) + ΔX_matrix * (t1 * m)
                     + g * (T::from_f64(0.5) * h * m)
                     + R_next * p * (T::from_f64(0.5) * h * k) - X_next * (h * k)
-                    + t4 * s * (T::from_f64(0.5) * h * k)
-                    + t6 * (T::from_f64(0.5) * h * k)),
+                    + t3 * s * (T::from_f64(0.5) * h * k)
+                    + t5 * (T::from_f64(0.5) * h * k)),
                 T::from_f64(4.0) * (t12 * t12).sqrt() * (b * b).sqrt() * t28 * t28 * t28
                     + t14 * t29 * t28 + T::from_f64(0.5) * t15 * t29 * g.dot(&g).sqrt()
                     + T::from_f64(0.5) * t15 * t16 * t18 * t17 + t15 * t16 * t19

@@ -111,8 +111,11 @@ pub fn displaced(symbols: &Symbols, e: &Expr) -> Expr {
 }
 
 /// `vee(A Ω)` as `vee(A (Ω - Id)) + vee(A)`, where the latter is known: a symmetric `A` has no axial vector, and its
-/// large entries then meet small ones alone.
+/// large entries then meet small ones alone. The entries of `vee(Ω)` are small as they are.
 fn of_axial(symbols: &Symbols, a: &Expr) -> Option<Expr> {
+    if at_rest(symbols, a).is_some() {
+        return None;
+    }
     differences(symbols, a)
         .into_iter()
         .find_map(|(rest, moved)| Some(add(vee(moved), axial(symbols, &rest)?)))
