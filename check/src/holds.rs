@@ -3,7 +3,7 @@
 
 use crate::evaluate::Here;
 use crate::judge::Part;
-use crate::number::{Number, UNIT};
+use crate::number::{Number, UNIT, larger};
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::sites::{Moving, indices};
@@ -57,7 +57,7 @@ pub fn held(
             .iter()
             .skip(own)
             .map(|p: &Part| p.bound)
-            .fold(0.0, f64::max);
+            .fold(0.0, larger);
         parts.iter_mut().skip(own).for_each(|p| p.bound = most);
     }
     Ok((parts, gradients))

@@ -3,7 +3,7 @@
 use crate::group::MOST_OF_A_DEFECT;
 use crate::holds;
 use crate::lagrangian::derivatives;
-use crate::number::{Number, UNIT};
+use crate::number::{Number, UNIT, larger};
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::sites::{Moving, moving, varied};
@@ -117,7 +117,7 @@ impl Judge {
         let mut out = Judged {
             worst: None,
             tested: tested.clone().count() as u64,
-            roundings: tested.map(Part::roundings).fold(0.0, f64::max),
+            roundings: tested.map(Part::roundings).fold(0.0, larger),
         };
         let worse = |a: &Part, b: &Part| a.ratio().is_nan() || b.ratio() <= a.ratio();
         for part in parts {

@@ -4,6 +4,11 @@
 /// Half the distance from 1 to the next double: the relative error of one rounding.
 pub const UNIT: f64 = f64::EPSILON / 2.0;
 
+/// The larger of two numbers, NaN if either is.
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
 /// The derivative by one variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slope {

@@ -279,12 +279,45 @@ impl<'a> Terms<'a> {
         let (Some(place), None) = (sums.next(), sums.next()) else {
             return vec![e.clone()];
         };
-        let parts = split[place].iter().map(|part| {
+        let mut others = list.iter().enumerate().filter(|(i, _)| *i != place);
+        let terms = match others.any(|(_, f)| self.moves(f)) {
+            true => self.with_constants(&split[place]),
+            false => split[place].clone(),
+        };
+        if terms.len() < 2 {
+            return vec![e.clone()];
+        }
+        let parts = terms.iter().map(|part| {
             let mut factors = list.to_vec();
             factors[place] = part.clone();
             of_kind(Kind::Product(factors))
         });
         parts.collect()
+    }
+
+    /// Whether something in it moves.
+    fn moves(&self, e: &Expression) -> bool {
+        let term = self.whole(e.clone());
+        term.is_ok_and(|term| !matches!(term.lives, Lives::Nowhere))
+    }
+
+    /// Summands with the constant ones added to the first that lives on the edge: `3` belongs to the velocity in
+    /// `q^2*(3 - tr(O))`, and `3*q^2` is no term of a node.
+    fn with_constants(&self, terms: &[Expression]) -> Vec<Expression> {
+        let on_edge = |t: &Expression| {
+            let term = self.whole(t.clone());
+            term.is_ok_and(|term| matches!(term.lives, Lives::Edge))
+        };
+        if !terms.iter().any(on_edge) {
+            return terms.to_vec();
+        }
+        let (mut moving, constant): (Vec<_>, Vec<_>) =
+            terms.iter().cloned().partition(|t| self.moves(t));
+        if let Some(edge) = moving.iter_mut().find(|t| on_edge(t)) {
+            let all = constant.into_iter().chain([edge.clone()]);
+            *edge = of_kind(Kind::Sum(all.map(|t| (false, t)).collect()));
+        }
+        moving
     }
 
     /// Summands with each that is another one a step later, the other way, added to that one.

@@ -325,7 +325,10 @@ fn finish(
         shift: Shift::HERE,
     };
     let mut symbols = declared.symbols;
-    symbols.keep_differences(schedule::divides_twice(&lagrangian, step));
+    symbols.keep_differences(
+        schedule::divides_twice(&lagrangian, step)
+            || schedule::varies_with_rotations(&symbols, &lagrangian),
+    );
     Ok(Spec {
         name: model.name.text.clone(),
         name_place: model.name.place,

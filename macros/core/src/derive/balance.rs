@@ -5,7 +5,7 @@
 use super::Letters;
 use super::action::Action;
 use super::far;
-use super::rounding::{Displacements, Rounding};
+use super::rounding::Rounding;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
 use crate::check::spec::{Configuration, Spec};
@@ -120,7 +120,7 @@ fn balance(
     );
     let total = |a: &Expr, b: &Expr, derived: &dyn Fn() -> Expr| {
         let whole = shorter(algebra, expr::add(a.clone(), b.clone()));
-        rounded_least(spec, s, without_zeros(algebra, whole), derived)
+        rounded_least(spec, algebra, without_zeros(algebra, whole), derived)
     };
     let outgoing = total(&edge_out, &node_out, &|| {
         expr::sub(derived_out.clone(), nodes_of(l, Shift::HERE))
@@ -167,41 +167,31 @@ fn balance(
 /// Rounding of a momentum that is linear in the velocity: a rounded matrix, divided by the step.
 const LINEAR: f64 = -1.0;
 
-/// Largest momentum of which several forms are compared.
+/// Largest momentum of which two forms are compared.
 const LARGEST: u32 = 2_000;
 
-/// The short form of a momentum, or another one that rounds less at small steps: as it is derived, where powers of
-/// `vee(Ω)` stay products of small numbers, or by velocities less the identity. The short form stays where it rounds no
-/// more than a momentum that is linear in the velocity, unless the derived one is not rounded more at small steps at all.
-fn rounded_least(spec: &Spec, symbols: &Symbols, short: Expr, derived: &dyn Fn() -> Expr) -> Expr {
+/// The short form of a momentum, or the derived one where that rounds less at small steps: powers of `vee(Ω)` stay
+/// products of small numbers in it. The short form stays where it rounds no more than a momentum that is linear
+/// in the velocity, unless small steps round the derived one not at all.
+fn rounded_least(spec: &Spec, algebra: &Algebra, short: Expr, derived: &dyn Fn() -> Expr) -> Expr {
+    let symbols = algebra.symbols();
     if short.size() > LARGEST || !expr::contains_role(symbols, &short, Role::Velocity) {
         return short;
     }
-    let displacements = Displacements::of(spec, symbols);
-    let algebra = Algebra::new(&displacements.symbols);
     let rounding = Rounding {
         spec,
-        symbols: &displacements.symbols,
-        algebra: &algebra,
+        symbols,
+        algebra,
     };
     let known = rounding.error(&short);
     if known >= 0.0 {
         return short;
     }
     let derived = derived();
-    // It reads as the Lagrangian does.
-    let least = if known < LINEAR { LINEAR } else { 0.0 };
-    if rounding.error(&derived) >= least {
-        return derived;
-    }
-    if known >= LINEAR {
-        return short;
-    }
-    let small = displacements.normal_form(spec, &algebra, &short);
-    let best = rounding.best(vec![short.clone(), derived, small]);
-    match algebra.exhausted() {
-        true => short,
-        false => best,
+    let own = rounding.error(&derived);
+    match own > known && (known < LINEAR || own >= 0.0) {
+        true => derived,
+        false => short,
     }
 }
 

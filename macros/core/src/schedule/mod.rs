@@ -14,5 +14,7 @@ mod work;
 pub use chain::{Bracketed, associate};
 pub use known::Known;
 pub use program::{Program, program, program_after};
-pub use rest::{at_rest, by_imaginary, displaced, divides_twice, is_difference};
+pub use rest::{
+    at_rest, by_imaginary, displaced, divides_twice, is_difference, varies_with_rotations,
+};
 pub use work::work;

@@ -16,6 +16,39 @@ pub fn divides_twice(e: &Expr, step: Letter) -> bool {
     lowest(e, step).is_none_or(|n| n < -1.0)
 }
 
+/// Whether a number that moves multiplies or divides one with the velocity of a rotation, as in `q^2*(3 - tr(Ω))/h`: the
+/// difference from rest then stands in the momentum of `q`, where its rounding would be divided by the step.
+pub fn varies_with_rotations(symbols: &Symbols, e: &Expr) -> bool {
+    let has = |e: &Expr, wanted: &dyn Fn(Role, Structure) -> bool| {
+        letters(e).iter().any(|l| {
+            let symbol = symbols.get(l.symbol);
+            wanted(symbol.role, symbol.structure)
+        })
+    };
+    let turns = |e: &Expr| {
+        has(e, &|role, structure| {
+            role == Role::Velocity && structure.is_orthogonal()
+        })
+    };
+    let moves = |e: &Expr| has(e, &|role, _| matches!(role, Role::Element | Role::Advected));
+    let both = |factors: &[&Expr]| {
+        let turning = factors.iter().position(|f| turns(f));
+        turning.is_some_and(|at| (0..factors.len()).any(|i| i != at && moves(factors[i])))
+    };
+    let here = e.shape().is_scalar()
+        && match e.node() {
+            Node::Product(list) => {
+                list.iter().all(|f| f.shape().is_scalar()) && both(&list.iter().collect::<Vec<_>>())
+            }
+            Node::Quotient(a, b) => both(&[a, b]),
+            _ => false,
+        };
+    here || e
+        .children()
+        .into_iter()
+        .any(|child| varies_with_rotations(symbols, child))
+}
+
 /// The lowest power of the step that a term has; nothing where it is not seen.
 fn lowest(e: &Expr, step: Letter) -> Option<f64> {
     if !contains(e, step) {
