@@ -113,9 +113,10 @@ impl Lattice {
         self.quantities.iter().find(|q| q.name.text == name)
     }
 
-    /// The quantity that a name of the model written out is a copy of.
+    /// The quantity that a name of the model written out is a copy of. `q_1` is the copy of `q` at site 1 even if
+    /// another quantity at sites has that name, since only its copies stand there.
     pub(super) fn of_copy(&self, name: &str) -> Option<&Quantity> {
-        if self.declared.contains(name) {
+        if self.declared.contains(name) && self.find(name).is_none() {
             return None;
         }
         let (base, site) = name.rsplit_once('_')?;
