@@ -166,7 +166,9 @@ pub fn run(
     let end = following.follow(kept.as_mut())?;
     let summary = following.watch.summary();
     let halvings = following.trajectory.halvings();
-    let stated = (which != Which::None).then(|| trajectory.verdict().clone());
+    // Steps before an interruption may have been judged as well.
+    let stated = trajectory.verdict();
+    let stated = (which != Which::None || stated.judged > 0).then(|| stated.clone());
     let why = match &end {
         End::Whole => None,
         // A run without a step has no results.
@@ -384,7 +386,22 @@ fn already(
         true => writeln!(streams.out, "{there}")?,
         false => writeln!(streams.out, "complete already: {}", shown(target))?,
     }
-    Ok(DONE)
+    // What was wrong with the run still is.
+    let results = &there["results"];
+    let refuted = results["action_as_stated"]["holds"] == json!(false);
+    if results["kept"] == json!(false) {
+        let _ = writeln!(streams.err, "clebsch: a bound was exceeded, see run.json");
+    }
+    if refuted {
+        let _ = writeln!(
+            streams.err,
+            "clebsch: steps do not solve the equations of the action as stated, see run.json"
+        );
+    }
+    match refuted || results["kept"] == json!(false) {
+        true => Ok(BOUND_LEFT),
+        false => Ok(DONE),
+    }
 }
 
 /// Standard output of a run whose results are written to files: they are worth the work when nobody reads it.

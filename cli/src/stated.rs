@@ -30,7 +30,12 @@ impl JudgedTrajectory {
         };
         let none = vec![0.0; card.observable_count()];
         let verdict = Verdict {
-            not_judged: judge.as_ref().err().cloned(),
+            // Of steps that were judged before an interruption the verdict is told.
+            not_judged: judge
+                .as_ref()
+                .err()
+                .filter(|_| which != Which::None)
+                .cloned(),
             ..Verdict::default()
         };
         Self {

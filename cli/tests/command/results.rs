@@ -88,6 +88,12 @@ fn a_left_bound_is_code_three_and_the_results_are_written() {
     assert_eq!(names(&out), FILES);
     let json = fs::read_to_string(format!("{out}/run.json")).expect("run.json");
     assert!(json.contains("\"kept\": false"));
+    // The same where the run is found complete.
+    let arguments = ["run", "harmonic-rotor", "--case", &file, "--out", &out];
+    let again = clebsch(&[&arguments[..], &["--resume"]].concat());
+    assert_eq!(again.code, 3, "{}", again.err);
+    assert!(again.out.starts_with("complete already: "), "{}", again.out);
+    assert_eq!(again.err, "clebsch: a bound was exceeded, see run.json\n");
 }
 
 #[test]

@@ -5,6 +5,7 @@
 mod any_size;
 mod bounds;
 mod certificate;
+mod corrections;
 mod failure;
 mod lasting;
 mod node;
@@ -33,6 +34,7 @@ use crate::groups::Group;
 use crate::linalg::Factors;
 use crate::scalar::Real;
 use core::marker::PhantomData;
+use corrections::Corrections;
 use nalgebra::{SMatrix, SVector};
 
 /// Iterations after which the method gives up; quadratic convergence needs fewer than ten.
@@ -107,7 +109,9 @@ pub struct Search<T, G, V, const D: usize, W = G, const E: usize = D> {
     next: u64,
     /// One over the size of the terms of each equation.
     weights: SVector<T, D>,
-    /// How many steps ago they were asked for.
+    /// One over the length of the part of the velocity that each coordinate belongs to.
+    lengths: SVector<T, D>,
+    /// How many steps ago both were asked for.
     weighed: u32,
     /// Which solutions are principal roots.
     certificate: Certificate<V, E>,
@@ -146,6 +150,7 @@ where
             known: 0,
             next: 0,
             weights: SVector::zeros(),
+            lengths: SVector::zeros(),
             weighed: OLDEST_SCALE,
             certificate: Certificate::none(),
             whole: PhantomData,
@@ -243,6 +248,7 @@ where
             residual: SVector::zeros(),
             size: f64::NAN,
             previous: f64::INFINITY,
+            corrections: Corrections::none(),
             iteration: 0,
             found: None,
         }
@@ -326,6 +332,7 @@ pub struct Newton<'a, T, G, V, const D: usize, W = G, const E: usize = D> {
     residual: SVector<T, D>,
     size: f64,
     previous: f64,
+    corrections: Corrections,
     iteration: usize,
     /// The iterations of a solution whose rest is wanted.
     found: Option<usize>,
@@ -389,14 +396,19 @@ where
             let mut lengths = [0.0; D];
             self.trial.extents(&mut lengths);
             let tangent = scale::Tangent {
+                size: G::DIMENSION.min(D),
                 entry: &|i, j| search.factors.entry(i, j, lane) / unit,
                 part_of: &G::part_of,
                 lengths: &lengths,
             };
             tangent.raise(&mut scales.as_mut_slice()[..G::DIMENSION.min(D)]);
-            for (weight, scale) in self.search.weights.iter_mut().zip(&scales) {
-                let weight_in_lane = (1.0 / scale).min(f64::MAX);
-                weight.set_lane(lane, T::One::from_f64(weight_in_lane));
+            let inverses: [f64; D] = core::array::from_fn(|i| tangent.inverse_length(i));
+            let search = &mut *self.search;
+            for (weight, scale) in search.weights.iter_mut().zip(&scales) {
+                weight.set_lane(lane, T::One::from_f64((1.0 / scale).min(f64::MAX)));
+            }
+            for (own, inverse) in search.lengths.iter_mut().zip(inverses) {
+                own.set_lane(lane, T::One::from_f64(inverse));
             }
         }
         self.search.weighed = 0;
@@ -438,6 +450,7 @@ where
         self.search.weighed = OLDEST_SCALE;
         self.search.age = OLDEST_TANGENT;
         self.previous = f64::INFINITY;
+        self.corrections = Corrections::none();
         self.iteration = 0;
         self.found = None;
     }
@@ -460,7 +473,10 @@ where
     /// Whether the residual is nothing but rounding. What is only foreseen is corrected once.
     #[inline(always)]
     fn polished(&self) -> bool {
-        T::ORDER == 0 && self.iteration > 0 && self.size <= POLISHED_ROUNDINGS * T::EPSILON
+        T::ORDER == 0
+            && self.iteration > 0
+            && self.size <= POLISHED_ROUNDINGS * T::EPSILON
+            && (self.corrections).leave_rounding::<T>(self.size / self.previous)
     }
 
     /// Takes the tangent at the trial.
@@ -500,17 +516,22 @@ where
             return self.solved(self.iteration);
         }
         let size = self.size;
-        // What is left after the next correction, if it does as well as the last.
-        let foreseen = FORESIGHT * size * (size / self.previous);
         let unit = T::EPSILON;
-        let done = size <= CONVERGED_ROUNDINGS * unit
-            || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous)
-            || (T::ORDER == 0 && self.iteration > 0 && foreseen <= POLISHED_ROUNDINGS * unit);
+        let is_rounding = size <= CONVERGED_ROUNDINGS * unit
+            || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous);
+        // What is left after the next correction, if it does as well as the last.
+        let factor = FORESIGHT * (size / self.previous);
+        let foreseen =
+            T::ORDER == 0 && self.iteration > 0 && size * factor <= POLISHED_ROUNDINGS * unit;
         let right = self.residual * self.search.unit;
         let Some(correction) = self.search.factors.solve(&right) else {
             return self.failed();
         };
         let step = -correction;
+        let moved = largest(&step.component_mul(&self.search.lengths));
+        let found = self.corrections.are_rounding_with::<T>(moved);
+        let done =
+            (is_rounding && found) || (foreseen && self.corrections.leave_rounding::<T>(factor));
         self.trial = match FROM_LEFT {
             true => self.trial.retract_from_left(step.as_slice()),
             false => self.trial.retract(step.as_slice()),

@@ -14,6 +14,7 @@ mod stage;
 
 pub use curve::{Bounds, Chart, Enclosed, Lane, Parts};
 
+use super::corrections::Corrections;
 use super::node::Spread;
 use super::principal::Fold;
 use super::scale::Tangent;
@@ -102,6 +103,7 @@ pub struct AnySearch<C: Chart> {
     past: Vec<C::Element>,
     next: u64,
     weights: Vec<f64>,
+    lengths: Vec<f64>,
     weighed: u32,
     certificate: Certificate,
     factors: DenseFactors,
@@ -118,6 +120,7 @@ impl<C: Chart> AnySearch<C> {
             past: Vec::new(),
             next: 0,
             weights: vec![0.0; dimension],
+            lengths: vec![0.0; dimension],
             weighed: OLDEST_SCALE,
             certificate: Certificate::none(purpose),
             factors: DenseFactors::none(dimension, in_blocks),
@@ -168,6 +171,7 @@ impl<C: Chart> AnySearch<C> {
             residual: vec![0.0; dimension],
             size: f64::NAN,
             previous: f64::INFINITY,
+            corrections: Corrections::none(),
             iteration: 0,
             found: None,
         }
@@ -216,6 +220,7 @@ pub struct AnyNewton<'a, C: Chart> {
     residual: Vec<f64>,
     size: f64,
     previous: f64,
+    corrections: Corrections,
     iteration: usize,
     found: Option<usize>,
 }
@@ -260,14 +265,19 @@ impl<C: Chart> AnyNewton<'_, C> {
         let mut lengths = vec![0.0; parts.count()];
         self.chart.extents(&self.trial, &mut lengths);
         let tangent = Tangent {
+            size: scales.len(),
             entry: &|i, j| factors.entry(i, j) / unit,
             part_of: &|i| parts.part_of(i),
             lengths: &lengths,
         };
         tangent.raise(&mut scales);
+        let inverses: Vec<f64> = (0..scales.len())
+            .map(|i| tangent.inverse_length(i))
+            .collect();
         for (weight, scale) in self.search.weights.iter_mut().zip(&scales) {
             *weight = (1.0 / scale).min(f64::MAX);
         }
+        self.search.lengths = inverses;
         self.search.weighed = 0;
     }
 
@@ -319,20 +329,14 @@ impl<C: Chart> AnyNewton<'_, C> {
         self.search.weighed = OLDEST_SCALE;
         self.search.age = OLDEST_TANGENT;
         self.previous = f64::INFINITY;
+        self.corrections = Corrections::none();
         self.iteration = 0;
         self.found = None;
     }
 
     /// Takes the residual at the trial; says whether the tangent there is wanted.
     pub fn assess(&mut self, residual: Vec<f64>) -> bool {
-        let (mut sum, mut largest) = (0.0, 0.0);
-        for (x, weight) in residual.iter().zip(&self.search.weights) {
-            let x = x * weight;
-            sum += x;
-            largest = if x.abs() > largest { x.abs() } else { largest };
-        }
-        // Comparisons pass over NaN, a sum does not.
-        self.size = largest + 0.0 * f64::abs(sum);
+        self.size = largest_of(&residual, &self.search.weights);
         self.residual = residual;
         if self.iteration > 0 {
             return self.size > WORTH_KEEPING * self.previous && !self.polished();
@@ -342,7 +346,9 @@ impl<C: Chart> AnyNewton<'_, C> {
     }
 
     fn polished(&self) -> bool {
-        self.iteration > 0 && self.size <= POLISHED_ROUNDINGS * UNIT
+        self.iteration > 0
+            && self.size <= POLISHED_ROUNDINGS * UNIT
+            && (self.corrections).leave_rounding::<f64>(self.size / self.previous)
     }
 
     /// Takes the tangent at the trial times `unit`, the same number at every step.
@@ -389,12 +395,12 @@ impl<C: Chart> AnyNewton<'_, C> {
             return self.solved(self.iteration);
         }
         let size = self.size;
-        // What is left after the next correction, if it does as well as the last.
-        let foreseen = FORESIGHT * size * (size / self.previous);
         let unit = UNIT;
-        let done = size <= CONVERGED_ROUNDINGS * unit
-            || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous)
-            || (self.iteration > 0 && foreseen <= POLISHED_ROUNDINGS * unit);
+        let is_rounding = size <= CONVERGED_ROUNDINGS * unit
+            || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous);
+        // What is left after the next correction, if it does as well as the last.
+        let factor = FORESIGHT * (size / self.previous);
+        let foreseen = self.iteration > 0 && size * factor <= POLISHED_ROUNDINGS * unit;
         let right: Vec<f64> = (self.residual.iter())
             .map(|x| x * self.search.unit)
             .collect();
@@ -402,6 +408,10 @@ impl<C: Chart> AnyNewton<'_, C> {
             return self.failed();
         };
         let step: Vec<f64> = correction.iter().map(|x| -x).collect();
+        let moved = largest_of(&step, &self.search.lengths);
+        let found = self.corrections.are_rounding_with::<f64>(moved);
+        let done =
+            (is_rounding && found) || (foreseen && self.corrections.leave_rounding::<f64>(factor));
         self.trial = match from_left {
             true => self.chart.retract_from_left(&self.trial, &step),
             false => self.chart.retract(&self.trial, &step),
@@ -480,6 +490,18 @@ impl<C: Chart> AnyNewton<'_, C> {
             },
         }
     }
+}
+
+/// The largest absolute value of numbers in these units; NaN where one is.
+fn largest_of(numbers: &[f64], units: &[f64]) -> f64 {
+    let (mut sum, mut largest) = (0.0, 0.0);
+    for (x, unit) in numbers.iter().zip(units) {
+        let x = x * unit;
+        sum += x;
+        largest = if x.abs() > largest { x.abs() } else { largest };
+    }
+    // Comparisons pass over NaN, a sum does not.
+    largest + 0.0 * f64::abs(sum)
 }
 
 /// What was found out about a solution.

@@ -15,6 +15,7 @@ impl<G: Group<f64> + Saved, V: NodeValues + Saved, const D: usize, W, const E: u
             known,
             next,
             weights,
+            lengths,
             weighed,
             certificate,
             whole: _,
@@ -28,6 +29,7 @@ impl<G: Group<f64> + Saved, V: NodeValues + Saved, const D: usize, W, const E: u
         *known = words.count(*known, super::REMEMBERED);
         next.words(words);
         weights.words(words);
+        lengths.words(words);
         weighed.words(words);
         certificate.words(words);
         factors.words(words);

@@ -19,6 +19,7 @@ impl<C: Chart> AnySearch<C> {
             past,
             next,
             weights,
+            lengths,
             weighed,
             certificate,
             factors,
@@ -30,6 +31,7 @@ impl<C: Chart> AnySearch<C> {
         past.iter_mut().for_each(|g| element(g, words));
         next.words(words);
         weights.words(words);
+        lengths.words(words);
         weighed.words(words);
         certificate.words(words);
         factors.words(words);
