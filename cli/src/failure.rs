@@ -11,7 +11,7 @@ pub const DONE: u8 = 0;
 pub const FAILED: u8 = 1;
 /// The request cannot be understood: arguments, names, case files, values.
 pub const USAGE: u8 = 2;
-/// The run ended, its results are written, and an invariant left its bound, a residual is not a number, or steps are
+/// The run ended, its results are written, and an invariant left its bound, or steps are
 /// refuted by the action as stated.
 pub const BOUND_LEFT: u8 = 3;
 /// Less than the codes of commands that a signal ended, by its number: 130 for SIGINT, 143 for SIGTERM.

@@ -189,7 +189,6 @@ pub fn run(
         plan: &plan,
         outcomes: &outcomes,
         samples: summary.samples,
-        residual: summary.residual,
         halvings,
         stated,
         stopped,
@@ -229,9 +228,8 @@ pub fn run(
         .filter(|outcome| outcome.verdict == Verdict::Left)
         .map(|outcome| outcome.invariant.name)
         .collect();
-    let lost = run.residual.filter(|residual| residual.relative.is_nan());
     let refuted = run.stated.as_ref().filter(|verdict| !verdict.holds());
-    let kept = left.is_empty() && lost.is_none() && refuted.is_none();
+    let kept = left.is_empty() && refuted.is_none();
     let code = match (&run.stopped, kept) {
         (Some(_), _) if matches!(end, End::Interrupted(_)) => match end {
             End::Interrupted(signal) => BY_SIGNAL.saturating_add(signal),
@@ -269,14 +267,6 @@ pub fn run(
     if !left.is_empty() {
         let message = format!("bound exceeded: {}", left.join(", "));
         let _ = writeln!(streams.err, "clebsch: {message}");
-    }
-    if let Some(residual) = lost {
-        let _ = writeln!(
-            streams.err,
-            "clebsch: the residual is not a number, at node {}: terms of the equations are beyond the \
-             range of double precision; take another step or other units",
-            residual.node
-        );
     }
     if let Some(verdict) = refuted {
         let _ = writeln!(streams.err, "clebsch: {verdict}");
@@ -435,20 +425,6 @@ impl Write for Told<'_, '_> {
 
 /// How well the steps are solved, and whether all were made.
 fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
-    let residual = run.residual.map(|residual| {
-        format!(
-            "discrete Euler-Lagrange equations: max relative residual {:.3e}, at node {}",
-            residual.relative, residual.node
-        )
-    });
-    let order = run.plan.order.filter(|order| *order > run.card.order);
-    let residual = residual.or_else(|| {
-        order.filter(|_| made > 0).map(|order| {
-            format!(
-                "discrete Euler-Lagrange equations: no residual, since each step of order {order} is made of others"
-            )
-        })
-    });
     let stopped = run.stopped.as_ref().map(|stopped| {
         let time = axis::plain(stopped.time);
         let all = steps(run.plan.case.steps);
@@ -466,8 +442,7 @@ fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
         )
     });
     let stated = run.stated.as_ref().map(ToString::to_string);
-    let first = residual.into_iter().chain(stated);
-    first.chain(halved).chain(stopped).collect()
+    stated.into_iter().chain(halved).chain(stopped).collect()
 }
 
 /// The beginning of the run once more with every node kept, when the record is sparser than that.

@@ -120,10 +120,6 @@ impl Trajectory for JudgedTrajectory {
         self.inner.kinetic_warning()
     }
 
-    fn residual(&self) -> Option<f64> {
-        self.inner.residual()
-    }
-
     fn halvings(&self) -> Option<Halvings> {
         self.inner.halvings()
     }

@@ -197,28 +197,6 @@ impl<const N: usize, T: Real> BodyN<N, T> {
             all
         }
     }
-    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
-    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
-    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
-    pub fn residual(
-        &self,
-        before: &BodyNState<N, T>,
-        after: &BodyNState<N, T>,
-        h: T,
-    ) -> [Residual; 1] {
-        let BodyNParameters { C, .. } = self.parameters;
-        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let t1 = h.powi(-1);
-        let t2 = C.tr_mul(&Ω_matrix) * t1;
-        [
-            Residual::between(
-                &(after.momentum.to_body(&after.Λ).0),
-                &(t2 - t2.transpose()),
-                T::from_f64(2.0) * (t1 * t1).sqrt() * (C.tr_mul(&C)).trace().sqrt()
-                    * (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt(),
-            ),
-        ]
-    }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &BodyNState<N, T>) -> SMatrix<T, 28, 28> {
         let BodyNParameters { C, .. } = self.parameters;

@@ -227,38 +227,6 @@ impl<T: Real> CayleyKleinSpatial<T> {
                 * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
             + quaternion_imaginary(&(w * w)) * (t1 * c)
     }
-    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
-    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
-    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
-    pub fn residual(
-        &self,
-        before: &CayleyKleinSpatialState<T>,
-        after: &CayleyKleinSpatialState<T>,
-        h: T,
-    ) -> [Residual; 1] {
-        let CayleyKleinSpatialParameters { c, .. } = self.parameters;
-        let I = self.I(before);
-        let w_matrix = before.q.spatial_velocity(&after.q).matrix();
-        let t1 = h.powi(-1);
-        let t2 = quaternion_imaginary(&w_matrix);
-        let t3 = quaternion_imaginary(&(w_matrix * w_matrix));
-        let t4 = (t1 * t1).sqrt();
-        let t5 = (w_matrix.tr_mul(&w_matrix)).trace().sqrt();
-        let t6 = (I * I).trace().sqrt();
-        let t7 = t2.dot(&t2).sqrt();
-        let t8 = (c * c).sqrt();
-        [
-            Residual::between(
-                &(after.momentum.0),
-                &(quaternion_imaginary(&(w_matrix * pure_quaternion(&(I * t2))))
-                    * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
-                    - t3 * (t1 * c)),
-                T::from_f64(4.0) * t4 * t5 * t6 * t7 + T::from_f64(2.0) * t4 * t8 * t7
-                    + t4 * t8 * t3.dot(&t3).sqrt() + T::from_f64(4.0) * t4 * t5 * t6
-                    + T::from_f64(3.0) * t4 * t8,
-            ),
-        ]
-    }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &CayleyKleinSpatialState<T>) -> SMatrix<T, 3, 3> {
         let I = self.I(state);

@@ -165,34 +165,6 @@ impl<T: Real> ChargedParticle<T> {
             - ΔX * (t1 * m) - B.cross(&X) * (T::from_f64(0.5) * q)
             - B.cross(&ΔX) * (T::from_f64(0.5) * q)
     }
-    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
-    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
-    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
-    pub fn residual(
-        &self,
-        before: &ChargedParticleState<T>,
-        after: &ChargedParticleState<T>,
-        h: T,
-    ) -> [Residual; 1] {
-        let ChargedParticleParameters { m, q, B, E, .. } = self.parameters;
-        let ΔX_matrix = before
-            .X
-            .velocity_between(&before.place_rest, &after.X, &after.place_rest)
-            .matrix();
-        let X = before.X.matrix();
-        let t1 = h.powi(-1);
-        let t2 = (q * q).sqrt();
-        [
-            Residual::between(
-                &(after.momentum.0),
-                &(ΔX_matrix * (t1 * m) + E * (T::from_f64(0.5) * h * q)
-                    + B.cross(&X) * (T::from_f64(0.5) * q)),
-                (t1 * t1).sqrt() * (m * m).sqrt() * ΔX_matrix.dot(&ΔX_matrix).sqrt()
-                    + T::from_f64(0.5) * (h * h).sqrt() * t2 * E.dot(&E).sqrt()
-                    + T::from_f64(0.5) * t2 * B.dot(&B).sqrt() * X.dot(&X).sqrt(),
-            ),
-        ]
-    }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &ChargedParticleState<T>) -> SMatrix<T, 3, 3> {
         let ChargedParticleParameters { m, .. } = self.parameters;

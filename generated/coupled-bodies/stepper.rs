@@ -522,60 +522,6 @@ impl<T: Real> CoupledBodies<T> {
             SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
         }
     }
-    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
-    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
-    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
-    pub fn residual(
-        &self,
-        before: &CoupledBodiesState<T>,
-        after: &CoupledBodiesState<T>,
-        h: T,
-    ) -> [Residual; 2] {
-        let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;
-        let R = self.R(before);
-        let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
-        let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
-        let t1 = (Ω1_matrix.tr_mul(&Ω1_matrix)).trace().sqrt();
-        let t2 = (h * h).sqrt();
-        let t3 = (eps * eps).sqrt();
-        let t4 = (R.tr_mul(&R)).trace().sqrt();
-        let t5 = (Ω2_matrix.tr_mul(&Ω2_matrix)).trace().sqrt();
-        let t6 = d2.dot(&d2).sqrt();
-        let t7 = d1.dot(&d1).sqrt();
-        [
-            Residual::between(
-                &(after.momentum_Λ1.to_body(&after.Λ1).0),
-                &(axial_of_difference(
-                    &(Ω1_matrix
-                        .tr_mul(
-                            &((-(J1 / h))
-                                - ((R
-                                    * ((Ω2_matrix - SMatrix::<T, 3, 3>::identity()) * d2))
-                                    * d1.transpose() * eps) / h),
-                        )),
-                )),
-                T::from_f64(2.0) * t1
-                    * ((J1 * J1).trace().sqrt() / t2
-                        + (t3 * t4 * (t5 + T::from_f64(1.0)) * t6 * t7) / t2),
-            ),
-            Residual::between(
-                &(after.momentum_Λ2.to_body(&after.Λ2).0),
-                &(axial_of_difference(
-                    &(Ω2_matrix
-                        .tr_mul(
-                            &((-(J2 / h))
-                                - (R
-                                    .tr_mul(
-                                        &((Ω1_matrix - SMatrix::<T, 3, 3>::identity()) * d1),
-                                    ) * d2.transpose() * eps) / h),
-                        )),
-                )),
-                T::from_f64(2.0) * t5
-                    * ((J2 * J2).trace().sqrt() / t2
-                        + (t3 * t4 * (t1 + T::from_f64(1.0)) * t7 * t6) / t2),
-            ),
-        ]
-    }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &CoupledBodiesState<T>) -> SMatrix<T, 6, 6> {
         let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = self.parameters;

@@ -308,43 +308,6 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
             all
         }
     }
-    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
-    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
-    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
-    pub fn residual(
-        &self,
-        before: &EllipsoidConvectiveState<N, T>,
-        after: &EllipsoidConvectiveState<N, T>,
-        h: T,
-    ) -> [Residual; 1] {
-        let EllipsoidConvectiveParameters { I0, a, b, c, d, .. } = self.parameters;
-        let C = self.C(before);
-        let C_next = self.C(after);
-        let G_matrix = before.Q.body_velocity(&after.Q).matrix();
-        let t1 = G_matrix.tr_mul(&C);
-        let t2 = C_next * C_next;
-        let t3 = h.powi(-1);
-        let t4 = determinant(&(C_next));
-        let t5 = (t3 * t3).sqrt();
-        let t6 = (G_matrix.tr_mul(&G_matrix)).trace().sqrt();
-        let t7 = (C * C).trace().sqrt();
-        let t8 = (I0 * I0).trace().sqrt();
-        let t9 = (h * h).sqrt();
-        let t10 = t2.trace().sqrt();
-        [
-            Residual::between(
-                &(after.momentum.to_body(&after.Q).0),
-                &(t1 * (G_matrix * I0) * t3 - t1 * I0 * t3 - C_next * (h * a)
-                    + t2 * (h * b) - C_next * (h * b * C_next.trace())
-                    - SMatrix::<T, N, N>::identity() * (h * c * t4)
-                    + SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d)),
-                t5 * t6 * t7 * t8 + t5 * t6 * t7 * t6 * t8 + t9 * (a * a).sqrt() * t10
-                    + T::from_f64(3.0) * t9 * (b * b).sqrt() * t10 * t10
-                    + t9 * (c * c).sqrt() * (t4 * t4).sqrt()
-                    + T::from_f64(0.5) * t9 * (d * d).sqrt(),
-            ),
-        ]
-    }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &EllipsoidConvectiveState<N, T>) -> SMatrix<T, 16, 16> {
         let EllipsoidConvectiveParameters { I0, .. } = self.parameters;

@@ -306,43 +306,6 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
             all
         }
     }
-    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
-    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
-    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
-    pub fn residual(
-        &self,
-        before: &EllipsoidSpatialState<N, T>,
-        after: &EllipsoidSpatialState<N, T>,
-        h: T,
-    ) -> [Residual; 1] {
-        let EllipsoidSpatialParameters { C0, a, b, c, d, .. } = self.parameters;
-        let S = self.S(before);
-        let S_next = self.S(after);
-        let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
-        let t1 = g_matrix * S;
-        let t2 = S_next * S_next;
-        let t3 = h.powi(-1);
-        let t4 = determinant(&(S_next));
-        let t5 = (t3 * t3).sqrt();
-        let t6 = (C0 * C0).trace().sqrt();
-        let t7 = (g_matrix.tr_mul(&g_matrix)).trace().sqrt();
-        let t8 = (S * S).trace().sqrt();
-        let t9 = (h * h).sqrt();
-        let t10 = t2.trace().sqrt();
-        [
-            Residual::between(
-                &(after.momentum.0),
-                &(C0 * (t1 * g_matrix.transpose()) * t3 - C0 * t1.transpose() * t3
-                    - S_next * (h * a) + t2 * (h * b) - S_next * (h * b * S_next.trace())
-                    - SMatrix::<T, N, N>::identity() * (h * c * t4)
-                    + SMatrix::<T, N, N>::identity() * (T::from_f64(0.5) * h * d)),
-                t5 * t6 * t7 * t8 * t7 + t5 * t6 * t8 * t7 + t9 * (a * a).sqrt() * t10
-                    + T::from_f64(3.0) * t9 * (b * b).sqrt() * t10 * t10
-                    + t9 * (c * c).sqrt() * (t4 * t4).sqrt()
-                    + T::from_f64(0.5) * t9 * (d * d).sqrt(),
-            ),
-        ]
-    }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &EllipsoidSpatialState<N, T>) -> SMatrix<T, 16, 16> {
         let EllipsoidSpatialParameters { C0, .. } = self.parameters;

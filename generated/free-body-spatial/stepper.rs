@@ -197,28 +197,6 @@ impl<T: Real> FreeBodySpatial<T> {
         axial_of_difference(&(ω_before * J_before)) * t1
             - axial_of_difference(&(ω * J)) * t1
     }
-    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
-    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
-    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
-    pub fn residual(
-        &self,
-        before: &FreeBodySpatialState<T>,
-        after: &FreeBodySpatialState<T>,
-        h: T,
-    ) -> [Residual; 1] {
-        let J = self.J(before);
-        let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-        let t1 = h.powi(-1);
-        [
-            Residual::between(
-                &(after.momentum.0),
-                &(axial_of_difference(&(ω_matrix * J)) * t1),
-                T::from_f64(2.0) * (t1 * t1).sqrt()
-                    * (ω_matrix.tr_mul(&ω_matrix)).trace().sqrt()
-                    * (J * J).trace().sqrt(),
-            ),
-        ]
-    }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &FreeBodySpatialState<T>) -> SMatrix<T, 3, 3> {
         let J = self.J(state);

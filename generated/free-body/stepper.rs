@@ -147,27 +147,6 @@ impl<T: Real> FreeBody<T> {
         axial_of_difference(&(J * Ω_before)) * t1
             + axial_of_difference(&(J * Ω.transpose())) * t1
     }
-    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
-    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
-    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
-    pub fn residual(
-        &self,
-        before: &FreeBodyState<T>,
-        after: &FreeBodyState<T>,
-        h: T,
-    ) -> [Residual; 1] {
-        let FreeBodyParameters { J, .. } = self.parameters;
-        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let t1 = h.powi(-1);
-        [
-            Residual::between(
-                &(after.momentum.to_body(&after.Λ).0),
-                &(axial_of_difference(&(J * Ω_matrix)) * t1),
-                T::from_f64(2.0) * (t1 * t1).sqrt() * (J * J).trace().sqrt()
-                    * (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt(),
-            ),
-        ]
-    }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &FreeBodyState<T>) -> SMatrix<T, 3, 3> {
         let FreeBodyParameters { J, .. } = self.parameters;

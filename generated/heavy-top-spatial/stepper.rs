@@ -216,33 +216,6 @@ impl<T: Real> HeavyTopSpatial<T> {
         axial_of_difference(&(ω_before * J_before)) * t1 + z.cross(&χ) * (h * w)
             - axial_of_difference(&(ω * J)) * t1
     }
-    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
-    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
-    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
-    pub fn residual(
-        &self,
-        before: &HeavyTopSpatialState<T>,
-        after: &HeavyTopSpatialState<T>,
-        h: T,
-    ) -> [Residual; 1] {
-        let HeavyTopSpatialParameters { w, z, .. } = self.parameters;
-        let J = self.J(before);
-        let χ_next = self.χ(after);
-        let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-        let t1 = h.powi(-1);
-        [
-            Residual::between(
-                &(after.momentum.0),
-                &(axial_of_difference(&(ω_matrix * J)) * t1
-                    + z.cross(&χ_next) * (T::from_f64(0.5) * h * w)),
-                T::from_f64(2.0) * (t1 * t1).sqrt()
-                    * (ω_matrix.tr_mul(&ω_matrix)).trace().sqrt()
-                    * (J * J).trace().sqrt()
-                    + T::from_f64(0.5) * (h * h).sqrt() * (w * w).sqrt()
-                        * z.dot(&z).sqrt() * χ_next.dot(&χ_next).sqrt(),
-            ),
-        ]
-    }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &HeavyTopSpatialState<T>) -> SMatrix<T, 3, 3> {
         let J = self.J(state);

@@ -160,31 +160,6 @@ impl<T: Real> HeavyTop<T> {
         axial_of_difference(&(J * Ω_before)) * t1 - gU.cross(&Γ) * h
             + axial_of_difference(&(J * Ω.transpose())) * t1
     }
-    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
-    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
-    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
-    pub fn residual(
-        &self,
-        before: &HeavyTopState<T>,
-        after: &HeavyTopState<T>,
-        h: T,
-    ) -> [Residual; 1] {
-        let HeavyTopParameters { J, gU, .. } = self.parameters;
-        let Γ_next = self.Γ(after);
-        let Ω_matrix = before.Λ.body_velocity(&after.Λ).matrix();
-        let t1 = h.powi(-1);
-        [
-            Residual::between(
-                &(after.momentum.to_body(&after.Λ).0),
-                &(axial_of_difference(&(J * Ω_matrix)) * t1
-                    - gU.cross(&Γ_next) * (T::from_f64(0.5) * h)),
-                T::from_f64(2.0) * (t1 * t1).sqrt() * (J * J).trace().sqrt()
-                    * (Ω_matrix.tr_mul(&Ω_matrix)).trace().sqrt()
-                    + T::from_f64(0.5) * (h * h).sqrt() * gU.dot(&gU).sqrt()
-                        * Γ_next.dot(&Γ_next).sqrt(),
-            ),
-        ]
-    }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &HeavyTopState<T>) -> SMatrix<T, 3, 3> {
         let HeavyTopParameters { J, .. } = self.parameters;

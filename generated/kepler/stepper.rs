@@ -165,37 +165,6 @@ impl<T: Real> Kepler<T> {
         let t2 = X.dot(&X);
         ΔX_before * (t1 * m) - X * (h * m * k / (t2 * t2.sqrt())) - ΔX * (t1 * m)
     }
-    /// What a step of `h` leaves of its equations: the momentum carried to the second state, less what the motion
-    /// between them brings there. One part a configuration, angular and linear ones of a rigid motion apart, each with
-    /// the size of its terms: those of a spatial velocity are the two elements it is made from, as they are stored.
-    pub fn residual(
-        &self,
-        before: &KeplerState<T>,
-        after: &KeplerState<T>,
-        h: T,
-    ) -> [Residual; 1] {
-        let KeplerParameters { m, k, .. } = self.parameters;
-        let ΔX_matrix = before
-            .X
-            .velocity_between(&before.place_rest, &after.X, &after.place_rest)
-            .matrix();
-        let X_next = after.X.matrix();
-        let t1 = h.powi(-1);
-        let t2 = X_next.dot(&X_next);
-        let t3 = t2.powi(-1);
-        let t4 = t2.powr(-1, 2);
-        let t5 = (m * m).sqrt();
-        [
-            Residual::between(
-                &(after.momentum.0),
-                &(ΔX_matrix * (t1 * m)
-                    - X_next * (T::from_f64(0.5) * h * m * k * t3 * t4)),
-                (t1 * t1).sqrt() * t5 * ΔX_matrix.dot(&ΔX_matrix).sqrt()
-                    + T::from_f64(0.5) * (h * h).sqrt() * t5 * (k * k).sqrt()
-                        * (t3 * t3).sqrt() * (t4 * t4).sqrt() * t2.sqrt(),
-            ),
-        ]
-    }
     /// The Hessian of the kinetic energy in all velocities together, at the identity.
     fn inertia_at(&self, state: &KeplerState<T>) -> SMatrix<T, 3, 3> {
         let KeplerParameters { m, .. } = self.parameters;

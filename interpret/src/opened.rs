@@ -20,16 +20,14 @@ pub mod at {
     pub const STATE: usize = 1;
     /// The workspace.
     pub const WORK: usize = 2;
-    /// The state before the last step.
-    pub const BEFORE: usize = 3;
     /// The step size.
-    pub const STEP: usize = 4;
+    pub const STEP: usize = 3;
     /// What is observed.
-    pub const OUT: usize = 5;
+    pub const OUT: usize = 4;
     /// What else is given.
-    pub const GIVEN: usize = 6;
+    pub const GIVEN: usize = 5;
     /// The first local.
-    pub const FIRST: usize = 7;
+    pub const FIRST: usize = 6;
 }
 
 /// How an initial value is read.
@@ -62,8 +60,6 @@ pub struct Functions {
     pub attempt: Option<Routine<f64>>,
     /// One step.
     pub step: Routine<f64>,
-    /// What a step leaves of its equations.
-    pub residual: Routine<f64>,
     /// The observables.
     pub observe: Routine<f64>,
     /// The invariants.
@@ -172,7 +168,6 @@ impl Opened {
             functions.compensated.as_ref(),
             functions.attempt.as_ref(),
             Some(&functions.step),
-            Some(&functions.residual),
             Some(&functions.observe),
             Some(&functions.invariants),
             Some(&functions.scales),
@@ -262,7 +257,7 @@ fn given(shared: &mut Shared<'_, f64>, name: &str) -> Result<(Arc<Layout>, Vec<R
 }
 
 fn functions(shared: &mut Shared<'_, f64>, name: &str) -> Result<Functions, Refused> {
-    use at::{BEFORE, GIVEN, MODEL, OUT, STATE, STEP, WORK};
+    use at::{GIVEN, MODEL, OUT, STATE, STEP, WORK};
     let program = shared.program;
     let mut lower =
         |ty: &str, function: &str, given: &[usize]| entry(shared, (ty, function), given, at::FIRST);
@@ -291,7 +286,6 @@ fn functions(shared: &mut Shared<'_, f64>, name: &str) -> Result<Functions, Refu
         compensated,
         attempt,
         step: lower("step", &[MODEL, STATE, WORK])?,
-        residual: lower("residual", &[MODEL, BEFORE, STATE, STEP])?,
         observe: lower("observe", &[MODEL, STATE, OUT])?,
         invariants: lower("invariants", &[MODEL, STATE, STEP, WORK, OUT])?,
         scales: lower("scales", &[MODEL, STATE, STEP, OUT])?,

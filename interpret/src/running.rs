@@ -6,7 +6,7 @@ use crate::opened::{Opened, Read, at};
 use crate::packed::Packed;
 use crate::value::{Frame, Kept, Layout, Struct, Value};
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver};
-use clebsch::integrate::{Composition, Offer, Residual, Reversible, Stepper, Way, counted};
+use clebsch::integrate::{Composition, Offer, Reversible, Stepper, Way, counted};
 use clebsch::kinetic::KineticWarning;
 use clebsch::of_numbers::OfNumbers;
 use clebsch::saved::{Saved, Words};
@@ -77,7 +77,6 @@ impl Opened {
             None => None,
         };
         put(&mut places, at::STATE, state.clone());
-        put(&mut places, at::BEFORE, state.clone());
         put(&mut places, at::STEP, Value::Real(settings.h));
         let steps = self
             .ways(card, &mut places, settings)
@@ -86,7 +85,6 @@ impl Opened {
             opened: self,
             card,
             places: RefCell::new(places),
-            spare: Value::Unit,
             steps,
             h: settings.h,
             kinetic,
@@ -257,8 +255,6 @@ struct Running {
     opened: &'static Opened,
     card: &'static Card,
     places: RefCell<Places<f64>>,
-    /// Where the state is put that a step begins with.
-    spare: Value<f64>,
     steps: Steps,
     h: f64,
     kinetic: Option<KineticWarning>,
@@ -277,10 +273,6 @@ impl Opened {
 }
 
 impl Running {
-    fn node_at(&self, at: usize) -> u64 {
-        self.opened.node_of(self.places.borrow().get(at))
-    }
-
     /// Runs an observer; its numbers are written to `out`.
     fn watch(&self, routine: &Routine<f64>, out: &mut [f64]) {
         let mut places = self.places.borrow_mut();
@@ -305,7 +297,7 @@ impl Running {
 
 impl Trajectory for Running {
     fn node(&self) -> u64 {
-        self.node_at(at::STATE)
+        self.opened.node_of(self.places.borrow().get(at::STATE))
     }
 
     fn time(&self) -> f64 {
@@ -314,9 +306,6 @@ impl Trajectory for Running {
 
     fn step(&mut self) -> Result<(), StepError> {
         let places = self.places.get_mut();
-        if let Some(state) = places.get(at::STATE) {
-            self.spare.clone_from(state);
-        }
         match &mut self.steps {
             Steps::Plain | Steps::Modified => {
                 let node = self.opened.node_of(places.get(at::STATE));
@@ -332,9 +321,6 @@ impl Trajectory for Running {
                 }
             }
         }
-        if let Some(before) = places.get_mut(at::BEFORE) {
-            std::mem::swap(before, &mut self.spare);
-        }
         Ok(())
     }
 
@@ -344,26 +330,6 @@ impl Trajectory for Running {
 
     fn kinetic_warning(&self) -> Option<KineticWarning> {
         self.kinetic
-    }
-
-    fn residual(&self) -> Option<f64> {
-        let plain = matches!(self.steps, Steps::Plain);
-        if !plain || self.node_at(at::BEFORE) == self.node_at(at::STATE) {
-            return None;
-        }
-        let mut places = self.places.borrow_mut();
-        let parts = match run(&self.opened.functions.residual, &mut places) {
-            Ok(Value::List(list)) => list,
-            _ => return Some(f64::NAN),
-        };
-        let parts = parts.iter().map(|p| match p {
-            Value::Residual(part) => *part,
-            _ => Residual {
-                size: f64::NAN,
-                scale: f64::NAN,
-            },
-        });
-        Some(Residual::largest(&parts.collect::<Vec<_>>()))
     }
 
     fn observe(&self, out: &mut [f64]) {
@@ -380,7 +346,7 @@ impl Trajectory for Running {
 
     fn words(&mut self, words: &mut Words) {
         let places = self.places.get_mut();
-        for at in [at::STATE, at::BEFORE, at::WORK] {
+        for at in [at::STATE, at::WORK] {
             match places.get_mut(at) {
                 Some(value) => value.words(words),
                 None => words.refuse(),

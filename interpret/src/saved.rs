@@ -54,7 +54,6 @@ impl Saved for Value<f64> {
             Value::Functional(held) => held.words(words),
             // No state or workspace holds these.
             Value::Turned(_)
-            | Value::Residual(_)
             | Value::Warning(_)
             | Value::Part(..)
             | Value::At(_)

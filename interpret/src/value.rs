@@ -6,8 +6,8 @@ use crate::sites::Column;
 use clebsch::Real;
 use clebsch::domain;
 use clebsch::emitted::{
-    Edge, Free, Method, Order, PlaneMotion, Poinsot, QuaternionBody, Residual, RigidMotion,
-    Rotation, TurnedRotation, UnitQuaternion,
+    Edge, Free, Method, Order, PlaneMotion, Poinsot, QuaternionBody, RigidMotion, Rotation,
+    TurnedRotation, UnitQuaternion,
 };
 use clebsch::kinetic::KineticWarning;
 use clebsch::linalg::Dense;
@@ -151,8 +151,6 @@ pub enum Value<T: Real> {
     Function(domain::Function),
     /// A function called.
     Call(&'static domain::Call),
-    /// What a step leaves of an equation.
-    Residual(Residual),
     /// What is wrong with a kinetic energy.
     Warning(KineticWarning),
     /// A struct of the emitted code.

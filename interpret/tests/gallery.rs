@@ -1,5 +1,5 @@
 //! The models of the gallery, read from their texts, against the same models built: cards, steps,
-//! observables, invariants, scales and residuals agree to the last bit.
+//! observables, invariants and scales agree to the last bit.
 
 mod side_by_side;
 

@@ -17,7 +17,6 @@ fn bits(trajectory: &dyn Trajectory) -> Vec<u64> {
     trajectory.observe(seen);
     trajectory.invariants(invariants);
     trajectory.scales(scales);
-    all.push(trajectory.residual().unwrap_or(-1.0));
     let mut bits: Vec<u64> = all.into_iter().map(f64::to_bits).collect();
     bits.push(trajectory.node());
     bits

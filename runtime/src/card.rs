@@ -368,13 +368,6 @@ pub trait Trajectory: Send {
         None
     }
 
-    /// What the last step leaves of its equations, relative to the terms they are made of: the largest of
-    /// all momenta, see [`Residual`](crate::integrate::Residual). None at node 0, and for steps that are
-    /// composed of others or take modified moments, of which each solves other equations.
-    fn residual(&self) -> Option<f64> {
-        None
-    }
-
     /// How many steps were made by parts; none where a refused step ends a run, see
     /// [`Halved`](crate::integrate::Halved).
     fn halvings(&self) -> Option<Halvings> {
@@ -392,7 +385,7 @@ pub trait Trajectory: Send {
     /// scale of the component, see [`Drift`](crate::integrate::Drift).
     fn scales(&self, out: &mut [f64]);
 
-    /// Meets everything that changes from step to step: the state, the one before it, and what steps remember.
+    /// Meets everything that changes from step to step: the state, and what steps remember.
     /// Put into a trajectory that was opened anew from the same data, it goes on to the last bit as the one
     /// it was taken from. A trajectory of your own refuses unless it says otherwise.
     fn words(&mut self, words: &mut Words) {

@@ -12,11 +12,11 @@ pub use crate::groups::{
     SpatialMomentumMatrix, SpatialPlaneImpulse, TurnedRotation, UnitQuaternion, added,
     added_number,
 };
+pub use crate::integrate::not_less;
 pub use crate::integrate::{
     Model as _, Moving, Reversible, SideBySide, Stepper, Steps, advance_side_by_side, only_size,
     open,
 };
-pub use crate::integrate::{Residual, not_less};
 pub use crate::kinetic::KineticWarning;
 pub use crate::linalg::{
     adjugate, axial_of_difference, columns_from, crossed, crossing, determinant, even_count, hat,

@@ -26,7 +26,7 @@ use crate::plots;
 use crate::record::Samples;
 use crate::verdict::Outcome;
 use clebsch::card::Card;
-use clebsch::integrate::{Halvings, LargestResidual};
+use clebsch::integrate::Halvings;
 use clebsch::record::{Record, Rows as _, npz, write_csv};
 use clebsch_check::Verdict;
 use samples::Rows;
@@ -53,8 +53,6 @@ pub struct Finished<'a> {
     pub outcomes: &'a [Outcome],
     /// Number of samples taken.
     pub samples: u64,
-    /// The largest residual of a step; none where the steps solve other equations.
-    pub residual: Option<LargestResidual>,
     /// Steps that were made by parts; none where a refused step ends a run.
     pub halvings: Option<Halvings>,
     /// What the action as stated says of the judged steps; none where none was to be judged.

@@ -15,7 +15,6 @@ pub fn run_json(run: &Finished<'_>, files: &[String]) -> Value {
         plan,
         outcomes,
         samples,
-        residual,
         halvings,
         stated,
         stopped,
@@ -27,7 +26,6 @@ pub fn run_json(run: &Finished<'_>, files: &[String]) -> Value {
         "invariants": outcomes.iter().map(Outcome::json).collect::<Vec<_>>(),
         "kept": outcomes.iter().all(|outcome| outcome.verdict != Verdict::Left),
         "files": files,
-        "residual": residual.map(|r| json!({"relative": r.relative, "node": r.node})),
         "stopped": stopped.as_ref().map(|s| json!({"node": s.node, "time": s.time, "why": s.why})),
     });
     if let (Some(h), Some(results)) = (halvings, results.as_object_mut()) {

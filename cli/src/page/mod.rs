@@ -94,12 +94,10 @@ fn invariants(run: &Finished<'_>, out: &mut String) {
         let rest = said.strip_prefix("zero").unwrap_or(&said);
         let _ = writeln!(out, "<p>Zero{}.</p>", escaped(rest));
     }
-    if let Some(worst) = run.residual {
-        let _ = writeln!(
-            out,
-            "<p>Discrete Euler-Lagrange equations: max relative residual {:.3e}, at node {}.</p>",
-            worst.relative, worst.node
-        );
+    if let Some(verdict) = &run.stated {
+        let said = verdict.to_string();
+        let rest = said.strip_prefix("action").unwrap_or(&said);
+        let _ = writeln!(out, "<p>Action{}.</p>", escaped(rest));
     }
 }
 

@@ -426,9 +426,6 @@ impl Sweep<'_> {
         put(summary.steps as f64);
         put(summary.time);
         put(f64::from(u8::from(kept)));
-        put(summary
-            .residual
-            .map_or(f64::NAN, |residual| residual.relative));
         let mut drifts = summary.drifts.iter().map(|drift| drift.worst);
         (0..self.card.invariant_count()).for_each(|_| put(drifts.next().unwrap_or(f64::NAN)));
         last.0.into_iter().for_each(&mut put);

@@ -42,7 +42,7 @@ impl Columns {
         let mut all = vec!["point".to_owned()];
         all.extend(axes.iter().map(|axis| axis.name.clone()));
         let status = all.len();
-        let told = ["status", "steps", "time", "within_bounds", "residual"];
+        let told = ["status", "steps", "time", "within_bounds"];
         all.extend(told.map(str::to_owned));
         for invariant in card.invariants {
             let name = format!("drift_{}", invariant.name);

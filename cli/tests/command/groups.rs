@@ -3,9 +3,9 @@
 
 use crate::common::{Folder, clebsch};
 
-/// The lever arm of a momentum in space is the place of the motion, of the plane too: without it no residual was a number.
+/// A motion of the plane seen from space runs, and the action as stated holds along it.
 #[test]
-fn a_motion_of_the_plane_seen_from_space_has_a_residual() {
+fn a_motion_of_the_plane_seen_from_space_is_judged() {
     let folder = Folder::new("plane-from-space");
     let model = folder.write(
         "plate.clebsch",
@@ -21,6 +21,7 @@ fn a_motion_of_the_plane_seen_from_space_has_a_residual() {
     let done = clebsch(&["run", &model, "--case", &case, "--steps", "50"]);
     assert_eq!(done.code, 0, "{}{}", done.out, done.err);
     assert!(!done.out.contains("NaN"), "{}", done.out);
+    assert!(done.out.contains("50 steps judged"), "{}", done.out);
 }
 
 /// Quantities that sites carry may differ in shape where their names differ by a number alone.

@@ -215,48 +215,6 @@ fn a_refused_first_step_says_what_is_wrong_with_the_kinetic_energy() {
     assert!(refused >= 2, "{refused} first steps were refused");
 }
 
-/// With a step of 1e-200 terms of the equations are beyond the range of numbers: nothing is known of such steps.
-#[test]
-fn a_residual_that_is_not_a_number_is_no_success() {
-    let gallery = Gallery::shipped();
-    let run = ["run", "kepler", "--h", "1e-200", "--steps", "3"];
-    let done = on(&gallery, &run);
-    assert_eq!(done.code, 3, "{}", done.err);
-    assert!(done.err.contains("not a number, at node 1"), "{}", done.err);
-}
-
-/// How well the equations of each step are solved stands below the table and in the manifest.
-#[test]
-fn the_largest_residual_of_a_step_is_shown() {
-    let gallery = Gallery::shipped();
-    for entry in &gallery.entries {
-        let model = entry.card.kebab;
-        let run = ["run", model, "--steps", "50"];
-        let done = on(&gallery, &run);
-        let words = "\ndiscrete Euler-Lagrange equations: max relative residual ";
-        assert!(done.out.contains(words), "{model}: {}", done.out);
-        let residual = |more: &[&str]| {
-            let done = on(&gallery, &[&run[..], &["--json"], more].concat());
-            assert!(done.code == 0 || done.code == 3, "{model}: {}", done.err);
-            json(&done.out)["results"]["residual"].clone()
-        };
-        let found = residual(&[]);
-        let relative = found["relative"].as_f64().expect("a number");
-        // Convergence is judged at 1e-13 of the terms.
-        assert!(relative < 1e-13, "{model}: {found}");
-        let node = found["node"].as_u64().expect("a node");
-        assert!((1..=50).contains(&node), "{model}: {found}");
-        // Steps that are composed, or take modified moments, solve other equations.
-        if entry.card.orders.contains(&4) {
-            assert_eq!(
-                residual(&["--order", "4", "--h", "0.01"]),
-                Value::Null,
-                "{model}"
-            );
-        }
-    }
-}
-
 #[test]
 fn a_comparison_that_stops_leaves_what_it_computed() {
     let folder = Folder::new("compared");

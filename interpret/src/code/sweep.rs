@@ -26,10 +26,6 @@ pub enum Kind {
     Sum(Terms),
     /// The same of the sizes of their terms: a scale of what is summed.
     Sizes(Terms),
-    /// `worst_residual`: what is left of the equations of sites by themselves.
-    Worst,
-    /// `residual_of_all`: what is left of those of all sites together.
-    OfAll,
 }
 
 /// What is summed.
@@ -167,7 +163,6 @@ impl<T: Real> Sweep<T> {
                 let all = self.gathered(places)?;
                 unfit(summed(&all, terms, matches!(self.kind, Kind::Sizes(_))))
             }
-            (Kind::Worst | Kind::OfAll, []) => self.left(places),
             _ => Err(Exit::Unfit(WRONG)),
         }
     }
@@ -197,25 +192,6 @@ impl<T: Real> Sweep<T> {
             i += 1;
         }
         Ok(all)
-    }
-
-    /// What is left of the equations of sites.
-    fn left(&self, places: &mut Places<T>) -> Evaluated<T> {
-        let Column::Values(all) = self.gathered(places)? else {
-            return Err(Exit::Unfit(WRONG));
-        };
-        let mut parts = Vec::with_capacity(all.len());
-        for value in &all {
-            let Value::Residual(part) = value else {
-                return Err(Exit::Unfit(WRONG));
-            };
-            parts.push(*part);
-        }
-        let left = |i: usize| parts[i];
-        Ok(Value::Residual(match self.kind {
-            Kind::OfAll => line::residual_of_all(parts.len(), left),
-            _ => line::worst_residual(parts.len(), left),
-        }))
     }
 
     /// Runs sites by operations, as far as that goes: the next site that is left to the body.

@@ -1,11 +1,9 @@
 //! Where functions are defined, and what a step leaves of its equations.
 
-use super::algebra::{binary, length};
-use crate::code::{Native, Operator};
+use crate::code::Native;
 use crate::value::{Kept, Value};
 use clebsch::Real;
 use clebsch::domain;
-use clebsch::emitted::Residual;
 use clebsch::integrate::filled;
 use clebsch::kinetic::KineticWarning;
 use clebsch::linalg::Dense;
@@ -50,22 +48,6 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("on_edge", 5) => argument!(on_edge),
         ("admits", 2) => |a, _| match a {
             [Value::Domain(d), Value::Real(x)] => Some(Value::Bool(d.admits(*x))),
-            _ => None,
-        },
-        ("Residual::between", 3) => |a, _| match a {
-            [carried, brought, Value::Real(size)] => {
-                let left = length(&binary(Operator::Sub, carried, brought)?)?;
-                Some(Value::Residual(Residual {
-                    size: left.magnitude(),
-                    scale: length(carried)?.magnitude() + size.magnitude(),
-                }))
-            }
-            _ => None,
-        },
-        ("with_arm", 2) => |a, _| match a {
-            [Value::Residual(part), Value::Real(moment)] => {
-                Some(Value::Residual(part.with_arm(*moment)))
-            }
             _ => None,
         },
         // Rows of a momentum, by the impulse that they get.

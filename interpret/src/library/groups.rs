@@ -223,11 +223,6 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         },
         ("moved", 3) => moved,
         ("velocity_between", 4) => between,
-        ("way", 2) => |a, _| match (a.first()?, a.get(1)?) {
-            (Value::Motion(g), Value::Motion(v)) => Some(Value::of(Dense::of(&g.way(v)))),
-            (Value::Plane(g), Value::Plane(v)) => Some(Value::of(Dense::of(&g.way(v)))),
-            _ => None,
-        },
         ("added", 3) => |a, _| {
             let [value, rest, more] = a else { return None };
             let (value, rest, more) = (value.dense()?, rest.dense()?, more.dense()?);

@@ -5,7 +5,6 @@ use super::{LineTrajectory, columns, coordinates, numbers, put, run};
 use crate::code::Routine;
 use crate::opened::at;
 use crate::value::Value;
-use clebsch::integrate::Residual;
 
 impl LineTrajectory {
     fn ask(&mut self, routine: &Routine<f64>) -> Option<Value<f64>> {
@@ -35,25 +34,6 @@ impl LineTrajectory {
             put(&mut self.places, at::STATE, state);
         }
         found
-    }
-
-    /// What the last step leaves of its equations, one part for each of what moves; none before the first step, of steps that
-    /// are composed of others, and where the model does not tell.
-    pub fn residual(&mut self) -> Option<Vec<Residual>> {
-        let model = self.model.clone();
-        if self.composed.is_some() || self.node() == self.node_at(at::BEFORE) {
-            return None;
-        }
-        match self.ask(model.residual.as_ref()?)? {
-            Value::List(parts) => parts
-                .iter()
-                .map(|part| match part {
-                    Value::Residual(part) => Some(*part),
-                    _ => None,
-                })
-                .collect(),
-            _ => None,
-        }
     }
 
     /// The sums of the sizes of their terms.

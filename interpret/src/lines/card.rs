@@ -184,9 +184,6 @@ impl Carded {
             }
         }
         left_out.extend(lost.iter().map(|i| expander.at_its_site(i.name)));
-        if !model.has_residual() {
-            left_out.push("residuals".to_owned());
-        }
         let summary = words
             .summary
             .replace(&short.words(lattice), &choice.words(lattice));

@@ -98,8 +98,6 @@ pub struct LineModel {
     projecting: Option<Routine<f64>>,
     step: Routine<f64>,
     workspace: Routine<f64>,
-    /// What a step leaves of its equations, where it is told.
-    residual: Option<Routine<f64>>,
     /// Whether velocities of all sites are found together.
     together: bool,
     /// Where the energy of small steps is known.
@@ -223,13 +221,6 @@ impl LineModel {
         let start = lower(name, "start", &[at::MODEL, at::GIVEN, at::STEP])?;
         let step = lower(name, "step", &[at::MODEL, at::STATE, at::WORK])?;
         let workspace = lower(name, "workspace", &[at::MODEL, at::STATE, at::STEP])?;
-        let residual = match program.function(name, "residual") {
-            Some(_) => {
-                let of = [at::MODEL, at::BEFORE, at::STATE, at::WORK];
-                Some(lower(name, "residual", &of)?)
-            }
-            None => None,
-        };
         let has_energies = program.function(name, "energies").is_some();
         let energies = match has_energies {
             true => Some(lower(name, "energies", &[at::MODEL, at::STATE])?),
@@ -292,7 +283,6 @@ impl LineModel {
             .chain(&energies)
             .chain(&energy_sizes)
             .chain(&enlarged)
-            .chain(&residual)
             .chain(&projecting);
         let own = own.map(|r| r.places);
         let places = own.chain(of_state).max();
@@ -313,7 +303,6 @@ impl LineModel {
             projecting,
             step,
             workspace,
-            residual,
             together: !line.ties.is_empty(),
             energies,
             energy_sizes,
@@ -340,11 +329,6 @@ impl LineModel {
     /// Whether velocities of all sites are found together.
     pub fn is_solved_together(&self) -> bool {
         self.together
-    }
-
-    /// Whether [`LineTrajectory::residual`] gives any.
-    pub fn has_residual(&self) -> bool {
-        self.residual.is_some()
     }
 
     /// Whether [`LineTrajectory::energies`] gives any.
@@ -505,16 +489,10 @@ impl LineModel {
         for (value, place) in both.into_iter().zip([at::STATE, at::WORK]) {
             put(&mut places, place, value);
         }
-        if self.residual.is_some()
-            && let Some(state) = places.get(at::STATE).cloned()
-        {
-            put(&mut places, at::BEFORE, state);
-        }
         Ok(LineTrajectory {
             model: self.clone(),
             places,
             h,
-            spare: Value::Unit,
             composed: None,
         })
     }

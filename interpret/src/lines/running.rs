@@ -4,7 +4,7 @@ use super::card::{Carded, Place};
 use super::{LineTrajectory, Unstarted};
 use crate::text;
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver};
-use clebsch::integrate::{Offer, Residual, Way, counted};
+use clebsch::integrate::{Offer, Way, counted};
 use clebsch::kinetic::KineticWarning;
 use clebsch::line::LineError;
 use clebsch::saved::{Saved, Words};
@@ -326,11 +326,6 @@ impl Trajectory for Running {
 
     fn kinetic_warning(&self) -> Option<KineticWarning> {
         self.kinetic
-    }
-
-    fn residual(&self) -> Option<f64> {
-        let parts = self.line.borrow_mut().residual();
-        parts.map(|parts| Residual::largest(&parts))
     }
 
     fn invariants(&self, out: &mut [f64]) {

@@ -16,8 +16,6 @@ pub struct LineTrajectory {
     pub(super) model: Arc<LineModel>,
     pub(super) places: Places<f64>,
     pub(super) h: f64,
-    /// Where the state is put that a step begins with.
-    pub(super) spare: Value<f64>,
     /// The parts of its steps, where they are composed.
     pub(super) composed: Option<Composed>,
 }
@@ -25,11 +23,7 @@ pub struct LineTrajectory {
 impl LineTrajectory {
     /// The number of the node.
     pub fn node(&self) -> u64 {
-        self.node_at(at::STATE)
-    }
-
-    pub(super) fn node_at(&self, at: usize) -> u64 {
-        match self.places.get(at) {
+        match self.places.get(at::STATE) {
             Some(Value::Struct(s)) => match s.field(self.model.node) {
                 Some(Value::Int(n)) => u64::try_from(*n).unwrap_or(0),
                 _ => 0,
@@ -51,32 +45,17 @@ impl LineTrajectory {
         let model = self.model.clone();
         let made = match self.composed {
             Some(_) => self.composed_step(),
-            None => self.own_step(),
+            None => run(&model.step, &mut self.places)
+                .map(|_| ())
+                .map_err(|e| e.line()),
         };
         made.map_err(|e| coordinates::named(&model.coordinates, e))
-    }
-
-    /// One step of the model, the state before it kept where something is asked of both.
-    fn own_step(&mut self) -> Result<(), LineError> {
-        let model = self.model.clone();
-        if model.residual.is_some()
-            && let Some(state) = self.places.get(at::STATE)
-        {
-            self.spare.clone_from(state);
-        }
-        run(&model.step, &mut self.places).map_err(|e| e.line())?;
-        if model.residual.is_some()
-            && let Some(before) = self.places.get_mut(at::BEFORE)
-        {
-            std::mem::swap(before, &mut self.spare);
-        }
-        Ok(())
     }
 }
 
 impl Saved for LineTrajectory {
     fn words(&mut self, words: &mut Words) {
-        for at in [at::STATE, at::BEFORE, at::WORK] {
+        for at in [at::STATE, at::WORK] {
             match self.places.get_mut(at) {
                 Some(value) => value.words(words),
                 None => words.refuse(),

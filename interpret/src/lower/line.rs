@@ -101,14 +101,6 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 };
                 (kind, Vec::new(), Some(range), body)
             }
-            (name @ ("line::worst_residual" | "line::residual_of_all"), [sites, body]) => {
-                let range = [whole(0), self.expression(sites, None)?];
-                let kind = match name {
-                    "line::worst_residual" => Kind::Worst,
-                    _ => Kind::OfAll,
-                };
-                (kind, Vec::new(), Some(range), body)
-            }
             _ => return Ok(None),
         };
         let Code::Closure(parameters, body) = self.argument(body)? else {

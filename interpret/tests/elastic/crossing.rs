@@ -72,8 +72,6 @@ fn steps_near_equal_stretches_take_their_principal_root() {
                 assert!((a - b).abs() < 1e-12, "{apart:e}: {a} {b}");
             }
         }
-        let residual = t.residual().expect("a plain step");
-        assert!(residual < 1e-14, "{apart:e}: {residual:e}");
     }
 }
 

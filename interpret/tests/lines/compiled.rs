@@ -1,6 +1,5 @@
 //! The compiled lines of the gallery with random data, and the same data as numbers.
 
-use clebsch::integrate::Residual;
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
 use clebsch::of_numbers::OfNumbers;
 use clebsch::{BodyMomentum, Rotation};
@@ -124,9 +123,6 @@ impl Random {
 /// A compiled line on its way.
 pub trait Compiled {
     fn step(&mut self) -> Result<(), String>;
-    /// A step, with the difference that it leaves in each of its equations and the sizes of its terms; and the same of this state
-    /// beside the one after the next step, which is no solution.
-    fn left(&mut self) -> Result<[Vec<Residual>; 2], String>;
     fn node(&self) -> u64;
     fn seen(&self, name: &str) -> Vec<f64>;
     fn energies(&self) -> [f64; 2];
@@ -145,15 +141,6 @@ macro_rules! compiled {
             fn step(&mut self) -> Result<(), String> {
                 let $ty(model, state, work) = self;
                 model.step(state, work).map_err(|e| e.to_string())
-            }
-            fn left(&mut self) -> Result<[Vec<clebsch::integrate::Residual>; 2], String> {
-                let before = self.1.clone();
-                self.step()?;
-                let left = self.0.residual(&before, &self.1, &self.2);
-                let mut next = self.clone();
-                next.step()?;
-                let wrong = self.0.residual(&before, &next.1, &self.2);
-                Ok([left.to_vec(), wrong.to_vec()])
             }
             fn node(&self) -> u64 {
                 self.1.node()

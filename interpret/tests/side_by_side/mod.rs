@@ -5,14 +5,12 @@ use clebsch_models::Case;
 
 /// Everything a trajectory shows at a node, as bits.
 fn seen(t: &dyn Trajectory, card: &Card) -> Vec<u64> {
-    let mut out = vec![0.0; card.observable_count() + 2 * card.invariant_count() + 1];
+    let mut out = vec![0.0; card.observable_count() + 2 * card.invariant_count()];
     let (observed, rest) = out.split_at_mut(card.observable_count());
-    let (invariants, rest) = rest.split_at_mut(card.invariant_count());
-    let (scales, residual) = rest.split_at_mut(card.invariant_count());
+    let (invariants, scales) = rest.split_at_mut(card.invariant_count());
     t.observe(observed);
     t.invariants(invariants);
     t.scales(scales);
-    residual[0] = t.residual().unwrap_or(-1.0);
     out.iter().map(|x| x.to_bits()).collect()
 }
 

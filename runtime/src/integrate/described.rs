@@ -37,9 +37,6 @@ pub trait Described: Model<Scalar = f64, State: Saved, Workspace: Saved> + Sized
         None
     }
 
-    /// What a plain step leaves of its equations, relative to their terms: the largest of all momenta.
-    fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64;
-
     /// All observables.
     fn observe(&self, state: &Self::State, out: &mut [f64]);
 
@@ -60,8 +57,6 @@ pub trait Described: Model<Scalar = f64, State: Saved, Workspace: Saved> + Sized
 struct Running<M: Described> {
     model: M,
     state: M::State,
-    /// The state before the last step.
-    before: M::State,
     steps: Steps<M>,
     h: f64,
     kinetic: Option<KineticWarning>,
@@ -89,7 +84,6 @@ pub fn open<M: Described>(
     Ok(Box::new(Running {
         model,
         state,
-        before: state,
         steps,
         h: settings.h,
         kinetic,
@@ -111,10 +105,7 @@ impl<M: Described> Trajectory for Running<M> {
     }
 
     fn step(&mut self) -> Result<(), StepError> {
-        let before = self.state;
-        self.steps.step(&self.model, &mut self.state)?;
-        self.before = before;
-        Ok(())
+        self.steps.step(&self.model, &mut self.state)
     }
 
     fn card(&self) -> &'static Card {
@@ -123,12 +114,6 @@ impl<M: Described> Trajectory for Running<M> {
 
     fn kinetic_warning(&self) -> Option<KineticWarning> {
         self.kinetic
-    }
-
-    fn residual(&self) -> Option<f64> {
-        let moved = M::node(&self.before) != self.node();
-        (moved && self.steps.are_plain())
-            .then(|| self.model.left_over(&self.before, &self.state, self.h))
     }
 
     fn observe(&self, out: &mut [f64]) {
@@ -146,7 +131,6 @@ impl<M: Described> Trajectory for Running<M> {
 
     fn words(&mut self, words: &mut Words) {
         self.state.words(words);
-        self.before.words(words);
         self.steps.words(words);
     }
 }

@@ -185,10 +185,6 @@ impl Trajectory for Halved {
         self.inner.kinetic_warning()
     }
 
-    fn residual(&self) -> Option<f64> {
-        self.inner.residual()
-    }
-
     fn observe(&self, out: &mut [f64]) {
         self.inner.observe(out);
     }

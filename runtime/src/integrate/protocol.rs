@@ -176,10 +176,6 @@ macro_rules! stepper {
 
             $crate::stepper_part! { @judged $judged }
 
-            fn left_over(&self, before: &Self::State, after: &Self::State, h: f64) -> f64 {
-                $crate::integrate::Residual::largest(&self.residual(before, after, h))
-            }
-
             fn observe(&self, state: &Self::State, out: &mut [f64]) {
                 $(let out = $crate::shown! { [$($seen).+ $(as $shape)?] out self state };)*
                 let _ = out;

@@ -5,7 +5,7 @@
 use super::drift::{Deviation, HeldRate};
 use super::{Drift, NotFinite, RunError, Watched};
 use crate::card::Trajectory;
-use crate::saved::{Saved, Words, optional};
+use crate::saved::{Saved, Words};
 
 /// What watches a run.
 pub trait Observer {
@@ -31,28 +31,6 @@ pub struct Summary {
     pub samples: u64,
     /// The drift of every component of every invariant, in the order of the model's card.
     pub drifts: Vec<Drift>,
-    /// The largest residual of a step; none where the trajectory has none.
-    pub residual: Option<LargestResidual>,
-}
-
-/// The step of a run that solves its equations worst.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LargestResidual {
-    /// The residual relative to the terms of its equation, see
-    /// [`Trajectory::residual`]; NaN where one was.
-    pub relative: f64,
-    /// The node at the end of the step.
-    pub node: u64,
-}
-
-impl LargestResidual {
-    /// The worse of the two; the first where they are equal, and any that is NaN.
-    fn worse(one: Option<Self>, other: Option<Self>) -> Option<Self> {
-        match (one, other) {
-            (Some(a), Some(b)) if b.relative <= a.relative || a.relative.is_nan() => Some(a),
-            (a, b) => b.or(a),
-        }
-    }
 }
 
 /// Makes `steps` steps, sampling the start, every `every`-th step and the end (`every = 0`: start
@@ -147,7 +125,6 @@ impl Watch {
                 time: trajectory.time(),
                 samples: 0,
                 drifts: Vec::new(),
-                residual: None,
             },
         }
     }
@@ -185,11 +162,6 @@ impl Watch {
             summary.steps = done;
             summary.node = trajectory.node();
             summary.time = trajectory.time();
-            let residual = trajectory.residual().map(|relative| LargestResidual {
-                relative,
-                node: summary.node,
-            });
-            summary.residual = LargestResidual::worse(summary.residual, residual);
             if sampled {
                 self.sample(observer);
             }
@@ -295,24 +267,11 @@ impl Saved for Watch {
             time,
             samples,
             drifts: _,
-            residual,
         } = summary;
         steps.words(words);
         node.words(words);
         time.words(words);
         samples.words(words);
-        let none = LargestResidual {
-            relative: 0.0,
-            node: 0,
-        };
-        optional(residual, words, || Some(none));
-    }
-}
-
-impl Saved for LargestResidual {
-    fn words(&mut self, words: &mut Words) {
-        self.relative.words(words);
-        self.node.words(words);
     }
 }
 

@@ -46,12 +46,6 @@ impl<S: Stepper<Scalar = f64>> Steps<S> {
 }
 
 impl<S: Stepper> Steps<S> {
-    /// Whether each is a single step of the derivation, neither composed nor compensated.
-    #[must_use]
-    pub fn are_plain(&self) -> bool {
-        matches!(self, Self::Plain(_))
-    }
-
     /// The workspace of steps that are not composed.
     #[must_use]
     pub fn workspace(&self) -> Option<&S::Workspace> {

@@ -31,9 +31,7 @@ pub use part::{InColumns, LANES, Part};
 pub use root::{NoRoot, root, root_of};
 pub use signs::{agree, closes, turn_towards};
 pub use stamp::Stamp;
-pub use sweep::{
-    Threads, fill, residual_of_all, sum, total, try_each, try_fill, update, worst_residual,
-};
+pub use sweep::{Threads, fill, sum, total, try_each, try_fill, update};
 pub use turn::turn_of;
 pub use turning::Turning;
 pub use window::{Stretch, Window, Windowed};

@@ -3,8 +3,6 @@
 
 use super::part::Part;
 use crate::Real;
-use crate::integrate::Residual;
-use crate::scalar::larger;
 use core::convert::Infallible;
 use core::ops::Range;
 use nalgebra::SMatrix;
@@ -170,29 +168,6 @@ impl<P: Part, K: Part> Part for Two<P, K> {
 pub fn sum<T: Real>(sites: usize, value: impl Fn(usize) -> T) -> T {
     total(sites, |i| SMatrix::<T, 1, 1>::new(value(i)))[0]
 }
-
-/// What is left of the equations of sites that are solved each by itself: that of the site where it is the largest part of its
-/// terms; NaN where one is.
-pub fn worst_residual(sites: usize, left: impl Fn(usize) -> Residual) -> Residual {
-    (0..sites).map(left).fold(NONE_LEFT, |worst, one| {
-        let is_less = one.relative() <= worst.relative() || worst.relative().is_nan();
-        if is_less { worst } else { one }
-    })
-}
-
-/// What is left of the equations of sites that are solved together: the largest of any site, beside the largest terms of any.
-pub fn residual_of_all(sites: usize, left: impl Fn(usize) -> Residual) -> Residual {
-    (0..sites).map(left).fold(NONE_LEFT, |all, one| Residual {
-        size: larger(all.size, one.size),
-        scale: larger(all.scale, one.scale),
-    })
-}
-
-/// Of no site.
-const NONE_LEFT: Residual = Residual {
-    size: 0.0,
-    scale: 0.0,
-};
 
 /// The same of vectors or matrices, component by component.
 pub fn total<T: Real, const R: usize, const C: usize>(

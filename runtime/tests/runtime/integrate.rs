@@ -1,7 +1,7 @@
 //! The loop: samples where they belong, drift at every step, errors where they happen.
 
 use clebsch::card::{Card, Conserved, Field, Invariant, Kind, OpenError, Settings, Trajectory};
-use clebsch::integrate::{LargestResidual, Observer, RunError, Watched, run, run_until_stopped};
+use clebsch::integrate::{Observer, RunError, Watched, run, run_until_stopped};
 use clebsch::{StepCause, StepError};
 
 static CARD: Card = Card {
@@ -196,64 +196,6 @@ fn what_was_done_before_a_run_stopped_is_told() {
     let whole = end(&|c, n| assert!(run(c, 10, 4, n).is_ok()));
     let part = end(&|c, n| assert!(run_until_stopped(c, 10, 4, n).1.is_none()));
     assert_eq!(whole, part);
-}
-
-/// A counter whose steps leave these residuals; the last one for all that follow.
-struct Solved(Counter, &'static [Option<f64>]);
-
-impl Trajectory for Solved {
-    fn node(&self) -> u64 {
-        self.0.node()
-    }
-    fn time(&self) -> f64 {
-        self.0.time()
-    }
-    fn step(&mut self) -> Result<(), StepError> {
-        self.0.step()
-    }
-    fn card(&self) -> &'static Card {
-        &CARD
-    }
-    fn residual(&self) -> Option<f64> {
-        let last = self.1.len().checked_sub(1)?;
-        let index = usize::try_from(self.0.node - 1).expect("few steps");
-        self.1[index.min(last)]
-    }
-    fn observe(&self, out: &mut [f64]) {
-        self.0.observe(out);
-    }
-    fn invariants(&self, out: &mut [f64]) {
-        self.0.invariants(out);
-    }
-    fn scales(&self, out: &mut [f64]) {
-        self.0.scales(out);
-    }
-}
-
-#[test]
-fn the_worst_step_is_named() {
-    let worst = |residuals| {
-        let mut solved = Solved(Counter { node: 0, stop: 99 }, residuals);
-        let summary = run(&mut solved, 10, 4, &mut Notes::default()).expect("runs");
-        summary.residual
-    };
-    let found = |relative, node| Some(LargestResidual { relative, node });
-    assert_eq!(worst(&[None]), None);
-    // The first of equal ones; between samples, too.
-    let some = [
-        Some(0.0),
-        Some(2e-16),
-        Some(3e-14),
-        Some(3e-14),
-        Some(1e-16),
-    ];
-    assert_eq!(worst(Box::leak(Box::new(some))), found(3e-14, 3));
-    assert_eq!(worst(&[Some(0.0)]), found(0.0, 1));
-    // None has none to compare with, and a NaN is not passed over.
-    assert_eq!(worst(&[None, Some(1e-16), None]), found(1e-16, 2));
-    let nan = worst(&[Some(1e-16), Some(f64::NAN), Some(1.0)]).expect("a residual");
-    assert!(nan.relative.is_nan());
-    assert_eq!(nan.node, 2);
 }
 
 #[test]

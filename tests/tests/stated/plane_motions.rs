@@ -303,11 +303,7 @@ fn sledge(steps: usize) -> (Matrix3<f64>, SVector<f64, 3>) {
     };
     let (mut state, mut work) = model.start(initial, 2.0 / steps as f64).unwrap();
     for _ in 0..steps {
-        let before = state;
         model.step(&mut state, &mut work).unwrap();
-        for part in model.residual(&before, &state, 2.0 / steps as f64) {
-            assert!(part.size <= 1e-13 * part.scale, "{part:?}");
-        }
     }
     (state.G().matrix(), state.spatial_momentum().0)
 }

@@ -6,7 +6,7 @@ use super::declare::Declared;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 
 /// Methods and constants that every model has.
-const MEMBERS: [&str; 47] = [
+const MEMBERS: [&str; 46] = [
     "kinetic_warning",
     "ADMITTED",
     "CARD",
@@ -35,7 +35,6 @@ const MEMBERS: [&str; 47] = [
     "parameters",
     "prepared",
     "refused",
-    "residual",
     "scales",
     "sized",
     "start",

@@ -443,61 +443,6 @@ fn equation(d: &Derivation, hold: &Hold) -> String {
     format!("{} = {}", text(d, &hold.left), text(d, &hold.right))
 }
 
-/// What the constraints add to the residual of a step: the impulse of their arrival to what each
-/// configuration is brought, and parts of their own.
-pub(super) struct Left {
-    /// For each configuration, what is added to its momentum.
-    pub kicks: Vec<Expr>,
-    /// What vanishes at the end of the edge, and the zero that it is compared with.
-    pub values: Vec<(Expr, TokenStream)>,
-    /// The sizes of its terms.
-    pub sizes: Vec<Expr>,
-}
-
-/// The same, at the end of the edge.
-pub(super) fn left_over(d: &Derivation) -> Left {
-    let s = &d.letters.symbols;
-    let at_end = |e: &Expr| expr::shift_time(s, e, Shift::NEXT.time);
-    let kicks = match Projection::of(d).filter(|_| projects(d)) {
-        Some(projection) => projection.kicks.iter().map(at_end).collect(),
-        None => Vec::new(),
-    };
-    let values = d.spec.holds.iter().map(|hold| {
-        let zero = match shape(d, hold).is_scalar() {
-            true => quote!(SVector::<T, 1>::zeros()),
-            false => none(d, hold),
-        };
-        (at_end(&hold.value), zero)
-    });
-    Left {
-        kicks,
-        values: values.collect(),
-        sizes: d
-            .spec
-            .holds
-            .iter()
-            .map(|h| at_end(&holds::scale(s, h)))
-            .collect(),
-    }
-}
-
-/// Binds the impulses that the state `after` arrived with.
-pub(super) fn arrivals(d: &Derivation, after: &Ident, bindings: &mut Bindings) -> TokenStream {
-    if !projects(d) {
-        return TokenStream::new();
-    }
-    let mut out = TokenStream::new();
-    for (hold, held) in d.spec.holds.iter().zip(&d.letters.held) {
-        let (name, arrived) = (
-            variable(&d.letters.symbols, held.variation),
-            arrival(d, hold),
-        );
-        out.extend(quote!(let #name = #after.#arrived;));
-        bindings.bind(at(held.variation, Shift::HERE), name);
-    }
-    out
-}
-
 /// Whether what a constraint holds is a number.
 pub(super) fn is_number(d: &Derivation, j: usize) -> bool {
     shape(d, &d.spec.holds[j]).is_scalar()

@@ -32,7 +32,6 @@ mod principal;
 mod product;
 mod quaternionic;
 mod residual;
-mod residual_of_step;
 mod sizes;
 mod start;
 mod state;
@@ -197,7 +196,6 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     // What is asked of states, beside the step.
     let asked = [
         balance,
-        residual_of_step::residual_of_step(d, &names),
         kinetic::inertia_at(d, &names),
         invariants::invariants(d, &names),
         discrete_energy::discrete_energy(d, &names),

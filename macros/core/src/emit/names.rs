@@ -50,7 +50,7 @@ pub fn own(d: &Derivation, id: SymbolId) -> Ident {
 }
 
 /// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
-const TYPES: [&str; 59] = [
+const TYPES: [&str; 58] = [
     "AboutBody",
     "Additive",
     "BodyMomentum",
@@ -89,7 +89,6 @@ const TYPES: [&str; 59] = [
     "QuaternionBody",
     "QuaternionError",
     "Real",
-    "Residual",
     "Result",
     "Reversible",
     "Rotation",

@@ -1,9 +1,9 @@
 //! Numbers that no value of an expression exceeds, from the lengths of its letters: what its rounding
-//! is measured by. Between two stored nodes a velocity is a difference, as uncertain as they are.
+//! is measured by. A difference of stored places is as uncertain as they are.
 //! Takes an expression; gives one without cancellation.
 
 use super::shape::{Shape, Structure};
-use super::symbol::{Role, Symbols};
+use super::symbol::Symbols;
 use super::{
     Expr, Function, Letter, Map, Node, Rational, add, call, dot, integer, mul, number, places,
     power, quotient, substitute, sum, trace, transpose,
@@ -13,37 +13,10 @@ use super::{
 pub(crate) fn magnitude(s: &Symbols, e: &Expr) -> Expr {
     Terms {
         symbols: s,
-        paths: None,
+        differences: None,
     }
     .of(e)
     .value
-}
-
-/// The same of an expression whose velocities are made from the elements at two nodes, with what it
-/// changes by, to first order and in units of rounding, where these are rounded: the imaginary part of
-/// a quaternion is as uncertain as the quaternion is, a translation or an increment as the places
-/// between which it goes. `paths` gives the size of those for each velocity in SE(3) or of a field.
-pub(crate) fn magnitude_between(s: &Symbols, e: &Expr, paths: &[(Letter, Expr)]) -> Expr {
-    in_differences(
-        s,
-        e,
-        |e| between(s, e, paths),
-        |named| {
-            let own = named.definitions.iter();
-            let own = own.map(|(l, d)| (*l, magnitude(s, d)));
-            let all: Vec<(Letter, Expr)> = own.chain(paths.iter().cloned()).collect();
-            between(&named.symbols, &named.whole, &all)
-        },
-    )
-}
-
-fn between(s: &Symbols, e: &Expr, paths: &[(Letter, Expr)]) -> Expr {
-    let terms = Terms {
-        symbols: s,
-        paths: Some(paths),
-    };
-    let Size { value, stored } = terms.of(e);
-    add(value, stored)
 }
 
 /// How large the terms of an expression at a node are, differences of places by their own lengths, with what the rounding of
@@ -52,8 +25,13 @@ pub(crate) fn magnitude_by_differences(s: &Symbols, e: &Expr) -> Expr {
     let plain = |e: &Expr| magnitude(s, e);
     in_differences(s, e, plain, |named| {
         let definitions = named.definitions.iter();
-        let paths: Vec<(Letter, Expr)> = definitions.map(|(l, d)| (*l, magnitude(s, d))).collect();
-        between(&named.symbols, &named.whole, &paths)
+        let sizes: Vec<(Letter, Expr)> = definitions.map(|(l, d)| (*l, magnitude(s, d))).collect();
+        let terms = Terms {
+            symbols: &named.symbols,
+            differences: Some(&sizes),
+        };
+        let Size { value, stored } = terms.of(&named.whole);
+        add(value, stored)
     })
 }
 
@@ -93,7 +71,7 @@ fn unit_quaternions(s: &Symbols, e: &Expr) -> bool {
 }
 
 /// The length of the value itself.
-pub(crate) fn length(s: &Symbols, x: &Expr) -> Expr {
+fn length(s: &Symbols, x: &Expr) -> Expr {
     let square = if x.shape().is_scalar() {
         mul(x.clone(), x.clone())
     } else if x.shape().is_vector() {
@@ -112,8 +90,8 @@ struct Size {
 
 struct Terms<'a> {
     symbols: &'a Symbols,
-    /// Present between two nodes.
-    paths: Option<&'a [(Letter, Expr)]>,
+    /// The sizes of the places of which letters of differences are made, where their rounding is asked for.
+    differences: Option<&'a [(Letter, Expr)]>,
 }
 
 impl Terms<'_> {
@@ -155,7 +133,7 @@ impl Terms<'_> {
             // Linear in the entries; where these are of a quaternion, see `stored`.
             Node::Map(Map::Imaginary | Map::Real, a) if !unit_quaternions(self.symbols, a) => of(a),
             Node::Map(Map::Diagonal | Map::DiagonalOf, a) => of(a),
-            Node::Quotient(a, b) if self.is_exact(b) => {
+            Node::Quotient(a, b) if self.differences.is_some() => {
                 let (a, b) = (of(a), length(self.symbols, b));
                 Size {
                     value: quotient(a.value, b.clone()),
@@ -164,7 +142,7 @@ impl Terms<'_> {
             }
             Node::Power(a, q) if *q == Rational::integer(2) => times(of(a), of(a)),
             // A root where its argument vanishes has no rate; roots stand in what is told by their letters as well.
-            Node::Power(a, q) if self.paths.is_some() && q.value() > 1.0 => {
+            Node::Power(a, q) if self.differences.is_some() && q.value() > 1.0 => {
                 let rate = q.plus(Rational::MINUS_ONE);
                 let rate = rate.map(|less| mul(number(*q), power(length(self.symbols, a), less)));
                 Size {
@@ -172,7 +150,7 @@ impl Terms<'_> {
                     stored: rate.map_or_else(|| integer(0), |rate| mul(rate, of(a).stored)),
                 }
             }
-            Node::Call(f, a) if self.paths.is_some() => Size {
+            Node::Call(f, a) if self.differences.is_some() => Size {
                 value: length(self.symbols, e),
                 stored: called(*f, a, e, self.of(a).stored, |x| length(self.symbols, x)),
             },
@@ -192,28 +170,14 @@ impl Terms<'_> {
         }
     }
 
-    /// Whether no velocity stands in it, between two nodes.
-    fn is_exact(&self, e: &Expr) -> bool {
-        let moving = |l: &Letter| self.symbols.get(l.symbol).role == Role::Velocity;
-        self.paths.is_some() && !super::letters(e).iter().any(moving)
-    }
-
-    /// The size of the two stored elements of which a small part of a velocity is made.
+    /// The size of the stored elements of which a small value is made.
     fn stored(&self, e: &Expr) -> Option<Expr> {
-        let paths = self.paths?;
-        let known = |l: &Letter| {
-            let found = paths.iter().find(|(velocity, _)| velocity == l);
-            found.map(|(_, size)| size.clone())
-        };
+        let differences = self.differences?;
         match e.node() {
             Node::Map(Map::Imaginary, a) if unit_quaternions(self.symbols, a) => Some(integer(1)),
-            Node::Map(Map::Translation, a) => match a.node() {
-                Node::Letter(l) => known(l),
-                _ => None,
-            },
-            // The increment of a field is the difference of its values.
-            Node::Letter(l) if self.symbols.get(l.symbol).structure == Structure::General => {
-                known(l)
+            Node::Letter(l) => {
+                let found = differences.iter().find(|(difference, _)| difference == l);
+                found.map(|(_, size)| size.clone())
             }
             _ => None,
         }

@@ -50,9 +50,7 @@ pub use functional::{
 pub(crate) use functional::{kind, pairing};
 pub use gradient::gradient;
 pub(crate) use hashed::{Exprs, Hashed};
-pub(crate) use magnitude::{
-    length, lengths_of_differences, magnitude, magnitude_between, magnitude_by_differences,
-};
+pub(crate) use magnitude::{lengths_of_differences, magnitude, magnitude_by_differences};
 pub use parted::parted;
 pub(crate) use presence::{may_contain, may_hold};
 pub use projection::projected;

@@ -173,7 +173,6 @@ fn names_of_functions_are_refused_where_they_are_declared() {
         "node",
         "energy",
         "step",
-        "residual",
         "parameters",
         "body_momentum",
     ] {

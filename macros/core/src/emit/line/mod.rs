@@ -21,7 +21,6 @@ mod locals;
 mod meshes;
 mod pulls;
 mod reactions;
-mod residual;
 mod responses;
 mod rows;
 mod signs;
@@ -79,7 +78,6 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
         constraints::told(&l),
         energy::energy(&l, of_meshes),
         impulses::not_less_than_impulses(&l).unwrap_or_default(),
-        residual::residual(&l).unwrap_or_default(),
         of_meshes.map(|m| m.items.clone()).unwrap_or_default(),
         walls.map(|w| w.items).unwrap_or_default(),
     ];
