@@ -529,9 +529,14 @@ where
         };
         let step = -correction;
         let moved = largest(&step.component_mul(&self.search.lengths));
-        let found = self.corrections.are_rounding_with::<T>(moved);
-        let done =
-            (is_rounding && found) || (foreseen && self.corrections.leave_rounding::<T>(factor));
+        self.corrections.take(moved);
+        let decrement = || {
+            let terms = step.iter().zip(&self.residual);
+            let sum = terms.fold(T::zero(), |sum, (x, r)| sum + *x * *r);
+            largest(&SVector::<T, 1>::new(sum))
+        };
+        let done = (is_rounding && self.corrections.are_rounding::<T>(decrement))
+            || (foreseen && self.corrections.leave_rounding::<T>(factor));
         self.trial = match FROM_LEFT {
             true => self.trial.retract_from_left(step.as_slice()),
             false => self.trial.retract(step.as_slice()),

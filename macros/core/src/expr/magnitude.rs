@@ -1,5 +1,7 @@
-//! Numbers that no value of an expression exceeds, from the lengths of its letters: what its rounding
-//! is measured by. A difference of stored places is as uncertain as they are.
+//! How large the terms of an expression are: what its rounding is measured by. To first order this is a running error bound
+//! in units of rounding (Higham, Accuracy and Stability of Numerical Algorithms, section 3.3): the terms of a sum count, each
+//! by itself; those of a factor count times the *values* of the other factors, so that a power of what nearly vanishes is
+//! as small as it is. A difference of stored places is as uncertain as they are.
 //! Takes an expression; gives one without cancellation.
 
 use super::shape::{Shape, Structure};
@@ -16,7 +18,7 @@ pub(crate) fn magnitude(s: &Symbols, e: &Expr) -> Expr {
         differences: None,
     }
     .of(e)
-    .value
+    .terms
 }
 
 /// How large the terms of an expression at a node are, differences of places by their own lengths, with what the rounding of
@@ -30,8 +32,8 @@ pub(crate) fn magnitude_by_differences(s: &Symbols, e: &Expr) -> Expr {
             symbols: &named.symbols,
             differences: Some(&sizes),
         };
-        let Size { value, stored } = terms.of(&named.whole);
-        add(value, stored)
+        let Size { terms, stored, .. } = terms.of(&named.whole);
+        add(terms, stored)
     })
 }
 
@@ -82,10 +84,65 @@ fn length(s: &Symbols, x: &Expr) -> Expr {
     power(square, Rational::HALF)
 }
 
-/// How large a value is, and how large its change where stored elements change by their rounding.
+/// How large a value is.
 struct Size {
+    /// Itself.
     value: Expr,
+    /// Its terms, where they cancel; those of a single term are its value.
+    terms: Expr,
+    /// How large its change is where stored elements change by their rounding.
     stored: Expr,
+}
+
+impl Size {
+    /// Of what is no sum, and not stored.
+    fn exact(value: Expr) -> Self {
+        Self {
+            terms: value.clone(),
+            value,
+            stored: integer(0),
+        }
+    }
+
+    /// Whether no terms cancel.
+    fn is_single(&self) -> bool {
+        self.terms == self.value
+    }
+
+    /// Of a product.
+    fn times(self, other: Self) -> Self {
+        let value = mul(self.value.clone(), other.value.clone());
+        let [own, others] = [
+            mul(self.terms.clone(), other.value.clone()),
+            mul(self.value.clone(), other.terms.clone()),
+        ];
+        let terms = match (self.is_single(), other.is_single()) {
+            (true, true) => value.clone(),
+            (false, true) => own,
+            (true, false) => others,
+            (false, false) => add(own, others),
+        };
+        Self {
+            stored: add(mul(self.stored, other.value), mul(self.value, other.stored)),
+            value,
+            terms,
+        }
+    }
+
+    /// Of a function whose value is this, and which changes with its argument at this rate.
+    fn at_rate(self, value: Expr, rate: impl Fn(Expr) -> Expr) -> Self {
+        Self {
+            terms: match self.is_single() {
+                true => value.clone(),
+                false => add(value.clone(), rate(self.terms)),
+            },
+            stored: match self.stored.is_zero() {
+                true => self.stored,
+                false => rate(self.stored),
+            },
+            value,
+        }
+    }
 }
 
 struct Terms<'a> {
@@ -97,75 +154,67 @@ struct Terms<'a> {
 impl Terms<'_> {
     fn of(&self, e: &Expr) -> Size {
         let of = |x: &Expr| self.of(x);
-        let exact = |value| Size {
-            value,
-            stored: integer(0),
-        };
+        let length = |x: &Expr| length(self.symbols, x);
         match e.node() {
-            Node::Number(q) if q.is_negative() => exact(number(q.negated())),
-            Node::Number(_) | Node::Constant(_) => exact(e.clone()),
-            Node::Zero(_) => exact(integer(0)),
-            Node::Identity(_) | Node::Unit(..) | Node::Inclusion(..) => exact(integer(1)),
+            Node::Number(q) if q.is_negative() => Size::exact(number(q.negated())),
+            Node::Number(_) | Node::Constant(_) => Size::exact(e.clone()),
+            Node::Zero(_) => Size::exact(integer(0)),
+            Node::Identity(_) | Node::Unit(..) | Node::Inclusion(..) => Size::exact(integer(1)),
             Node::Sum(list) => {
                 let all: Vec<Size> = list.iter().map(of).collect();
                 let total = |part: &dyn Fn(&Size) -> Expr| {
                     sum(all.iter().map(part).collect::<Vec<_>>(), Shape::SCALAR)
                 };
                 Size {
-                    value: total(&|x| x.value.clone()),
+                    value: length(e),
+                    terms: total(&|x| x.terms.clone()),
                     stored: total(&|x| x.stored.clone()),
                 }
             }
             Node::Product(list) => {
                 let all = list.iter().map(of);
-                all.reduce(times).unwrap_or_else(|| exact(integer(1)))
+                all.reduce(Size::times)
+                    .unwrap_or_else(|| Size::exact(integer(1)))
             }
             // A component of what is stored is as large as it is, not as the others are.
             Node::Dot(a, b) if is_component(a, b) => Size {
-                value: length(self.symbols, e),
                 stored: add(of(a).stored, of(b).stored),
+                ..Size::exact(length(e))
             },
-            Node::Dot(a, b) | Node::Cross(a, b) => times(of(a), of(b)),
-            Node::Neg(a) | Node::Transpose(a) | Node::Part(_, a) | Node::Vee(a) => of(a),
+            Node::Dot(a, b) | Node::Cross(a, b) => of(a).times(of(b)),
+            // The entries of a rotation cancel in its axial vector.
+            Node::Vee(a) => Size {
+                value: length(e),
+                ..of(a)
+            },
+            Node::Neg(a) | Node::Transpose(a) | Node::Part(_, a) => of(a),
             Node::Hat(a) | Node::Trace(a) | Node::Map(Map::Pure | Map::Twist, a) => {
-                times(exact(integer(2)), of(a))
+                Size::exact(integer(2)).times(of(a))
             }
             // Linear in the entries; where these are of a quaternion, see `stored`.
             Node::Map(Map::Imaginary | Map::Real, a) if !unit_quaternions(self.symbols, a) => of(a),
             Node::Map(Map::Diagonal | Map::DiagonalOf, a) => of(a),
-            Node::Quotient(a, b) if self.differences.is_some() => {
-                let (a, b) = (of(a), length(self.symbols, b));
-                Size {
-                    value: quotient(a.value, b.clone()),
-                    stored: quotient(a.stored, b),
-                }
-            }
-            Node::Power(a, q) if *q == Rational::integer(2) => times(of(a), of(a)),
-            // A root where its argument vanishes has no rate; roots stand in what is told by their letters as well.
-            Node::Power(a, q) if self.differences.is_some() && q.value() > 1.0 => {
-                let rate = q.plus(Rational::MINUS_ONE);
-                let rate = rate.map(|less| mul(number(*q), power(length(self.symbols, a), less)));
-                Size {
-                    value: length(self.symbols, e),
-                    stored: rate.map_or_else(|| integer(0), |rate| mul(rate, of(a).stored)),
-                }
-            }
-            Node::Call(f, a) if self.differences.is_some() => Size {
-                value: length(self.symbols, e),
-                stored: called(*f, a, e, self.of(a).stored, |x| length(self.symbols, x)),
-            },
+            Node::Quotient(a, b) => of(a).times(Size::exact(quotient(integer(1), length(b)))),
+            Node::Power(a, q) if *q == Rational::integer(2) => of(a).times(of(a)),
+            // A root where its argument vanishes has no rate.
+            Node::Power(a, q) if q.value() > 1.0 => of(a).at_rate(length(e), |change| {
+                let less = q.plus(Rational::MINUS_ONE);
+                less.map_or_else(
+                    || integer(0),
+                    |less| mul(mul(number(*q), power(length(a), less)), change),
+                )
+            }),
+            Node::Call(f, a) => of(a).at_rate(length(e), |change| called(*f, a, e, change, length)),
             Node::Letter(_)
-            | Node::Quotient(..)
             | Node::Power(..)
             | Node::Inverse(_)
             | Node::Det(_)
             | Node::Adjugate(_)
             | Node::Map(..)
-            | Node::Call(..)
             | Node::Given(_)
             | Node::PullBack(..) => Size {
-                value: length(self.symbols, e),
                 stored: self.stored(e).unwrap_or_else(|| integer(0)),
+                ..Size::exact(length(e))
             },
         }
     }
@@ -184,27 +233,14 @@ impl Terms<'_> {
     }
 }
 
-/// What the rounding of an argument changes a function by, or a bound of it.
-fn called(f: Function, a: &Expr, e: &Expr, stored: Expr, length: impl Fn(&Expr) -> Expr) -> Expr {
-    if stored.is_zero() {
-        return stored;
-    }
+/// What a change of an argument changes a function by, or a bound of it.
+fn called(f: Function, a: &Expr, e: &Expr, change: Expr, length: impl Fn(&Expr) -> Expr) -> Expr {
     match f {
-        Function::Sin | Function::Cos | Function::Tanh | Function::Abs => stored,
+        Function::Sin | Function::Cos | Function::Tanh | Function::Abs => change,
         Function::Sign => integer(0),
-        Function::Exp => mul(length(e), stored),
-        Function::Sinh => mul(call(Function::Cosh, a.clone()), stored),
-        Function::Cosh => mul(length(&call(Function::Sinh, a.clone())), stored),
-        Function::Log => quotient(stored, length(a)),
-    }
-}
-
-fn times(a: Size, b: Size) -> Size {
-    Size {
-        stored: add(
-            mul(a.stored, b.value.clone()),
-            mul(a.value.clone(), b.stored),
-        ),
-        value: mul(a.value, b.value),
+        Function::Exp => mul(length(e), change),
+        Function::Sinh => mul(call(Function::Cosh, a.clone()), change),
+        Function::Cosh => mul(length(&call(Function::Sinh, a.clone())), change),
+        Function::Log => quotient(change, length(a)),
     }
 }

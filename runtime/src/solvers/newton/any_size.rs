@@ -409,9 +409,13 @@ impl<C: Chart> AnyNewton<'_, C> {
         };
         let step: Vec<f64> = correction.iter().map(|x| -x).collect();
         let moved = largest_of(&step, &self.search.lengths);
-        let found = self.corrections.are_rounding_with::<f64>(moved);
-        let done =
-            (is_rounding && found) || (foreseen && self.corrections.leave_rounding::<f64>(factor));
+        self.corrections.take(moved);
+        let decrement = || {
+            let terms = step.iter().zip(&self.residual);
+            f64::abs(terms.fold(0.0, |sum, (x, r)| sum + x * r))
+        };
+        let done = (is_rounding && self.corrections.are_rounding::<f64>(decrement))
+            || (foreseen && self.corrections.leave_rounding::<f64>(factor));
         self.trial = match from_left {
             true => self.chart.retract_from_left(&self.trial, &step),
             false => self.chart.retract(&self.trial, &step),

@@ -11,22 +11,22 @@ const ROUNDINGS: f64 = 64.0;
 /// A correction of fewer roundings need not be made.
 const LEFT_ROUNDINGS: f64 = 4.0;
 
-/// A correction below this that is not half of the one before is what rounding leaves: Newton's method squares it
-/// otherwise, and a tangent of some steps before still makes it a hundredth.
+/// A correction below this that does not fall is what rounding leaves: Newton's method squares it otherwise, and a
+/// tangent of some steps before still makes it a hundredth.
 const SMALL: f64 = 1e-8;
 
-/// So many larger corrections without progress are rounding as well: of a velocity that vanishes beside the terms of
-/// its equations, at rest or where it turns, nothing but rounding is left to correct.
-const WITHOUT_PROGRESS: u32 = 3;
+/// So many larger corrections that do not fall are rounding as well: of a velocity that vanishes beside the terms of its
+/// equations, at rest or where it turns, nothing but rounding is left to correct.
+const MOST_WITHOUT_FALL: u32 = 3;
 
 /// The corrections of one iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corrections {
     last: f64,
-    /// The last that was less than half of those before.
+    /// The least decrement that was less than a quarter of those before: a correction of half the length.
     least: f64,
     /// How many followed that one.
-    without_progress: u32,
+    without_fall: u32,
 }
 
 impl Corrections {
@@ -35,60 +35,111 @@ impl Corrections {
         Self {
             last: f64::INFINITY,
             least: f64::INFINITY,
-            without_progress: 0,
+            without_fall: 0,
         }
     }
 
-    /// Takes a correction over the length of its part of the velocity; says whether it was rounding.
+    /// Takes a correction over the length of its part of the velocity.
     #[inline(always)]
-    pub fn are_rounding_with<T: Real>(&mut self, moved: f64) -> bool {
-        // NaN is no progress, and ends nothing.
-        if moved < 0.5 * self.least {
-            self.least = moved;
-            self.without_progress = 0;
-        } else {
-            self.without_progress += 1;
-        }
+    pub fn take(&mut self, moved: f64) {
         self.last = moved;
-        moved <= ROUNDINGS * T::EPSILON
-            || (moved <= SMALL && self.without_progress > 0)
-            || (self.without_progress >= WITHOUT_PROGRESS && moved.is_finite())
+    }
+
+    /// Whether the last correction was rounding, where the residual was. `decrement` is Newton's, the scalar product of residual and
+    /// correction: it has one unit for all equations, that of an action, and does not depend on their sizes.
+    #[inline(always)]
+    pub fn are_rounding<T: Real>(&mut self, decrement: impl FnOnce() -> f64) -> bool {
+        if self.last <= ROUNDINGS * T::EPSILON {
+            return true;
+        }
+        let decrement = decrement();
+        if decrement < 0.25 * self.least {
+            self.least = decrement;
+            self.without_fall = 0;
+        } else {
+            self.without_fall += 1;
+        }
+        (self.last <= SMALL && self.without_fall > 0)
+            || (self.without_fall >= MOST_WITHOUT_FALL && self.last.is_finite())
     }
 
     /// Whether the correction after the last need not be made, if it is smaller by the same factor as the residual.
     #[inline(always)]
     pub fn leave_rounding<T: Real>(&self, factor: f64) -> bool {
-        self.last * factor <= ROUNDINGS * T::EPSILON
-            || (self.without_progress > 0 && self.last <= SMALL)
+        self.last * factor <= LEFT_ROUNDINGS * T::EPSILON
+            || (self.without_fall > 0 && self.last <= SMALL)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::Corrections;
+    use crate::groups::{Additive, Group};
+    use crate::solvers::newton::{Solved, solve};
+    use nalgebra::SMatrix;
 
-    /// After how many of these corrections the iteration may end.
-    fn ends(moved: &[f64]) -> Option<usize> {
+    /// After how many of these corrections of a length the iteration may end.
+    fn ends(length: f64, moved: &[f64]) -> Option<usize> {
         let mut corrections = Corrections::none();
-        let found = moved
-            .iter()
-            .position(|m| corrections.are_rounding_with::<f64>(*m));
+        let found = moved.iter().position(|m| {
+            corrections.take(*m / length);
+            corrections.are_rounding::<f64>(|| m * m)
+        });
         found.map(|i| i + 1)
     }
 
     #[test]
     fn only_rounding_ends_an_iteration() {
-        assert_eq!(ends(&[0.0]), Some(1));
-        assert_eq!(ends(&[1.0, 1e-3, 1e-7, 1e-15]), Some(4));
+        assert_eq!(ends(1.0, &[0.0]), Some(1));
+        assert_eq!(ends(1.0, &[1.0, 1e-3, 1e-7, 1e-15]), Some(4));
         // As Newton's method begins where a cubic term rules: each correction is two thirds of the one before.
         let slow: Vec<f64> = (0..20).map(|i| 0.5 * f64::powi(2.0 / 3.0, i)).collect();
-        assert_eq!(ends(&slow), None);
+        assert_eq!(ends(1.0, &slow), None);
         // What a badly conditioned tangent makes of rounding.
-        assert_eq!(ends(&[1e-4, 1e-11, 8e-12]), Some(3));
+        assert_eq!(ends(1.0, &[1e-4, 1e-11, 8e-12]), Some(3));
         // A velocity that vanishes beside the terms of its equations.
-        assert_eq!(ends(&[1.0, 0.9, 1.0, 0.8]), Some(4));
-        let not_a_number = [f64::NAN; 9];
-        assert_eq!(ends(&not_a_number), None);
-        assert_eq!(ends(&[f64::INFINITY; 9]), None);
+        assert_eq!(ends(1e-17, &[1e-17, 9e-18, 1e-17, 8e-18]), Some(4));
+        assert_eq!(ends(1.0, &[f64::NAN; 9]), None);
+        assert_eq!(ends(1.0, &[f64::INFINITY; 9]), None);
+    }
+
+    /// The root of `v + 4 b v^3 = p` from rest, judged by terms so many times as large as they are, and the one that
+    /// bisection finds.
+    fn stiffening(p: f64, b: f64, factor: f64) -> (f64, f64) {
+        let of = |v: f64| v + 4.0 * b * v.powi(3) - p;
+        let solved: Solved<Additive<1, 1>> = solve(
+            Group::<f64>::identity(),
+            factor * p,
+            |v: &Additive<1, 1>| SMatrix::<f64, 1, 1>::new(of(v.matrix()[0])),
+            |v| SMatrix::<f64, 1, 1>::new(1.0 + 12.0 * b * v.matrix()[0].powi(2)),
+        )
+        .expect("a root");
+        let (mut below, mut above) = (0.0, p);
+        for _ in 0..200 {
+            let middle = 0.5 * (below + above);
+            if of(middle) < 0.0 {
+                below = middle;
+            } else {
+                above = middle;
+            }
+        }
+        (solved.element.matrix()[0], above)
+    }
+
+    #[test]
+    fn sizes_that_are_too_large_end_no_iteration() {
+        for factor in [1.0, 1e3, 1e6, 1e9, 1e12, 1e15] {
+            for p in [1e-9, 0.1, 1e4] {
+                for b in [0.0, 1e-6, 0.3, 1e6] {
+                    let (found, wanted) = stiffening(p, b, factor);
+                    // A root of the cubic is known to a few roundings: its tangent is at least the terms over `v`.
+                    let off = (found - wanted).abs();
+                    assert!(
+                        off <= 4.0 * f64::EPSILON * wanted,
+                        "{factor} {p} {b}: {off}"
+                    );
+                }
+            }
+        }
     }
 }
