@@ -2,6 +2,7 @@
 
 use crate::matrix::Matrix;
 use crate::number::Number;
+use crate::varied::small;
 
 /// A group of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,7 +75,8 @@ impl Group {
                 Self::Rotation(_) => Number::within(*numbers.get(i * n + j)?, turned),
                 Self::Linear(_) => {
                     let size = numbers.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
-                    Number::within(*numbers.get(i * n + j)?, unit * size)
+                    // A step multiplies by a matrix near the identity: an entry is a sum of n products, each rounded.
+                    Number::within(*numbers.get(i * n + j)?, f64::from(small(n)) * unit * size)
                 }
                 Self::Motion(m) => {
                     let x = *numbers.get(i * n + j)?;
