@@ -13,6 +13,8 @@ pub(crate) mod functional;
 mod gradient;
 mod hashed;
 mod magnitude;
+#[cfg(test)]
+mod magnitude_tests;
 mod parted;
 pub(crate) mod places;
 mod presence;
