@@ -1,4 +1,5 @@
-//! Differences from rest: `A Ω - A` as `A (Ω - Id)`, `tr(J) - tr(J Ω)` as `-tr(J (Ω - Id))`. For small
+//! Differences from rest: `A Ω - A` as `A (Ω - Id)`, `tr(J) - tr(J Ω)` as `-tr(J (Ω - Id))`, `cosh(Δx) - 1` as
+//! `2 sinh(Δx/2)^2`. For small
 //! steps a velocity is near the identity, and only where both stand together can the difference be
 //! computed with all its digits: `emit` writes it so, where [`Symbols::differences`] asks for it. Takes an
 //! expression; gives an equal one.
@@ -132,7 +133,8 @@ pub(super) fn rebuilt(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> 
 
 /// The same expression with differences from rest written as such, at every depth.
 pub fn displaced(symbols: &Symbols, e: &Expr) -> Expr {
-    if !symbols.differences() || !moves(symbols, e) {
+    let wanted = symbols.differences() || calls_what_moves(symbols, e);
+    if !wanted || !moves(symbols, e) {
         return e.clone();
     }
     let e = rebuild(symbols, e, &mut |x| displaced(symbols, x));
@@ -193,6 +195,34 @@ fn moves(symbols: &Symbols, e: &Expr) -> bool {
         .any(|role| contains_role(symbols, e, role))
 }
 
+/// Whether a function of something that moves, of value 1 where it vanishes, stands in the expression.
+fn calls_what_moves(symbols: &Symbols, e: &Expr) -> bool {
+    above_one(symbols, e).is_some()
+        || e.children()
+            .into_iter()
+            .any(|child| calls_what_moves(symbols, child))
+}
+
+/// What `cos(u)`, `cosh(u)` or `exp(u)` of something that moves is more than 1, without cancellation.
+fn above_one(symbols: &Symbols, e: &Expr) -> Option<Expr> {
+    let Node::Call(f, a) = e.node() else {
+        return None;
+    };
+    let half = || scale(Rational::HALF, a.clone());
+    let of_half = |f: Function| call(f, half());
+    let square = |f| power(of_half(f), Rational::integer(2));
+    let above = match f {
+        Function::Cos => scale(Rational::integer(-2), square(Function::Sin)),
+        Function::Cosh => scale(Rational::integer(2), square(Function::Sinh)),
+        Function::Exp => scale(
+            Rational::integer(2),
+            mul(of_half(Function::Sinh), of_half(Function::Exp)),
+        ),
+        _ => return None,
+    };
+    moves(symbols, a).then_some(above)
+}
+
 fn of_sum(symbols: &Symbols, terms: &[Expr], shape: Shape) -> Expr {
     let mut left: Vec<Expr> = terms.to_vec();
     let mut found = Vec::new();
@@ -227,6 +257,9 @@ fn differences(symbols: &Symbols, e: &Expr) -> Vec<(Expr, Expr)> {
     }
     if let Some(rest) = at_rest(symbols, e) {
         return vec![(rest.clone(), sub(e.clone(), rest))];
+    }
+    if let Some(above) = above_one(symbols, e) {
+        return vec![(integer(1), above)];
     }
     let each = |a: &Expr, with: &dyn Fn(Expr) -> Expr| -> Vec<(Expr, Expr)> {
         let list = differences(symbols, a).into_iter();
@@ -311,11 +344,14 @@ fn signed(e: &Expr) -> (i64, &Expr) {
 
 #[cfg(test)]
 mod tests {
-    use super::{by_imaginary, is_difference};
+    use super::{by_imaginary, displaced, is_difference};
     use crate::algebra::Algebra;
     use crate::expr::shape::{Dim, Shape, Structure};
     use crate::expr::symbol::{Role, Symbols};
-    use crate::expr::{here, identity, integer, neg, real, sub, sum, trace};
+    use crate::expr::{
+        Expr, Function, call, here, identity, integer, mul, neg, real, sub, sum, trace,
+    };
+    use crate::interpret::{Assignment, evaluate};
     use crate::pipeline::derive_source;
 
     /// Whether a step of this Lagrangian keeps the digits of differences.
@@ -345,6 +381,37 @@ mod tests {
             "-tr(J*u)/h - k*h*sqrt(1 + tr(Id - u)/h^2)",
         ] {
             assert!(kept(quartic), "{quartic}");
+        }
+    }
+
+    #[test]
+    fn functions_of_velocities_less_their_value_at_rest_do_not_cancel() {
+        let mut s = Symbols::default();
+        let v = s.add("v", Shape::SCALAR, Structure::General, Role::Velocity);
+        let q = s.add("q", Shape::SCALAR, Structure::General, Role::Element);
+        let (v, q) = (here(&s, v), here(&s, q));
+        let mut at = Assignment::new();
+        at.set("v", 0, 1, 1, &[1e-8]);
+        at.set("q", 0, 1, 1, &[3.0]);
+        let of = |f, x: &Expr| call(f, x.clone());
+        for (f, wanted) in [
+            (Function::Cosh, 0.5e-16),
+            (Function::Cos, -0.5e-16),
+            (Function::Exp, 1e-8 + 0.5e-16),
+        ] {
+            let one = sub(of(f, &v), integer(1));
+            let many = sub(mul(q.clone(), of(f, &v)), q.clone());
+            for (e, wanted) in [(one, wanted), (many, 3.0 * wanted)] {
+                let made = evaluate(&s, &displaced(&s, &e), &at).unwrap().data[0];
+                // The next terms of the series are a part of 1e-16 of these.
+                assert!(
+                    (made - wanted).abs() <= 1e-15 * wanted.abs(),
+                    "{e:?}: {made:e}"
+                );
+            }
+            // What does not move stays as it is.
+            let still = sub(of(f, &q), integer(1));
+            assert_eq!(displaced(&s, &still), still);
         }
     }
 
