@@ -2,6 +2,7 @@
 //! Takes a guess or the solutions before, the residual and its tangent; gives a converged element
 //! or an error.
 
+mod alone;
 mod any_size;
 mod bounds;
 mod certificate;
@@ -17,6 +18,7 @@ mod scale;
 mod stage;
 
 pub use crate::scalar::{Affine, Bounded, Enclosure, swing_of};
+pub use alone::solve;
 pub use any_size::{
     AnyNewton, AnySearch, Bounds, Chart, Enclosed, Lane, NodeList, NodeValue, Parts, Settled,
 };
@@ -34,7 +36,7 @@ use crate::groups::Group;
 use crate::linalg::Factors;
 use crate::scalar::Real;
 use core::marker::PhantomData;
-use corrections::Corrections;
+use corrections::{Corrections, Judged};
 use nalgebra::{SMatrix, SVector};
 
 /// Iterations after which the method gives up; quadratic convergence needs fewer than ten.
@@ -315,7 +317,8 @@ where
 /// [`Group::retract`] at 0, or of [`Group::retract_from_left`]. It is factored once and kept while the corrections shrink fast. Each
 /// equation is judged by the size of its own terms, its scale. A solution is accepted when every
 /// residual is below `16 EPSILON scale` and one more correction is made, or is sure to fall below a
-/// quarter of that with the next one, or has stopped falling below `64 EPSILON scale`. The size of the
+/// quarter of that with the next one, or has stopped falling below `64 EPSILON scale`; and when besides
+/// the last correction is rounding of the velocity, whatever the scales: see `corrections`. The size of the
 /// residual is that of its real parts, in every lane: from a real solution one more step makes the
 /// first derivatives exact whatever they were, so that step follows for dual numbers, with a
 /// tangent of its own.
@@ -535,8 +538,17 @@ where
             let sum = terms.fold(T::zero(), |sum, (x, r)| sum + *x * *r);
             largest(&SVector::<T, 1>::new(sum))
         };
-        let done = (is_rounding && self.corrections.are_rounding::<T>(decrement))
-            || (foreseen && self.corrections.leave_rounding::<T>(factor));
+        let judged = match is_rounding {
+            true => self.corrections.judged::<T>(decrement),
+            false => Judged::More,
+        };
+        // Of what is rounding already a correction would add its own. Derivatives are exact only once one is made.
+        let is_polished = self.iteration > 0 && size <= POLISHED_ROUNDINGS * unit;
+        if T::ORDER == 0 && judged.ends_where(is_polished) {
+            return self.solved(self.iteration);
+        }
+        let done =
+            judged != Judged::More || (foreseen && self.corrections.leave_rounding::<T>(factor));
         self.trial = match FROM_LEFT {
             true => self.trial.retract_from_left(step.as_slice()),
             false => self.trial.retract(step.as_slice()),
@@ -562,40 +574,6 @@ where
             iterations,
             residual: self.size,
         })
-    }
-}
-
-/// Solves `residual(g) = 0` from the guess `g`, with `tangent(g)` and the size `scale` of the
-/// residual's terms as [`Newton`] has them.
-///
-/// # Errors
-/// [`NewtonError`]; an unconverged element is never returned.
-pub fn solve<T: Real, G: Group<T>, const D: usize>(
-    guess: G,
-    scale: f64,
-    mut residual: impl FnMut(&G) -> SVector<T, D>,
-    mut tangent: impl FnMut(&G) -> SMatrix<T, D, D>,
-) -> Result<Solved<G>, NewtonError> {
-    let mut search = Search::<T, G, [T; 0], D, G, D>::from_rest();
-    search.past = [guess; 2 * REMEMBERED];
-    (search.known, search.next) = (1, 1);
-    let mut newton = search.begin(1, []);
-    // One attempt.
-    newton.attempt = LAST_ATTEMPT;
-    let rounding = SVector::repeat(scale * BOUND_ROUNDINGS * f64::EPSILON / 2.0);
-    loop {
-        let trial = newton.trial();
-        if newton.wants_scale() {
-            newton.set_scale(|_| rounding);
-        }
-        if newton.assess(residual(&trial)) {
-            newton.set_tangent(&tangent(&trial));
-        }
-        match newton.correct() {
-            Progress::Continue => {}
-            Progress::Solved(found) => return Ok(found),
-            Progress::Failed(why) => return Err(why),
-        }
     }
 }
 

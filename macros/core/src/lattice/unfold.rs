@@ -97,11 +97,8 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfol
     let mut errors = Errors::new();
     circular_definitions(model, &mut errors);
     errors.propagate()?;
-    let copies = lattice
-        .quantities
-        .iter()
-        .map(|q| choice.sites_of(lattice, q));
-    let copies = copies.fold(0, usize::saturating_add);
+    let sites = (lattice.quantities.iter()).map(|q| choice.sites_of(lattice, q));
+    let copies = sites.fold(0, usize::saturating_add);
     if copies > MOST_COPIES {
         let message = format!(
             "this lattice is too large to be written out: with {} it has {copies} quantities at sites, and at most {MOST_COPIES} are taken",

@@ -14,7 +14,7 @@ mod stage;
 
 pub use curve::{Bounds, Chart, Enclosed, Lane, Parts};
 
-use super::corrections::Corrections;
+use super::corrections::{Corrections, Judged};
 use super::node::Spread;
 use super::principal::Fold;
 use super::scale::Tangent;
@@ -414,8 +414,16 @@ impl<C: Chart> AnyNewton<'_, C> {
             let terms = step.iter().zip(&self.residual);
             f64::abs(terms.fold(0.0, |sum, (x, r)| sum + x * r))
         };
-        let done = (is_rounding && self.corrections.are_rounding::<f64>(decrement))
-            || (foreseen && self.corrections.leave_rounding::<f64>(factor));
+        let judged = match is_rounding {
+            true => self.corrections.judged::<f64>(decrement),
+            false => Judged::More,
+        };
+        let is_polished = self.iteration > 0 && size <= POLISHED_ROUNDINGS * unit;
+        if judged.ends_where(is_polished) {
+            return self.solved(self.iteration);
+        }
+        let done =
+            judged != Judged::More || (foreseen && self.corrections.leave_rounding::<f64>(factor));
         self.trial = match from_left {
             true => self.chart.retract_from_left(&self.trial, &step),
             false => self.chart.retract(&self.trial, &step),

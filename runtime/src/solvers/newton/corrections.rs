@@ -19,6 +19,24 @@ const SMALL: f64 = 1e-8;
 /// equations, at rest or where it turns, nothing but rounding is left to correct.
 const MOST_WITHOUT_FALL: u32 = 3;
 
+/// What a correction is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Judged {
+    /// Another follows.
+    More,
+    /// It is rounding of the velocity: the last.
+    Last,
+    /// It does not fall any more, and is not to be made: it would add its rounding to the velocity.
+    Noise,
+}
+
+impl Judged {
+    /// Whether the iteration ends without it, where the residual is so small that it would only change.
+    pub fn ends_where(self, is_polished: bool) -> bool {
+        self == Self::Noise || (self == Self::Last && is_polished)
+    }
+}
+
 /// The corrections of one iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corrections {
@@ -45,12 +63,12 @@ impl Corrections {
         self.last = moved;
     }
 
-    /// Whether the last correction was rounding, where the residual was. `decrement` is Newton's, the scalar product of residual and
+    /// What the last correction is, where the residual is rounding. `decrement` is Newton's, the scalar product of residual and
     /// correction: it has one unit for all equations, that of an action, and does not depend on their sizes.
     #[inline(always)]
-    pub fn are_rounding<T: Real>(&mut self, decrement: impl FnOnce() -> f64) -> bool {
+    pub fn judged<T: Real>(&mut self, decrement: impl FnOnce() -> f64) -> Judged {
         if self.last <= ROUNDINGS * T::EPSILON {
-            return true;
+            return Judged::Last;
         }
         let decrement = decrement();
         if decrement < 0.25 * self.least {
@@ -59,8 +77,12 @@ impl Corrections {
         } else {
             self.without_fall += 1;
         }
-        (self.last <= SMALL && self.without_fall > 0)
-            || (self.without_fall >= MOST_WITHOUT_FALL && self.last.is_finite())
+        let stands_still = (self.last <= SMALL && self.without_fall > 0)
+            || (self.without_fall >= MOST_WITHOUT_FALL && self.last.is_finite());
+        match stands_still {
+            true => Judged::Noise,
+            false => Judged::More,
+        }
     }
 
     /// Whether the correction after the last need not be made, if it is smaller by the same factor as the residual.
@@ -73,7 +95,7 @@ impl Corrections {
 
 #[cfg(test)]
 mod tests {
-    use super::Corrections;
+    use super::{Corrections, Judged, ROUNDINGS};
     use crate::groups::{Additive, Group};
     use crate::solvers::newton::{Solved, solve};
     use nalgebra::SMatrix;
@@ -83,7 +105,7 @@ mod tests {
         let mut corrections = Corrections::none();
         let found = moved.iter().position(|m| {
             corrections.take(*m / length);
-            corrections.are_rounding::<f64>(|| m * m)
+            corrections.judged::<f64>(|| m * m) != Judged::More
         });
         found.map(|i| i + 1)
     }
@@ -132,10 +154,10 @@ mod tests {
             for p in [1e-9, 0.1, 1e4] {
                 for b in [0.0, 1e-6, 0.3, 1e6] {
                     let (found, wanted) = stiffening(p, b, factor);
-                    // A root of the cubic is known to a few roundings: its tangent is at least the terms over `v`.
+                    // What is not corrected any more: the root itself is known to a few roundings.
                     let off = (found - wanted).abs();
                     assert!(
-                        off <= 4.0 * f64::EPSILON * wanted,
+                        off <= ROUNDINGS * f64::EPSILON * wanted,
                         "{factor} {p} {b}: {off}"
                     );
                 }
