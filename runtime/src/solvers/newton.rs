@@ -544,7 +544,7 @@ where
         };
         // Of what is rounding already a correction would add its own. Derivatives are exact only once one is made.
         let is_polished = self.iteration > 0 && size <= POLISHED_ROUNDINGS * unit;
-        if T::ORDER == 0 && judged.ends_where(is_polished) {
+        if T::ORDER == 0 && is_polished && judged == Judged::Last {
             return self.solved(self.iteration);
         }
         let done =

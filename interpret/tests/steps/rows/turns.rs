@@ -129,7 +129,7 @@ pub const ROWS: &[Row] = &[
         action!(four_square),
         &["J", "c"],
     )
-    .misses(4.7e-12),
+    .misses(2.0e-11),
     Row::of(
         "model FourTrace { param J: Sym<4>; param c: Real; group R: SO<4> velocity W; constraint next(R) = R*W;
             lagrangian = -tr(J*W)/h + (c/h^3)*(4 - tr(W))^2; }",

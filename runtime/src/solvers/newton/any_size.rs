@@ -419,7 +419,7 @@ impl<C: Chart> AnyNewton<'_, C> {
             false => Judged::More,
         };
         let is_polished = self.iteration > 0 && size <= POLISHED_ROUNDINGS * unit;
-        if judged.ends_where(is_polished) {
+        if is_polished && judged == Judged::Last {
             return self.solved(self.iteration);
         }
         let done =

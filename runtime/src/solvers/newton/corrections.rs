@@ -26,15 +26,8 @@ pub(super) enum Judged {
     More,
     /// It is rounding of the velocity: the last.
     Last,
-    /// It does not fall any more, and is not to be made: it would add its rounding to the velocity.
+    /// It does not fall any more: rounding of what is ill conditioned, and the last too.
     Noise,
-}
-
-impl Judged {
-    /// Whether the iteration ends without it, where the residual is so small that it would only change.
-    pub fn ends_where(self, is_polished: bool) -> bool {
-        self == Self::Noise || (self == Self::Last && is_polished)
-    }
 }
 
 /// The corrections of one iteration.
