@@ -125,16 +125,7 @@ pub fn without_reactions(residuals: &mut [Part], variables: &[usize], gradients:
     for (column, _) in &columns {
         let mut direction = column.clone();
         let before = length(&direction);
-        // Twice: once leaves rounding of what is taken away.
-        for _ in 0..2 {
-            for known in &frame {
-                let along = dot(known, &direction);
-                direction
-                    .iter_mut()
-                    .zip(known)
-                    .for_each(|(x, y)| *x -= along * y);
-            }
-        }
+        take_away(&frame, &mut direction);
         let left = length(&direction);
         if left > 1e-9 * before && left > 0.0 {
             direction.iter_mut().for_each(|x| *x /= left);
@@ -159,15 +150,7 @@ pub fn without_reactions(residuals: &mut [Part], variables: &[usize], gradients:
         })
         .collect();
     let before = length(&scaled);
-    for _ in 0..2 {
-        for known in &frame {
-            let along = dot(known, &scaled);
-            scaled
-                .iter_mut()
-                .zip(known)
-                .for_each(|(x, y)| *x -= along * y);
-        }
-    }
+    take_away(&frame, &mut scaled);
     for (i, part) in residuals.iter_mut().enumerate() {
         let overlap = |j: usize| -> f64 { frame.iter().map(|f| f[i] * f[j]).sum() };
         let spread: f64 = (0..unit.len())
@@ -180,6 +163,16 @@ pub fn without_reactions(residuals: &mut [Part], variables: &[usize], gradients:
             .sum();
         part.residual = scaled[i] * unit[i];
         part.bound = unit[i] * (spread.max(1.0) + 16.0 * UNIT * before) + of_gradients;
+    }
+}
+
+/// Takes from `x` its parts along directions that are orthonormal. Twice: once leaves rounding of what is taken away.
+fn take_away(frame: &[Vec<f64>], x: &mut [f64]) {
+    for _ in 0..2 {
+        for known in frame {
+            let along = dot(known, x);
+            x.iter_mut().zip(known).for_each(|(x, y)| *x -= along * y);
+        }
     }
 }
 

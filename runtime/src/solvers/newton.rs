@@ -399,13 +399,13 @@ where
             let mut lengths = [0.0; D];
             self.trial.extents(&mut lengths);
             let tangent = scale::Tangent {
-                size: G::DIMENSION.min(D),
                 entry: &|i, j| search.factors.entry(i, j, lane) / unit,
                 part_of: &G::part_of,
                 lengths: &lengths,
             };
             tangent.raise(&mut scales.as_mut_slice()[..G::DIMENSION.min(D)]);
-            let inverses: [f64; D] = core::array::from_fn(|i| tangent.inverse_length(i));
+            let mut inverses = [0.0; D];
+            tangent.inverse_lengths(&mut inverses[..G::DIMENSION.min(D)]);
             let search = &mut *self.search;
             for (weight, scale) in search.weights.iter_mut().zip(&scales) {
                 weight.set_lane(lane, T::One::from_f64((1.0 / scale).min(f64::MAX)));

@@ -265,15 +265,13 @@ impl<C: Chart> AnyNewton<'_, C> {
         let mut lengths = vec![0.0; parts.count()];
         self.chart.extents(&self.trial, &mut lengths);
         let tangent = Tangent {
-            size: scales.len(),
             entry: &|i, j| factors.entry(i, j) / unit,
             part_of: &|i| parts.part_of(i),
             lengths: &lengths,
         };
         tangent.raise(&mut scales);
-        let inverses: Vec<f64> = (0..scales.len())
-            .map(|i| tangent.inverse_length(i))
-            .collect();
+        let mut inverses = vec![0.0; scales.len()];
+        tangent.inverse_lengths(&mut inverses);
         for (weight, scale) in self.search.weights.iter_mut().zip(&scales) {
             *weight = (1.0 / scale).min(f64::MAX);
         }

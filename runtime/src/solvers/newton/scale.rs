@@ -7,8 +7,6 @@ const SHARE: f64 = 1.5e-8;
 
 /// What the equations do with the velocities.
 pub(super) struct Tangent<'a> {
-    /// How many equations there are.
-    pub size: usize,
     /// The absolute value of the entry of an equation and a coordinate, zero where it is not known.
     pub entry: &'a dyn Fn(usize, usize) -> f64,
     /// The part that a coordinate belongs to.
@@ -24,30 +22,33 @@ impl Tangent<'_> {
         self.constraints(scales);
     }
 
-    /// One over the length that corrections of a coordinate are measured by: that of its part of the velocity, or the
+    /// One over the lengths that corrections of coordinates are measured by: that of the part of the velocity, or the
     /// root of the rounding of the longest part, in the unit of all, where that is more. Zero for multipliers: they are
     /// no velocities, and vanish wherever nothing reacts. Every correction of a part of length zero is large.
-    pub fn inverse_length(&self, i: usize) -> f64 {
+    pub fn inverse_lengths(&self, out: &mut [f64]) {
+        let parts = 0..out.len();
         let root = |part: usize| {
-            let own = (0..self.size).filter(|k| (self.part_of)(*k) == part);
+            let own = parts.clone().filter(|k| (self.part_of)(*k) == part);
             own.fold(0.0, |most: f64, k| most.max((self.entry)(k, k).sqrt()))
         };
         let length = |part: usize| self.lengths.get(part).copied().unwrap_or(0.0);
-        let most = (0..self.size).fold(0.0, |most: f64, k| {
-            let part = (self.part_of)(k);
-            most.max(length(part) * root(part))
-        });
-        let part = (self.part_of)(i);
-        let (own, known) = (root(part), most > 0.0 && most.is_finite());
-        if own == 0.0 && known {
-            return 0.0;
-        }
-        let least = if known { SHARE * most / own } else { 0.0 };
-        let length = length(part).max(least);
-        match length.is_finite() {
-            true => (1.0 / length).min(f64::MAX),
-            // An element without coordinates, as a turn by half a revolution.
-            false => 1.0,
+        // There are no more parts than coordinates.
+        let most = (parts.clone()).fold(0.0, |most: f64, p| most.max(length(p) * root(p)));
+        let known = most > 0.0 && most.is_finite();
+        for (i, inverse) in out.iter_mut().enumerate() {
+            let part = (self.part_of)(i);
+            let own = root(part);
+            if own == 0.0 && known {
+                *inverse = 0.0;
+                continue;
+            }
+            let least = if known { SHARE * most / own } else { 0.0 };
+            let length = length(part).max(least);
+            *inverse = match length.is_finite() {
+                true => (1.0 / length).min(f64::MAX),
+                // An element without coordinates, as a turn by half a revolution.
+                false => 1.0,
+            };
         }
     }
 
