@@ -36,7 +36,7 @@ use crate::groups::Group;
 use crate::linalg::Factors;
 use crate::scalar::Real;
 use core::marker::PhantomData;
-use corrections::{Corrections, Judged};
+use corrections::{Corrections, Next, Residual};
 use nalgebra::{SMatrix, SVector};
 
 /// Iterations after which the method gives up; quadratic convergence needs fewer than ten.
@@ -473,13 +473,19 @@ where
         !(self.size <= CONVERGED_ROUNDINGS * T::EPSILON && self.search.age < OLDEST_TANGENT)
     }
 
-    /// Whether the residual is nothing but rounding. What is only foreseen is corrected once.
+    /// Whether the trial needs no correction.
     #[inline(always)]
     fn polished(&self) -> bool {
-        T::ORDER == 0
-            && self.iteration > 0
-            && self.size <= POLISHED_ROUNDINGS * T::EPSILON
-            && (self.corrections).leave_rounding::<T>(self.size / self.previous)
+        self.corrections.are_polished::<T>(self.seen())
+    }
+
+    #[inline(always)]
+    fn seen(&self) -> Residual {
+        Residual {
+            size: self.size,
+            previous: self.previous,
+            iteration: self.iteration,
+        }
     }
 
     /// Takes the tangent at the trial.
@@ -519,41 +525,26 @@ where
             return self.solved(self.iteration);
         }
         let size = self.size;
-        let unit = T::EPSILON;
-        let is_rounding = size <= CONVERGED_ROUNDINGS * unit
-            || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous);
-        // What is left after the next correction, if it does as well as the last.
-        let factor = FORESIGHT * (size / self.previous);
-        let foreseen =
-            T::ORDER == 0 && self.iteration > 0 && size * factor <= POLISHED_ROUNDINGS * unit;
         let right = self.residual * self.search.unit;
         let Some(correction) = self.search.factors.solve(&right) else {
             return self.failed();
         };
         let step = -correction;
         let moved = largest(&step.component_mul(&self.search.lengths));
-        self.corrections.take(moved);
         let decrement = || {
             let terms = step.iter().zip(&self.residual);
             let sum = terms.fold(T::zero(), |sum, (x, r)| sum + *x * *r);
             largest(&SVector::<T, 1>::new(sum))
         };
-        let judged = match is_rounding {
-            true => self.corrections.judged::<T>(decrement),
-            false => Judged::More,
-        };
-        // Of what is rounding already a correction would add its own. Derivatives are exact only once one is made.
-        let is_polished = self.iteration > 0 && size <= POLISHED_ROUNDINGS * unit;
-        if T::ORDER == 0 && is_polished && judged == Judged::Last {
+        let next = self.corrections.next::<T>(self.seen(), moved, decrement);
+        if next == Next::End {
             return self.solved(self.iteration);
         }
-        let done =
-            judged != Judged::More || (foreseen && self.corrections.leave_rounding::<T>(factor));
         self.trial = match FROM_LEFT {
             true => self.trial.retract_from_left(step.as_slice()),
             false => self.trial.retract(step.as_slice()),
         };
-        if done {
+        if next == Next::CorrectAndEnd {
             return self.solved(self.iteration + 1);
         }
         self.previous = size;

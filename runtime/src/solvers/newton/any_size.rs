@@ -14,14 +14,14 @@ mod stage;
 
 pub use curve::{Bounds, Chart, Enclosed, Lane, Parts};
 
-use super::corrections::{Corrections, Judged};
+use super::corrections::{Corrections, Next, Residual};
 use super::node::Spread;
 use super::principal::Fold;
 use super::scale::Tangent;
 use super::{
-    BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, FORESIGHT, LAST_ATTEMPT, LATE, LEAST_SHARE,
-    MOST_ITERATIONS, NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, POLISHED_ROUNDINGS,
-    Progress, REMEMBERED, STAGNATED_ROUNDINGS, Solved, WORTH_KEEPING,
+    BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, LAST_ATTEMPT, LATE, LEAST_SHARE, MOST_ITERATIONS,
+    NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, Progress, REMEMBERED, Solved,
+    WORTH_KEEPING,
 };
 use crate::linalg::{Dense, DenseFactors};
 use crate::scalar::Real;
@@ -344,9 +344,15 @@ impl<C: Chart> AnyNewton<'_, C> {
     }
 
     fn polished(&self) -> bool {
-        self.iteration > 0
-            && self.size <= POLISHED_ROUNDINGS * UNIT
-            && (self.corrections).leave_rounding::<f64>(self.size / self.previous)
+        self.corrections.are_polished::<f64>(self.seen())
+    }
+
+    fn seen(&self) -> Residual {
+        Residual {
+            size: self.size,
+            previous: self.previous,
+            iteration: self.iteration,
+        }
     }
 
     /// Takes the tangent at the trial times `unit`, the same number at every step.
@@ -393,12 +399,6 @@ impl<C: Chart> AnyNewton<'_, C> {
             return self.solved(self.iteration);
         }
         let size = self.size;
-        let unit = UNIT;
-        let is_rounding = size <= CONVERGED_ROUNDINGS * unit
-            || (size <= STAGNATED_ROUNDINGS * unit && size >= 0.5 * self.previous);
-        // What is left after the next correction, if it does as well as the last.
-        let factor = FORESIGHT * (size / self.previous);
-        let foreseen = self.iteration > 0 && size * factor <= POLISHED_ROUNDINGS * unit;
         let right: Vec<f64> = (self.residual.iter())
             .map(|x| x * self.search.unit)
             .collect();
@@ -407,26 +407,19 @@ impl<C: Chart> AnyNewton<'_, C> {
         };
         let step: Vec<f64> = correction.iter().map(|x| -x).collect();
         let moved = largest_of(&step, &self.search.lengths);
-        self.corrections.take(moved);
         let decrement = || {
             let terms = step.iter().zip(&self.residual);
             f64::abs(terms.fold(0.0, |sum, (x, r)| sum + x * r))
         };
-        let judged = match is_rounding {
-            true => self.corrections.judged::<f64>(decrement),
-            false => Judged::More,
-        };
-        let is_polished = self.iteration > 0 && size <= POLISHED_ROUNDINGS * unit;
-        if is_polished && judged == Judged::Last {
+        let next = self.corrections.next::<f64>(self.seen(), moved, decrement);
+        if next == Next::End {
             return self.solved(self.iteration);
         }
-        let done =
-            judged != Judged::More || (foreseen && self.corrections.leave_rounding::<f64>(factor));
         self.trial = match from_left {
             true => self.chart.retract_from_left(&self.trial, &step),
             false => self.chart.retract(&self.trial, &step),
         };
-        if done {
+        if next == Next::CorrectAndEnd {
             return self.solved(self.iteration + 1);
         }
         self.previous = size;

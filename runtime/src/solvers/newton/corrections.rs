@@ -2,6 +2,7 @@
 //! Takes one correction after the other, each relative to the length of the part of the velocity it changes. Knows
 //! nothing of the sizes by which residuals are judged, so that wrong ones end no iteration.
 
+use super::{CONVERGED_ROUNDINGS, FORESIGHT, POLISHED_ROUNDINGS, STAGNATED_ROUNDINGS};
 use crate::scalar::Real;
 
 /// A correction of fewer roundings of its part of the velocity is rounding: solving for it makes a few of a badly
@@ -19,9 +20,31 @@ const SMALL: f64 = 1e-8;
 /// equations, at rest or where it turns, nothing but rounding is left to correct.
 const MOST_WITHOUT_FALL: u32 = 3;
 
+/// The residual at a trial, over the size of its terms.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Residual {
+    /// There.
+    pub size: f64,
+    /// At the trial before.
+    pub previous: f64,
+    /// How many corrections led there.
+    pub iteration: usize,
+}
+
+/// What follows once a correction is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Next {
+    /// It is made, and another follows.
+    Correct,
+    /// It is made, and is the last.
+    CorrectAndEnd,
+    /// It is not made: of what is rounding already it would add its own.
+    End,
+}
+
 /// What a correction is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Judged {
+enum Judged {
     /// Another follows.
     More,
     /// It is rounding of the velocity: the last.
@@ -50,16 +73,51 @@ impl Corrections {
         }
     }
 
-    /// Takes a correction over the length of its part of the velocity.
+    /// Whether the residual is nothing but rounding, and a further correction would be too. What is only foreseen is
+    /// corrected once.
     #[inline(always)]
-    pub fn take(&mut self, moved: f64) {
-        self.last = moved;
+    pub fn are_polished<T: Real>(&self, r: Residual) -> bool {
+        T::ORDER == 0
+            && r.iteration > 0
+            && r.size <= POLISHED_ROUNDINGS * T::EPSILON
+            && self.leave_rounding::<T>(r.size / r.previous)
     }
 
-    /// What the last correction is, where the residual is rounding. `decrement` is Newton's, the scalar product of residual and
-    /// correction: it has one unit for all equations, that of an action, and does not depend on their sizes.
+    /// Takes a correction over the length of its part of the velocity, and the residual that it is made for. `decrement`
+    /// is Newton's, the scalar product of both: it has one unit for all equations, that of an action, and does not
+    /// depend on their sizes.
     #[inline(always)]
-    pub fn judged<T: Real>(&mut self, decrement: impl FnOnce() -> f64) -> Judged {
+    pub fn next<T: Real>(
+        &mut self,
+        r: Residual,
+        moved: f64,
+        decrement: impl FnOnce() -> f64,
+    ) -> Next {
+        self.last = moved;
+        let unit = T::EPSILON;
+        let is_rounding = r.size <= CONVERGED_ROUNDINGS * unit
+            || (r.size <= STAGNATED_ROUNDINGS * unit && r.size >= 0.5 * r.previous);
+        let judged = match is_rounding {
+            true => self.judged::<T>(decrement),
+            false => Judged::More,
+        };
+        // Derivatives are exact only once a correction is made.
+        let may_end = T::ORDER == 0 && r.iteration > 0;
+        if may_end && r.size <= POLISHED_ROUNDINGS * unit && judged == Judged::Last {
+            return Next::End;
+        }
+        // What is left after this correction, if it does as well as the last.
+        let factor = FORESIGHT * (r.size / r.previous);
+        let is_foreseen = may_end && r.size * factor <= POLISHED_ROUNDINGS * unit;
+        match judged != Judged::More || (is_foreseen && self.leave_rounding::<T>(factor)) {
+            true => Next::CorrectAndEnd,
+            false => Next::Correct,
+        }
+    }
+
+    /// What the last correction is, where the residual is rounding.
+    #[inline(always)]
+    fn judged<T: Real>(&mut self, decrement: impl FnOnce() -> f64) -> Judged {
         if self.last <= ROUNDINGS * T::EPSILON {
             return Judged::Last;
         }
@@ -80,7 +138,7 @@ impl Corrections {
 
     /// Whether the correction after the last need not be made, if it is smaller by the same factor as the residual.
     #[inline(always)]
-    pub fn leave_rounding<T: Real>(&self, factor: f64) -> bool {
+    fn leave_rounding<T: Real>(&self, factor: f64) -> bool {
         self.last * factor <= LEFT_ROUNDINGS * T::EPSILON
             || (self.without_fall > 0 && self.last <= SMALL)
     }
@@ -97,7 +155,7 @@ mod tests {
     fn ends(length: f64, moved: &[f64]) -> Option<usize> {
         let mut corrections = Corrections::none();
         let found = moved.iter().position(|m| {
-            corrections.take(*m / length);
+            corrections.last = *m / length;
             corrections.judged::<f64>(|| m * m) != Judged::More
         });
         found.map(|i| i + 1)
