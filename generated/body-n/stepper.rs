@@ -258,6 +258,7 @@ impl<const N: usize, T: Real> BodyN<N, T> {
 impl<const N: usize> BodyN<N, f64> {
     /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &BodyNState<N, f64>, h: f64, out: &mut [f64]) {
+        type T = f64;
         let Λ = state.Λ.matrix();
         let μ = state.body_momentum().0;
         let t1 = Λ * μ;
@@ -270,7 +271,7 @@ impl<const N: usize> BodyN<N, f64> {
         put(
             out,
             [
-                t3 * t3,
+                T::from_f64(0.5) * t3 * t3,
                 t3 * t3 * t3 * t3,
                 t3 * t3 * t3 * t3 * t3 * t3,
                 t3 * t3 * t3 * t3 * t3 * t3 * t3 * t3,

@@ -630,16 +630,26 @@ impl<T: Real> CoupledBodies<T> {
 impl CoupledBodies<f64> {
     /// The sizes of all invariants at a state, in steps of `h`.
     fn scales(&self, state: &CoupledBodiesState<f64>, h: f64, out: &mut [f64]) {
+        type T = f64;
+        let R = self.R(state);
         let Λ1 = state.Λ1.matrix();
         let Λ2 = state.Λ2.matrix();
         let μ1 = state.body_momentum_Λ1().0;
         let μ2 = state.body_momentum_Λ2().0;
         let t1 = Λ1 * μ1;
         let t2 = Λ2 * μ2;
-        let t3 = μ1.dot(&μ1).sqrt() + μ2.dot(&μ2).sqrt();
+        let t3 = μ1 + R * μ2;
         let out = put(out, [sum_of_sizes(self.energies(state))]);
         let out = put(out, [t1.dot(&t1).sqrt() + t2.dot(&t2).sqrt(); 3usize]);
-        put(out, [t3 * t3]);
+        put(
+            out,
+            [
+                T::from_f64(2.0)
+                    * (μ1.dot(&μ1).sqrt()
+                        + (R.tr_mul(&R)).trace().sqrt() * μ2.dot(&μ2).sqrt())
+                    * t3.dot(&t3).sqrt(),
+            ],
+        );
     }
     /// The model as data.
     pub const CARD: Card = Card {

@@ -427,10 +427,11 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
         let energies = self.energies(state);
         let s1 = (h * h).sqrt();
         let s2 = (C * C).trace().sqrt();
-        let s3 = determinant(&(C));
-        let impulse = s1 * (a * a).sqrt() * s2
-            + T::from_f64(3.0) * s1 * (b * b).sqrt() * s2 * s2
-            + s1 * (c * c).sqrt() * (s3 * s3).sqrt()
+        let s3 = (b * b).sqrt();
+        let s4 = determinant(&(C));
+        let impulse = s1 * (a * a).sqrt() * s2 + s1 * s3 * s2 * s2
+            + s1 * s3 * SMatrix::<T, N, N>::identity().trace().sqrt() * s2 * s2
+            + s1 * (c * c).sqrt() * (s4 * s4).sqrt()
             + T::from_f64(0.5) * s1 * (d * d).sqrt();
         let state = &EllipsoidConvectiveState {
             momentum: SpatialMomentumMatrix(not_less(state.momentum.0, (0, N), impulse)),
@@ -439,17 +440,25 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
         let energy = size_of_energy(energies, self.energies(state));
         let μ = state.body_momentum().0;
         let t1 = Q * μ.transpose();
-        let t2 = inverse_or_nan(&(C));
-        let t3 = (μ.tr_mul(&μ)).trace().sqrt() * (C * C).trace().sqrt()
-            * (t2 * t2).trace().sqrt();
-        let t4 = inverse_or_nan(&(Q));
-        let t5 = inverse_or_nan(&(C0));
-        let out = put(out, [energy, t3 * t3, t3.powi(4)]);
+        let t2 = (C * C).trace().sqrt();
+        let t3 = inverse_or_nan(&(C));
+        let t4 = (t3 * t3).trace().sqrt();
+        let t5 = (μ.tr_mul(&μ)).trace().sqrt();
+        let t6 = inverse_or_nan(&(Q));
+        let t7 = inverse_or_nan(&(C0));
+        let out = put(
+            out,
+            [
+                energy,
+                t2 * t4 * t5 * t2 * t4 * t5,
+                t2 * t4 * t5 * t2 * t4 * t5 * t2 * t4 * t5 * t2 * t4 * t5,
+            ],
+        );
         put(
             out,
             ::core::iter::repeat_n(
-                (t1 * (t4 * t4.tr_mul(&t1.transpose()))).trace().sqrt()
-                    * (t5 * t5).trace().sqrt(),
+                (t1 * (t6 * t6.tr_mul(&t1.transpose()))).trace().sqrt()
+                    * (t7 * t7).trace().sqrt(),
                 N * N,
             ),
         );

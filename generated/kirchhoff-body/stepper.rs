@@ -782,10 +782,11 @@ impl KirchhoffBody<f64> {
         let G = state.G.matrix();
         let energies = self.energies(state);
         let s1 = (h * h).sqrt();
-        let s2 = P.dot(&P).sqrt();
-        let s3 = b[3];
-        let impulse1 = s1 * b.dot(&b).sqrt() * s2;
-        let impulse2 = s1 * (s3 * s3).sqrt() * s2;
+        let s2 = rows_from::<T, 4, 3, 1>(&b, 0);
+        let s3 = rows_from::<T, 4, 3, 1>(&P, 0);
+        let s4 = b[3];
+        let impulse1 = s1 * s2.dot(&s2).sqrt() * s3.dot(&s3).sqrt();
+        let impulse2 = s1 * (s4 * s4).sqrt() * P.dot(&P).sqrt();
         let state = &KirchhoffBodyState {
             momentum: CarriedImpulse(
                 not_less(not_less(state.momentum.0, (0, 3), impulse1), (3, 3), impulse2),
@@ -798,13 +799,17 @@ impl KirchhoffBody<f64> {
         let t2 = t1.dot(&t1).sqrt();
         let t3 = rows_from::<T, 6, 3, 1>(&μ, 3);
         let t4 = t3.dot(&t3).sqrt();
-        let t5 = rows_from::<T, 4, 3, 1>(&Z, 0);
-        let t6 = t5.dot(&t5).sqrt();
-        let t7 = rows_from::<T, 6, 3, 1>(&μ, 0);
-        let t8 = motion_translation(&G);
-        let out = put(out, [energy, t2 * t2, (t4 * t2) * (t4 * t2)]);
-        let out = put(out, [t4 * t6; 3 * 1]);
-        put(out, [(t7.dot(&t7).sqrt() + t8.dot(&t8).sqrt() * t4) * t6]);
+        let t5 = t3.cross(&t1);
+        let t6 = rows_from::<T, 4, 3, 1>(&Z, 0);
+        let t7 = t6.dot(&t6).sqrt();
+        let t8 = rows_from::<T, 6, 3, 1>(&μ, 0);
+        let t9 = motion_translation(&G);
+        let out = put(
+            out,
+            [energy, t2 * t2, T::from_f64(2.0) * t4 * t2 * t5.dot(&t5).sqrt()],
+        );
+        let out = put(out, [t4 * t7; 3 * 1]);
+        put(out, [(t8.dot(&t8).sqrt() + t9.dot(&t9).sqrt() * t4) * t7]);
     }
     /// The model as data.
     pub const CARD: Card = Card {

@@ -4,11 +4,11 @@
 //! as small as it is. A difference of stored places is as uncertain as they are.
 //! Takes an expression; gives one without cancellation.
 
-use super::shape::{Shape, Structure};
+use super::shape::{Dim, Shape, Structure};
 use super::symbol::Symbols;
 use super::{
-    Expr, Function, Letter, Map, Node, Rational, add, call, dot, integer, mul, number, places,
-    power, quotient, substitute, sum, trace, transpose,
+    Expr, Function, Letter, Map, Node, Rational, add, call, dot, identity, integer, mul, number,
+    places, power, quotient, substitute, sum, trace, transpose,
 };
 
 /// How large the terms of an expression are.
@@ -60,6 +60,18 @@ fn in_differences(
 fn is_component(a: &Expr, b: &Expr) -> bool {
     let is = |a: &Expr, b: &Expr| matches!((a.node(), b.node()), (Node::Letter(_), Node::Unit(..)));
     is(a, b) || is(b, a)
+}
+
+/// Whether the product is some rows of a letter, or those padded by zeros.
+fn is_selection(factors: &[Expr]) -> bool {
+    let inclusion = |e: &Expr| match e.node() {
+        Node::Transpose(a) => matches!(a.node(), Node::Inclusion(..)),
+        node => matches!(node, Node::Inclusion(..)),
+    };
+    match factors {
+        [first @ .., last] => matches!(last.node(), Node::Letter(_)) && first.iter().all(inclusion),
+        [] => false,
+    }
 }
 
 /// Whether the expression is a product of elements of SU(2).
@@ -171,6 +183,14 @@ impl Terms<'_> {
                     stored: total(&|x| x.stored.clone()),
                 }
             }
+            // Some rows of what is stored are as large as they are.
+            Node::Product(list) if is_selection(list) => Size {
+                stored: sum(
+                    list.iter().map(|x| of(x).stored).collect::<Vec<_>>(),
+                    Shape::SCALAR,
+                ),
+                ..Size::exact(length(e))
+            },
             Node::Product(list) => {
                 let all = list.iter().map(of);
                 all.reduce(Size::times)
@@ -181,14 +201,36 @@ impl Terms<'_> {
                 stored: add(of(a).stored, of(b).stored),
                 ..Size::exact(length(e))
             },
-            Node::Dot(a, b) | Node::Cross(a, b) => of(a).times(of(b)),
+            // The products of components cancel, by themselves, in what they are summed to.
+            Node::Dot(a, b) | Node::Cross(a, b) => Size {
+                value: length(e),
+                ..of(a).times(of(b))
+            },
             // The entries of a rotation cancel in its axial vector.
             Node::Vee(a) => Size {
                 value: length(e),
                 ..of(a)
             },
             Node::Neg(a) | Node::Transpose(a) | Node::Part(_, a) => of(a),
-            Node::Hat(a) | Node::Trace(a) | Node::Map(Map::Pure | Map::Twist, a) => {
+            // Of n entries it is at most √n times their length; of a product, the product of the lengths.
+            Node::Trace(a) => Size {
+                value: length(e),
+                ..match a.node() {
+                    Node::Product(_) => of(a),
+                    _ => Size::exact(length(&identity(a.shape().rows))).times(of(a)),
+                }
+            },
+            // The products of entries of which it is the sum are at most as large, together, as this (Hadamard).
+            Node::Det(a) => match a.shape().rows {
+                Dim::Fixed(n) => Size {
+                    value: length(e),
+                    terms: power(length(a), Rational::integer(n.into())),
+                    stored: integer(0),
+                },
+                // A power of a number that has only a name: the value itself.
+                Dim::Named(_) => Size::exact(length(e)),
+            },
+            Node::Hat(a) | Node::Map(Map::Pure | Map::Twist, a) => {
                 Size::exact(integer(2)).times(of(a))
             }
             // Linear in the entries; where these are of a quaternion, see `stored`.
@@ -208,7 +250,6 @@ impl Terms<'_> {
             Node::Letter(_)
             | Node::Power(..)
             | Node::Inverse(_)
-            | Node::Det(_)
             | Node::Adjugate(_)
             | Node::Map(..)
             | Node::Given(_)

@@ -4,8 +4,8 @@
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{Role, Symbols};
 use super::{
-    Expr, Function, add, call, dot, gradient, here, identity, integer, letters, magnitude, mul,
-    power, quotient, sub, trace,
+    Expr, Function, add, call, cross, det, dot, gradient, here, identity, integer, letters,
+    magnitude, mul, power, quotient, sub, trace,
 };
 use crate::algebra::Rational;
 use crate::interpret::{Assignment, evaluate};
@@ -64,9 +64,10 @@ fn sizes_are_what_rounding_makes_of_an_expression() {
     let (s, [a, b, d, e, r, j]) = symbols();
     let gap = || sub(a.clone(), b.clone());
     let way = || sub(d.clone(), e.clone());
+    let across = || cross(d.clone(), e.clone());
     let turned = || sub(integer(3), trace(r.clone()));
     let to = |x: Expr, n: i64| power(x, Rational::integer(n));
-    let from_rest = mul(j, sub(r.clone(), identity(THREE)));
+    let from_rest = mul(j.clone(), sub(r.clone(), identity(THREE)));
     for (name, e) in [
         ("a b", mul(a.clone(), b.clone())),
         ("a - b", gap()),
@@ -81,6 +82,15 @@ fn sizes_are_what_rounding_makes_of_an_expression() {
         ("|d - e|^2", dot(way(), way())),
         ("|d - e|^4", to(dot(way(), way()), 2)),
         ("|d - e|^2 (a - b)", mul(dot(way(), way()), gap())),
+        ("|d x e|^2", dot(across(), across())),
+        (
+            "(d·(d x e) + a - b) b",
+            mul(add(dot(d.clone(), across()), gap()), b.clone()),
+        ),
+        (
+            "a det(J) (a - b)",
+            mul(mul(a.clone(), det(j.clone())), gap()),
+        ),
         ("(3 - tr R)^2", to(turned(), 2)),
         ("b (3 - tr R)^5", mul(b.clone(), to(turned(), 5))),
         ("tr(J (R - Id)) (a - b)", mul(trace(from_rest), gap())),

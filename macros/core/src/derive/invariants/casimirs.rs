@@ -97,8 +97,8 @@ pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[Passage]) -> 
             name: c.name,
             kind: Kind::Value,
             family: Family::Casimir,
+            scale: Some(expr::magnitude(&x.letters.symbols, &c.value)),
             value: Some(c.value),
-            scale: Some(c.scale),
             exact: true,
         });
     }

@@ -3,7 +3,7 @@
 
 use super::motions::space_of;
 use super::words::Piece;
-use super::{Candidate, Inputs, length};
+use super::{Candidate, Inputs};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, last_axis, within};
 use crate::groups::Euclidean;
@@ -40,7 +40,6 @@ pub(super) fn pieces(x: &Inputs) -> Vec<Piece> {
         let part = spatial_part(s, &e);
         out.push(Piece {
             name: format!("{name}_part"),
-            size: length(x, &part),
             value: part,
         });
         for (c, id) in x.spec.configurations.iter().zip(&x.letters.node_momentum) {
@@ -52,7 +51,6 @@ pub(super) fn pieces(x: &Inputs) -> Vec<Piece> {
             let moment = moment(s, rigid, &mu, &e);
             out.push(Piece {
                 name: format!("moment_about_{name}"),
-                size: expr::mul(length(x, &mu), length(x, &e)),
                 value: moment,
             });
         }
@@ -69,7 +67,6 @@ pub(super) fn weights(x: &Inputs) -> Vec<Candidate> {
     list.map(|(name, e)| Candidate {
         name: format!("{name}_weight"),
         value: weight(&e),
-        scale: length(x, &e),
     })
     .collect()
 }

@@ -158,7 +158,6 @@ pub struct Inputs<'a> {
 struct Candidate {
     name: String,
     value: Expr,
-    scale: Expr,
 }
 
 /// The invariants that can be proved.

@@ -2,10 +2,10 @@
 //! from frame to frame: what they join turns together, whatever the action couples besides. Takes the
 //! configurations and the constraints; gives vectors that Casimirs may be made of.
 
+use super::Inputs;
 use super::noether::components;
 use super::passage::Passage;
 use super::words::Piece;
-use super::{Inputs, length};
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::SymbolId;
@@ -62,8 +62,6 @@ pub(super) fn totals(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
             .map(move |frame| (set, in_frame(carriers, *frame)))
     });
     let piece = |(set, list): (&Vec<usize>, Vec<Carried>)| {
-        let size = list.iter().map(|c| length(x, &momentum(x, c.body)));
-        let size = expr::sum(size.collect::<Vec<_>>(), Shape::SCALAR);
         let terms = list.into_iter().map(|c| {
             let turned = expr::product(c.by.into_iter().chain([momentum(x, c.body)]));
             match c.opposite {
@@ -77,7 +75,7 @@ pub(super) fn totals(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
             let elements = set.iter().map(|i| x.spec.configurations[*i].element);
             elements.for_each(|e| name += &format!("_{}", s.get(e).ascii));
         }
-        Piece { name, value, size }
+        Piece { name, value }
     };
     space.chain(turned).map(piece).collect()
 }

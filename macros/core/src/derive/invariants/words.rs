@@ -4,7 +4,7 @@
 
 use super::homogeneous;
 use super::passage::Passage;
-use super::{Candidate, Inputs, here, length, totals};
+use super::{Candidate, Inputs, here, totals};
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::SymbolId;
@@ -13,12 +13,11 @@ use crate::expr::{self, Expr, Part};
 /// Most candidates that are looked at.
 const MOST: usize = 400;
 
-/// A part of a word, with its name and the length of what it is made of.
+/// A part of a word, with its name.
 #[derive(Clone)]
 pub(super) struct Piece {
     pub(super) name: String,
     pub(super) value: Expr,
-    pub(super) size: Expr,
 }
 
 /// All candidates, simple ones first.
@@ -31,8 +30,6 @@ pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
         let value = expr::product(words.iter().map(|w| w.value.clone()).collect::<Vec<_>>());
         words.windows(2).all(fit).then(|| (joined(words), value))
     };
-    let sizes =
-        |list: &[&Piece]| expr::product(list.iter().map(|p| p.size.clone()).collect::<Vec<_>>());
     let bracket = |u: &Piece, middle: &[&Piece], v: &Piece| -> Option<Candidate> {
         let (between, m) = chain(middle)?;
         let right = if middle.is_empty() {
@@ -51,28 +48,16 @@ pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
             (true, false) => format!("{}_{}", u.name, v.name),
             _ => format!("{}_{between}_{}", u.name, v.name),
         };
-        let all: Vec<&Piece> = [u]
-            .into_iter()
-            .chain(middle.iter().copied())
-            .chain([v])
-            .collect();
         Some(Candidate {
             name,
             value: expr::dot(u.value.clone(), right),
-            scale: sizes(&all),
         })
     };
     let trace = |word: &[&Piece]| -> Option<Candidate> {
         let (name, value) = chain(word)?;
-        // The sum of n entries is at most √n times the length; of a product, that of the lengths.
-        let entries = match word {
-            [_] => length(x, &expr::identity(value.shape().rows)),
-            _ => expr::integer(1),
-        };
         value.shape().is_square().then(|| Candidate {
             name: format!("trace_{name}"),
             value: expr::trace(value),
-            scale: expr::mul(entries, sizes(word)),
         })
     };
     let pairs = |out: &mut Vec<Candidate>, middle: &[&Piece]| {
@@ -92,7 +77,6 @@ pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
         out.push(Candidate {
             name: format!("{}_squared", m.name),
             value: expr::scale(Rational::HALF, square),
-            scale: sizes(&[m, m]),
         });
     }
     for m in &matrices {
@@ -130,16 +114,9 @@ pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
     out.extend(of_forms(x));
     out.extend(across(x, &vectors));
     for m in matrices.iter().filter(|m| m.value.shape().is_square()) {
-        let value = expr::det(m.value.clone());
-        let scale = match m.value.shape().rows {
-            Dim::Fixed(n) => expr::power(m.size.clone(), Rational::integer(n.into())),
-            // A power of a number that has only a name: the value itself.
-            Dim::Named(_) => length(x, &value),
-        };
         out.push(Candidate {
             name: format!("det_{}", m.name),
-            value,
-            scale,
+            value: expr::det(m.value.clone()),
         });
     }
     out.truncate(MOST);
@@ -239,29 +216,19 @@ fn vectors(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
             ] {
                 out.push(Piece {
                     name: format!("{name}_{which}"),
-                    size: length(x, &value),
                     value,
                 });
             }
         } else if mu.shape().is_vector() {
-            let size = length(x, &mu);
-            out.push(Piece {
-                name,
-                value: mu,
-                size,
-            });
+            out.push(Piece { name, value: mu });
         }
     }
     out.extend(totals::totals(x, passages));
     for a in &x.spec.advected {
         let e = expr::here(s, a.quantity);
         if e.shape().is_vector() {
-            let (name, size) = (s.get(a.quantity).ascii.clone(), length(x, &e));
-            out.push(Piece {
-                name,
-                value: e,
-                size,
-            });
+            let name = s.get(a.quantity).ascii.clone();
+            out.push(Piece { name, value: e });
         }
     }
     out.extend(homogeneous::pieces(x));
@@ -289,7 +256,6 @@ fn matrices(x: &Inputs) -> Vec<Piece> {
             continue;
         }
         let e = expr::here(s, id);
-        let size = length(x, &e);
         let t = match symbol.structure {
             Structure::Symmetric | Structure::Diagonal | Structure::Skew => None,
             Structure::General
@@ -301,12 +267,10 @@ fn matrices(x: &Inputs) -> Vec<Piece> {
         out.push(Piece {
             name: name.clone(),
             value: e,
-            size: size.clone(),
         });
         out.extend(t.map(|value| Piece {
             name: format!("{name}t"),
             value,
-            size,
         }));
     }
     out
@@ -320,11 +284,9 @@ fn areas(vectors: &[Piece]) -> Vec<Candidate> {
     for (i, u) in list.iter().enumerate() {
         for v in &list[i + 1..] {
             let across = expr::cross(u.value.clone(), v.value.clone());
-            let size = expr::mul(u.size.clone(), v.size.clone());
             out.push(Candidate {
                 name: format!("{}_across_{}_squared", u.name, v.name),
                 value: expr::dot(across.clone(), across),
-                scale: expr::power(size, Rational::integer(2)),
             });
         }
     }
@@ -346,7 +308,6 @@ fn products_in_three(vectors: &[Piece]) -> Vec<Candidate> {
                         u.value.clone(),
                         expr::cross(v.value.clone(), w.value.clone()),
                     ),
-                    scale: expr::product([u.size.clone(), v.size.clone(), w.size.clone()]),
                 });
             }
         }
@@ -376,13 +337,11 @@ fn across(x: &Inputs, vectors: &[Piece]) -> Vec<Candidate> {
                 ],
                 mu.shape(),
             );
-            let size = expr::product([v.size.clone(), v.size.clone(), length(x, &mu)]);
             for power in [2i64, 4, 6] {
                 let word = (0..power).map(|_| part.clone()).collect::<Vec<_>>();
                 out.push(Candidate {
                     name: format!("momentum_across_{}_{power}", v.name),
                     value: expr::trace(expr::product(word)),
-                    scale: expr::power(size.clone(), Rational::integer(power)),
                 });
             }
         }
@@ -410,8 +369,6 @@ fn of_forms(x: &Inputs) -> Vec<Candidate> {
             let form = expr::here(s, a.quantity);
             let inverse = expr::inverse(s, form.clone());
             let skew = |e: Expr| expr::part(Part::Skew, e);
-            let sizes = [&mu, &form, &inverse].map(|e| length(x, e));
-            let size = expr::product(sizes);
             let name = match c.side.is_body() {
                 true => "angular_momentum",
                 false => "circulation",
@@ -428,7 +385,6 @@ fn of_forms(x: &Inputs) -> Vec<Candidate> {
                     out.push(Candidate {
                         name: format!("{name}_{}_{power}", symbol.ascii),
                         value: expr::trace(expr::product(word)),
-                        scale: expr::power(size.clone(), Rational::integer(power)),
                     });
                 }
             }
