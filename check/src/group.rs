@@ -2,6 +2,7 @@
 
 use crate::matrix::Matrix;
 use crate::number::Number;
+use crate::stated::Side;
 use crate::varied::small;
 
 /// A group of the language.
@@ -61,10 +62,13 @@ impl Group {
     }
 
     /// An element from the numbers of a state, row by row, or the four components of a quaternion; `unit` is the relative error of
-    /// one rounding. Entries of rotations are as uncertain as 1, those of linear maps as the largest.
+    /// one rounding. Entries of rotations are as uncertain as 1, those of linear maps as the largest. So are coordinates of a motion
+    /// by a velocity in space, which turns them; one by a velocity of the body adds to each.
     #[must_use]
-    pub fn element(self, numbers: &[f64], unit: f64) -> Option<Matrix> {
+    pub fn element(self, side: Side, numbers: &[f64], unit: f64) -> Option<Matrix> {
         let n = self.rows();
+        let places = (0..n.saturating_sub(1)).filter_map(|i| numbers.get(i * n + n - 1));
+        let farthest = places.fold(0.0, |a: f64, x| a.max(x.abs()));
         let turned = OF_A_TURN * unit + self.defect(numbers).min(MOST_OF_A_DEFECT * unit);
         let entry = |i: usize, j: usize| -> Option<Number> {
             Some(match self {
@@ -82,7 +86,13 @@ impl Group {
                     let x = *numbers.get(i * n + j)?;
                     match (i < m, j < m) {
                         (true, true) => Number::within(x, turned),
-                        (true, false) => Number::within(x, unit * x.abs()),
+                        (true, false) => Number::within(
+                            x,
+                            match side {
+                                Side::Body => unit * x.abs(),
+                                Side::Space => f64::from(small(n)) * unit * farthest,
+                            },
+                        ),
                         _ => Number::exact(x),
                     }
                 }

@@ -181,7 +181,7 @@ impl<'a> Scene<'a> {
             (Role::Element(group, side), Some(own)) => {
                 let numbers = own.of(self.nodes[node]);
                 let element = group
-                    .element(numbers, UNIT)
+                    .element(*side, numbers, UNIT)
                     .ok_or_else(|| misread(&q.name))?;
                 let first = self.varied.get(&(q.name.as_str(), site)).filter(|_| moves);
                 Ok(Value::Known(match first {

@@ -184,11 +184,11 @@ impl<const N: usize, T: Real> BodyN<N, T> {
         let Ω_before = before.Λ.body_velocity(&here.Λ).matrix();
         let Ω = here.Λ.body_velocity(&after.Λ).matrix();
         let t1 = h.powi(-1);
-        let t2 = C.tr_mul(&Ω_before) * t1;
-        let t3 = C * Ω.transpose() * t1;
+        let t2 = C * (Ω.transpose() - SMatrix::<T, N, N>::identity()) * t1;
+        let t3 = C.tr_mul(&(Ω_before - SMatrix::<T, N, N>::identity())) * t1;
         {
             let parts: [SMatrix<T, N, N>; 1] = [
-                t2 - t2.transpose() + t3 - t3.transpose(),
+                t2 + t3 - t3.transpose() - t2.transpose(),
             ];
             let mut all = SVector::<T, 28>::zeros();
             let rest = all.as_mut_slice();

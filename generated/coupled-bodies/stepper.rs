@@ -603,10 +603,11 @@ impl<T: Real> CoupledBodies<T> {
         let R = self.R(before);
         let Ω1_matrix = before.Λ1.body_velocity(&after.Λ1).matrix();
         let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
-        let t1 = less_identity(&Ω1_matrix);
+        let t1 = h.powi(-2);
         let t2 = less_identity(&Ω2_matrix);
-        (-((eps * (t1 * d1).dot(&(R * (t2 * d2)))) / (h * h)))
-            - (J1 * t1).trace() / (h * h) - (J2 * t2).trace() / (h * h)
+        (-(t1 * eps
+            * d1.dot(&(less_identity(&Ω1_matrix.transpose()) * (R * (t2 * d2))))))
+            - t1 * (J1 * less_identity(&Ω1_matrix)).trace() - t1 * (J2 * t2).trace()
     }
     /// The state after a step of `h` that is tried, or none.
     #[cold]

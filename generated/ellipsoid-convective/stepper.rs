@@ -289,17 +289,19 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let C = Q.tr_mul(&(C0 * Q));
         let G_before = before.Q.body_velocity(&here.Q).matrix();
         let G = here.Q.body_velocity(&after.Q).matrix();
-        let t1 = G_before.tr_mul(&C_before);
-        let t2 = h.powi(-1);
+        let t1 = h.powi(-1);
+        let t2 = G_before - SMatrix::<T, N, N>::identity();
         {
             let parts: [SMatrix<T, N, N>; 1] = [
-                t1 * (G_before * I0) * t2 - t1 * I0 * t2 - C * (T::from_f64(2.0) * h * a)
-                    + C * C * (T::from_f64(2.0) * h * b)
+                C * C * (T::from_f64(2.0) * h * b) - C * (T::from_f64(2.0) * h * a)
                     - C * (T::from_f64(2.0) * h * b * C.trace())
                     - SMatrix::<T, N, N>::identity()
                         * (T::from_f64(2.0) * h * c * determinant(&(C)))
-                    + SMatrix::<T, N, N>::identity() * (h * d) + C * I0 * t2
-                    - C * (G * I0) * t2,
+                    + SMatrix::<T, N, N>::identity() * (h * d)
+                    + C_before * (t2 * I0) * t1
+                    - C * ((G - SMatrix::<T, N, N>::identity()) * I0) * t1
+                    + (G_before.transpose() - SMatrix::<T, N, N>::identity())
+                        * (C_before * (t2 * I0)) * t1,
             ];
             let mut all = SVector::<T, 16>::zeros();
             let rest = all.as_mut_slice();
@@ -393,17 +395,17 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let t2 = determinant(&(C));
         let t3 = C_next.trace();
         let t4 = determinant(&(C_next));
-        (T::from_f64(2.0)
-            * (C
-                * ((G_matrix - SMatrix::<T, N, N>::identity())
-                    * (I0 * (G_matrix.transpose() - SMatrix::<T, N, N>::identity()))))
-                .trace()) / ((T::from_f64(2.0) * h) * (T::from_f64(2.0) * h))
-            + T::from_f64(0.5) * a * t1 + T::from_f64(0.25) * b * (t1 * t1)
+        T::from_f64(0.5) * a * t1 + T::from_f64(0.25) * b * (t1 * t1)
             - T::from_f64(0.25) * b * (C * C).trace() + T::from_f64(0.5) * c * t2
             - T::from_f64(0.25) * d * t2.ln() + T::from_f64(0.5) * a * t3
             + T::from_f64(0.25) * b * (t3 * t3)
             - T::from_f64(0.25) * b * (C_next * C_next).trace()
             + T::from_f64(0.5) * c * t4 - T::from_f64(0.25) * d * t4.ln()
+            + T::from_f64(0.5)
+                * (I0
+                    * ((G_matrix.transpose() - SMatrix::<T, N, N>::identity())
+                        * (C * (G_matrix - SMatrix::<T, N, N>::identity()))))
+                    .trace() / (h * h)
     }
     /// The state after a step of `h` that is tried, or none.
     #[cold]

@@ -287,17 +287,21 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let S = Q * (I0 * Q.transpose());
         let g_before = before.Q.spatial_velocity(&here.Q).matrix();
         let g = here.Q.spatial_velocity(&after.Q).matrix();
-        let t1 = g_before * S_before;
-        let t2 = h.powi(-1);
+        let t1 = h.powi(-1);
+        let t2 = g_before - SMatrix::<T, N, N>::identity();
         {
             let parts: [SMatrix<T, N, N>; 1] = [
-                C0 * (t1 * g_before.transpose()) * t2 - C0 * t1.transpose() * t2
-                    - S * (T::from_f64(2.0) * h * a) + S * S * (T::from_f64(2.0) * h * b)
+                S * S * (T::from_f64(2.0) * h * b) - S * (T::from_f64(2.0) * h * a)
                     - S * (T::from_f64(2.0) * h * b * S.trace())
                     - SMatrix::<T, N, N>::identity()
                         * (T::from_f64(2.0) * h * c * determinant(&(S)))
-                    + SMatrix::<T, N, N>::identity() * (h * d) - C0 * (g * S) * t2
-                    + C0 * S * t2,
+                    + SMatrix::<T, N, N>::identity() * (h * d)
+                    + C0 * (t2 * S_before) * t1
+                    + C0
+                        * (t2
+                            * (S_before
+                                * (g_before.transpose() - SMatrix::<T, N, N>::identity())))
+                        * t1 - C0 * ((g - SMatrix::<T, N, N>::identity()) * S) * t1,
             ];
             let mut all = SVector::<T, 16>::zeros();
             let rest = all.as_mut_slice();
@@ -391,17 +395,17 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let t2 = determinant(&(S));
         let t3 = S_next.trace();
         let t4 = determinant(&(S_next));
-        (T::from_f64(2.0)
-            * (C0
-                * ((g_matrix - SMatrix::<T, N, N>::identity())
-                    * (S * (g_matrix.transpose() - SMatrix::<T, N, N>::identity()))))
-                .trace()) / ((T::from_f64(2.0) * h) * (T::from_f64(2.0) * h))
-            + T::from_f64(0.5) * a * t1 + T::from_f64(0.25) * b * (t1 * t1)
+        T::from_f64(0.5) * a * t1 + T::from_f64(0.25) * b * (t1 * t1)
             - T::from_f64(0.25) * b * (S * S).trace() + T::from_f64(0.5) * c * t2
             - T::from_f64(0.25) * d * t2.ln() + T::from_f64(0.5) * a * t3
             + T::from_f64(0.25) * b * (t3 * t3)
             - T::from_f64(0.25) * b * (S_next * S_next).trace()
             + T::from_f64(0.5) * c * t4 - T::from_f64(0.25) * d * t4.ln()
+            + T::from_f64(0.5)
+                * (C0
+                    * ((g_matrix - SMatrix::<T, N, N>::identity())
+                        * (S * (g_matrix.transpose() - SMatrix::<T, N, N>::identity()))))
+                    .trace() / (h * h)
     }
     /// The state after a step of `h` that is tried, or none.
     #[cold]

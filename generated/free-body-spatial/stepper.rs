@@ -247,7 +247,7 @@ impl<T: Real> FreeBodySpatial<T> {
     ) -> T {
         let J = self.J(before);
         let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
-        -((less_identity(&ω_matrix) * J).trace() / (h * h))
+        -((J * less_identity(&ω_matrix)).trace() / (h * h))
     }
 }
 impl FreeBodySpatial<f64> {

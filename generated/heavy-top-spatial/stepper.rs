@@ -289,7 +289,7 @@ impl<T: Real> HeavyTopSpatial<T> {
         let χ_next = self.χ(after);
         let ω_matrix = before.Λ.spatial_velocity(&after.Λ).matrix();
         T::from_f64(0.5) * w * z.dot(&χ) + T::from_f64(0.5) * w * z.dot(&χ_next)
-            - (less_identity(&ω_matrix) * J).trace() / (h * h)
+            - (J * less_identity(&ω_matrix)).trace() / (h * h)
     }
 }
 impl HeavyTopSpatial<f64> {

@@ -1039,8 +1039,8 @@ impl<T: Real> MixedFour<T> {
         let Y = here.q.body_velocity(&after.q).matrix();
         let ΔX_before = before.X.spatial_velocity(&here.X).matrix();
         let ΔX = here.X.spatial_velocity(&after.X).matrix();
-        let t1 = h.powi(-1);
-        let t2 = p.cross(&(relative_R_q * e_));
+        let t1 = p.cross(&(relative_R_q * e_));
+        let t2 = h.powi(-1);
         let t3 = motion_rotation(&G);
         let t4 = t3.transpose();
         let t5 = motion_translation(&G);
@@ -1049,9 +1049,9 @@ impl<T: Real> MixedFour<T> {
         let t8 = h.powi(-3);
         {
             let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-                axial_of_difference(&(J * less_identity(&V_before))) * t1
-                    + p.cross(&(R.tr_mul(&X))) * (h * k) - t2 * (h * k)
-                    + axial_of_difference(&(J * less_identity(&V.transpose()))) * t1,
+                p.cross(&(R.tr_mul(&X))) * (h * k) - t1 * (h * k)
+                    + axial_of_difference(&(J * less_identity(&V_before))) * t2
+                    + axial_of_difference(&(J * less_identity(&V.transpose()))) * t2,
                 into_rows::<
                     T,
                     6,
@@ -1060,7 +1060,7 @@ impl<T: Real> MixedFour<T> {
                 >(
                     &(axial_of_difference(
                         &(A * less_identity(&motion_rotation(&W_before))),
-                    ) * t1 - t6),
+                    ) * t2 - t6),
                     0,
                 )
                     + into_rows::<
@@ -1070,7 +1070,7 @@ impl<T: Real> MixedFour<T> {
                         1,
                     >(
                         &(motion_rotation(&W_before)
-                            .tr_mul(&motion_translation(&W_before)) * (t1 * M) - t7),
+                            .tr_mul(&motion_translation(&W_before)) * (t2 * M) - t7),
                         3,
                     )
                     - into_rows::<
@@ -1082,7 +1082,7 @@ impl<T: Real> MixedFour<T> {
                         &(t6
                             - axial_of_difference(
                                 &(A * less_identity(&motion_rotation(&W).transpose())),
-                            ) * t1),
+                            ) * t2),
                         0,
                     )
                     - into_rows::<
@@ -1090,7 +1090,7 @@ impl<T: Real> MixedFour<T> {
                         6,
                         3,
                         1,
-                    >(&(motion_translation(&W) * (t1 * M) + t7), 3),
+                    >(&(motion_translation(&W) * (t2 * M) + t7), 3),
                 quaternion_imaginary(
                     &(Y_before
                         .tr_mul(
@@ -1098,17 +1098,17 @@ impl<T: Real> MixedFour<T> {
                                 &(diagonal_times(&I, &quaternion_imaginary(&Y_before))),
                             ),
                         )),
-                ) * (T::from_f64(2.0) * t1) + relative_R_q.tr_mul(&t2) * (h * k)
+                ) * (T::from_f64(2.0) * t2) + relative_R_q.tr_mul(&t1) * (h * k)
                     - quaternion_imaginary(
                         &(Y
                             * pure_quaternion(
                                 &(diagonal_times(&I, &quaternion_imaginary(&Y))),
                             )),
-                    ) * (T::from_f64(2.0) * t1),
+                    ) * (T::from_f64(2.0) * t2),
                 ΔX_before * (T::from_f64(4.0) * t8 * b * ΔX_before.dot(&ΔX_before))
-                    + ΔX_before * (t1 * m) + g * (h * m) + R * p * (h * k)
+                    + ΔX_before * (t2 * m) + g * (h * m) + R * p * (h * k)
                     - X * (T::from_f64(2.0) * h * k) + t3 * s * (h * k) + t5 * (h * k)
-                    - ΔX * (T::from_f64(4.0) * t8 * b * ΔX.dot(&ΔX)) - ΔX * (t1 * m),
+                    - ΔX * (T::from_f64(4.0) * t8 * b * ΔX.dot(&ΔX)) - ΔX * (t2 * m),
             );
             let mut all = SVector::<T, 15>::zeros();
             let rest = all.as_mut_slice();

@@ -76,23 +76,21 @@ pub const ROWS: &[Row] = &[
         &["I0"],
     )
     .positive(&["C"])
-    .refused(1)
-    .misses(6.0e-11),
+    .refused(1),
     Row::of(
         "model MapSpace { param C, I0: Sym<2>; group Q: GL<2> velocity G; constraint next(Q) = G*Q;
             lagrangian = tr(C*(G - Id)*I0*(G - Id)^T)/(2*h); }",
         action!(plane_space),
         &["I0"],
     )
-    .positive(&["C"])
-    .misses(8.9e-11),
+    .positive(&["C"]),
     Row::of(
         "model MapLogarithm { param I0: Sym<2>; param c: Real; group Q: GL<2> velocity G; constraint next(Q) = Q*G;
             lagrangian = tr((next(Q) - Q)*I0*(next(Q) - Q)^T)/(2*h) + (c/h)*log(det(G))^2; }",
         action!(plane_logarithm),
         &["I0", "c"],
     )
-    .misses(2.1e-10),
+    .misses(1.6e-12),
     Row::of(
         "model MapSpaceFourth { param I0: Sym<3>; param k: Real; group Q: GL<3> velocity G; constraint next(Q) = Q*G;
             lagrangian = tr((next(Q) - Q)*I0*(next(Q) - Q)^T)/(2*h) - (h/4)*k*tr(Q^T*Q)^2; }",
@@ -112,6 +110,5 @@ pub const ROWS: &[Row] = &[
             lagrangian = (1 + x^2)*tr((next(Q) - Q)*I0*(next(Q) - Q)^T)/(2*h) + m*(next(x) - x)^2/(2*h); }",
         action!(swollen),
         &["I0", "m"],
-    )
-    .misses(7.6e-10),
+    ),
 ];

@@ -125,23 +125,21 @@ pub const ROWS: &[Row] = &[
     // A height of the plane moves nothing.
     .idle(&["Z[3]"])
     .refused(1)
-    .misses(3.5e-12),
+    .misses(2.1e-12),
     Row::of(
         "model RigidFourth { param J: Sym<3>; param m, c: Real; group G: SE<3> velocity V;
             constraint next(G) = G*V; let y = pos(next(G)) - pos(G);
             lagrangian = -tr(J*rot(V))/h + m*dot(y, y)/(2*h) + (c/h^3)*dot(y, y)^2; }",
         action!(space_fourth),
         &["J", "m", "c"],
-    )
-    .misses(2.1e-12),
+    ),
     Row::of(
         "model RigidFourthSpace { param J: Sym<3>; param m, c: Real; group G: SE<3> velocity V;
             constraint next(G) = V*G; let y = pos(next(G)) - pos(G);
             lagrangian = -tr(J*rot(G)^T*rot(next(G)))/h + m*dot(y, y)/(2*h) + (c/h^3)*dot(y, y)^2; }",
         action!(space_fourth),
         &["J", "m", "c"],
-    )
-    .misses(4.7e-12),
+    ),
     Row::of(
         "model RigidAxial { param J: Sym<3>; param m, c: Real; param a: Vec<3>; group G: SE<3> velocity V;
             constraint next(G) = G*V; let y = pos(next(G)) - pos(G);
@@ -157,7 +155,7 @@ pub const ROWS: &[Row] = &[
         action!(screw),
         &["J", "m"],
     )
-    .misses(4.6e-12),
+    .misses(2.8e-12),
     Row::of(
         "model RigidExponential { param J: Sym<3>; param m, c: Real; group G: SE<3> velocity V;
             constraint next(G) = G*V; let y = pos(next(G)) - pos(G);

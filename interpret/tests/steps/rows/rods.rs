@@ -145,7 +145,7 @@ pub const ROWS: &[Line] = &[
         sites: OPEN,
         reach: 0,
         refused: 0,
-        known: Some(1.7e-10),
+        known: None,
     },
     Line {
         text: "model LineOfQuaternions { label i in 0..N; param I: Sym<3> at nodes; param K: Sym<3>; param c: Real;

@@ -101,8 +101,7 @@ pub const ROWS: &[Row] = &[
             lagrangian = (1 + x^2)*j*(2 - tr(W))/h + m*(next(x) - x)^2/(2*h); }",
         action!(plane_field),
         &["j", "m"],
-    )
-    .misses(1.0e-10),
+    ),
     Row::of(
         "model PlaneRational { param j, c: Real; group R: SO<2> velocity W; constraint next(R) = R*W;
             lagrangian = -j*tr(W)/h + c/(h*(3 + tr(W))); }",
@@ -129,14 +128,13 @@ pub const ROWS: &[Row] = &[
         action!(four_square),
         &["J", "c"],
     )
-    .misses(2.0e-11),
+    .misses(5.0e-12),
     Row::of(
         "model FourTrace { param J: Sym<4>; param c: Real; group R: SO<4> velocity W; constraint next(R) = R*W;
             lagrangian = -tr(J*W)/h + (c/h^3)*(4 - tr(W))^2; }",
         action!(four_trace),
         &["J", "c"],
-    )
-    .misses(2.0e-11),
+    ),
     Row::of(
         "model FourGap { param J: Sym<4>; param c: Real; param a: Vec<4>; group R: SO<4> velocity W;
             constraint next(R) = R*W;

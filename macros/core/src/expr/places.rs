@@ -200,7 +200,15 @@ pub(crate) fn named(symbols: &Symbols, e: &Expr) -> Option<Named> {
 
 fn name(s: &Symbols, all: &mut Symbols, found: &mut Vec<(Letter, Expr)>, e: &Expr) -> Expr {
     if !is_between(s, e) {
-        return rebuild(s, e, &mut |x| name(s, all, found, x));
+        let children = e.children().into_iter();
+        let mut children = children
+            .map(|x| name(s, all, found, x))
+            .collect::<Vec<_>>()
+            .into_iter();
+        // The names are letters of `all` alone.
+        return rebuild(all, e, &mut |x| {
+            children.next().unwrap_or_else(|| x.clone())
+        });
     }
     let known = |found: &[(Letter, Expr)], e: &Expr| {
         let same = found.iter().find(|(_, known)| known == e);

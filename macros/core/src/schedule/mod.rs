@@ -3,6 +3,7 @@
 
 mod chain;
 mod collected;
+mod increments;
 mod inverses;
 mod known;
 mod pairs;

@@ -125,7 +125,7 @@ struct Found<'a> {
 
 impl Found<'_> {
     fn visit(&mut self, e: &Expr) {
-        if super::rest::is_difference(self.symbols, e) || !self.met.insert(e.clone()) {
+        if super::rest::stays_whole(self.symbols, e) || !self.met.insert(e.clone()) {
             return;
         }
         e.children().into_iter().for_each(|c| self.visit(c));

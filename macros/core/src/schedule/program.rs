@@ -111,7 +111,7 @@ pub(super) fn scheduled(
 fn count(symbols: &Symbols, e: &Expr, uses: &mut Hashed<usize>) {
     let n = uses.entry(e.clone()).or_insert(0);
     *n += 1;
-    if *n == 1 && !super::rest::is_difference(symbols, e) {
+    if *n == 1 && !super::rest::stays_whole(symbols, e) {
         e.children()
             .into_iter()
             .for_each(|c| count(symbols, c, uses));
@@ -171,7 +171,7 @@ impl Build<'_> {
             return known.clone();
         }
         // Children first: they may add temporaries, which the rebuilding must know.
-        let inner = match super::rest::is_difference(&self.symbols, e) {
+        let inner = match super::rest::stays_whole(&self.symbols, e) {
             true => e.clone(),
             false => {
                 for c in e.children() {

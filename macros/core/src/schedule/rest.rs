@@ -123,9 +123,14 @@ pub fn is_difference(symbols: &Symbols, e: &Expr) -> bool {
     opposite(a, b) || opposite(b, a)
 }
 
+/// Whether the expression is not to be taken apart: a difference from rest, or from the identity.
+pub(super) fn stays_whole(symbols: &Symbols, e: &Expr) -> bool {
+    is_difference(symbols, e) || super::increments::is_increment(symbols, e)
+}
+
 /// The expression of what `go` gives of its parts; a difference from rest as it is.
 pub(super) fn rebuilt(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> Expr) -> Expr {
-    match is_difference(symbols, e) {
+    match stays_whole(symbols, e) {
         true => e.clone(),
         false => rebuild(symbols, e, go),
     }
@@ -133,6 +138,7 @@ pub(super) fn rebuilt(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> 
 
 /// The same expression with differences from rest written as such, at every depth.
 pub fn displaced(symbols: &Symbols, e: &Expr) -> Expr {
+    let e = &super::increments::by_increments(symbols, e);
     let wanted = symbols.differences() || calls_what_moves(symbols, e);
     if !wanted || !moves(symbols, e) {
         return e.clone();
