@@ -7,8 +7,12 @@ use crate::algebra::Algebra;
 use crate::expr::shape::{Dim, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{
-    Expr, Letter, Node, add, identity, letters, places, quotient, rebuild, sub, substitute, sum,
+    Expr, Letter, Map, Node, add, identity, letters, places, quotient, rebuild, sub, substitute,
+    sum,
 };
+
+/// What has more terms, multiplied out, stays as it is: a program of a step is read and compiled.
+const MOST_TERMS: u64 = 64;
 
 /// Whether the letter is such a velocity.
 fn is_velocity(symbols: &Symbols, l: &Letter) -> bool {
@@ -43,7 +47,7 @@ pub(super) fn is_increment(symbols: &Symbols, e: &Expr) -> bool {
 pub(super) fn by_increments(symbols: &Symbols, e: &Expr) -> Expr {
     let mut velocities = letters(e);
     velocities.retain(|l| is_velocity(symbols, l));
-    if velocities.is_empty() {
+    if velocities.is_empty() || count(symbols, e) > MOST_TERMS {
         return e.clone();
     }
     let (mut open, named, definitions) = match places::named(symbols, e) {
@@ -100,6 +104,40 @@ fn terms(e: &Expr) -> Vec<Expr> {
     }
 }
 
+/// How many terms it has once it is multiplied out.
+fn count(symbols: &Symbols, e: &Expr) -> u64 {
+    let of = |x: &Expr| count(symbols, x);
+    match e.node() {
+        Node::Letter(l) if is_velocity(symbols, l) => 2,
+        Node::Sum(terms) => terms.iter().map(of).fold(0, u64::saturating_add),
+        Node::Product(factors) => factors.iter().map(of).fold(1, u64::saturating_mul),
+        Node::Dot(a, b) | Node::Cross(a, b) => of(a).saturating_mul(of(b)),
+        Node::Power(a, q) => match q.as_integer() {
+            Some(n @ 0..) => of(a).saturating_pow(u32::try_from(n).unwrap_or(u32::MAX)),
+            _ => 1,
+        },
+        Node::Quotient(a, _) => of(a),
+        node if is_opaque(node) => 1,
+        // Entry by entry.
+        Node::Map(Map::Diagonal | Map::DiagonalOf, _) => u64::MAX,
+        _ => e.children().into_iter().map(of).fold(1, u64::max),
+    }
+}
+
+/// Whether a velocity within is left there: this is no polynomial of it.
+fn is_opaque(node: &Node) -> bool {
+    match node {
+        Node::Power(_, q) => q.as_integer().is_none_or(|n| n < 0),
+        Node::Inverse(_)
+        | Node::Det(_)
+        | Node::Adjugate(_)
+        | Node::Call(..)
+        | Node::Given(_)
+        | Node::PullBack(..) => true,
+        _ => false,
+    }
+}
+
 /// With `Id + increment` for each velocity, but in what is no polynomial of it.
 fn opened(open: &Symbols, e: &Expr, increments: &[(Letter, Letter)]) -> Expr {
     match e.node() {
@@ -111,13 +149,7 @@ fn opened(open: &Symbols, e: &Expr, increments: &[(Letter, Letter)]) -> Expr {
             None => e.clone(),
         },
         Node::Quotient(a, b) => quotient(opened(open, a, increments), b.clone()),
-        Node::Power(_, q) if q.as_integer().is_none_or(|n| n < 0) => e.clone(),
-        Node::Inverse(_)
-        | Node::Det(_)
-        | Node::Adjugate(_)
-        | Node::Call(..)
-        | Node::Given(_)
-        | Node::PullBack(..) => e.clone(),
+        node if is_opaque(node) => e.clone(),
         _ => rebuild(open, e, &mut |x| opened(open, x, increments)),
     }
 }

@@ -138,12 +138,16 @@ pub(super) fn rebuilt(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> 
 
 /// The same expression with differences from rest written as such, at every depth.
 pub fn displaced(symbols: &Symbols, e: &Expr) -> Expr {
-    let e = &super::increments::by_increments(symbols, e);
+    // Of the whole: what is multiplied out in a part would cancel with the others.
+    parts_displaced(symbols, &super::increments::by_increments(symbols, e))
+}
+
+fn parts_displaced(symbols: &Symbols, e: &Expr) -> Expr {
     let wanted = symbols.differences() || calls_what_moves(symbols, e);
     if !wanted || !moves(symbols, e) {
         return e.clone();
     }
-    let e = rebuild(symbols, e, &mut |x| displaced(symbols, x));
+    let e = rebuild(symbols, e, &mut |x| parts_displaced(symbols, x));
     match e.node() {
         Node::Sum(terms) => of_sum(symbols, terms, e.shape()),
         Node::Vee(a) => of_axial(symbols, a).unwrap_or(e),
