@@ -10,6 +10,7 @@ use crate::sites::{Moving, moving, varied};
 use crate::stated::{Role, Side, Stated};
 use crate::statements;
 use clebsch_core::syntax::ast::Model;
+use std::borrow::Cow;
 
 /// Roundings of the terms of an equation that a solver may leave of it, beside those of its own evaluation.
 const LEFT_BY_SOLVERS: f64 = 8.0;
@@ -90,6 +91,37 @@ pub struct Judged {
     pub roundings: f64,
 }
 
+impl Judged {
+    /// Of nothing.
+    #[must_use]
+    pub fn nothing() -> Self {
+        Self {
+            worst: None,
+            tested: 0,
+            roundings: 0.0,
+        }
+    }
+
+    /// That of both.
+    #[must_use]
+    pub fn and(mut self, other: Self) -> Self {
+        self.tested += other.tested;
+        self.roundings = larger(self.roundings, other.roundings);
+        if let Some(part) = other.worst {
+            self.take(part);
+        }
+        self
+    }
+
+    /// The same with a further equation, if it is worse than the others.
+    fn take(&mut self, part: Part) {
+        let worse = |a: &Part, b: &Part| a.ratio().is_nan() || b.ratio() <= a.ratio();
+        if !self.worst.as_ref().is_some_and(|w| worse(w, &part)) {
+            self.worst = Some(part);
+        }
+    }
+}
+
 /// Judges steps of one model and case.
 #[derive(Clone, Debug)]
 pub struct Judge {
@@ -112,19 +144,32 @@ impl Judge {
     /// # Errors
     /// What of the statement cannot be evaluated.
     pub fn step(&self, step: u64, before: &[f64], after: &[f64]) -> Result<Judged, String> {
-        let parts = self.parts(step, before, after)?;
+        self.part(step, 1.0, before, after)
+    }
+
+    /// A step that is a part of this share of step number `step`.
+    ///
+    /// # Errors
+    /// As [`Judge::step`].
+    pub fn part(
+        &self,
+        step: u64,
+        share: f64,
+        before: &[f64],
+        after: &[f64],
+    ) -> Result<Judged, String> {
+        let setup = match share == 1.0 {
+            true => Cow::Borrowed(&self.setup),
+            false => Cow::Owned(self.setup.clone().with_step(self.setup.h * share)),
+        };
+        let parts = self.parts_of(&setup, step, before, after)?;
         let tested = parts.iter().filter(|p| p.tests());
         let mut out = Judged {
             worst: None,
             tested: tested.clone().count() as u64,
             roundings: tested.map(Part::roundings).fold(0.0, larger),
         };
-        let worse = |a: &Part, b: &Part| a.ratio().is_nan() || b.ratio() <= a.ratio();
-        for part in parts {
-            if !out.worst.as_ref().is_some_and(|w| worse(w, &part)) {
-                out.worst = Some(part);
-            }
-        }
+        parts.into_iter().for_each(|part| out.take(part));
         Ok(out)
     }
 
@@ -133,7 +178,17 @@ impl Judge {
     /// # Errors
     /// What of the statement cannot be evaluated.
     pub fn parts(&self, step: u64, before: &[f64], after: &[f64]) -> Result<Vec<Part>, String> {
-        let (stated, setup) = (&self.stated, &self.setup);
+        self.parts_of(&self.setup, step, before, after)
+    }
+
+    fn parts_of(
+        &self,
+        setup: &Setup,
+        step: u64,
+        before: &[f64],
+        after: &[f64],
+    ) -> Result<Vec<Part>, String> {
+        let stated = &self.stated;
         let moving = moving(stated, setup, step);
         if moving.is_empty() {
             return Err("nothing of what moves is observed".to_owned());

@@ -70,6 +70,12 @@ impl Setup {
         out
     }
 
+    /// The same with steps of `h`.
+    #[must_use]
+    pub fn with_step(self, h: f64) -> Self {
+        Self { h, ..self }
+    }
+
     /// How many sites of this kind a label has.
     #[must_use]
     pub fn sites(&self, stated: &Stated, label: usize, sites: Sites) -> usize {

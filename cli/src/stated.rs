@@ -7,7 +7,7 @@ use clebsch::card::{Card, Trajectory};
 use clebsch::integrate::Halvings;
 use clebsch::kinetic::KineticWarning;
 use clebsch::saved::{Saved, Words};
-use clebsch_check::{Chosen, Judge, Setup, Verdict, Which};
+use clebsch_check::{Chosen, Judge, Judged, Setup, Verdict, Which};
 use clebsch_core::pipeline;
 use serde_json::{Value, json};
 
@@ -17,8 +17,6 @@ pub(crate) struct JudgedTrajectory {
     chosen: Chosen,
     judge: Result<Judge, String>,
     verdict: Verdict,
-    /// The numbers of the node before a judged step, and after it.
-    nodes: [Vec<f64>; 2],
 }
 
 impl JudgedTrajectory {
@@ -28,7 +26,6 @@ impl JudgedTrajectory {
             Which::None => Err("not asked for".to_owned()),
             _ => judge(card, plan),
         };
-        let none = vec![0.0; card.observable_count()];
         let verdict = Verdict {
             // Of steps that were judged before an interruption the verdict is told.
             not_judged: judge
@@ -43,7 +40,6 @@ impl JudgedTrajectory {
             chosen: Chosen::new(which, plan.case.steps),
             judge,
             verdict,
-            nodes: [none.clone(), none],
         }
     }
 
@@ -51,19 +47,15 @@ impl JudgedTrajectory {
     pub(crate) fn verdict(&self) -> &Verdict {
         &self.verdict
     }
-
-    /// How many steps were made by parts.
-    fn parts(&self) -> u64 {
-        self.inner.halvings().map_or(0, |h| h.steps)
-    }
 }
 
 /// What judges steps of this case.
 fn judge(card: &Card, plan: &Plan) -> Result<Judge, String> {
-    if let Some(order) = plan.order.filter(|order| *order > card.order) {
-        return Err(format!(
-            "a step of order {order} is made of others, or of modified moments"
-        ));
+    let modified = plan
+        .order
+        .filter(|order| card.preprocessed && *order > card.order);
+    if let Some(order) = modified {
+        return Err(format!("a step of order {order} has modified moments"));
     }
     let model = pipeline::parse_source(card.source);
     let model = model.map_err(|_| "the text of the model is not at hand".to_owned())?;
@@ -99,14 +91,14 @@ impl Trajectory for JudgedTrajectory {
         else {
             return self.inner.step();
         };
-        let parts = self.parts();
-        let [before, after] = &mut self.nodes;
-        self.inner.observe(before);
-        self.inner.step()?;
-        // A step that is made by parts solves other equations.
-        if self.inner.halvings().map_or(0, |h| h.steps) == parts {
-            self.inner.observe(after);
-            let judged = judge.step(number, before, after);
+        let mut judged = None;
+        self.inner.step_in_parts(&mut |share, before, after| {
+            let all = judged.take().unwrap_or_else(|| Ok(Judged::nothing()));
+            judged =
+                Some(all.and_then(|all| Ok(all.and(judge.part(number, share, before, after)?))));
+        })?;
+        // A step that is made by halves shows none.
+        if let Some(judged) = judged {
             self.verdict.take(number, judged);
         }
         Ok(())

@@ -275,23 +275,64 @@ impl Opened {
 impl Running {
     /// Runs an observer; its numbers are written to `out`.
     fn watch(&self, routine: &Routine<f64>, out: &mut [f64]) {
-        let mut places = self.places.borrow_mut();
-        let mut list = match take(&mut places, at::OUT) {
-            Value::List(list) => list,
-            _ => Vec::with_capacity(out.len()),
-        };
-        list.clear();
-        put(&mut places, at::OUT, Value::List(list));
-        let done = run(routine, &mut places).is_ok();
-        let Some(Value::List(list)) = places.get(at::OUT) else {
-            return;
-        };
-        for (i, slot) in out.iter_mut().enumerate() {
-            *slot = match list.get(i) {
-                Some(Value::Real(x)) if done => *x,
-                _ => f64::NAN,
-            };
+        watch(&mut self.places.borrow_mut(), routine, out);
+    }
+}
+
+impl Running {
+    /// One step; `seen` is shown each of the model's own that it is made of, as a share of the whole one, with the state after it.
+    fn made(&mut self, seen: &mut dyn FnMut(f64, &mut Places<f64>)) -> Result<(), StepError> {
+        let places = self.places.get_mut();
+        match &mut self.steps {
+            Steps::Plain => {
+                let node = self.opened.node_of(places.get(at::STATE));
+                run(&self.opened.functions.step, places).map_err(|e| e.step(node))?;
+                seen(1.0, places);
+            }
+            Steps::Modified => {
+                let node = self.opened.node_of(places.get(at::STATE));
+                run(&self.opened.functions.step, places).map_err(|e| e.step(node))?;
+            }
+            Steps::Composed(both) => {
+                let (model, composition) = &mut **both;
+                let Some(mut packed) = places.get(at::STATE).and_then(Packed::of) else {
+                    return Ok(());
+                };
+                let put_there = |here: &Packed, places: &mut Places<f64>| {
+                    if let Some(state) = places.get_mut(at::STATE) {
+                        here.put(state);
+                    }
+                };
+                let made = composition.step_in_parts(model, &mut packed, |share, here| {
+                    put_there(here, places);
+                    seen(share, places);
+                });
+                // Of a step that is refused the state is that before.
+                put_there(&packed, places);
+                made?;
+            }
         }
+        Ok(())
+    }
+}
+
+/// Runs an observer of the state that stands there; its numbers are written to `out`.
+fn watch(places: &mut Places<f64>, routine: &Routine<f64>, out: &mut [f64]) {
+    let mut list = match take(places, at::OUT) {
+        Value::List(list) => list,
+        _ => Vec::with_capacity(out.len()),
+    };
+    list.clear();
+    put(places, at::OUT, Value::List(list));
+    let done = run(routine, places).is_ok();
+    let Some(Value::List(list)) = places.get(at::OUT) else {
+        return;
+    };
+    for (i, slot) in out.iter_mut().enumerate() {
+        *slot = match list.get(i) {
+            Some(Value::Real(x)) if done => *x,
+            _ => f64::NAN,
+        };
     }
 }
 
@@ -305,23 +346,22 @@ impl Trajectory for Running {
     }
 
     fn step(&mut self) -> Result<(), StepError> {
-        let places = self.places.get_mut();
-        match &mut self.steps {
-            Steps::Plain | Steps::Modified => {
-                let node = self.opened.node_of(places.get(at::STATE));
-                run(&self.opened.functions.step, places).map_err(|e| e.step(node))?;
-            }
-            Steps::Composed(both) => {
-                let (model, composition) = &mut **both;
-                if let Some(state) = places.get_mut(at::STATE)
-                    && let Some(mut packed) = Packed::of(state)
-                {
-                    composition.step(model, &mut packed)?;
-                    packed.put(state);
-                }
-            }
-        }
-        Ok(())
+        self.made(&mut |_, _| {})
+    }
+
+    fn step_in_parts(
+        &mut self,
+        seen: &mut dyn FnMut(f64, &[f64], &[f64]),
+    ) -> Result<(), StepError> {
+        let none = vec![0.0; self.card.observable_count()];
+        let [mut before, mut after] = [none.clone(), none];
+        let observer = &self.opened.functions.observe;
+        self.watch(observer, &mut before);
+        self.made(&mut |share, places| {
+            watch(places, observer, &mut after);
+            seen(share, &before, &after);
+            std::mem::swap(&mut before, &mut after);
+        })
     }
 
     fn card(&self) -> &'static Card {

@@ -359,6 +359,24 @@ pub trait Trajectory: Send {
     /// [`StepError`]; the state is then unchanged.
     fn step(&mut self) -> Result<(), StepError>;
 
+    /// Advances by one step as [`step`](Self::step) does, and shows each of the model's own steps that it is made of: its length as a share
+    /// of the whole one, and all observables before and after it. One of modified moments, or made by halves, shows nothing.
+    ///
+    /// # Errors
+    /// [`StepError`]; the state is then unchanged. Steps before the one that failed have been shown.
+    fn step_in_parts(
+        &mut self,
+        seen: &mut dyn FnMut(f64, &[f64], &[f64]),
+    ) -> Result<(), StepError> {
+        let none = vec![0.0; self.card().observable_count()];
+        let [mut before, mut after] = [none.clone(), none];
+        self.observe(&mut before);
+        self.step()?;
+        self.observe(&mut after);
+        seen(1.0, &before, &after);
+        Ok(())
+    }
+
     /// The model's description; it tells how long the slices below must be.
     fn card(&self) -> &'static Card;
 

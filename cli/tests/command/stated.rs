@@ -88,8 +88,41 @@ fn the_steps_that_are_judged_are_those_asked_for() {
     let done = clebsch(&["run", "free-body", "--steps", "10", "--order", "4"]);
     assert!(
         done.out
-            .contains("action as stated: not judged: a step of order 4")
+            .contains("action as stated: not judged: a step of order 4 has modified moments")
     );
+}
+
+/// Of a composed step each of the steps that it is made of is judged, by its own length: the same of bodies that are compiled,
+/// of bodies that are read, and of lines.
+#[test]
+fn the_parts_of_a_composed_step_are_judged() {
+    for (model, case) in [
+        ("heavy-top".to_owned(), None),
+        (
+            shipped("elastic/neo-hooke.clebsch"),
+            Some("elastic/neo-hooke.toml"),
+        ),
+        (
+            shipped("lattices/sine-gordon.clebsch"),
+            Some("lattices/sine-gordon.toml"),
+        ),
+    ] {
+        for order in ["4", "8"] {
+            let case = case.map(shipped);
+            let mut words = vec!["run", &model, "--steps", "30", "--order", order, "--json"];
+            words.extend(case.iter().flat_map(|c| ["--case", c.as_str()]));
+            let done = clebsch(&words);
+            assert_eq!(done.code, 0, "{model} {order}: {}", done.err);
+            let object: Value = done.out.parse().expect("an object");
+            let judged = &object["results"]["action_as_stated"];
+            assert_eq!(judged["judged"], 30, "{model} {order}");
+            let ratio = judged["worst"]["ratio"].as_f64();
+            assert!(
+                ratio.is_some_and(|r| r > 1e-3 && r < 1.0),
+                "{model} {order}: {ratio:?}"
+            );
+        }
+    }
 }
 
 /// A body at rest has residuals that are exactly zero, of which nothing follows.

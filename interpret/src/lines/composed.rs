@@ -52,7 +52,11 @@ impl LineTrajectory {
     }
 
     /// One composed step; where one of its parts is refused the state stays as it was.
-    pub(super) fn composed_step(&mut self) -> Result<(), LineError> {
+    /// `seen` is shown the factor of each part, and the line after it.
+    pub(super) fn composed_step(
+        &mut self,
+        seen: &mut dyn FnMut(f64, &mut Self),
+    ) -> Result<(), LineError> {
         let Some(mut composed) = self.composed.take() else {
             return Ok(());
         };
@@ -61,7 +65,8 @@ impl LineTrajectory {
             composed.from.clone_from(state);
         }
         let mut made = Ok(());
-        for work in &mut composed.works {
+        let factors = composed.order.factors();
+        for (work, factor) in composed.works.iter_mut().zip(factors) {
             self.begun_anew(work);
             exchange(&mut self.places, work);
             made = run(&model.step, &mut self.places).map(|_| ());
@@ -69,6 +74,7 @@ impl LineTrajectory {
             if made.is_err() {
                 break;
             }
+            seen(factor, self);
         }
         let order = composed.order;
         let made = match made {

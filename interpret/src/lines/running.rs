@@ -286,6 +286,24 @@ impl Running {
     }
 }
 
+/// Writes the observables of a line, in the order of the card.
+fn observed(carded: &Carded, order: &[(usize, usize)], line: &mut LineTrajectory, out: &mut [f64]) {
+    let names = carded.model.observers();
+    let all: Vec<Vec<f64>> = names
+        .map(|name| line.observe(&name).unwrap_or_default())
+        .collect();
+    let mut out = out.iter_mut();
+    for ((observer, site), field) in order.iter().zip(carded.card.observables) {
+        let (list, size) = (all.get(*observer), field.count());
+        for k in 0..size {
+            let x = list.and_then(|l| l.get(site * size + k).copied());
+            if let Some(slot) = out.next() {
+                *slot = x.unwrap_or(f64::NAN);
+            }
+        }
+    }
+}
+
 impl Trajectory for Running {
     fn node(&self) -> u64 {
         self.line.borrow().node()
@@ -302,26 +320,35 @@ impl Trajectory for Running {
         line.step().map_err(|e| cause(e).at_node(node))
     }
 
+    fn step_in_parts(
+        &mut self,
+        seen: &mut dyn FnMut(f64, &[f64], &[f64]),
+    ) -> Result<(), StepError> {
+        let Self {
+            carded,
+            order,
+            line,
+            ..
+        } = self;
+        let none = vec![0.0; carded.card.observable_count()];
+        let [mut before, mut after] = [none.clone(), none];
+        let line = line.get_mut();
+        observed(carded, order, line, &mut before);
+        let node = line.node();
+        let made = line.step_in_parts(&mut |share, line| {
+            observed(carded, order, line, &mut after);
+            seen(share, &before, &after);
+            std::mem::swap(&mut before, &mut after);
+        });
+        made.map_err(|e| cause(e).at_node(node))
+    }
+
     fn card(&self) -> &'static Card {
         &self.carded.card
     }
 
     fn observe(&self, out: &mut [f64]) {
-        let mut line = self.line.borrow_mut();
-        let names = self.carded.model.observers();
-        let all: Vec<Vec<f64>> = names
-            .map(|name| line.observe(&name).unwrap_or_default())
-            .collect();
-        let mut out = out.iter_mut();
-        for ((observer, site), field) in self.order.iter().zip(self.carded.card.observables) {
-            let (list, size) = (all.get(*observer), field.count());
-            for k in 0..size {
-                let x = list.and_then(|l| l.get(site * size + k).copied());
-                if let Some(slot) = out.next() {
-                    *slot = x.unwrap_or(f64::NAN);
-                }
-            }
-        }
+        observed(self.carded, &self.order, &mut self.line.borrow_mut(), out);
     }
 
     fn kinetic_warning(&self) -> Option<KineticWarning> {

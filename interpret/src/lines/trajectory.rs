@@ -42,12 +42,27 @@ impl LineTrajectory {
     /// # Errors
     /// [`LineError::Step`] names the site; the state is then unchanged.
     pub fn step(&mut self) -> Result<(), LineError> {
+        self.step_in_parts(&mut |_, _| {})
+    }
+
+    /// The same; `seen` is shown each of the line's own steps that it is made of, as a share of the whole one, with the line after it.
+    ///
+    /// # Errors
+    /// As [`LineTrajectory::step`].
+    pub(super) fn step_in_parts(
+        &mut self,
+        seen: &mut dyn FnMut(f64, &mut Self),
+    ) -> Result<(), LineError> {
         let model = self.model.clone();
         let made = match self.composed {
-            Some(_) => self.composed_step(),
-            None => run(&model.step, &mut self.places)
-                .map(|_| ())
-                .map_err(|e| e.line()),
+            Some(_) => self.composed_step(seen),
+            None => match run(&model.step, &mut self.places) {
+                Ok(_) => {
+                    seen(1.0, self);
+                    Ok(())
+                }
+                Err(e) => Err(e.line()),
+            },
         };
         made.map_err(|e| coordinates::named(&model.coordinates, e))
     }

@@ -155,6 +155,20 @@ impl<S: Stepper> Composition<S> {
     /// then unchanged.
     #[inline]
     pub fn step(&mut self, model: &S, state: &mut S::State) -> Result<(), StepError> {
+        self.step_in_parts(model, state, |_, _| {})
+    }
+
+    /// The same; `seen` is shown the factor of each of its steps, and the state after it.
+    ///
+    /// # Errors
+    /// As [`Composition::step`].
+    #[inline]
+    pub fn step_in_parts(
+        &mut self,
+        model: &S,
+        state: &mut S::State,
+        mut seen: impl FnMut(f64, &S::State),
+    ) -> Result<(), StepError> {
         let node = S::node(state);
         let mut moving = *state;
         for stage in &mut self.stages {
@@ -163,6 +177,7 @@ impl<S: Stepper> Composition<S> {
                 let share = feasible(model, state, self.h, &factors, &e.cause);
                 return Err(in_all(e.cause, self.h, share).at_node(node));
             }
+            seen(stage.factor, &moving);
         }
         *state = S::at_node(moving, node + 1);
         Ok(())

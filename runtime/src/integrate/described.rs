@@ -108,6 +108,21 @@ impl<M: Described> Trajectory for Running<M> {
         self.steps.step(&self.model, &mut self.state)
     }
 
+    fn step_in_parts(
+        &mut self,
+        seen: &mut dyn FnMut(f64, &[f64], &[f64]),
+    ) -> Result<(), StepError> {
+        let Self { model, state, .. } = self;
+        let none = vec![0.0; M::card().observable_count()];
+        let [mut before, mut after] = [none.clone(), none];
+        model.observe(state, &mut before);
+        self.steps.step_in_parts(model, state, |share, state| {
+            model.observe(state, &mut after);
+            seen(share, &before, &after);
+            core::mem::swap(&mut before, &mut after);
+        })
+    }
+
     fn card(&self) -> &'static Card {
         M::card()
     }

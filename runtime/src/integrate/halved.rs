@@ -146,9 +146,16 @@ impl Trajectory for Halved {
     }
 
     fn step(&mut self) -> Result<(), StepError> {
+        self.step_in_parts(&mut |_, _, _| {})
+    }
+
+    fn step_in_parts(
+        &mut self,
+        seen: &mut dyn FnMut(f64, &[f64], &[f64]),
+    ) -> Result<(), StepError> {
         let mut refused = None;
         if self.depth == 0 {
-            match self.inner.step() {
+            match self.inner.step_in_parts(seen) {
                 Ok(()) => {
                     self.node += 1;
                     return Ok(());

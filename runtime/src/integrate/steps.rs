@@ -43,6 +43,27 @@ impl<S: Stepper<Scalar = f64>> Steps<S> {
             Self::Composed(composition) => composition.step(model, state),
         }
     }
+
+    /// The same; `seen` is shown each of the model's own steps that it is made of, as a share of the whole one, and the state after it.
+    ///
+    /// # Errors
+    /// As [`Steps::step`].
+    pub fn step_in_parts(
+        &mut self,
+        model: &S,
+        state: &mut S::State,
+        mut seen: impl FnMut(f64, &S::State),
+    ) -> Result<(), StepError> {
+        match self {
+            Self::Plain(workspace) => {
+                model.advance(state, workspace)?;
+                seen(1.0, state);
+                Ok(())
+            }
+            Self::Modified(workspace) => model.advance(state, workspace),
+            Self::Composed(composition) => composition.step_in_parts(model, state, seen),
+        }
+    }
 }
 
 impl<S: Stepper> Steps<S> {
