@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::opened::{Opened, Read, at};
 use crate::packed::Packed;
 use crate::value::{Frame, Kept, Layout, Struct, Value};
-use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver};
+use clebsch::card::{Card, Field, OpenError, PartSeen, Settings, Trajectory, chosen_solver};
 use clebsch::integrate::{Composition, Offer, Reversible, Stepper, Way, counted};
 use clebsch::kinetic::KineticWarning;
 use clebsch::of_numbers::OfNumbers;
@@ -349,10 +349,7 @@ impl Trajectory for Running {
         self.made(&mut |_, _| {})
     }
 
-    fn step_in_parts(
-        &mut self,
-        seen: &mut dyn FnMut(f64, &[f64], &[f64]),
-    ) -> Result<(), StepError> {
+    fn step_in_parts(&mut self, seen: &mut PartSeen<'_>) -> Result<(), StepError> {
         let none = vec![0.0; self.card.observable_count()];
         let [mut before, mut after] = [none.clone(), none];
         let observer = &self.opened.functions.observe;

@@ -343,6 +343,10 @@ impl Card {
     }
 }
 
+/// What [`Trajectory::step_in_parts`] calls for each part of a step: with the part's length as a share of the whole step,
+/// and with all observables before and after it.
+pub type PartSeen<'a> = dyn FnMut(f64, &[f64], &[f64]) + 'a;
+
 /// A running trajectory whose model type is hidden.
 ///
 /// Slices that are too short are filled as far as they go.
@@ -364,10 +368,7 @@ pub trait Trajectory: Send {
     ///
     /// # Errors
     /// [`StepError`]; the state is then unchanged. Steps before the one that failed have been shown.
-    fn step_in_parts(
-        &mut self,
-        seen: &mut dyn FnMut(f64, &[f64], &[f64]),
-    ) -> Result<(), StepError> {
+    fn step_in_parts(&mut self, seen: &mut PartSeen<'_>) -> Result<(), StepError> {
         let none = vec![0.0; self.card().observable_count()];
         let [mut before, mut after] = [none.clone(), none];
         self.observe(&mut before);

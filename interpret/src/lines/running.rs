@@ -3,7 +3,7 @@
 use super::card::{Carded, Place};
 use super::{LineTrajectory, Unstarted};
 use crate::text;
-use clebsch::card::{Card, Field, OpenError, Settings, Trajectory, chosen_solver};
+use clebsch::card::{Card, Field, OpenError, PartSeen, Settings, Trajectory, chosen_solver};
 use clebsch::integrate::{Offer, Way, counted};
 use clebsch::kinetic::KineticWarning;
 use clebsch::line::LineError;
@@ -320,10 +320,7 @@ impl Trajectory for Running {
         line.step().map_err(|e| cause(e).at_node(node))
     }
 
-    fn step_in_parts(
-        &mut self,
-        seen: &mut dyn FnMut(f64, &[f64], &[f64]),
-    ) -> Result<(), StepError> {
+    fn step_in_parts(&mut self, seen: &mut PartSeen<'_>) -> Result<(), StepError> {
         let Self {
             carded,
             order,

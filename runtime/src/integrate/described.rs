@@ -3,7 +3,7 @@
 
 use super::{Model, Steps, counted};
 use crate::StepError;
-use crate::card::{Card, OpenError, Settings, Trajectory};
+use crate::card::{Card, OpenError, PartSeen, Settings, Trajectory};
 use crate::kinetic::KineticWarning;
 use crate::saved::{Saved, Words};
 
@@ -108,10 +108,7 @@ impl<M: Described> Trajectory for Running<M> {
         self.steps.step(&self.model, &mut self.state)
     }
 
-    fn step_in_parts(
-        &mut self,
-        seen: &mut dyn FnMut(f64, &[f64], &[f64]),
-    ) -> Result<(), StepError> {
+    fn step_in_parts(&mut self, seen: &mut PartSeen<'_>) -> Result<(), StepError> {
         let Self { model, state, .. } = self;
         let none = vec![0.0; M::card().observable_count()];
         let [mut before, mut after] = [none.clone(), none];

@@ -1,7 +1,7 @@
 //! A trajectory that makes by two, four, eight steps of a part of its length what cannot be made by one. Takes a card and the
 //! data of a run; gives a trajectory, and how many of its steps were made so. Such a run is no longer symplectic.
 
-use crate::card::{Card, OpenError, Settings, Trajectory};
+use crate::card::{Card, OpenError, PartSeen, Settings, Trajectory};
 use crate::kinetic::KineticWarning;
 use crate::saved::{Saved, Words};
 use crate::{StartError, StepCause, StepError};
@@ -149,10 +149,7 @@ impl Trajectory for Halved {
         self.step_in_parts(&mut |_, _, _| {})
     }
 
-    fn step_in_parts(
-        &mut self,
-        seen: &mut dyn FnMut(f64, &[f64], &[f64]),
-    ) -> Result<(), StepError> {
+    fn step_in_parts(&mut self, seen: &mut PartSeen<'_>) -> Result<(), StepError> {
         let mut refused = None;
         if self.depth == 0 {
             match self.inner.step_in_parts(seen) {
