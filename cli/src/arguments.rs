@@ -17,7 +17,7 @@ pub fn command(width: Option<usize>) -> Command {
             "Discrete Clebsch variational integrators: derived from a Lagrangian, run from a case",
         )
         .after_help(
-            "Examples:\n  clebsch list\n  clebsch run heavy-top\n  clebsch derive heavy-top\n\n\
+            "Examples:\n  clebsch list\n  clebsch run heavy-top\n  clebsch derive heavy-top\n  clebsch new my-model\n\n\
              Exit codes: 0 done, 1 failed, 2 usage, 3 an invariant exceeded the bound of its case \
              (results are written).",
         )
@@ -25,28 +25,58 @@ pub fn command(width: Option<usize>) -> Command {
         .arg_required_else_help(true)
         .subcommand(
             Command::new("list")
-                .about("List the models and their cases")
-                .after_help("Examples:\n  clebsch list\n  clebsch list --json")
+                .about("List the models, or the cases of one model")
+                .after_help(
+                    "Examples:\n  clebsch list\n  clebsch list chain\n  clebsch list toda-chain\n  clebsch list --json",
+                )
+                .arg(Arg::new("which").value_name("FAMILY|MODEL").help(
+                    "Family of models (rigid, particle, elastic, chain, fluid), or a model",
+                ))
                 .arg(json()),
+        )
+        .subcommand(
+            Command::new("show")
+                .about("Print the statement of a model and a case of it")
+                .after_help("Examples:\n  clebsch show toda-chain\n  clebsch show heavy-top:general")
+                .arg(model())
+                .arg(shown_case()),
         )
         .subcommand(
             Command::new("case")
                 .about("Print a complete case as TOML, to start your own from")
                 .after_help(
-                    "Examples:\n  clebsch case heavy-top > my-top.toml\n  clebsch case heavy-top --case general\n  \
-                     clebsch case my-model.clebsch > my-case.toml",
+                    "Examples:\n  clebsch case heavy-top > my-top.toml\n  clebsch case heavy-top:general\n  \
+                     clebsch case my-model.clebsch > my-model.toml",
                 )
                 .arg(model())
+                .arg(shown_case()),
+        )
+        .subcommand(
+            Command::new("new")
+                .about("Write a model and a case of your own, NAME.clebsch and NAME.toml, to start from")
+                .after_help("Examples:\n  clebsch new my-model\n  clebsch new my-chain --from toda-chain:soliton")
+                .arg(
+                    Arg::new("name")
+                        .value_name("NAME")
+                        .required(true)
+                        .help("Name of the model, such as my-top; files that exist are never replaced"),
+                )
                 .arg(option(
-                    "case",
-                    "NAME",
-                    "Case to print; the first one by default",
+                    "from",
+                    "MODEL[:CASE]",
+                    "Model to copy; two masses on a spring by default",
                 )),
+        )
+        .subcommand(
+            of_a_case(Command::new("check"))
+                .about("Derive a model, read its case and take one step, without a run")
+                .after_help("Examples:\n  clebsch check my-model.clebsch"),
         )
         .subcommand(run())
         .subcommand(sweep())
         .subcommand(collect())
         .subcommand(compare())
+        .subcommand(converge())
         .subcommand(figures())
         .subcommand(derive())
 }
@@ -63,7 +93,7 @@ fn run() -> Command {
             .after_help(
                 "Examples:\n  clebsch run heavy-top\n  clebsch run free-body --order 6 --steps 1e6\n  \
                  clebsch run heavy-top --case my-top.toml --out out/my-top\n  \
-                 clebsch run my-model.clebsch --case my-case.toml",
+                 clebsch run my-model.clebsch",
             ),
         "Write every N-th node; by default such that at most 10000 are written. Invariants are \
          watched at every node in any case",
@@ -95,6 +125,8 @@ fn run() -> Command {
         )
         .requires("out"),
     )
+    .arg(flag("quiet", "Print warnings and errors only; the exit code says how the run ended").conflicts_with_all(["json", "verbose"]))
+    .arg(flag("verbose", "Print what was derived, and how steps are solved, before the result").conflicts_with("json"))
     .arg(
         option(
             "check",
@@ -126,6 +158,35 @@ fn compare() -> Command {
         "Compare at every N-th node; by default such that at most 10000 are compared",
         "Write comparison.csv, comparison.json and comparison.svg into this new folder",
     )
+}
+
+fn converge() -> Command {
+    of_a_case(
+        Command::new("converge")
+            .about("Measure the error at a fixed time against the step size, and the order")
+            .after_help(
+                "Examples:\n  clebsch converge kepler --until 10\n  clebsch converge my-model.clebsch --h 0.1 --until 1 --out out/converged",
+            ),
+    )
+    .arg(
+        option(
+            "levels",
+            "N",
+            "Number of step sizes h, h/2, h/4, ..., from 3 to 16",
+        )
+        .default_value("6")
+        .value_parser(value_parser!(u32).range(3..=16)),
+    )
+    .arg(
+        option(
+            "out",
+            "DIR",
+            "Write convergence.csv, convergence.json and convergence.svg into this new folder",
+        )
+        .value_parser(value_parser!(std::path::PathBuf)),
+    )
+    .arg(flag("force", "Replace DIR when it holds earlier results").requires("out"))
+    .arg(json())
 }
 
 fn figures() -> Command {
@@ -224,6 +285,15 @@ fn collect() -> Command {
         .arg(json())
 }
 
+/// The case that `show` and `case` print.
+fn shown_case() -> Arg {
+    option(
+        "case",
+        "NAME",
+        "Case to print; the first one by default, and placeholder values for a model file",
+    )
+}
+
 /// What says which case is run, and how.
 fn of_a_case(command: Command) -> Command {
     command
@@ -231,8 +301,8 @@ fn of_a_case(command: Command) -> Command {
         .arg(option(
             "case",
             "NAME|FILE.toml",
-            "Case of the model, or a file ending in .toml; the model's first case by default. Of a model in a \
-             file M.clebsch a name stands for M/NAME.toml",
+            "Case of the model, or a file ending in .toml. The default is the model's first case, and M.toml for a model \
+             file M.clebsch; a NAME is then the case M/NAME.toml. MODEL:NAME does the same",
         ))
         .arg(
             option(
@@ -241,6 +311,23 @@ fn of_a_case(command: Command) -> Command {
                 "Number of steps instead of the case's, such as 20000 or 2e4",
             )
             .value_parser(positive_count),
+        )
+        .arg(
+            option(
+                "until",
+                "T",
+                "Time to run to, instead of a number of steps; the run ends at the node nearest to it",
+            )
+            .conflicts_with("steps")
+            .value_parser(positive_number),
+        )
+        .arg(
+            option(
+                "set",
+                "NAME=VALUE",
+                "Parameter or initial value instead of the case's, with its component, such as gU.z=0.5 or gU=0,0,1; may be repeated",
+            )
+            .action(ArgAction::Append),
         )
         .arg(
             option(
@@ -333,7 +420,7 @@ fn model() -> Arg {
     Arg::new("model")
         .value_name("MODEL")
         .required(true)
-        .help("Model, as `clebsch list` shows it, or a file with its text")
+        .help("Model as `clebsch list` shows it, MODEL:CASE, or a model file")
 }
 
 fn json() -> Arg {

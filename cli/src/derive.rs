@@ -2,13 +2,14 @@
 //! Takes a model of the gallery, a file or standard input; gives text, LaTeX, Markdown, Rust or JSON.
 
 use crate::Streams;
-use crate::asked::case_file;
+use crate::bounded;
 use crate::failure::Failure;
 use crate::gallery::Gallery;
 use crate::generated;
 use crate::lines::fitted;
-use crate::model_file;
 use crate::plain::shown;
+use crate::resolve_model::{Named, named};
+use crate::show::statement;
 use clap::ArgMatches;
 use clebsch_core::print::Format;
 use clebsch_core::syntax::ast::Model;
@@ -52,9 +53,6 @@ pub fn derive(
 const WITHOUT_PROVER: &str = "this command was built without the second prover; build it with `cargo run --release \
      -p clebsch-cli --features second-proof -- derive MODEL --second-proof`; `--explain` shows the first proof";
 
-/// Largest text that is read of a model: more than the engine derives, and no device without end.
-const LARGEST: u64 = 1 << 24;
-
 /// The text of a model: of the gallery when there is one of that name, else of the file; `-` is standard
 /// input.
 fn source(
@@ -63,11 +61,7 @@ fn source(
     input: &mut dyn Read,
 ) -> Result<(String, String), Failure> {
     if name == "-" {
-        let mut text = String::new();
-        input
-            .take(LARGEST)
-            .read_to_string(&mut text)
-            .map_err(|error| Failure::Usage(format!("cannot read standard input: {error}")))?;
+        let text = bounded::stream(input, "standard input")?;
         if text.trim().is_empty() {
             return Err(Failure::Usage(
                 "standard input is empty; `-` reads a model's text from there".to_owned(),
@@ -75,14 +69,13 @@ fn source(
         }
         return Ok(("standard input".to_owned(), text));
     }
-    if let Ok(entry) = gallery.find(name) {
-        return Ok((entry.card.kebab.to_owned(), entry.card.source.to_owned()));
-    }
-    if let Some(failure) = case_file(gallery, name, "derive takes a model or its text") {
-        return Err(failure);
-    }
-    let text = model_file::text(gallery, name)?;
-    Ok((name.to_owned(), text))
+    let named = named(gallery, name, "derive takes a model or its text")?;
+    let text = statement(&named).to_owned();
+    let name = match named {
+        Named::Compiled(entry) => entry.card.kebab.to_owned(),
+        Named::Text(text) => text.name,
+    };
+    Ok((name, text))
 }
 
 /// What is printed beside the equations, in all forms but rust and json.

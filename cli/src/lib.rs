@@ -1,18 +1,18 @@
-//! The commands of `clebsch`: list the gallery, print a case, run it, compare methods, draw
-//! the figures, derive equations.
+//! The commands of `clebsch`: list, show and copy models, check, run, sweep and compare cases, derive equations.
 //!
 //! The binary only calls [`run_process`]; everything else takes its arguments, its gallery and its
 //! output streams from outside, so that tests run the very same code on models of their own.
 //! Results go to standard output, progress and messages to standard error. Exit codes: [`failure`].
 
 pub mod arguments;
-mod asked;
-mod beside;
 mod blamed;
+mod bounded;
 pub mod case_file;
+mod check;
 mod checkpoint;
 mod columns;
 pub mod compare;
+mod converge;
 pub mod derive;
 pub mod failure;
 mod figures;
@@ -22,17 +22,24 @@ pub mod generated;
 mod lines;
 mod list;
 mod model_file;
+mod named_cases;
+mod new;
 mod output;
+mod overrides;
 mod page;
 mod plain;
 mod plan;
 pub mod plots;
+mod quantity;
 mod record;
+mod resolve_model;
 mod run;
 mod sample;
+mod show;
 mod stated;
 mod step_limit;
 mod suggestion;
+mod summary;
 mod sweep;
 mod verdict;
 mod waiting;
@@ -102,7 +109,7 @@ pub fn execute(
         Err(error) => return answer_clap(&error, streams),
     };
     let as_json = matches.subcommand().is_some_and(|(name, matches)| {
-        ["run", "sweep", "collect", "compare", "figures"].contains(&name)
+        ["run", "sweep", "collect", "compare", "converge", "figures"].contains(&name)
             && matches.get_flag("json")
     });
     let done = dispatch(&matches, gallery, streams);
@@ -128,37 +135,16 @@ fn dispatch(
     streams: &mut Streams<'_>,
 ) -> Result<u8, Failure> {
     match matches.subcommand() {
-        Some(("list", matches)) => {
-            list::list(gallery, matches.get_flag("json"), streams)?;
-            Ok(DONE)
-        }
-        Some(("case", matches)) => {
-            let text = |key: &str| matches.get_one::<String>(key).map(String::as_str);
-            let name = text("model").unwrap_or_default();
-            let case = beside::case(gallery, name, text("case"))?;
-            if let Some(file) = case.as_deref().filter(|case| text("case") != Some(case)) {
-                streams.out.write_all(plan::case_text(file)?.as_bytes())?;
-                return Ok(DONE);
-            }
-            let entry = asked::model(gallery, name, None, streams)?;
-            if let Some(stated) = case_file::labels::Stated::read(entry.card.source)
-                && let Some(choice) = stated.default_choice()
-            {
-                let toml = case_file::write_lattice(&entry.card, &stated, &choice, name);
-                streams.out.write_all(toml.as_bytes())?;
-                return Ok(DONE);
-            }
-            let case = gallery::case(&entry, text("case"))?;
-            let known = gallery.find(name).is_ok();
-            let named = if known { entry.card.kebab } else { name };
-            let toml = case_file::write(&entry.card_of(case), case, named);
-            streams.out.write_all(toml.as_bytes())?;
-            Ok(DONE)
-        }
+        Some(("list", matches)) => list::list(gallery, matches, streams).map(|()| DONE),
+        Some(("show", matches)) => show::show(gallery, matches, streams).map(|()| DONE),
+        Some(("case", matches)) => show::case(gallery, matches, streams).map(|()| DONE),
+        Some(("new", matches)) => new::new(gallery, matches, streams).map(|()| DONE),
+        Some(("check", matches)) => check::check(gallery, matches, streams).map(|()| DONE),
         Some(("run", matches)) => run::run(gallery, matches, streams),
         Some(("sweep", matches)) => sweep::sweep(gallery, matches, streams),
         Some(("collect", matches)) => sweep::collect(matches, streams),
         Some(("compare", matches)) => compare::compare(gallery, matches, streams),
+        Some(("converge", matches)) => converge::converge(gallery, matches, streams),
         Some(("figures", matches)) => figures::figures(gallery, matches, streams),
         Some(("derive", matches)) => {
             derive::derive(gallery, matches, streams)?;

@@ -4,65 +4,30 @@
 use crate::case_file;
 use crate::case_file::labels::{self, Stated};
 use crate::failure::Failure;
-use crate::gallery::{Case, Entry, Gallery};
+use crate::gallery::{Case, Entry};
+use crate::named_cases::WhichCase;
 use crate::plain::shown;
-use crate::plan;
 use crate::sample::onto_constraints;
-use crate::suggestion::did_you_mean;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_core::lattice::Choice;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::{Model, Statement};
 use clebsch_interpret::Refused;
 use std::io::Write;
-use std::path::Path;
 
-/// More sites than this are not given sample values where a case has its own.
-const LONG: usize = 256;
-
-/// Whether a model's text is meant rather than its name.
-pub(crate) fn is_meant(name: &str) -> bool {
-    let path = Path::new(name);
-    path.exists() || path.extension().is_some_and(|end| end == "clebsch")
-}
-
-/// The text of a model's file.
+/// The model of a text, with the placeholder case if that is the one to run. Warnings go to `err`.
 ///
 /// # Errors
-/// Usage: there is no such file, or it cannot be read.
-pub(crate) fn text(gallery: &Gallery, name: &str) -> Result<String, Failure> {
-    if !Path::new(name).exists() {
-        let known = gallery.entries.iter().map(|entry| entry.card.kebab);
-        return Err(Failure::Usage(format!(
-            "`{}` is neither a model nor a file{}",
-            shown(name),
-            did_you_mean(name, known)
-        )));
-    }
-    std::fs::read_to_string(name).map_err(|error| {
-        Failure::Usage(format!(
-            "cannot read the model file {}: {error}",
-            shown(name)
-        ))
-    })
-}
-
-/// The model of a file, with a case of sample values. What derives and is hardly meant is told to `err`.
-///
-/// # Errors
-/// Usage: the file cannot be read, its text does not derive, or the model needs a build.
+/// Usage: the text does not derive, or the model needs a build.
 pub(crate) fn read(
-    gallery: &Gallery,
     name: &str,
-    case: Option<&str>,
+    text: &str,
+    case: &WhichCase,
     err: &mut dyn Write,
 ) -> Result<Entry, Failure> {
-    let text = text(gallery, name)?;
     let name = shown(name).to_string();
-    let in_file = case.filter(|c| plan::is_file(c));
-    let case_text = in_file.map(plan::case_text).transpose()?;
-    let of_case = in_file.zip(case_text.as_deref());
-    let filled = case_file::functions::put_in(&text, of_case)?;
+    let of_case = case.text().map(|c| (c.file.as_str(), c.text.as_str()));
+    let filled = case_file::functions::put_in(text, of_case)?;
     let text = filled.text.as_str();
     let stated = Stated::read(text);
     let choice = match &stated {
@@ -83,22 +48,12 @@ pub(crate) fn read(
         // What cannot be written there stands in the derivation too.
         let _ = write!(err, "{}", warning.diagnostic.render("warning", text, &name));
     }
-    let cases = match stated.zip(choice) {
-        None => vec![sample(&card, &name)],
-        // Of a long line the values are those of a file.
-        Some((stated, choice))
-            if case.is_some()
-                && (choice.counts.iter().any(|n| *n > LONG)
-                    || !stated.lattice.meshes.is_empty()) =>
-        {
-            Vec::new()
-        }
-        Some((stated, choice)) => {
-            // Of a case with values of its own no sample is asked.
-            let sample = case_file::write_lattice(&card, &stated, &choice, &name);
-            sample_on_lattice(&sample, &stated, &card)
-                .into_iter()
-                .collect()
+    let cases = match (case, stated.zip(choice)) {
+        (WhichCase::Text(_) | WhichCase::First, _) => Vec::new(),
+        (WhichCase::Named(_), None) => vec![sample(&card, &name)],
+        (WhichCase::Named(_), Some((stated, choice))) => {
+            let text = case_file::write_lattice(&card, &stated, &choice, &name);
+            vec![sample_on_lattice(&text, &stated, &card)?]
         }
     };
     Ok(Entry { card, cases })

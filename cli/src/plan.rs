@@ -6,7 +6,11 @@ use crate::case_file::labels::{self, Stated};
 use crate::case_file::{self, Located};
 use crate::failure::Failure;
 use crate::gallery::{self, Case, Entry};
+use crate::named_cases::{CaseText, WhichCase};
+use crate::overrides;
 use crate::plain::shown;
+use crate::resolve_model::Resolved;
+use crate::run::end;
 use clap::ArgMatches;
 use clebsch::card::{Card, Field, OpenError, Settings, Trajectory};
 use clebsch::integrate::Halved;
@@ -39,6 +43,10 @@ pub struct Plan {
     pub paper: bool,
     /// How many sites a model with labels has, and how its line ends.
     pub choice: Option<Choice>,
+    /// Whether another step size keeps the time to which the case runs, rather than the number of steps.
+    pub keeps_time: bool,
+    /// The names of the quantities that `--set` set.
+    set: Vec<String>,
     /// For a case read from a file: its name, and the line of each key.
     origin: Option<Origin>,
 }
@@ -48,10 +56,9 @@ impl Plan {
     ///
     /// # Errors
     /// Usage: an unknown case, an unreadable or wrong file.
-    pub fn new(entry: &Entry, case: Option<&str>, matches: &ArgMatches) -> Result<Self, Failure> {
-        let (asked, typed) = (case, matches.get_one::<String>("case"));
-        let steps = matches.get_one::<u64>("steps").copied();
-        let h = matches.get_one::<f64>("h").copied();
+    pub(crate) fn new(resolved: &Resolved<'_>, matches: &ArgMatches) -> Result<Self, Failure> {
+        let entry = &*resolved.entry;
+        let typed = matches.get_one::<String>("case");
         let every = matches.try_get_one::<u64>("every").ok().flatten().copied();
         let order = matches.get_one::<u32>("order").copied();
         let compensated = matches.get_flag("compensated");
@@ -69,19 +76,24 @@ impl Plan {
         };
         let size = matches.get_one::<u64>("dim").copied();
         let cards = of_size(entry, size)?;
-        let (mut case, origin, choice) = match asked.filter(|name| is_file(name)) {
-            Some(file) => {
-                let (Located { case, file, lines }, choice) = read(file, &cards)?;
+        let (mut case, origin, choice) = match &resolved.case {
+            WhichCase::Text(text) => {
+                let (Located { case, file, lines }, choice) = read(text, &cards)?;
                 (case, Some((file, lines)), choice)
             }
-            None => {
+            named => {
+                let asked = match named {
+                    WhichCase::Named(name) => Some(name.as_str()),
+                    _ => None,
+                };
                 let stated = Stated::read(entry.card.source);
                 let choice = stated.and_then(|stated| stated.default_choice());
                 (case_of_size(entry, asked, size)?.clone(), None, choice)
             }
         };
-        case.steps = steps.unwrap_or(case.steps);
-        case.h = h.unwrap_or(case.h);
+        let card = entry.card_of(&case);
+        let set = overrides::apply(&mut case, &card, matches)?;
+        let steps = matches.get_one::<u64>("steps").copied();
         Ok(Self {
             every: every.unwrap_or_else(|| case.steps.div_ceil(SAMPLES).max(1)),
             case,
@@ -90,7 +102,9 @@ impl Plan {
                 "model": matches.get_one::<String>("model").map_or(entry.card.kebab, String::as_str),
                 "case": typed,
                 "steps": steps,
-                "h": h,
+                "until": overrides::until(matches),
+                "h": matches.get_one::<f64>("h"),
+                "set": overrides::set(matches).collect::<Vec<_>>(),
                 "order": order,
                 "every": every,
                 "solver": solver.map(Method::name),
@@ -108,8 +122,21 @@ impl Plan {
                 .copied()
                 .unwrap_or(false),
             choice,
+            keeps_time: steps.is_none(),
+            set,
             origin,
         })
+    }
+
+    /// The case with another step size, up to the same time unless the number of steps was asked for.
+    #[must_use]
+    pub fn with_step(mut self, h: f64) -> Self {
+        let time = end(self.case.h, self.case.steps);
+        self.case.h = h;
+        if self.keeps_time {
+            self.case.steps = overrides::steps_to(time, h).unwrap_or(self.case.steps);
+        }
+        self
     }
 
     /// The case as it is, every `every`-th node kept.
@@ -125,6 +152,8 @@ impl Plan {
             halve: false,
             paper: false,
             choice: None,
+            keeps_time: true,
+            set: Vec::new(),
             origin: None,
         }
     }
@@ -193,6 +222,10 @@ impl Plan {
         if wrong.field == "h" && self.arguments.get("h").is_some_and(Value::is_number) {
             return "--h".to_owned();
         }
+        let is_set = |name: &&String| name.split('.').next() == Some(wrong.field);
+        if let Some(name) = self.set.iter().find(is_set) {
+            return format!("--set {}", shown(name));
+        }
         let of = |table: &str, fields: &[Field]| {
             let named = |field: &&Field| field.name == wrong.field || field.ascii == wrong.field;
             let field = fields.iter().find(named)?;
@@ -220,34 +253,15 @@ impl Plan {
     }
 }
 
-/// A case file ends in .toml; anything else is the name of a case.
-pub(crate) fn is_file(name: &str) -> bool {
-    let extension = std::path::Path::new(name).extension();
-    extension.is_some_and(|extension| extension == "toml")
-}
-
-/// The text of a case file.
-///
-/// # Errors
-/// Usage: it cannot be read.
-pub(crate) fn case_text(file: &str) -> Result<String, Failure> {
-    std::fs::read_to_string(file).map_err(|error| {
-        Failure::Usage(format!(
-            "cannot read the case file {}: {error}",
-            shown(file)
-        ))
-    })
-}
-
 /// The case of a file, by the first card whose fields it fits; the message is that of the first.
-fn read(file: &str, cards: &[Card]) -> Result<(Located, Option<Choice>), Failure> {
-    let text = case_text(file)?;
+fn read(case: &CaseText, cards: &[Card]) -> Result<(Located, Option<Choice>), Failure> {
+    let CaseText { file, text } = case;
     let mut first = None;
     for card in cards {
         let located = match Stated::read(card.source) {
-            None => case_file::read(file, &text, card).map(|located| (located, None)),
+            None => case_file::read(file, text, card).map(|located| (located, None)),
             Some(stated) => {
-                let out = labels::written_out(file, &text, &stated, card)?;
+                let out = labels::written_out(file, text, &stated, card)?;
                 case_file::read_written_out(file, &out, card)
                     .map(|located| (located, Some(out.choice)))
             }

@@ -2,21 +2,19 @@
 //! Takes the gallery and the options; gives files, a table of what was conserved, and the exit code.
 
 use crate::Streams;
-use crate::asked;
-use crate::beside;
 use crate::checkpoint::{Checkpoint, Identity};
 use crate::failure::{BOUND_LEFT, BY_SIGNAL, DONE, FAILED, Failure};
 use crate::follow::{End, Kept, Run};
 use crate::gallery::Gallery;
-use crate::list::first_line;
 use crate::output::samples::{self, Stream};
 use crate::output::{self, Finished, Found, Staging, Stopped, run_json};
-use crate::plain::{shown, steps};
+use crate::plain::shown;
 use crate::plan::Plan;
-use crate::plots::axis;
 use crate::record::{LARGEST, Recorder};
+use crate::resolve_model::resolved;
 use crate::stated::JudgedTrajectory;
 use crate::step_limit::StepLimit;
+use crate::summary::{self, Told};
 use crate::verdict::{Verdict, judge, table};
 use crate::waiting::Waiting;
 use crate::width::paragraph;
@@ -35,9 +33,6 @@ const OPENING: u64 = 10_000;
 /// Most numbers that are kept of them, a quarter of a gigabyte: of a fluid fewer steps.
 const OPENING_NUMBERS: u64 = 1 << 25;
 
-/// Where the texts of a summary begin, behind their names.
-const SUMMARY: usize = 21;
-
 /// Runs the command; the code is 0, 3 when an invariant exceeded its bound or the action as stated refutes a step, or 1 when a step after the
 /// first failed: what was computed before is shown and written then, marked as stopped.
 ///
@@ -49,16 +44,11 @@ pub fn run(
     matches: &ArgMatches,
     streams: &mut Streams<'_>,
 ) -> Result<u8, Failure> {
-    let model = matches
-        .get_one::<String>("model")
-        .map_or("", String::as_str);
-    let case = matches.get_one::<String>("case").map(String::as_str);
-    let case = beside::case(gallery, model, case)?;
-    let case = case.as_deref();
-    let entry = asked::model(gallery, model, case, streams)?;
+    let resolved = resolved(gallery, matches, streams)?;
+    let entry = &resolved.entry;
     let plan = {
         let _told = Waiting::told("reading the case".to_owned(), streams.progress);
-        Plan::new(&entry, case, matches)?
+        Plan::new(&resolved, matches)?
     };
     let card = &entry.card_of(&plan.case);
     let target = matches.get_one::<PathBuf>("out");
@@ -113,19 +103,19 @@ pub fn run(
     let kinetic = trajectory.kinetic_warning().map(|w| w.to_string());
     let warnings: Vec<String> = kinetic.into_iter().chain(too_long).collect();
     warnings.iter().for_each(|warning| warn(warning));
-    let mut out = Told {
+    let mut out = Listener {
         out: &mut *streams.out,
         // Results that are written to files are worth the work, whoever listens.
         may_go: target.is_some(),
         gone: false,
     };
     let width = streams.width;
-    if !as_json {
-        introduce(&mut out, width, card, &plan)?;
-        if let Some(text) = limit.told(plan.case.h) {
-            out.write_all(paragraph(&text, width, 2).as_bytes())?;
-        }
-    }
+    let told = match matches.get_flag("quiet") || as_json {
+        true => Told::Nothing,
+        false if matches.get_flag("verbose") => Told::All,
+        false => Told::Result,
+    };
+    summary::title(&mut out, width, card, &plan, told)?;
     let steps = plan.case.steps;
     let watch = Watch::new(&trajectory, steps, plan.every);
     let mut following = Run {
@@ -158,7 +148,7 @@ pub fn run(
     if let (Some(kept), Some(_)) = (&mut kept, &checkpoint) {
         kept.staging.go_on();
     }
-    if checkpoint.is_some() && !as_json {
+    if checkpoint.is_some() && told != Told::Nothing {
         let node = following.watch.summary().node;
         let text = format!("resumed at node {node}");
         out.write_all(paragraph(&text, width, 2).as_bytes())?;
@@ -252,15 +242,16 @@ pub fn run(
             }
         }
         writeln!(out, "{object}")?;
-    } else {
+    } else if told != Told::Nothing {
         write!(out, "\n{}", table(&outcomes, width))?;
-        for line in below_the_table(&run, summary.steps) {
-            write!(out, "\n{}", paragraph(&line, width, 2))?;
-        }
+        let mut lines = summary::below_the_table(&run, summary.steps);
+        lines.extend(limit.told(plan.case.h));
         if let Some(place) = place {
-            let written = format!("written to {place}: {}", files.join(", "));
-            let written = paragraph(&written, width, 2);
-            write!(out, "\n{written}")?;
+            lines.push(format!("written to {place}: {}", files.join(", ")));
+        }
+        writeln!(out)?;
+        for line in lines {
+            out.write_all(paragraph(&line, width, 2).as_bytes())?;
         }
     }
     // The exit code says the same; nothing is lost when these cannot be written.
@@ -395,13 +386,13 @@ fn already(
 }
 
 /// Standard output of a run whose results are written to files: they are worth the work when nobody reads it.
-struct Told<'a, 'b> {
+struct Listener<'a, 'b> {
     out: &'a mut (dyn Write + 'b),
     may_go: bool,
     gone: bool,
 }
 
-impl Write for Told<'_, '_> {
+impl Write for Listener<'_, '_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.gone {
             return Ok(bytes.len());
@@ -421,28 +412,6 @@ impl Write for Told<'_, '_> {
             false => self.out.flush(),
         }
     }
-}
-
-/// How well the steps are solved, and whether all were made.
-fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
-    let stopped = run.stopped.as_ref().map(|stopped| {
-        let time = axis::plain(stopped.time);
-        let all = steps(run.plan.case.steps);
-        format!(
-            "stopped at node {} (time {time}), after {made} of {all}: these are the results \
-             up to there",
-            stopped.node
-        )
-    });
-    let halved = run.halvings.filter(|h| h.steps > 0).map(|h| {
-        format!(
-            "made by parts: {} of {made}, by up to {} each; this run is not symplectic, and its energy may drift",
-            steps(h.steps),
-            h.parts
-        )
-    });
-    let stated = run.stated.as_ref().map(ToString::to_string);
-    stated.into_iter().chain(halved).chain(stopped).collect()
 }
 
 /// The beginning of the run once more with every node kept, when the record is sparser than that.
@@ -470,46 +439,6 @@ fn fits(card: &Card, plan: &Plan) -> Result<(), Failure> {
         "--every {}: {size} numbers would be written, at most {LARGEST} can be; give --every {every} or more",
         plan.every
     )))
-}
-
-/// What runs, and what was derived for it.
-fn introduce(
-    out: &mut dyn Write,
-    width: Option<usize>,
-    card: &Card,
-    plan: &Plan,
-) -> Result<(), Failure> {
-    let case = &plan.case;
-    let mut say = |text: &str, indent: usize| {
-        let text = paragraph(text, width, indent);
-        out.write_all(text.as_bytes())
-    };
-    say(&format!("{}: {}", card.kebab, first_line(card.doc)), 2)?;
-    for line in card.summary.trim().lines() {
-        say(line, SUMMARY)?;
-    }
-    let reversible = if card.reversible {
-        "reversible"
-    } else {
-        "not reversible"
-    };
-    let order = plan.order.unwrap_or(card.order);
-    say(
-        &format!("solver: {}; order {order}, {reversible}", card.solver),
-        2,
-    )?;
-    if order > card.order {
-        say(&card.method_of_order(order, plan.compensated), 2)?;
-    }
-    let doc = first_line(&case.doc);
-    let colon = if doc.is_empty() { "" } else { ": " };
-    say(&format!("case {}{colon}{doc}", shown(&case.name)), 2)?;
-    let end = end(case.h, case.steps);
-    say(
-        &format!("h = {}, {}, to time {end}", case.h, steps(case.steps)),
-        2,
-    )?;
-    Ok(())
 }
 
 /// The time at the last node, for print.

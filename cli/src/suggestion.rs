@@ -8,22 +8,26 @@ const LIKE: f64 = 0.75;
 /// More names than anybody reads; every model of the gallery, and the keys of a case, are fewer.
 const MOST: usize = 40;
 
-/// Gives `; did you mean ...?` for the most similar name, else `; known: ...`, else nothing.
-///
-/// Case is ignored. Of equally similar names the first is taken.
+/// The known name most similar to what was typed, if one is similar. Case is ignored; of equally similar names the first is taken.
 #[must_use]
-pub fn did_you_mean<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    let known: Vec<&str> = known.into_iter().collect();
+pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let typed = typed.to_lowercase();
     let mut best: Option<(f64, &str)> = None;
-    for &name in &known {
+    for name in known {
         let score = strsim::jaro_winkler(&typed, &name.to_lowercase());
         if score >= LIKE && best.is_none_or(|(so_far, _)| score > so_far) {
             best = Some((score, name));
         }
     }
-    match best {
-        Some((_, name)) => format!("; did you mean `{name}`?"),
+    best.map(|(_, name)| name)
+}
+
+/// Gives `; did you mean ...?` for the [`nearest`] name, else `; known: ...`, else nothing.
+#[must_use]
+pub fn did_you_mean<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.into_iter().collect();
+    match nearest(typed, known.iter().copied()) {
+        Some(name) => format!("; did you mean `{name}`?"),
         None if known.is_empty() => String::new(),
         None if known.len() > MOST => format!(
             "; known: {}, and {} more",

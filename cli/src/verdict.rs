@@ -2,6 +2,7 @@
 //! Takes the drifts of all components; gives one outcome per invariant and the table to print.
 
 use crate::gallery::Case;
+use crate::plots::axis::short;
 use crate::width::paragraph;
 use clebsch::card::{Card, Conserved, Invariant};
 use clebsch::integrate::Drift;
@@ -175,18 +176,11 @@ impl Outcome {
     }
 
     fn cells(&self) -> Vec<String> {
-        let number = |x: f64| {
-            if x == 0.0 {
-                "0".to_owned()
-            } else {
-                format!("{x:.3e}")
-            }
-        };
         vec![
             self.invariant.name.to_owned(),
-            number(self.scale),
-            number(self.worst),
-            number(self.last),
+            short(self.scale),
+            short(self.worst),
+            short(self.last),
             self.bound
                 .map_or_else(|| "-".to_owned(), |bound| format!("{bound:e}")),
             self.word().to_owned(),

@@ -12,6 +12,7 @@ pub mod coupled_bodies;
 pub mod ellipsoid_convective;
 pub mod ellipsoid_spatial;
 mod ellipsoids;
+pub mod files;
 pub mod fluids;
 pub mod free_body;
 pub mod free_body_spatial;
@@ -23,6 +24,7 @@ pub mod lattices;
 pub mod mixed_four;
 
 pub use case::{Case, Entry};
+pub use files::{CaseFile, FILES, Family, ModelFile};
 
 /// All models, in order of their names.
 pub fn gallery() -> Vec<Entry> {

@@ -127,19 +127,11 @@ pub(crate) fn extrapolated(card: &Card, plan: &Plan) -> Result<(Course, f64), Fa
     // The error of a reversible scheme has even powers of the step only.
     let power = if card.reversible { 2 } else { 1 };
     let places: Vec<f64> = PARTS.map(|part| f64::from(part).powi(-power)).to_vec();
-    let (observables, last) = neville(&records, &places, |record| &record.observables);
-    let (invariants, _) = neville(&records, &places, |record| &record.invariants);
+    let records: Vec<&Record> = records.iter().collect();
+    let (_, last) = neville(&records, &places, |record| &record.observables);
+    let record = extrapolation(&records, &places)?;
     let size = |table: &Table| largest(table.numbers.iter().copied());
-    let accuracy = Drift::of(size(&last), size(&observables));
-    let Some(first) = records.into_iter().next() else {
-        return Err(Failure::Failed("no step to extrapolate from".to_owned()));
-    };
-    let record = Record {
-        observables,
-        invariants,
-        nodes: first.nodes,
-        times: first.times,
-    };
+    let accuracy = Drift::of(size(&last), size(&record.observables));
     let course = Course {
         record,
         stopped: None,
@@ -147,13 +139,32 @@ pub(crate) fn extrapolated(card: &Card, plan: &Plan) -> Result<(Course, f64), Fa
     Ok((course, accuracy))
 }
 
+/// The values of runs with several step sizes, extrapolated to step zero: `places` are the powers of the steps that errors
+/// are made of.
+///
+/// # Errors
+/// Failed: there is no run.
+pub(crate) fn extrapolation(records: &[&Record], places: &[f64]) -> Result<Record, Failure> {
+    let (observables, _) = neville(records, places, |record| &record.observables);
+    let (invariants, _) = neville(records, places, |record| &record.invariants);
+    let Some(first) = records.first() else {
+        return Err(Failure::Failed("no step to extrapolate from".to_owned()));
+    };
+    Ok(Record {
+        observables,
+        invariants,
+        nodes: first.nodes.clone(),
+        times: first.times.clone(),
+    })
+}
+
 /// Values at step zero of the polynomial through all records, and the change by the last of them.
 fn neville(
-    records: &[Record],
+    records: &[&Record],
     places: &[f64],
     table: impl Fn(&Record) -> &Table,
 ) -> (Table, Table) {
-    let tables: Vec<&Table> = records.iter().map(table).collect();
+    let tables: Vec<&Table> = records.iter().map(|record| table(record)).collect();
     let width = tables.first().map_or(0, |table| table.width);
     let count = tables
         .iter()

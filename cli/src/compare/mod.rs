@@ -3,13 +3,11 @@
 
 mod clock;
 pub(crate) mod course;
-mod score;
+pub(crate) mod score;
 
 pub(crate) use score::{Curve, Score};
 
 use crate::Streams;
-use crate::asked;
-use crate::beside;
 use crate::columns::aligned;
 use crate::failure::{DONE, FAILED, Failure};
 use crate::gallery::Gallery;
@@ -19,6 +17,7 @@ use crate::plain::{shown, steps};
 use crate::plan::Plan;
 use crate::plots;
 use crate::record::LARGEST;
+use crate::resolve_model::resolved;
 use crate::width::paragraph;
 use clap::ArgMatches;
 use clebsch::card::{Card, Settings};
@@ -54,21 +53,16 @@ pub fn compare(
     matches: &ArgMatches,
     streams: &mut Streams<'_>,
 ) -> Result<u8, Failure> {
-    let model = matches
-        .get_one::<String>("model")
-        .map_or("", String::as_str);
-    let case = matches.get_one::<String>("case").map(String::as_str);
-    let case = beside::case(gallery, model, case)?;
-    let case = case.as_deref();
-    let entry = asked::model(gallery, model, case, streams)?;
-    let plan = Plan::new(&entry, case, matches)?;
+    let resolved = resolved(gallery, matches, streams)?;
+    let entry = &resolved.entry;
+    let plan = Plan::new(&resolved, matches)?;
     let card = &entry.card_of(&plan.case);
     let as_json = matches.get_flag("json");
     let target = matches.get_one::<PathBuf>("out");
     let staging = target
         .map(|target| Staging::new(target, matches.get_flag("force"), &FILES))
         .transpose()?;
-    let made = match gallery.find(model).is_ok() {
+    let made = match resolved.compiled {
         true => Made::Built,
         false => Made::Read,
     };

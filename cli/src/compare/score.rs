@@ -1,6 +1,7 @@
 //! How a course compares with the reference: errors of the state and drifts of the invariants at every
 //! sample. Takes two records; gives curves against time, and their largest and last values.
 
+use crate::case_file::quantity_of;
 use clebsch::card::{Card, Field};
 use clebsch::integrate::Drift;
 use clebsch::record::Record;
@@ -51,11 +52,17 @@ pub(crate) struct Score {
     pub stopped: Option<(u64, String)>,
 }
 
-/// The fields that make up the state, with their columns among the observables. A model whose
-/// observables contain none of its initial values is compared by all of them.
-pub(crate) fn state(card: &Card) -> Vec<(&'static Field, Range<usize>)> {
+/// More quantities than this are compared by their norms over all sites or copies.
+const MOST_FIELDS: usize = 8;
+
+/// A quantity of the state: its name, and its columns among the observables.
+type Quantity = (&'static str, Vec<Range<usize>>);
+
+/// The fields that make up the state. A model whose observables contain none of its initial values is compared by all
+/// of them. If there are many, those of all sites or copies, `q_0`, `q_1`, ..., are one quantity `q`.
+fn state(card: &Card) -> Vec<Quantity> {
     let mut from = 0;
-    let placed: Vec<_> = card
+    let placed: Vec<(&'static Field, Range<usize>)> = card
         .observables
         .iter()
         .map(|field| {
@@ -70,7 +77,22 @@ pub(crate) fn state(card: &Card) -> Vec<(&'static Field, Range<usize>)> {
         .filter(|(field, _)| of_state(field))
         .cloned()
         .collect();
-    if chosen.is_empty() { placed } else { chosen }
+    let all = if chosen.is_empty() { placed } else { chosen };
+    let many = all.len() > MOST_FIELDS;
+    let mut quantities: Vec<Quantity> = Vec::new();
+    for (field, columns) in all {
+        let stem = quantity_of(field.ascii).filter(|_| many);
+        let name = stem.unwrap_or(field.ascii);
+        match quantities
+            .iter_mut()
+            .rev()
+            .find(|(known, _)| *known == name)
+        {
+            Some((_, own)) if stem.is_some() => own.push(columns),
+            _ => quantities.push((name, vec![columns])),
+        }
+    }
+    quantities
 }
 
 fn norm(values: impl Iterator<Item = f64>) -> f64 {
@@ -79,9 +101,11 @@ fn norm(values: impl Iterator<Item = f64>) -> f64 {
 
 /// Errors of `record` against `truth`, one curve a field; absolute where the reference is zero.
 pub(crate) fn errors(card: &Card, record: &Record, truth: &Record) -> Vec<Curve> {
-    let part =
-        |row: &[f64], columns: &Range<usize>| row.get(columns.clone()).unwrap_or_default().to_vec();
-    let curve = |(field, columns): (&'static Field, Range<usize>)| {
+    let part = |row: &[f64], columns: &[Range<usize>]| -> Vec<f64> {
+        let each = columns.iter().filter_map(|own| row.get(own.clone()));
+        each.flatten().copied().collect()
+    };
+    let curve = |(name, columns): Quantity| {
         let truths = || truth.observables.rows().map(|row| part(row, &columns));
         let scale = truths().map(|row| norm(row.into_iter())).fold(0.0, larger);
         let rows = record.observables.rows().map(|row| part(row, &columns));
@@ -91,7 +115,7 @@ pub(crate) fn errors(card: &Card, record: &Record, truth: &Record) -> Vec<Curve>
             .map(|distance| Drift::of(distance, scale));
         let points = record.times.iter().copied().zip(distances);
         Curve {
-            name: field.ascii,
+            name,
             points: points.skip(1).collect(),
         }
     };

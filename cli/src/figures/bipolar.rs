@@ -170,10 +170,7 @@ mod tests {
     /// after 200 steps), a thousandth of its swing, and h² times the energies to the part of the kinetic energy that turns.
     #[test]
     fn both_forms_are_the_same_motion() {
-        let gallery = elastic::with_files(&Gallery {
-            entries: Vec::new(),
-        })
-        .expect("are read");
+        let gallery = elastic::with_files(&Gallery::default()).expect("are read");
         let of = |model: &str, name: &str| {
             let body = Subject::new(&gallery, model, name).expect("the case");
             let case = Case {

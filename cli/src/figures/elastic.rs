@@ -247,10 +247,7 @@ mod tests {
     /// digits of what is reached late.
     #[test]
     fn ranges_are_those_of_the_reference_run() {
-        let gallery = with_files(&Gallery {
-            entries: Vec::new(),
-        })
-        .expect("is read");
+        let gallery = with_files(&Gallery::default()).expect("is read");
         let body = Subject::new(&gallery, MODEL, NAME).expect("the case");
         let course = Course::new(&body).expect("runs");
         let near = |found: f64, wanted: f64, by: f64| {

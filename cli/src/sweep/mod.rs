@@ -10,8 +10,6 @@ mod vary;
 pub(crate) use collect::collect;
 
 use crate::Streams;
-use crate::asked;
-use crate::beside;
 use crate::checkpoint::{Checkpoint, Identity};
 use crate::failure::{BY_SIGNAL, DONE, Failure};
 use crate::gallery::Gallery;
@@ -19,6 +17,7 @@ use crate::output::{self, Found, Listening, Staging, run_json};
 use crate::plain::shown;
 use crate::plan::Plan;
 use crate::record::progress_bar;
+use crate::resolve_model::resolved;
 use crate::verdict::{Verdict, judge};
 use crate::width::paragraph;
 use clap::ArgMatches;
@@ -84,12 +83,9 @@ pub(crate) fn sweep(
     matches: &ArgMatches,
     streams: &mut Streams<'_>,
 ) -> Result<u8, Failure> {
-    let text = |key: &str| matches.get_one::<String>(key).map(String::as_str);
-    let name = text("model").unwrap_or_default();
-    let case = beside::case(gallery, name, text("case"))?;
-    let case = case.as_deref();
-    let entry = asked::model(gallery, name, case, streams)?;
-    let plan = Plan::new(&entry, case, matches)?;
+    let resolved = resolved(gallery, matches, streams)?;
+    let entry = &resolved.entry;
+    let plan = Plan::new(&resolved, matches)?;
     let card = &entry.card_of(&plan.case);
     let axes = matches.get_many::<String>("vary").into_iter().flatten();
     let axes: Vec<Axis> = axes
@@ -99,15 +95,17 @@ pub(crate) fn sweep(
         .iter()
         .enumerate()
         .flat_map(|(i, axis)| axes.iter().take(i).map(move |other| (other, axis)));
-    if let Some((other, axis)) = pairs.find(|(other, axis)| axis.meets(other)) {
-        let name = shown(&axis.name);
-        return Err(Failure::Usage(match other.name == axis.name {
-            true => format!("--vary {name}: given twice"),
-            false => format!(
-                "--vary {name}: given twice, since --vary {} sets the same number; give one of them",
-                shown(&other.name)
-            ),
-        }));
+    if let Some((other, axis)) = pairs.find(|(other, axis)| axis.quantity.meets(&other.quantity)) {
+        let name = shown(&axis.quantity.name);
+        return Err(Failure::Usage(
+            match other.quantity.name == axis.quantity.name {
+                true => format!("--vary {name}: given twice"),
+                false => format!(
+                    "--vary {name}: given twice, since --vary {} sets the same number; give one of them",
+                    shown(&other.quantity.name)
+                ),
+            },
+        ));
     }
     let all = vary::points(&axes)?;
     let shard = matches.get_one::<Shard>("shard").copied();
@@ -121,7 +119,7 @@ pub(crate) fn sweep(
     let mut description = run_json::plan_json(card, &plan);
     description["vary"] = axes
         .iter()
-        .map(|axis| json!({"name": axis.name, "values": axis.values}))
+        .map(|axis| json!({"name": axis.quantity.name, "values": axis.values}))
         .collect();
     description["points"] = json!(all);
     description["stepped"] = json!({
@@ -362,7 +360,10 @@ impl Sweep<'_> {
         let values = vary::at(self.axes, point);
         let mut plan = self.plan.clone();
         for (axis, value) in self.axes.iter().zip(&values) {
-            axis.put(*value, &mut plan.case);
+            match axis.quantity.is_step() {
+                true => plan = plan.with_step(*value),
+                false => axis.quantity.put(*value, &mut plan.case),
+            }
         }
         (plan, values)
     }

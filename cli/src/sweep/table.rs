@@ -40,7 +40,7 @@ impl Columns {
     /// Those of a sweep.
     pub(super) fn of(card: &Card, axes: &[Axis]) -> Self {
         let mut all = vec!["point".to_owned()];
-        all.extend(axes.iter().map(|axis| axis.name.clone()));
+        all.extend(axes.iter().map(|axis| axis.quantity.name.clone()));
         let status = all.len();
         let told = ["status", "steps", "time", "within_bounds"];
         all.extend(told.map(str::to_owned));

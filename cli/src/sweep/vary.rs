@@ -1,12 +1,10 @@
 //! What a sweep varies: `gU.z=0:1:100`, `h=0.1,0.05`, `kappa=2`.
-//! Takes texts and a card; gives the entries of parameters, initial values or the step that take the values, and the
-//! values of each point of the grid.
+//! Takes texts and a card; gives quantities with their values, and the values of each point of the grid.
 
-use crate::case_file::at_site;
 use crate::failure::Failure;
-use crate::gallery::Case;
 use crate::plain::shown;
-use clebsch::card::{Card, Field, Kind};
+use crate::quantity::Quantity;
+use clebsch::card::Card;
 
 /// Most values of one quantity, so that a slip of the keyboard does not fill the memory.
 const MOST_VALUES: usize = 1_000_000;
@@ -17,19 +15,9 @@ pub(super) const MOST_POINTS: u64 = 1_000_000_000;
 /// A quantity and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Axis {
-    /// As it was written, such as `gU.z`: the name of its column.
-    pub(super) name: String,
-    pub(super) place: Place,
+    /// What takes the values; its name is that of a column.
+    pub(super) quantity: Quantity,
     pub(super) values: Vec<f64>,
-}
-
-/// What takes the values.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Place {
-    Step,
-    /// Entries of a parameter, each with the sign that its kind asks for; along a line those of several sites.
-    Parameter(Vec<usize>, Vec<(usize, f64)>),
-    Initial(Vec<usize>, Vec<(usize, f64)>),
 }
 
 impl Axis {
@@ -44,183 +32,10 @@ impl Axis {
                 "give NAME=FROM:TO:COUNT or NAME=VALUE,VALUE,..., such as gU.z=0:1:100".to_owned(),
             ));
         };
-        let place = place(name.trim(), card).map_err(wrong)?;
+        let quantity = Quantity::read(name, card).map_err(wrong)?;
         let values = read_values(values).map_err(wrong)?;
-        Ok(Self {
-            name: name.trim().to_owned(),
-            place,
-            values,
-        })
+        Ok(Self { quantity, values })
     }
-
-    /// Whether both set a number that is the same one.
-    pub(super) fn meets(&self, other: &Self) -> bool {
-        match (&self.place, &other.place) {
-            (Place::Step, Place::Step) => true,
-            (Place::Parameter(a, own), Place::Parameter(b, others))
-            | (Place::Initial(a, own), Place::Initial(b, others)) => {
-                let is_other = |at: usize| others.iter().any(|(other, _)| *other == at);
-                // Fields stand in their order, along a line a hundred thousand of them.
-                own.iter().any(|(at, _)| is_other(*at))
-                    && a.iter().any(|field| b.binary_search(field).is_ok())
-            }
-            _ => false,
-        }
-    }
-
-    /// Puts a value into a case.
-    pub(super) fn put(&self, value: f64, case: &mut Case) {
-        let entries = |list: &mut Vec<Vec<f64>>, fields: &[usize], entries: &[(usize, f64)]| {
-            for (field, (entry, sign)) in fields
-                .iter()
-                .flat_map(|field| entries.iter().map(move |entry| (field, entry)))
-            {
-                if let Some(x) = list.get_mut(*field).and_then(|own| own.get_mut(*entry)) {
-                    *x = sign * value;
-                }
-            }
-        };
-        match &self.place {
-            Place::Step => case.h = value,
-            Place::Parameter(fields, list) => entries(&mut case.parameters, fields, list),
-            Place::Initial(fields, list) => entries(&mut case.initial, fields, list),
-        }
-    }
-}
-
-fn place(name: &str, card: &Card) -> Result<Place, String> {
-    if name == "h" {
-        return Ok(Place::Step);
-    }
-    let (field, component) = match name.split_once('.') {
-        Some((field, component)) => (field, Some(component)),
-        None => (name, None),
-    };
-    if let Some((at, own)) = found(field, card.parameters, card) {
-        return Ok(Place::Parameter(at, entries(&own, field, component)?));
-    }
-    if let Some((at, own)) = found(field, card.initial, card) {
-        return Ok(Place::Initial(at, entries(&own, field, component)?));
-    }
-    let mut names: Vec<&str> = Vec::new();
-    for fields in [card.parameters, card.initial] {
-        for own in fields {
-            let stem = at_site(own.ascii).map(|(stem, _)| stem);
-            // Of a hundred thousand sites the first one tells it.
-            if stem.is_some_and(|stem| names.contains(&stem)) {
-                continue;
-            }
-            let name = stem.filter(|stem| found(stem, fields, card).is_some());
-            let name = name.unwrap_or(own.ascii);
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-    }
-    Err(format!(
-        "`{}` has no such parameter or initial value; it has {} and the step h",
-        card.kebab,
-        names.join(", ")
-    ))
-}
-
-/// The fields of a name, and the first of them. Along a line a name is that of a case file: without the number of a site it is that of
-/// all sites or of both ends, with `N` that of the last end.
-fn found(name: &str, fields: &'static [Field], card: &Card) -> Option<(Vec<usize>, Field)> {
-    let all = card.parameters.iter().chain(card.initial);
-    let last = all.filter_map(|f| Some(at_site(f.ascii)?.1)).max();
-    let of = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
-        let fields = fields.iter().enumerate();
-        let found = fields.filter(|(_, f)| is(f.name) || is(f.ascii));
-        found.map(|(at, _)| at).collect()
-    };
-    let mut own = of(&|own| own == name);
-    if own.is_empty() {
-        own = of(&|own| at_site(own).is_some_and(|(stem, _)| stem == name));
-        let numbers: Vec<usize> = own
-            .iter()
-            .filter_map(|at| Some(at_site(fields.get(*at)?.ascii)?.1))
-            .collect();
-        let of_ends =
-            numbers.len() == 2 && numbers.first() == Some(&0) && numbers.last() == last.as_ref();
-        let of_all = numbers.iter().enumerate().all(|(at, number)| *number == at);
-        if !(numbers.len() == 1 || of_ends || of_all) {
-            own.clear();
-        }
-    }
-    if let (true, Some(stem)) = (own.is_empty(), name.strip_suffix("_N")) {
-        own = of(&|own| at_site(own).is_some_and(|(s, number)| s == stem && Some(number) == last));
-    }
-    let first = *fields.get(*own.first()?)?;
-    Some((own, first))
-}
-
-/// The entries of a field that a component names: with its mirror image where the kind has one.
-fn entries(
-    field: &Field,
-    name: &str,
-    component: Option<&str>,
-) -> Result<Vec<(usize, f64)>, String> {
-    let (rows, cols) = (field.rows, field.cols);
-    let Some(component) = component else {
-        return match rows * cols {
-            1 => Ok(vec![(0, 1.0)]),
-            count => Err(format!(
-                "`{name}` has {count} numbers; name one, such as {name}.{}",
-                if cols == 1 { "1" } else { "11" }
-            )),
-        };
-    };
-    let outside = || match cols {
-        1 => format!("`{name}` has the components {name}.1 to {name}.{rows}, or x, y, z of three"),
-        _ => {
-            format!("`{name}` has the entries {name}.11 to {name}.{rows}{cols}, row before column")
-        }
-    };
-    let number = |text: &str, most: usize| {
-        let number = text.parse::<usize>().ok()?;
-        (1..=most).contains(&number).then(|| number - 1)
-    };
-    if cols == 1 {
-        let letter = ["x", "y", "z"]
-            .iter()
-            .position(|letter| *letter == component);
-        let entry = letter
-            .filter(|_| rows == 3)
-            .or_else(|| number(component, rows));
-        return Ok(vec![(entry.ok_or_else(outside)?, 1.0)]);
-    }
-    let (row, col) = match component.split_once('_') {
-        Some(pair) => pair,
-        None if component.len() == 2 && component.is_ascii() => component.split_at(1),
-        None => return Err(outside()),
-    };
-    let (Some(i), Some(j)) = (number(row, rows), number(col, cols)) else {
-        return Err(outside());
-    };
-    let (here, mirror) = (i * cols + j, j * cols + i);
-    Ok(match field.kind {
-        Kind::Rotation | Kind::RigidMotion => {
-            return Err(format!(
-                "single entries of `{name}` cannot be varied: it would be no {} any more",
-                if field.kind == Kind::Rotation {
-                    "rotation"
-                } else {
-                    "rigid motion"
-                }
-            ));
-        }
-        _ if i == j && field.kind != Kind::Skew => vec![(here, 1.0)],
-        Kind::Symmetric | Kind::SecondMoments => vec![(here, 1.0), (mirror, 1.0)],
-        Kind::Skew if i != j => vec![(here, 1.0), (mirror, -1.0)],
-        Kind::Skew | Kind::Diagonal => {
-            return Err(format!(
-                "the entry {} of `{name}` is zero by its kind",
-                component
-            ));
-        }
-        _ => vec![(here, 1.0)],
-    })
 }
 
 fn read_values(text: &str) -> Result<Vec<f64>, String> {
@@ -280,8 +95,8 @@ pub(super) fn at(axes: &[Axis], point: u64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Axis, at, entries, points, read_values};
-    use clebsch::card::Kind;
+    use super::{Axis, at, points, read_values};
+    use crate::quantity::Quantity;
 
     #[test]
     fn ranges_hold_their_ends_and_lists_are_taken_as_they_are() {
@@ -297,48 +112,9 @@ mod tests {
     }
 
     #[test]
-    fn mirror_images_follow_the_kind() {
-        let field = |kind: Kind| kind.field("J", [3, 3], "");
-        assert_eq!(
-            entries(&field(Kind::Symmetric), "J", Some("12")),
-            Ok(vec![(1, 1.0), (3, 1.0)])
-        );
-        assert_eq!(
-            entries(&field(Kind::Skew), "J", Some("3_1")),
-            Ok(vec![(6, 1.0), (2, -1.0)])
-        );
-        assert_eq!(
-            entries(&field(Kind::Matrix), "J", Some("12")),
-            Ok(vec![(1, 1.0)])
-        );
-        assert_eq!(
-            entries(&field(Kind::Diagonal), "J", Some("22")),
-            Ok(vec![(4, 1.0)])
-        );
-        for (kind, component) in [
-            (Kind::Diagonal, "12"),
-            (Kind::Skew, "11"),
-            (Kind::Rotation, "12"),
-            (Kind::Matrix, "14"),
-            (Kind::Matrix, "x"),
-            (Kind::Matrix, "é"),
-        ] {
-            assert!(
-                entries(&field(kind), "J", Some(component)).is_err(),
-                "{kind:?} {component}"
-            );
-        }
-        let vector = Kind::Vector.field("g", [3, 1], "");
-        assert_eq!(entries(&vector, "J", Some("z")), Ok(vec![(2, 1.0)]));
-        assert_eq!(entries(&vector, "J", Some("1")), Ok(vec![(0, 1.0)]));
-        assert!(entries(&vector, "J", None).is_err());
-    }
-
-    #[test]
     fn the_last_axis_varies_fastest() {
         let axis = |values: &[f64]| Axis {
-            name: "h".to_owned(),
-            place: super::Place::Step,
+            quantity: Quantity::step(),
             values: values.to_vec(),
         };
         let axes = [axis(&[1.0, 2.0]), axis(&[5.0, 6.0, 7.0])];

@@ -243,6 +243,7 @@ pub fn gallery() -> Gallery {
             card: CARD,
             cases: vec![case(), quiet],
         }],
+        files: Vec::new(),
     }
 }
 

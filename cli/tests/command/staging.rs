@@ -65,6 +65,7 @@ fn run_while(event: impl FnOnce() + 'static, out: &str, more: &[&str]) -> Done {
             card,
             cases: vec![super::common::case()],
         }],
+        files: Vec::new(),
     };
     MEANWHILE.with(|place| *place.borrow_mut() = Some(Box::new(event)));
     let arguments = ["run", "harmonic-rotor", "--steps", "20", "--out", out];

@@ -1,0 +1,98 @@
+//! Options that replace numbers of a case: `--set`, `--h`, `--steps` and `--until`.
+//! Takes the matches of a command and a case; changes the case.
+
+use crate::failure::Failure;
+use crate::gallery::Case;
+use crate::plain::shown;
+use crate::quantity::Quantity;
+use clap::ArgMatches;
+use clebsch::card::Card;
+
+/// Most steps of a run, up to which a number of steps is exact as f64.
+const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
+
+/// Puts the options into a case. Gives the names that `--set` set.
+///
+/// # Errors
+/// Usage: a quantity that the model does not have, a value that is not a number, or more steps than can be counted.
+pub(crate) fn apply(
+    case: &mut Case,
+    card: &Card,
+    matches: &ArgMatches,
+) -> Result<Vec<String>, Failure> {
+    let mut names = Vec::new();
+    for text in set(matches) {
+        for (quantity, value) in read(text, card)
+            .map_err(|why| Failure::Usage(format!("--set {}: {why}", shown(text))))?
+        {
+            quantity.put(value, case);
+            names.push(quantity.name);
+        }
+    }
+    case.h = matches.get_one::<f64>("h").copied().unwrap_or(case.h);
+    case.steps = matches
+        .get_one::<u64>("steps")
+        .copied()
+        .unwrap_or(case.steps);
+    if let Some(time) = until(matches) {
+        case.steps = steps_to(time, case.h).ok_or_else(|| {
+            Failure::Usage(format!(
+                "--until {time}: steps of {} would be too many to count; give a larger --h",
+                case.h
+            ))
+        })?;
+    }
+    Ok(names)
+}
+
+/// The values of `--set`, as written.
+pub(crate) fn set(matches: &ArgMatches) -> impl Iterator<Item = &String> {
+    let all = matches.try_get_many::<String>("set").ok().flatten();
+    all.into_iter().flatten()
+}
+
+/// The time that `--until` gives.
+pub(crate) fn until(matches: &ArgMatches) -> Option<f64> {
+    matches.try_get_one::<f64>("until").ok().flatten().copied()
+}
+
+/// How many steps of `h` end nearest to a time: at least one; none if they are too many to count.
+pub(crate) fn steps_to(time: f64, h: f64) -> Option<u64> {
+    let steps = (time / h).abs().round().max(1.0);
+    // Whole, positive, and exact.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    (steps <= MOST_STEPS).then_some(steps as u64)
+}
+
+/// Reads `NAME=VALUE`, of a vector also `NAME=VALUE,VALUE,...`.
+fn read(text: &str, card: &Card) -> Result<Vec<(Quantity, f64)>, String> {
+    let Some((name, values)) = text.split_once('=') else {
+        return Err("give NAME=VALUE, such as gU.z=0.5".to_owned());
+    };
+    let values = values.trim().trim_start_matches('[').trim_end_matches(']');
+    let numbers: Vec<f64> = values.split(',').map(number).collect::<Result<_, _>>()?;
+    if let [value] = numbers.as_slice() {
+        return Ok(vec![(Quantity::read(name, card)?, *value)]);
+    }
+    match Quantity::components(name, card) {
+        Some(each) if each.len() == numbers.len() => Ok(each.into_iter().zip(numbers).collect()),
+        Some(each) => Err(format!(
+            "`{}` has {} components, and {} values are given",
+            shown(name),
+            each.len(),
+            numbers.len()
+        )),
+        // The message names what the model has, or the components.
+        None => Err(match Quantity::read(name, card) {
+            Err(why) => why,
+            Ok(_) => format!("`{}` takes one number", shown(name)),
+        }),
+    }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("`{}` is not a finite number", shown(text))),
+    }
+}
