@@ -77,6 +77,7 @@ pub fn command(width: Option<usize>) -> Command {
         .subcommand(collect())
         .subcommand(compare())
         .subcommand(converge())
+        .subcommand(plot())
         .subcommand(figures())
         .subcommand(derive())
 }
@@ -95,8 +96,8 @@ fn run() -> Command {
                  clebsch run heavy-top --case my-top.toml --out out/my-top\n  \
                  clebsch run my-model.clebsch",
             ),
-        "Write every N-th node; by default such that at most 10000 are written. Invariants are \
-         watched at every node in any case",
+        "Look at every N-th node and the last: invariants are checked and samples are written there. The default looks at \
+         10000 nodes at most, so that looking takes less time than a long run",
         "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder; when a step \
          fails, those of the run up to there, which run.json and the plots say",
     )
@@ -114,6 +115,13 @@ fn run() -> Command {
             "paper",
             "Draw pictures for a column of a paper: 86 mm wide, without titles, legends below; as PDF beside SVG \
              where the command is built with `--features pdf`",
+        )
+        .requires("out"),
+    )
+    .arg(
+        flag(
+            "csv",
+            "Write trajectory.csv even if it is long; without it, only of at most 500000 numbers (trajectory.npz has all)",
         )
         .requires("out"),
     )
@@ -187,6 +195,39 @@ fn converge() -> Command {
     )
     .arg(flag("force", "Replace DIR when it holds earlier results").requires("out"))
     .arg(json())
+}
+
+fn plot() -> Command {
+    Command::new("plot")
+        .about("Draw columns of a finished run, against time or against each other")
+        .after_help(
+            "Examples:\n  clebsch plot out/kepler\n  clebsch plot out/kepler --x X.1 --y X.2\n  \
+             clebsch plot out/kepler --y X --y invariant_energy --from 100 --to 120",
+        )
+        .arg(
+            Arg::new("dir")
+                .value_name("DIR")
+                .required(true)
+                .value_parser(value_parser!(std::path::PathBuf))
+                .help("Folder that `clebsch run --out` wrote"),
+        )
+        .arg(option("x", "NAME", "Column along the horizontal axis; time by default"))
+        .arg(
+            option(
+                "y",
+                "NAME",
+                "Column to draw, such as X.1, X (all components) or q_3 (site 3 of a chain); may be repeated. Without it \
+                 the columns are listed",
+            )
+            .action(ArgAction::Append),
+        )
+        .arg(option("from", "T", "First time to draw").value_parser(value_parser!(f64)))
+        .arg(option("to", "T", "Last time to draw").value_parser(value_parser!(f64)))
+        .arg(
+            option("out", "FILE", "SVG to write; by default into DIR, named by its columns")
+                .value_parser(value_parser!(std::path::PathBuf)),
+        )
+        .arg(flag("force", "Replace FILE even if it is not a picture of this command"))
 }
 
 fn figures() -> Command {

@@ -29,6 +29,7 @@ mod overrides;
 mod page;
 mod plain;
 mod plan;
+mod plot;
 pub mod plots;
 mod quantity;
 mod record;
@@ -145,6 +146,7 @@ fn dispatch(
         Some(("collect", matches)) => sweep::collect(matches, streams),
         Some(("compare", matches)) => compare::compare(gallery, matches, streams),
         Some(("converge", matches)) => converge::converge(gallery, matches, streams),
+        Some(("plot", matches)) => plot::plot(matches, streams),
         Some(("figures", matches)) => figures::figures(gallery, matches, streams),
         Some(("derive", matches)) => {
             derive::derive(gallery, matches, streams)?;

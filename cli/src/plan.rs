@@ -41,6 +41,8 @@ pub struct Plan {
     pub halve: bool,
     /// Whether pictures are drawn for a column of a paper.
     pub paper: bool,
+    /// Whether samples are written as text however many they are.
+    pub csv: bool,
     /// How many sites a model with labels has, and how its line ends.
     pub choice: Option<Choice>,
     /// Whether another step size keeps the time to which the case runs, rather than the number of steps.
@@ -61,6 +63,7 @@ impl Plan {
         let typed = matches.get_one::<String>("case");
         let every = matches.try_get_one::<u64>("every").ok().flatten().copied();
         let order = matches.get_one::<u32>("order").copied();
+        let is_set = |flag: &str| matches.try_get_one::<bool>(flag).ok().flatten() == Some(&true);
         let compensated = matches.get_flag("compensated");
         let halve = matches.get_flag("halve");
         let solver = match matches.get_one::<String>("solver") {
@@ -115,12 +118,8 @@ impl Plan {
             solver,
             compensated,
             halve,
-            paper: matches
-                .try_get_one::<bool>("paper")
-                .ok()
-                .flatten()
-                .copied()
-                .unwrap_or(false),
+            paper: is_set("paper"),
+            csv: is_set("csv"),
             choice,
             keeps_time: steps.is_none(),
             set,
@@ -151,6 +150,7 @@ impl Plan {
             compensated: false,
             halve: false,
             paper: false,
+            csv: false,
             choice: None,
             keeps_time: true,
             set: Vec::new(),

@@ -96,6 +96,17 @@ pub(crate) fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
             h.parts
         )
     });
+    let looked = (run.plan.every > 1).then(|| {
+        format!(
+            "drifts: at one node in {} and the last (--every)",
+            run.plan.every
+        )
+    });
     let stated = run.stated.as_ref().map(ToString::to_string);
-    stated.into_iter().chain(halved).chain(stopped).collect()
+    looked
+        .into_iter()
+        .chain(stated)
+        .chain(halved)
+        .chain(stopped)
+        .collect()
 }

@@ -16,7 +16,7 @@ pub const DEFAULT_BOUND: f64 = 1e-12;
 /// How an invariant fared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Within its bound at every node.
+    /// Within its bound at every node that was looked at.
     Kept,
     /// Beyond its bound (or not a number) at some node.
     Left,
@@ -45,7 +45,7 @@ pub struct Outcome {
     pub components: Vec<Drift>,
     /// Largest natural scale of a component, see [`Drift`].
     pub scale: f64,
-    /// Largest drift of a component at any node, relative to its scale or absolute without one.
+    /// Largest drift of a component at any node that was looked at, relative to its scale or absolute without one.
     pub worst: f64,
     /// Drift at the last node of the component that moved most, measured alike, with its sign.
     pub last: f64,

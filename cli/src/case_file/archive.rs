@@ -13,7 +13,7 @@ const COMMENT: usize = 0xffff;
 
 /// An open npz.
 #[derive(Debug)]
-pub(super) struct Archive {
+pub(crate) struct Archive {
     file: File,
     /// Its name, for messages.
     name: String,
@@ -32,7 +32,7 @@ struct Member {
 
 /// An array of numbers.
 #[derive(Clone, Debug)]
-pub(super) struct Array {
+pub(crate) struct Array {
     /// How many entries along each index.
     pub shape: Vec<usize>,
     entry: Entry,
@@ -54,7 +54,7 @@ impl Archive {
     ///
     /// # Errors
     /// It cannot be read, or is no zip.
-    pub(super) fn open(path: &Path) -> Result<Self, String> {
+    pub(crate) fn open(path: &Path) -> Result<Self, String> {
         let name = shown(path).to_string();
         let unread = |error: std::io::Error| format!("cannot read {name}: {error}");
         let mut file = File::open(path).map_err(unread)?;
@@ -105,12 +105,17 @@ impl Archive {
     }
 
     /// Its name, for messages.
-    pub(super) fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
+    /// The names of its arrays.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+        self.members.iter().map(|m| m.name.as_str())
+    }
+
     /// Whether it has an array of this name.
-    pub(super) fn has(&self, array: &str) -> bool {
+    pub(crate) fn has(&self, array: &str) -> bool {
         self.members.iter().any(|m| m.name == array)
     }
 
@@ -118,7 +123,7 @@ impl Archive {
     ///
     /// # Errors
     /// There is none, it is not of numbers, compressed or damaged.
-    pub(super) fn array(&self, array: &str) -> Result<Array, String> {
+    pub(crate) fn array(&self, array: &str) -> Result<Array, String> {
         let name = &self.name;
         let member = self.members.iter().find(|m| m.name == array);
         let member = member.ok_or_else(|| {
@@ -229,7 +234,7 @@ impl Array {
     }
 
     /// So many numbers from that of index `from` on, the last index running fastest.
-    pub(super) fn numbers(&self, from: usize, count: usize) -> Vec<f64> {
+    pub(crate) fn numbers(&self, from: usize, count: usize) -> Vec<f64> {
         let size = self.entry.size();
         let at = |index: usize| {
             let index = match self.fortran {

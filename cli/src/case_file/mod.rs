@@ -2,7 +2,7 @@
 //! Keys: `model`, `name`, `doc`, `h`, `steps`, tables `[parameters]`, `[initial]`, `[bounds]`,
 //! and of models with labels `[labels]` and `[ends]`.
 
-mod archive;
+pub(crate) mod archive;
 mod attitudes;
 mod beside;
 mod chosen;

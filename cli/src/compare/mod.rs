@@ -290,7 +290,7 @@ fn print(
         "errors |x - reference| / largest |reference|, drifts |I - I(0)| / scale: the largest at {}",
         match plan.every {
             1 => "any node".to_owned(),
-            every => format!("every {every}th node"),
+            every => format!("one node in {every}"),
         }
     ))?;
     writeln!(out)?;

@@ -93,6 +93,9 @@ pub const FILES: [&str; 26] = [
     "snapshots.pdf",
 ];
 
+/// Most numbers that are written as text without being asked for: ten megabytes.
+const MOST_IN_CSV: u64 = 500_000;
+
 /// Writes all files into `staging`; gives their names.
 ///
 /// # Errors
@@ -120,7 +123,12 @@ pub fn write(
         html,
         ..,
     ] = FILES;
-    staging.write(csv, |file| write_csv(file, run.card, rows))?;
+    let mut files = vec![archive.to_owned(), json.to_owned()];
+    let numbers = rows.count().saturating_mul(samples::width(run.card) as u64);
+    if run.plan.csv || numbers <= MOST_IN_CSV {
+        staging.write(csv, |file| write_csv(file, run.card, rows))?;
+        files.insert(0, csv.to_owned());
+    }
     let arrays = arrays::arrays(run.card, rows.count());
     staging.write(archive, |file| npz::write(file, rows, &arrays))?;
     let record = thinned::record(run.card, rows).map_err(|error| {
@@ -129,7 +137,6 @@ pub fn write(
     })?;
     let samples = &Samples { record, opening };
     let record = &samples.record;
-    let mut files = vec![csv.to_owned(), archive.to_owned(), json.to_owned()];
     let mut pictures = Vec::new();
     let drawn = [
         (momentum, plots::momentum(run, samples)),

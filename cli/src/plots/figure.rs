@@ -66,6 +66,17 @@ pub struct Panel {
     pub height: u32,
 }
 
+/// Pixels that a text of a legend takes in the widest of the usual fonts, up to a number of letters.
+fn width_of(text: &str, most: usize) -> u32 {
+    let letters = || text.chars().take(most);
+    let one_by_one = letters().map(|letter| match letter {
+        'm' | 'w' | 'M' | 'W' => 120,
+        _ => 62,
+    });
+    let even = letters().map(|_| LETTER).sum::<u32>();
+    even.max(one_by_one.sum()) / 10
+}
+
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 impl Figure {
@@ -247,10 +258,7 @@ impl Panel {
                 Some(note) => format!("{}: {note}", curve.label),
                 None => curve.label.clone(),
             };
-            let letters = u32::try_from(words.chars().count())
-                .unwrap_or(u32::MAX)
-                .min(100);
-            let wide = 40 + letters * LETTER / 10;
+            let wide = 40 + width_of(&words, 100);
             if at > LEFT && at + wide > COLUMN {
                 (line, at) = (line + 1, LEFT);
             }
@@ -284,9 +292,8 @@ impl Panel {
         }
         let notes = self.curves.iter().filter_map(|curve| curve.note.as_ref());
         let texts = self.curves.iter().map(|curve| &curve.label).chain(notes);
-        let letters = texts.map(|text| text.chars().count()).max().unwrap_or(0);
-        let letters = u32::try_from(letters).unwrap_or(u32::MAX).min(60);
-        (40 + letters * LETTER / 10).max(70)
+        let widest = texts.map(|text| width_of(text, 60)).max().unwrap_or(0);
+        (40 + widest).max(70)
     }
 
     fn legend(&self, area: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {

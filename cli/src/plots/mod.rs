@@ -231,7 +231,7 @@ fn titles(run: &Finished<'_>, shown: Window<'_>, what: &str) -> (String, String)
     let times = shown.record.times.get(..shown.count).unwrap_or_default();
     let to = axis::plain(last(times));
     let part = if shown.cut {
-        format!("; shown: time 0 to {to}")
+        format!("; shown: time 0 to {to} (more: clebsch plot)")
     } else {
         String::new()
     };

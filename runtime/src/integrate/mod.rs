@@ -28,7 +28,7 @@ pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
 pub use halved::{Halved, Halvings};
 pub use longest_step::{LongestStep, Unknown};
 pub use model::Model;
-pub use run::{Observer, Summary, Watch, run, run_until_stopped};
+pub use run::{LOOKS, Observer, Summary, Watch, run, run_until_stopped};
 pub use side_by_side::{Moving, SideBySide, advance_side_by_side};
 pub use stepper::{Reversible, Stepper};
 pub use steps::Steps;

@@ -18,10 +18,14 @@ pub trait Observer {
     }
 }
 
+/// At most so many nodes of a run are looked at if none but the last is sampled: looking at one takes as long as twenty
+/// explicit steps of a rigid body.
+pub const LOOKS: u64 = 10_000;
+
 /// What a run did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Number of steps made, after each of which what is watched was finite.
+    /// Number of steps made, up to the last node at which what is watched was finite.
     pub steps: u64,
     /// The node reached.
     pub node: u64,
@@ -34,8 +38,9 @@ pub struct Summary {
 }
 
 /// Makes `steps` steps, sampling the start, every `every`-th step and the end (`every = 0`: start
-/// and end only). The invariants are compared with those at the start after every step, sampled
-/// or not. Allocates before the loop only.
+/// and end only). The invariants are compared with those at the start at every sampled node; with
+/// `every = 0` at every node of a run of at most [`LOOKS`] steps, and at that many of a longer one. Allocates before
+/// the loop only.
 ///
 /// # Errors
 /// As [`run_until_stopped`], of which this is the form for runs that are worth nothing unless whole.
@@ -55,9 +60,9 @@ pub fn run(
 ///
 /// - the first [`StepError`](crate::StepError). The trajectory then stands at the node before it,
 ///   which is the last sample;
-/// - the first number that is NaN or infinite: of an invariant or its natural scale at any node, of an
+/// - the first number that is NaN or infinite: of an invariant or its natural scale at a node that is looked at, of an
 ///   observable at a node that is sampled. The trajectory stands there; summary and samples are those
-///   of the nodes before.
+///   of the nodes up to the one looked at before.
 pub fn run_until_stopped(
     trajectory: &mut dyn Trajectory,
     steps: u64,
@@ -92,6 +97,8 @@ pub struct Watch {
     every: u64,
     /// Whether the start was looked at.
     begun: bool,
+    /// The node looked at last, and what was seen up to there.
+    looked: Place,
     observables: Vec<f64>,
     invariants: Vec<f64>,
     scales: Vec<f64>,
@@ -104,6 +111,14 @@ pub struct Watch {
     summary: Summary,
 }
 
+/// How far a run has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Place {
+    steps: u64,
+    node: u64,
+    time: f64,
+}
+
 impl Watch {
     /// A run of `total` steps, of which every `every`-th is sampled, as by [`run`].
     #[must_use]
@@ -113,6 +128,11 @@ impl Watch {
             total,
             every,
             begun: false,
+            looked: Place {
+                steps: 0,
+                node: trajectory.node(),
+                time: trajectory.time(),
+            },
             observables: vec![0.0; card.observable_count()],
             invariants: vec![0.0; card.invariant_count()],
             scales: vec![0.0; card.invariant_count()],
@@ -150,22 +170,47 @@ impl Watch {
         }
         let made = self.summary.steps;
         let last = self.total.min(made.saturating_add(most));
+        let stride = match self.every {
+            0 => self.total.div_ceil(LOOKS).max(1),
+            every => every,
+        };
         for done in made.saturating_add(1)..=last {
             trajectory.step()?;
-            let sampled = done == self.total || (self.every != 0 && done % self.every == 0);
-            self.look(trajectory, sampled)?;
-            let values = self.invariants.iter().zip(&self.scales);
-            for (seen, (value, terms)) in self.seen.iter_mut().zip(values) {
-                seen.record(*value, *terms);
-            }
             let summary = &mut self.summary;
             summary.steps = done;
             summary.node = trajectory.node();
             summary.time = trajectory.time();
-            if sampled {
-                self.sample(observer);
+            if done == self.total || done % stride == 0 {
+                let sampled = done == self.total || self.every != 0;
+                self.look_on(trajectory, sampled)?;
+                if sampled {
+                    self.sample(observer);
+                }
             }
         }
+        Ok(())
+    }
+
+    /// Looks at the node at hand and adds it to what was seen; goes back to the node before if a number is not finite.
+    fn look_on(&mut self, trajectory: &dyn Trajectory, sampled: bool) -> Result<(), NotFinite> {
+        if let Err(found) = self.look(trajectory, sampled) {
+            let Place { steps, node, time } = self.looked;
+            self.summary.steps = steps;
+            self.summary.node = node;
+            self.summary.time = time;
+            return Err(NotFinite {
+                since: node,
+                ..found
+            });
+        }
+        let values = self.invariants.iter().zip(&self.scales);
+        for (seen, (value, terms)) in self.seen.iter_mut().zip(values) {
+            seen.record(*value, *terms);
+        }
+        let Summary {
+            steps, node, time, ..
+        } = self.summary;
+        self.looked = Place { steps, node, time };
         Ok(())
     }
 
@@ -193,9 +238,7 @@ impl Watch {
         if !self.begun || self.sampled == self.summary.node {
             return;
         }
-        // Everything else was looked at after the step.
-        trajectory.observe(&mut self.observables);
-        if finite(trajectory, Watched::Observable, &self.observables).is_ok() {
+        if self.look_on(trajectory, true).is_ok() {
             self.sample(observer);
         }
     }
@@ -245,6 +288,7 @@ impl Saved for Watch {
             total,
             every,
             begun,
+            looked,
             // Those of the node at hand, and written before they are read.
             observables: _,
             invariants: _,
@@ -257,6 +301,9 @@ impl Saved for Watch {
         words.same(*total);
         words.same(*every);
         begun.words(words);
+        looked.steps.words(words);
+        looked.node.words(words);
+        looked.time.words(words);
         let count = words.count(seen.len(), seen.capacity());
         seen.resize(count, Deviation::none(0.0, 0.0));
         seen.iter_mut().for_each(|seen| seen.words(words));
@@ -303,6 +350,7 @@ fn the_one(trajectory: &dyn Trajectory, watched: Watched, values: &[f64]) -> Not
     let mut found = NotFinite {
         node: trajectory.node(),
         time: trajectory.time(),
+        since: trajectory.node(),
         watched,
         // More numbers than the card names have no name.
         name: "?",

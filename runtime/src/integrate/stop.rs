@@ -8,11 +8,11 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Watched {
-    /// A component of an invariant, looked at on every node.
+    /// A component of an invariant.
     Invariant,
-    /// The natural scale of a component of an invariant, looked at on every node.
+    /// The natural scale of a component of an invariant.
     Scale,
-    /// A number of an observable, looked at on every node that is sampled.
+    /// A number of an observable.
     Observable,
 }
 
@@ -23,6 +23,8 @@ pub struct NotFinite {
     pub node: u64,
     /// The time there.
     pub time: f64,
+    /// The last node before it at which the numbers were finite, of those that were looked at; the node itself if it is the first.
+    pub since: u64,
     /// What it is a number of.
     pub watched: Watched,
     /// The name of the invariant or observable, as the card has it.
@@ -40,11 +42,18 @@ impl fmt::Display for NotFinite {
         let Self {
             node,
             time,
+            since,
             name,
             value,
             ..
         } = self;
         write!(f, "at node {node} (time {time}) ")?;
+        if node.abs_diff(*since) > 1 {
+            write!(
+                f,
+                "or between it and node {since}, which was looked at before, "
+            )?;
+        }
         // Counted from 1, as in files and plots.
         match (self.index, self.columns) {
             (None, _) => {}

@@ -300,7 +300,7 @@ impl Trajectory for Failing {
 fn a_number_that_is_none_stops_the_run_at_its_node() {
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for (watched, at, words) in [
-            // The invariants are looked at on every node, sampled or not.
+            // Every fourth node is looked at.
             (
                 Watched::Invariant,
                 0,
@@ -308,8 +308,8 @@ fn a_number_that_is_none_stops_the_run_at_its_node() {
             ),
             (
                 Watched::Invariant,
-                5,
-                "at node 5 (time 2.5) component 2 of the invariant `pair` is ",
+                8,
+                "at node 8 (time 4) or between it and node 4, which was looked at before, component 2 of the invariant `pair` is ",
             ),
             (
                 Watched::Scale,
@@ -318,13 +318,13 @@ fn a_number_that_is_none_stops_the_run_at_its_node() {
             ),
             (
                 Watched::Scale,
-                5,
-                "at node 5 (time 2.5) component 2 of the natural scale of the invariant `pair` is ",
+                8,
+                "at node 8 (time 4) or between it and node 4, which was looked at before, component 2 of the natural scale of the invariant `pair` is ",
             ),
             (
                 Watched::Observable,
                 4,
-                "at node 4 (time 2) entry (2, 3) of `Λ` is ",
+                "at node 4 (time 2) or between it and node 0, which was looked at before, entry (2, 3) of `Λ` is ",
             ),
         ] {
             let mut trajectory = Failing {
@@ -352,9 +352,10 @@ fn a_number_that_is_none_stops_the_run_at_its_node() {
             assert_eq!(found.value.to_bits(), value.to_bits());
         }
     }
-    // Large is not infinite, and what is not sampled is not observed.
+    // Large is not infinite, and a node that is not sampled is not looked at.
     for (watched, at, value) in [
-        (Watched::Invariant, 5, f64::MAX),
+        (Watched::Invariant, 4, f64::MAX),
+        (Watched::Invariant, 5, f64::NAN),
         (Watched::Observable, 5, f64::NAN),
     ] {
         let mut trajectory = Failing {

@@ -1,0 +1,264 @@
+//! Columns of a finished run by their names: `X.1`, `X_1`, `q_3`, `invariant_energy`, `time`.
+//! Takes the folder of a run; gives the numbers of a column within a range of time.
+
+use crate::case_file::archive::{Archive, Array};
+use crate::failure::Failure;
+use crate::plain::shown;
+use crate::suggestion::nearest;
+use serde_json::Value;
+use std::ops::Range;
+use std::path::Path;
+
+/// A run that is complete, or stopped.
+pub(super) struct Columns {
+    archive: Archive,
+    run: Value,
+    times: Vec<f64>,
+}
+
+/// A column within the range of time.
+#[derive(Clone, Debug)]
+pub(super) struct Series {
+    /// Its name as it was written.
+    pub name: String,
+    /// The array that it is of.
+    pub of: String,
+    /// Its numbers, one a sample.
+    pub values: Vec<f64>,
+}
+
+impl Columns {
+    /// Opens the run in a folder.
+    ///
+    /// # Errors
+    /// Usage: there is none, or its trajectory cannot be read.
+    pub fn open(folder: &Path) -> Result<Self, Failure> {
+        let file = folder.join("trajectory.npz");
+        if !file.is_file() {
+            return Err(Failure::Usage(format!(
+                "{} holds no trajectory.npz; name the folder that `clebsch run --out` wrote",
+                shown(folder)
+            )));
+        }
+        let archive = Archive::open(&file).map_err(Failure::Usage)?;
+        let text = std::fs::read_to_string(folder.join("run.json")).unwrap_or_default();
+        let run = text.parse().unwrap_or(Value::Null);
+        let times = archive.array("time").map_err(Failure::Usage)?;
+        let count = times.shape.first().copied().unwrap_or(0);
+        let times = times.numbers(0, count);
+        Ok(Self {
+            archive,
+            run,
+            times,
+        })
+    }
+
+    /// Model and case, for a picture.
+    pub fn title(&self) -> String {
+        let word = |key: &str| self.run[key].as_str().unwrap_or("?").to_owned();
+        format!("{}, case {}", word("model"), shown(word("case").as_str()))
+    }
+
+    /// One line for each array: its name and its components.
+    pub fn described(&self) -> Vec<String> {
+        let each = self.archive.names().filter_map(|name| {
+            let array = self.archive.array(name).ok()?;
+            if array.shape.first() != Some(&self.times.len()) {
+                return None;
+            }
+            let inner = array.shape.get(1..)?;
+            Some(match inner {
+                [] => name.to_owned(),
+                [n] if self.has_sites(name) => {
+                    format!("{name}_0 to {name}_{}", n.saturating_sub(1))
+                }
+                [n, r] if self.has_sites(name) => {
+                    format!("{name}_0.1 to {name}_{}.{r}", n.saturating_sub(1))
+                }
+                [n] => format!("{name}.1 to {name}.{n}"),
+                [r, c] => format!("{name}.11 to {name}.{r}{c}"),
+                more => format!("{name}, {more:?}"),
+            })
+        });
+        each.collect()
+    }
+
+    /// The samples from one time to another.
+    ///
+    /// # Errors
+    /// Usage: fewer than two samples are left.
+    pub fn range(&self, from: Option<f64>, to: Option<f64>) -> Result<Range<usize>, Failure> {
+        let (from, to) = (
+            from.unwrap_or(f64::NEG_INFINITY),
+            to.unwrap_or(f64::INFINITY),
+        );
+        let inside = |time: &f64| (from..=to).contains(time);
+        let first = self.times.iter().position(inside);
+        let last = self.times.iter().rposition(inside);
+        match (first, last) {
+            (Some(first), Some(last)) if last > first => Ok(first..last + 1),
+            _ => {
+                let times = [self.times.first(), self.times.last()];
+                let [first, last] = times.map(|t| t.copied().unwrap_or(0.0));
+                Err(Failure::Usage(format!(
+                    "fewer than two samples are within --from and --to; the run has times {first} to {last}"
+                )))
+            }
+        }
+    }
+
+    /// All columns that a name stands for: one component, or each of a vector.
+    ///
+    /// # Errors
+    /// Usage: the run has no such column.
+    pub fn all(&self, name: &str, range: &Range<usize>) -> Result<Vec<Series>, Failure> {
+        let is_vector = self.archive.has(name)
+            && !self.has_sites(name)
+            && self.archive.array(name).is_ok_and(|a| a.shape.len() == 2);
+        match is_vector {
+            false => Ok(vec![self.series(name, range)?]),
+            true => {
+                let array = self.archive.array(name).map_err(Failure::Usage)?;
+                let count = array.shape.get(1).copied().unwrap_or(0);
+                (1..=count)
+                    .map(|i| self.series(&format!("{name}.{i}"), range))
+                    .collect()
+            }
+        }
+    }
+
+    /// One column.
+    ///
+    /// # Errors
+    /// Usage: the run has no such column.
+    pub fn series(&self, name: &str, range: &Range<usize>) -> Result<Series, Failure> {
+        let (of, array, entry) = self.found(name)?;
+        let stride: usize = array.shape.iter().skip(1).product();
+        let values = range
+            .clone()
+            .filter_map(|sample| array.numbers(sample * stride + entry, 1).first().copied());
+        Ok(Series {
+            name: name.to_owned(),
+            of,
+            values: values.collect(),
+        })
+    }
+
+    /// The array of a column, and which of its entries the column is.
+    fn found(&self, name: &str) -> Result<(String, Array, usize), Failure> {
+        let splits = name
+            .char_indices()
+            .filter(|(_, c)| ['.', '_'].contains(c))
+            .map(|(at, _)| at)
+            .rev();
+        let heads = std::iter::once((name, "")).chain(splits.map(|at| name.split_at(at)));
+        for (head, component) in heads {
+            if !self.archive.has(head) {
+                continue;
+            }
+            let array = self.archive.array(head).map_err(Failure::Usage)?;
+            if array.shape.first() != Some(&self.times.len()) {
+                continue;
+            }
+            let inner = array.shape.get(1..).unwrap_or_default();
+            return match entry(component, inner, self.has_sites(head)) {
+                Some(entry) => Ok((head.to_owned(), array, entry)),
+                None => Err(Failure::Usage(format!(
+                    "`{}` names no single column of `{head}`; give {}",
+                    shown(name),
+                    example(head, inner, self.has_sites(head))
+                ))),
+            };
+        }
+        let near = match nearest(name, self.archive.names()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "`clebsch plot DIR` lists the columns".to_owned(),
+        };
+        Err(Failure::Usage(format!(
+            "the run has no column `{}`; {near}",
+            shown(name)
+        )))
+    }
+
+    /// Whether the first index behind the sample is a site, counted from 0.
+    fn has_sites(&self, array: &str) -> bool {
+        let initial = &self.run["initial"];
+        let copy = |site: usize| initial.get(format!("{array}_{site}")).is_some();
+        // A chain's values are written site by site; an end may hold those of the first one.
+        (copy(0) || copy(1)) && initial.get(array).is_none()
+    }
+}
+
+/// The entry that a component names: none for a single number.
+fn entry(component: &str, inner: &[usize], has_sites: bool) -> Option<usize> {
+    let parts: Vec<&str> = component
+        .split(['.', '_'])
+        .filter(|part| !part.is_empty())
+        .collect();
+    let number = |text: &str| text.parse::<usize>().ok();
+    let counted = |text: &str, most: usize| number(text)?.checked_sub(1).filter(|i| *i < most);
+    let lettered = |text: &str, most: usize| {
+        let letter = ["x", "y", "z"].iter().position(|letter| *letter == text);
+        letter.filter(|_| most == 3).or_else(|| counted(text, most))
+    };
+    let pair = |text: &str, r: usize, c: usize| {
+        let (row, column) = text
+            .is_ascii()
+            .then(|| text.split_at_checked(1))
+            .flatten()?;
+        Some(counted(row, r)? * c + counted(column, c)?)
+    };
+    match (inner, parts.as_slice(), has_sites) {
+        ([], [], _) => Some(0),
+        ([n], [site], true) => number(site).filter(|site| site < n),
+        ([n, r], [site, row], true) => {
+            Some(number(site).filter(|site| site < n)? * r + lettered(row, *r)?)
+        }
+        ([n, r, c], [site, both], true) => {
+            Some(number(site).filter(|site| site < n)? * r * c + pair(both, *r, *c)?)
+        }
+        ([n], [row], false) => lettered(row, *n),
+        ([r, c], [both], false) => pair(both, *r, *c),
+        ([r, c], [row, column], false) => Some(counted(row, *r)? * c + counted(column, *c)?),
+        _ => None,
+    }
+}
+
+/// A column of an array, as it is written.
+fn example(name: &str, inner: &[usize], has_sites: bool) -> String {
+    match (inner, has_sites) {
+        ([_], true) => format!("a site, {name}_0"),
+        ([_, _], true) => format!("a site and a component, {name}_0.1"),
+        (_, true) => format!("a site and an entry, {name}_0.11"),
+        ([], _) => format!("`{name}` itself"),
+        ([n], _) => format!("a component, {name}.1 to {name}.{n}"),
+        (_, false) => format!("an entry, {name}.11"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::entry;
+
+    #[test]
+    fn components_are_counted_from_one_and_sites_from_zero() {
+        for (component, inner, sites, at) in [
+            ("", &[][..], false, Some(0)),
+            (".1", &[3], false, Some(0)),
+            ("_3", &[3], false, Some(2)),
+            (".z", &[3], false, Some(2)),
+            (".4", &[3], false, None),
+            (".0", &[3], false, None),
+            (".23", &[3, 3], false, Some(5)),
+            (".2_3", &[3, 3], false, Some(5)),
+            ("_0", &[5], true, Some(0)),
+            ("_5", &[5], true, None),
+            ("_2.y", &[5, 3], true, Some(7)),
+            ("_1.12", &[5, 2, 2], true, Some(5)),
+            ("", &[3], false, None),
+            (".é", &[3, 3], false, None),
+        ] {
+            assert_eq!(entry(component, inner, sites), at, "{component}");
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The pictures of `clebsch plot`. Takes series; gives SVG.
+
+use super::columns::Series;
+use crate::plots::axis::{Axis, plain};
+use crate::plots::curve::{Curve, Stroke};
+use crate::plots::figure::{Figure, Panel};
+use crate::plots::reduce;
+
+/// What tells a picture of this command from any other file.
+pub(super) const MARK: &str = "clebsch plot";
+
+/// Most points of a curve that is not a function of time.
+const MOST: usize = 20_000;
+
+/// Width over height of a chart of the size below.
+const SHAPE: f64 = 1.45;
+const HEIGHT: u32 = 520;
+
+/// Series against time, those of one array in one panel.
+pub(super) fn against_time(title: &str, time: &Series, all: &[Series]) -> Result<String, String> {
+    let mut panels: Vec<(String, Vec<Curve>)> = Vec::new();
+    for series in all {
+        let points = reduce::extremes(&time.values, series.values.iter().copied());
+        match panels.iter_mut().find(|(of, _)| *of == series.of) {
+            Some((_, curves)) => curves.push(curve(series, curves.len(), points)),
+            None => panels.push((series.of.clone(), vec![curve(series, 0, points)])),
+        }
+    }
+    let panels = panels.into_iter().map(|(of, curves)| Panel {
+        map: None,
+        caption: of.clone(),
+        y_label: of,
+        y: Axis::around(&curves),
+        height: 240.max(60 + 17 * u32::try_from(curves.len()).unwrap_or(0)),
+        curves,
+    });
+    let (from, to) = ends(time);
+    let figure = Figure {
+        paper: false,
+        title: title.to_owned(),
+        subtitle: format!("{MARK}: time {} to {}", plain(from), plain(to)),
+        x: Axis::linear(from, to, 8),
+        x_label: "time t".to_owned(),
+        panels: panels.collect(),
+    };
+    figure.svg()
+}
+
+/// Series against another one. Components of one vector are drawn to one scale.
+pub(super) fn against(
+    title: &str,
+    time: &Series,
+    x: &Series,
+    all: &[Series],
+) -> Result<String, String> {
+    let curves = all.iter().enumerate().map(|(index, series)| {
+        let stride = series.values.len().div_ceil(MOST).max(1);
+        let points = x.values.iter().copied().zip(series.values.iter().copied());
+        curve(series, index, points.step_by(stride).collect())
+    });
+    let curves: Vec<Curve> = curves.collect();
+    let mut across = spread(x.values.iter().copied());
+    let mut up = spread(curves.iter().flat_map(|c| c.points.iter().map(|p| p.1)));
+    if all.iter().all(|series| series.of == x.of) {
+        let unit = ((across.1 - across.0) / SHAPE).max(up.1 - up.0);
+        across = widened(across, unit * SHAPE);
+        up = widened(up, unit);
+    }
+    let names: Vec<&str> = all.iter().map(|series| series.name.as_str()).collect();
+    let (from, to) = ends(time);
+    let figure = Figure {
+        paper: false,
+        title: title.to_owned(),
+        subtitle: format!("{MARK}: time {} to {}", plain(from), plain(to)),
+        x: Axis::linear(across.0, across.1, 8),
+        x_label: x.name.clone(),
+        panels: vec![Panel {
+            map: None,
+            caption: format!("{} against {}", names.join(", "), x.name),
+            y_label: names.join(", "),
+            y: Axis::linear(up.0, up.1, 6),
+            height: HEIGHT,
+            curves,
+        }],
+    };
+    figure.svg()
+}
+
+fn curve(series: &Series, index: usize, points: Vec<(f64, f64)>) -> Curve {
+    Curve {
+        label: series.name.clone(),
+        note: None,
+        points,
+        stroke: Stroke::number(index),
+    }
+}
+
+fn ends(time: &Series) -> (f64, f64) {
+    let [first, last] = [time.values.first(), time.values.last()];
+    (first.copied().unwrap_or(0.0), last.copied().unwrap_or(1.0))
+}
+
+/// The range of values with a margin.
+fn spread(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let finite = values.filter(|value| value.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    if low > high {
+        return (0.0, 1.0);
+    }
+    // A constant is drawn in the middle of its own size.
+    let margin = match high > low {
+        true => 0.05 * (high - low),
+        false => (0.5 * high.abs()).max(0.5),
+    };
+    (low - margin, high + margin)
+}
+
+/// The range about the same middle, of this length.
+fn widened((low, high): (f64, f64), length: f64) -> (f64, f64) {
+    let middle = 0.5 * (low + high);
+    (middle - 0.5 * length, middle + 0.5 * length)
+}

@@ -1,0 +1,98 @@
+//! `clebsch plot`: any columns of a finished run, against time or against each other.
+//! Takes the folder of a run and the names of columns; gives one SVG.
+
+mod columns;
+mod draw;
+
+use crate::Streams;
+use crate::failure::{DONE, Failure};
+use crate::plain::shown;
+use clap::ArgMatches;
+use columns::{Columns, Series};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Runs the command.
+///
+/// # Errors
+/// Usage: no run in the folder, an unknown column, or an empty range of time; failed: the file system gives up.
+pub(crate) fn plot(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result<u8, Failure> {
+    let folder = matches
+        .get_one::<PathBuf>("dir")
+        .map_or(Path::new("."), PathBuf::as_path);
+    let columns = Columns::open(folder)?;
+    let y: Vec<&String> = matches.get_many("y").into_iter().flatten().collect();
+    let x = matches.get_one::<String>("x").map(String::as_str);
+    if y.is_empty() {
+        writeln!(
+            streams.out,
+            "columns of {}; draw them by --y NAME, against time or by --x NAME",
+            shown(folder)
+        )?;
+        for line in columns.described() {
+            writeln!(streams.out, "  {line}")?;
+        }
+        return Ok(DONE);
+    }
+    let number = |key: &str| matches.get_one::<f64>(key).copied();
+    let range = columns.range(number("from"), number("to"))?;
+    let time = columns.series("time", &range)?;
+    let across = x.map(|x| columns.series(x, &range)).transpose()?;
+    let mut up = Vec::new();
+    for name in &y {
+        up.extend(columns.all(name, &range)?);
+    }
+    let title = columns.title();
+    let drawn = match &across {
+        None => draw::against_time(&title, &time, &up),
+        Some(across) => draw::against(&title, &time, across, &up),
+    };
+    let drawn = drawn.map_err(|error| Failure::Failed(format!("cannot draw: {error}")))?;
+    let name = match matches.get_one::<PathBuf>("out") {
+        Some(name) => name.clone(),
+        None => folder.join(file_name(across.as_ref(), &y)),
+    };
+    written(&name, &drawn, matches.get_flag("force"))?;
+    writeln!(streams.out, "written: {}", shown(&name))?;
+    Ok(DONE)
+}
+
+/// `plot-q.svg`, or `plot-q-p.svg` for p against q.
+fn file_name(x: Option<&Series>, y: &[&String]) -> String {
+    let names = x.map(|x| x.name.clone()).into_iter();
+    let names: Vec<String> = names.chain(y.iter().map(|name| (*name).clone())).collect();
+    let plain = |c: char| {
+        if c.is_alphanumeric() || "-_".contains(c) {
+            c
+        } else {
+            '_'
+        }
+    };
+    let names = names
+        .join("-")
+        .chars()
+        .map(plain)
+        .take(80)
+        .collect::<String>();
+    format!("plot-{names}.svg")
+}
+
+/// Writes a picture whole, or not at all.
+fn written(name: &Path, text: &str, force: bool) -> Result<(), Failure> {
+    // A picture of this command may be drawn anew.
+    let is_own = fs::read_to_string(name).is_ok_and(|old| old.contains(draw::MARK));
+    if name.exists() && !force && !is_own {
+        return Err(Failure::Usage(format!(
+            "{} exists and is not a picture of `clebsch plot`; give another --out, or --force",
+            shown(name)
+        )));
+    }
+    let mut beside = name.as_os_str().to_owned();
+    beside.push(".part");
+    let beside = PathBuf::from(beside);
+    let done = fs::write(&beside, text).and_then(|()| fs::rename(&beside, name));
+    done.map_err(|error| {
+        let _ = fs::remove_file(&beside);
+        Failure::io(&format!("cannot write {}", shown(name)), &error)
+    })
+}
