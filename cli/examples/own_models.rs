@@ -42,7 +42,7 @@ pub fn gallery() -> Gallery {
             card: Compass::CARD,
             cases: vec![swinging],
         }],
-        files: Vec::new(),
+        ..Gallery::default()
     }
 }
 

@@ -67,7 +67,14 @@ pub(crate) fn resolved<'a>(
             compiled: true,
         }),
         Named::Text(text) => {
-            let case = case_of(&text, case)?;
+            let case = match case_of(&text, case) {
+                Ok(case) => case,
+                Err(no_case) => {
+                    // What is wrong with the model comes first.
+                    entry(&text, &WhichCase::First, streams)?;
+                    return Err(no_case);
+                }
+            };
             let entry = entry(&text, &case, streams)?;
             Ok(Resolved {
                 entry: Cow::Owned(entry),
@@ -106,8 +113,7 @@ pub(crate) fn parts<'n>(
     case: Option<&'n str>,
 ) -> Result<(&'n str, Option<&'n str>), Failure> {
     match name.rsplit_once(':') {
-        Some((model, own)) if !Path::new(name).exists() && !own.contains(['/', '\\']) => match case
-        {
+        Some((model, own)) if is_name(own) && !Path::new(name).exists() => match case {
             None => Ok((model, Some(own))),
             Some(_) => Err(Failure::Usage(format!(
                 "`{}` names a case, and --case names another one; give one of them",
@@ -116,6 +122,14 @@ pub(crate) fn parts<'n>(
         },
         _ => Ok((name, case)),
     }
+}
+
+/// Whether a text can be the name of a case.
+fn is_name(text: &str) -> bool {
+    !text.is_empty()
+        && text
+            .chars()
+            .all(|c| c.is_alphanumeric() || "-_.".contains(c))
 }
 
 /// What a name stands for: a model of the gallery, else a file. `but` ends the message for a case file.

@@ -49,7 +49,8 @@ impl Measured {
             finer.case.steps = plan.case.steps.saturating_mul(parts);
             // The start and the end alone.
             finer.every = finer.case.steps;
-            let (course, _) = generated(card, &finer, progress)?;
+            let (course, _) =
+                generated(card, &finer, progress).map_err(|failure| at(h, failure))?;
             runs.push((h, finer.case.steps, course.record));
         }
         // The error of a reversible step has even powers of h alone.
@@ -77,6 +78,14 @@ impl Measured {
             });
         }
         Ok(Self { names, levels })
+    }
+}
+
+/// A failure of the run with this step size.
+fn at(h: f64, failure: Failure) -> Failure {
+    match failure {
+        Failure::Failed(why) => Failure::Failed(format!("with h = {h}: {why}")),
+        other => other,
     }
 }
 

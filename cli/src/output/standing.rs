@@ -4,6 +4,7 @@
 use super::vtk;
 use crate::failure::Failure;
 use crate::plain::shown;
+use crate::plot::is_drawn;
 use std::ffi::OsString;
 use std::fs::{self, DirEntry};
 use std::io;
@@ -69,7 +70,8 @@ pub(super) fn look(folder: &Path, known: &[&str]) -> io::Result<Result<Standing,
             }
             continue;
         }
-        if !found.is_file() || !known.iter().any(|file| name == **file) {
+        let is_known = known.iter().any(|file| name == **file) || is_drawn(&entry.path());
+        if !found.is_file() || !is_known {
             return Ok(Err(name));
         }
         files.push((name, found.len(), found.modified().ok()));

@@ -7,7 +7,7 @@ use crate::plots::figure::{Figure, Panel};
 use crate::plots::reduce;
 
 /// What tells a picture of this command from any other file.
-pub(super) const MARK: &str = "clebsch plot";
+pub(super) const MARK: &str = "clebsch plot: time ";
 
 /// Most points of a curve that is not a function of time.
 const MOST: usize = 20_000;
@@ -38,7 +38,7 @@ pub(super) fn against_time(title: &str, time: &Series, all: &[Series]) -> Result
     let figure = Figure {
         paper: false,
         title: title.to_owned(),
-        subtitle: format!("{MARK}: time {} to {}", plain(from), plain(to)),
+        subtitle: format!("{MARK}{} to {}", plain(from), plain(to)),
         x: Axis::linear(from, to, 8),
         x_label: "time t".to_owned(),
         panels: panels.collect(),
@@ -71,7 +71,7 @@ pub(super) fn against(
     let figure = Figure {
         paper: false,
         title: title.to_owned(),
-        subtitle: format!("{MARK}: time {} to {}", plain(from), plain(to)),
+        subtitle: format!("{MARK}{} to {}", plain(from), plain(to)),
         x: Axis::linear(across.0, across.1, 8),
         x_label: x.name.clone(),
         panels: vec![Panel {

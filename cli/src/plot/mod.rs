@@ -77,11 +77,15 @@ fn file_name(x: Option<&Series>, y: &[&String]) -> String {
     format!("plot-{names}.svg")
 }
 
+/// Whether a file is a picture of this command, which may be replaced.
+pub(crate) fn is_drawn(file: &Path) -> bool {
+    let is_svg = file.extension().is_some_and(|ending| ending == "svg");
+    is_svg && fs::read_to_string(file).is_ok_and(|text| text.contains(draw::MARK))
+}
+
 /// Writes a picture whole, or not at all.
 fn written(name: &Path, text: &str, force: bool) -> Result<(), Failure> {
-    // A picture of this command may be drawn anew.
-    let is_own = fs::read_to_string(name).is_ok_and(|old| old.contains(draw::MARK));
-    if name.exists() && !force && !is_own {
+    if name.exists() && !force && !is_drawn(name) {
         return Err(Failure::Usage(format!(
             "{} exists and is not a picture of `clebsch plot`; give another --out, or --force",
             shown(name)

@@ -267,8 +267,14 @@ pub fn shipped(arguments: &[&str]) -> Done {
 
 /// Runs the program itself: a process opens so many model files and no more, and tests share one.
 pub fn program(arguments: &[&str]) -> Done {
+    program_in(".", arguments)
+}
+
+/// The same in another folder.
+pub fn program_in(folder: &str, arguments: &[&str]) -> Done {
     let done = std::process::Command::new(env!("CARGO_BIN_EXE_clebsch"))
         .args(arguments)
+        .current_dir(folder)
         .output()
         .expect("runs");
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();

@@ -341,7 +341,9 @@ fn a_matrix_field_with_second_moments_runs_from_its_file() {
         "model Drifting { param I0: Sym<3>; field Q: Mat<3>; lagrangian = tr((next(Q) - Q)*I0*(next(Q) - Q)^T)/(2*h); }",
     );
     let out = folder.path("out");
-    let done = clebsch(&["run", &model, "--steps", "10", "--out", &out]);
+    let done = clebsch(&[
+        "run", &model, "--case", "sample", "--steps", "10", "--out", &out,
+    ]);
     assert_eq!(done.code, 0, "{}{}", done.out, done.err);
     let csv = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
     let last = csv.lines().last().expect("a row");

@@ -9,8 +9,8 @@ fn list_shows_models_with_cases_and_one_line() {
     assert_eq!(done.code, 0);
     assert_eq!(
         done.out,
-        "model           cases         what it is\n\
-         harmonic-rotor  swing, quiet  Rotor on a fixed axis with a restoring torque.\n"
+        "model           family  cases         what it is\n\
+         harmonic-rotor  rigid   swing, quiet  Rotor on a fixed axis with a restoring torque.\n"
     );
     let done = clebsch(&["list", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&done.out).expect("one JSON object");
@@ -21,16 +21,16 @@ fn list_shows_models_with_cases_and_one_line() {
 
 #[test]
 fn a_run_prints_what_was_derived_and_a_table() {
-    let done = clebsch(&["run", "harmonic-rotor"]);
+    let done = clebsch(&["run", "harmonic-rotor", "--verbose"]);
     assert_eq!((done.code, done.err.as_str()), (0, ""));
     for words in [
         "p' = p - h κ sin θ\nθ' = θ + h p / I\n",
-        "solver: explicit; order 2, reversible\n",
-        "case swing: Swings \"widely\".\n",
-        "h = 0.05, 2000 steps, to time 100\n",
-        "invariant     scale  max drift  final drift  bound  verdict       formula\n",
-        "energy     5.627e-1",
-        "across      1.000e0          0            0  1e-12  within bound  (μ₁, μ₂)\n",
+        "solver: explicit; reversible\n",
+        "harmonic-rotor, case swing: Swings \"widely\".\n",
+        "h = 0.05, 2000 steps, to time 100; order 2\n",
+        "invariant   scale  max drift  final drift  bound  verdict       formula\n",
+        "energy     0.5627",
+        "across          1          0            0  1e-12  within bound  (μ₁, μ₂)\n",
     ] {
         assert!(
             done.out.contains(words),
@@ -95,7 +95,7 @@ fn every_wrong_request_is_named() {
         (
             &["case", "zzz"],
             2,
-            &["no model `zzz`; known: harmonic-rotor"],
+            &["no model `zzz`; `clebsch list` shows all models"],
         ),
         (
             &["case", "harmonic-rotor", "--case", "quite"],
@@ -191,7 +191,7 @@ fn every_wrong_request_is_named() {
         (
             &["derive", "harmonic-roto", "--format", "text"],
             2,
-            &["neither a model nor a file; did you mean"],
+            &["no model `harmonic-roto`; did you mean"],
         ),
         (
             &["derive", "harmonic-rotor", "--format", "pdf"],

@@ -44,7 +44,7 @@ fn every_fluid_is_derived_and_runs_its_case() {
             "{name}: {}{}\n{}",
             done.out, done.err, sample.out
         );
-        let same = clebsch(&["run", &model, "--steps", "20"]);
+        let same = clebsch(&["run", &model, "--case", "sample", "--steps", "20"]);
         assert_eq!((done.out, done.err), (same.out, same.err), "{name}");
     }
 }

@@ -130,7 +130,7 @@ fn rotations_of_other_dimensions_run_beside_bodies_seen_from_space() {
             ),
         );
         for solver in ["", "davenport", "kappa", "lie-newton", "sign"] {
-            let mut arguments = vec!["run", &model, "--steps", "20"];
+            let mut arguments = vec!["run", &model, "--case", "sample", "--steps", "20"];
             if !solver.is_empty() {
                 arguments.extend(["--solver", solver]);
             }

@@ -256,7 +256,15 @@ fn every_model_is_derived_and_runs_its_case() {
             assert_eq!(done.code, 0, "{name} {format}: {}", done.err);
             assert!(done.out.contains("Invariants"), "{name} {format}");
         }
-        let done = clebsch(&["run", &model, "--case", &case, "--steps", "200"]);
+        let done = clebsch(&[
+            "run",
+            &model,
+            "--case",
+            &case,
+            "--steps",
+            "200",
+            "--verbose",
+        ]);
         assert_eq!(done.code, 0, "{name}: {}{}", done.out, done.err);
         assert!(
             done.out.contains("lattice              N = "),
@@ -274,7 +282,7 @@ fn every_model_is_derived_and_runs_its_case() {
             assert_eq!(done.code, 2, "{name}: {}{}", done.out, done.err);
             assert!(done.err.contains("off the constraint"), "{}", done.err);
             assert!(sample.out.contains("must satisfy them"), "{}", sample.out);
-            let done = clebsch(&["run", &model]);
+            let done = clebsch(&["run", &model, "--case", "sample"]);
             assert_eq!(done.code, 2, "{name}: {}{}", done.out, done.err);
             let way = "print them by `clebsch case ";
             assert!(done.err.contains(way), "{}", done.err);
@@ -285,7 +293,7 @@ fn every_model_is_derived_and_runs_its_case() {
             "{name}: {}{}\n{}",
             done.out, done.err, sample.out
         );
-        let same = clebsch(&["run", &model, "--steps", "20"]);
+        let same = clebsch(&["run", &model, "--case", "sample", "--steps", "20"]);
         assert_eq!((done.out, done.err), (same.out, same.err), "{name}");
     }
 }
@@ -452,6 +460,7 @@ fn lists_hold_what_is_given_at_an_end_too() {
             &file,
             "--steps",
             "5",
+            "--verbose",
         ]);
         assert!(
             (done.out.clone() + &done.err).contains(expected),
@@ -486,7 +495,7 @@ fn a_line_of_a_hundred_thousand_sites_runs() {
         shipped("toda-chain.clebsch"),
         folder.write("wave.toml", &wave(100_000)),
     );
-    let done = clebsch(&["run", &model, "--case", &case, "--out", &out]);
+    let done = clebsch(&["run", &model, "--case", &case, "--out", &out, "--verbose"]);
     assert_eq!(done.code, 0, "{}{}", done.out, done.err);
     for part in [
         "lattice              N = 100000, periodic",

@@ -101,7 +101,10 @@ fn a_model_outside_the_gallery_gives_a_case_that_runs_and_compares() {
     assert_eq!(run.code, 0, "{}", run.err);
     assert!(run.out.contains("energy"), "{}", run.out);
     // Without a case, the sample.
-    let sample = on(&gallery, &["run", &file, "--steps", "500"]);
+    let sample = on(
+        &gallery,
+        &["run", &file, "--case", "sample", "--steps", "500"],
+    );
     assert_eq!(sample.code, 0, "{}", sample.err);
     let compared = on(
         &gallery,
@@ -138,11 +141,7 @@ fn a_file_without_a_model_that_runs_is_told_as_derive_tells_it() {
         let derived = on(&gallery, &["derive", missing]);
         let done = on(&gallery, &["run", missing]);
         assert_eq!((done.code, &done.err), (2, &derived.err));
-        assert!(
-            done.err.contains("neither a model nor a file"),
-            "{}",
-            done.err
-        );
+        assert!(done.err.contains("there is no model file"), "{}", done.err);
     }
 }
 
@@ -170,7 +169,10 @@ fn a_warning_of_the_derivation_is_told() {
     let file = folder.write("beam.clebsch", &text);
     let derived = on(&gallery, &["derive", &file]);
     assert!(derived.err.contains("warning"), "{}", derived.err);
-    let run = on(&gallery, &["run", &file, "--steps", "10"]);
+    let run = on(
+        &gallery,
+        &["run", &file, "--case", "sample", "--steps", "10"],
+    );
     assert_eq!((run.code, run.err), (0, derived.err));
 }
 
@@ -182,7 +184,9 @@ fn a_comparison_of_a_file_says_what_it_measures_against() {
     let out = folder.path("out");
     let done = on(
         &gallery,
-        &["compare", &file, "--steps", "40", "--out", &out],
+        &[
+            "compare", &file, "--case", "sample", "--steps", "40", "--out", &out,
+        ],
     );
     assert_eq!(done.code, 0, "{}", done.err);
     let said =
@@ -211,7 +215,12 @@ fn numbers_are_drawn_by_their_names() {
         let v = next(b) - b; lagrangian = (u*u + dot(v, v))/(2*h) - (h/2)*k*(a*a + dot(b, b)); }";
     let file = folder.write("pair.clebsch", text);
     let out = folder.path("out");
-    let done = on(&gallery, &["run", &file, "--steps", "40", "--out", &out]);
+    let done = on(
+        &gallery,
+        &[
+            "run", &file, "--case", "sample", "--steps", "40", "--out", &out,
+        ],
+    );
     assert_eq!(done.code, 0, "{}", done.err);
     let plots = std::fs::read_dir(&out).expect("results");
     let plots = plots.filter_map(|entry| {

@@ -15,7 +15,11 @@ use std::fs;
 fn it_lists_runs_and_derives_its_models() {
     let done = on(&gallery(), &["list"]);
     assert_eq!(done.code, 0, "{}", done.err);
-    assert!(done.out.contains("\ncompass  swinging  "), "{}", done.out);
+    assert!(
+        done.out.contains("\ncompass  rigid   swinging  "),
+        "{}",
+        done.out
+    );
 
     let folder = Folder::new("own_models");
     let case = folder.write("my.toml", &on(&gallery(), &["case", "compass"]).out);

@@ -51,7 +51,7 @@ fn points_on_a_line_are_a_chain_and_numbers_a_profile() {
          lagrangian = m*dot(next(q) - q, next(q) - q)/(2*h) + m*(next(u) - u)^2/(2*h)
          - h*c*dot(next(q, i) - q, next(q, i) - q)/2 - h*c*(next(u, i) - u)^2/2; }",
     );
-    let page = page(&folder, &[&model, "--steps", "20"]);
+    let page = page(&folder, &[&model, "--case", "sample", "--steps", "20"]);
     let scene = data(&page);
     let chains = scene["chains"].as_array().expect("chains");
     assert_eq!(chains.len(), 2);
@@ -104,7 +104,7 @@ fn a_body_of_a_segment_is_midway_between_its_nodes() {
     ] {
         let folder = Folder::new(&format!("page-rod-{name}"));
         let model = folder.write("rod.clebsch", &rod(statements, "segments"));
-        let page = page(&folder, &[&model, "--steps", "5"]);
+        let page = page(&folder, &[&model, "--case", "sample", "--steps", "5"]);
         let (bodies, mut points) = first(&data(&page));
         let run = std::fs::read_to_string(folder.path("out/run.json")).expect("results");
         let run: serde_json::Value = serde_json::from_str(&run).expect("JSON");
@@ -131,7 +131,10 @@ fn a_body_of_a_node_is_at_its_point_and_others_stand_in_one_row() {
     let folder = Folder::new("page-nodes");
     let ends = "end i = 0 { pinned { x = given; } }";
     let model = folder.write("rod.clebsch", &rod(ends, "nodes"));
-    let (bodies, points) = first(&data(&page(&folder, &[&model, "--steps", "5"])));
+    let (bodies, points) = first(&data(&page(
+        &folder,
+        &[&model, "--case", "sample", "--steps", "5"],
+    )));
     assert_eq!(bodies[1..], points[..bodies.len() - 1]);
     let folder = Folder::new("page-two-groups");
     let model = folder.write(
@@ -141,7 +144,10 @@ fn a_body_of_a_node_is_at_its_point_and_others_stand_in_one_row() {
          constraint next(A) = A*V; constraint next(B) = B*W;
          lagrangian = -tr(J*V)/h - tr(J*W)/h + h*c*tr(A^T*B) + h*c*tr(A^T*next(A, i)); }",
     );
-    let scene = data(&page(&folder, &[&model, "--steps", "5"]));
+    let scene = data(&page(
+        &folder,
+        &[&model, "--case", "sample", "--steps", "5"],
+    ));
     let mut places: Vec<String> = scene["bodies"]
         .as_array()
         .expect("bodies")

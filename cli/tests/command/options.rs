@@ -1,0 +1,283 @@
+//! Options that replace numbers of a case, and how much a run looks at and prints.
+
+use super::common::{Folder, shipped};
+use std::fs;
+
+/// The rows of a CSV, without its head.
+fn rows(file: &str) -> Vec<Vec<f64>> {
+    let text = fs::read_to_string(file).expect("is written");
+    let rows = text.lines().skip(1);
+    rows.map(|row| {
+        row.split(',')
+            .map(|x| x.parse().expect("a number"))
+            .collect()
+    })
+    .collect()
+}
+
+#[test]
+fn a_run_ends_at_the_node_nearest_to_a_time() {
+    for (arguments, said) in [
+        (&["--until", "10"][..], "h = 0.05, 200 steps, to time 10;"),
+        (
+            &["--until", "10", "--h", "0.3"],
+            "h = 0.3, 33 steps, to time 9.9;",
+        ),
+        (&["--until", "0.001"], "h = 0.05, 1 step, to time 0.05;"),
+    ] {
+        let done = shipped(&[&["run", "kepler", "--check", "none"], arguments].concat());
+        assert!(done.out.contains(said), "{}{}", done.out, done.err);
+    }
+    for wrong in [
+        &["--until", "10", "--steps", "3"][..],
+        &["--until", "-1"],
+        &["--until", "nan"],
+    ] {
+        assert_eq!(
+            shipped(&[&["run", "kepler"], wrong].concat()).code,
+            2,
+            "{wrong:?}"
+        );
+    }
+    let many = shipped(&["run", "kepler", "--until", "1e300"]);
+    assert!(many.err.contains("--until 1"), "{}", many.err);
+}
+
+#[test]
+fn quantities_are_set_by_name_and_component() {
+    let folder = Folder::new("options-set");
+    let out = folder.path("out");
+    let run = [
+        "run",
+        "kepler",
+        "--steps",
+        "1",
+        "--out",
+        &out,
+        "--set",
+        "X.x=1.5",
+        "--set",
+        "momentum=0,0.5,0.25",
+        "--set",
+        "k=2",
+    ];
+    let done = shipped(&run);
+    assert!(done.code != 2, "{}", done.err);
+    let start = rows(&format!("{out}/trajectory.csv")).remove(0);
+    assert_eq!(start[2..8], [1.5, 0.0, 0.0, 0.0, 0.5, 0.25]);
+    let text = fs::read_to_string(format!("{out}/run.json")).expect("is written");
+    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(json["parameters"]["k"], 2.0);
+    assert_eq!(json["arguments"]["set"][0], "X.x=1.5");
+    for (set, words) in [
+        ("X=1", "`X` has 3 numbers; name one, such as X.1"),
+        ("X=1,2", "`X` has 3 components, and 2 values are given"),
+        ("k=1,2", "`k` takes one number"),
+        (
+            "q=1",
+            "`kepler` has no such parameter or initial value; it has m, k, X, momentum",
+        ),
+        ("k=two", "`two` is not a finite number"),
+        ("k", "give NAME=VALUE"),
+    ] {
+        let done = shipped(&["run", "kepler", "--set", set]);
+        assert_eq!(done.code, 2, "{set}");
+        assert!(done.err.contains(words), "{set}: {}", done.err);
+    }
+    // A value that the model refuses is told by the option, and not by a line of the case.
+    let done = shipped(&["run", "heavy-top", "--set", "J.11=-5"]);
+    assert_eq!(done.code, 2);
+    assert!(
+        done.err.contains("--set J.11: negative second moment"),
+        "{}",
+        done.err
+    );
+}
+
+#[test]
+fn a_sweep_over_the_step_keeps_the_time() {
+    let folder = Folder::new("options-sweep");
+    let sweep = |name: &str, more: &[&str]| {
+        let out = folder.path(name);
+        let all = [
+            &[
+                "sweep",
+                "kepler",
+                "--vary",
+                "h=0.1,0.05,0.025",
+                "--out",
+                &out,
+            ],
+            more,
+        ]
+        .concat();
+        assert_eq!(shipped(&all).code, 0);
+        let rows = rows(&format!("{out}/sweep.csv"));
+        rows.iter().map(|row| [row[3], row[4]]).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        sweep("until", &["--until", "2"]),
+        [[20.0, 2.0], [40.0, 2.0], [80.0, 2.0]]
+    );
+    assert_eq!(
+        sweep("steps", &["--steps", "4"]),
+        [[4.0, 0.4], [4.0, 0.2], [4.0, 0.1]]
+    );
+}
+
+/// At time t the body of the circular case is at (cos t, 0.8 sin t, 0.6 sin t).
+#[test]
+fn orders_are_measured_against_the_limit() {
+    let folder = Folder::new("options-converge");
+    let out = folder.path("converged");
+    let done = shipped(&[
+        "converge", "kepler", "--h", "0.1", "--until", "10", "--out", &out,
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let levels = rows(&format!("{out}/convergence.csv"));
+    assert_eq!(levels.len(), 6);
+    for (level, row) in levels.iter().enumerate() {
+        let steps = 100 << level;
+        assert_eq!(row[1], f64::from(steps));
+        let run = folder.path(&format!("run-{level}"));
+        let (h, steps) = (format!("{}", row[0]), steps.to_string());
+        shipped(&[
+            "run", "kepler", "--h", &h, "--steps", &steps, "--every", &steps, "--check", "none",
+            "--out", &run,
+        ]);
+        let last = rows(&format!("{run}/trajectory.csv")).pop().expect("a row");
+        let (sine, cosine) = 10_f64.sin_cos();
+        let exact = [cosine, 0.8 * sine, 0.6 * sine];
+        let distance = exact
+            .iter()
+            .zip(&last[2..5])
+            .map(|(a, b)| (a - b).powi(2))
+            .sum::<f64>()
+            .sqrt();
+        // The extrapolation is far better than the finest run.
+        assert!((row[2] - distance).abs() < 1e-8, "{} {distance}", row[2]);
+        if level > 0 {
+            assert!(
+                (row[3] - 2.0).abs() < 0.02 && (row[5] - 2.0).abs() < 0.02,
+                "{row:?}"
+            );
+        }
+    }
+    assert!(
+        fs::read_to_string(format!("{out}/convergence.svg"))
+            .expect("a plot")
+            .contains("order 2")
+    );
+    let order = |arguments: &[&str]| {
+        let done = shipped(&[&["converge"], arguments, &["--json"]].concat());
+        let json: serde_json::Value = serde_json::from_str(&done.out).expect(&done.err);
+        json["levels"][3]["orders"][0].as_f64().expect("an order")
+    };
+    let fourth = order(&["kepler", "--order", "4", "--h", "0.2", "--until", "10"]);
+    assert!((fourth - 4.0).abs() < 0.1, "{fourth}");
+    // The mass at the first end of a step alone.
+    let text =
+        "model Uneven { param m: Real; field x: Real; lagrangian = m*x^2*(next(x) - x)^2/(2*h); }";
+    let file = folder.write("uneven.clebsch", text);
+    let case = "model = \"uneven\"\nh = 0.01\nsteps = 100\n[parameters]\nm = 1.0\n[initial]\nx = 1.0\nmomentum = 0.5\n";
+    folder.write("uneven.toml", case);
+    let first = order(&[&file]);
+    assert!((first - 1.0).abs() < 0.1, "{first}");
+}
+
+#[test]
+fn a_run_prints_as_much_as_it_is_asked_to() {
+    let run = |more: &[&str]| shipped(&[&["run", "heavy-top", "--steps", "20"], more].concat());
+    let (quiet, plain, verbose) = (run(&["--quiet"]), run(&[]), run(&["--verbose"]));
+    assert_eq!(
+        (quiet.code, quiet.out.as_str(), quiet.err.as_str()),
+        (0, "", "")
+    );
+    assert!(
+        plain.out.starts_with("heavy-top, case lagrange: "),
+        "{}",
+        plain.out
+    );
+    assert!(!plain.out.contains("Riccati") && verbose.out.contains("Riccati form"));
+    assert!(
+        verbose
+            .out
+            .ends_with(plain.out.split_once('\n').expect("lines").1)
+    );
+    // A bound that is exceeded is still told.
+    let exceeded = shipped(&["run", "kepler", "--h", "0.2", "--quiet"]);
+    assert_eq!((exceeded.code, exceeded.out.as_str()), (3, ""));
+    assert!(
+        exceeded.err.contains("bound exceeded: energy"),
+        "{}",
+        exceeded.err
+    );
+}
+
+#[test]
+fn invariants_are_looked_at_where_it_was_asked() {
+    let run = |every: &str| {
+        let done = shipped(&[
+            "run",
+            "kepler:eccentric",
+            "--steps",
+            "1000",
+            "--every",
+            every,
+            "--json",
+        ]);
+        let json: serde_json::Value = serde_json::from_str(&done.out).expect("JSON");
+        json["results"]["invariants"][0]["worst_drift"]
+            .as_f64()
+            .expect("a drift")
+    };
+    // The energy swings: the last node is not its farthest.
+    assert!(run("1") > run("1000"));
+    let told = shipped(&["run", "kepler", "--steps", "100", "--every", "10"]);
+    assert!(
+        told.out.contains("drifts: at one node in 10 and the last"),
+        "{}",
+        told.out
+    );
+}
+
+#[test]
+fn long_samples_are_text_where_that_is_asked_for() {
+    let folder = Folder::new("options-csv");
+    let run = |name: &str, more: &[&str]| {
+        let out = folder.path(name);
+        let all = [
+            "run",
+            "toda-chain:two-solitons",
+            "--steps",
+            "2000",
+            "--check",
+            "none",
+            "--out",
+            &out,
+        ];
+        let done = shipped(&[&all[..], more].concat());
+        assert_eq!(done.code, 0, "{}", done.err);
+        fs::metadata(format!("{out}/trajectory.csv")).is_ok()
+    };
+    // 2001 samples of 258 numbers.
+    assert_eq!(
+        [
+            run("long", &[]),
+            run("asked", &["--csv"]),
+            run("few", &["--every", "10"])
+        ],
+        [false, true, true]
+    );
+}
+
+#[test]
+fn many_sites_are_compared_as_one_quantity() {
+    let done = shipped(&["compare", "toda-chain", "--steps", "10"]);
+    assert!(
+        done.out.contains("error q  error momentum_q"),
+        "{}",
+        done.out
+    );
+    assert!(!done.out.contains("q_0"), "{}", done.out);
+}

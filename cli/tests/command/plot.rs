@@ -1,0 +1,98 @@
+//! Pictures of columns of a finished run.
+
+use super::common::{Folder, shipped};
+use std::fs;
+
+#[test]
+fn columns_are_drawn_against_time_and_each_other() {
+    let folder = Folder::new("plot");
+    let out = folder.path("run");
+    let run = [
+        "run",
+        "kepler:eccentric",
+        "--steps",
+        "500",
+        "--quiet",
+        "--out",
+        &out,
+    ];
+    assert_eq!(shipped(&run).code, 0);
+    let listed = shipped(&["plot", &out]);
+    for column in ["  X.1 to X.3\n", "  invariant_energy\n", "  time\n"] {
+        assert!(listed.out.contains(column), "{}", listed.out);
+    }
+    let orbit = folder.path("orbit.svg");
+    let done = shipped(&["plot", &out, "--x", "X.1", "--y", "X_2", "--out", &orbit]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(
+        fs::read_to_string(&orbit)
+            .expect("a picture")
+            .contains("X_2 against X.1")
+    );
+    // Drawn anew over itself; never over another file.
+    assert_eq!(
+        shipped(&["plot", &out, "--y", "X", "--out", &orbit]).code,
+        0
+    );
+    let other = folder.write("other.svg", "<svg>mine</svg>");
+    let refused = shipped(&["plot", &out, "--y", "X", "--out", &other]);
+    assert_eq!(refused.code, 2);
+    assert_eq!(fs::read_to_string(&other).expect("it"), "<svg>mine</svg>");
+    // In the folder of the run, which may still be replaced.
+    let done = shipped(&[
+        "plot",
+        &out,
+        "--y",
+        "X",
+        "--y",
+        "invariant_energy",
+        "--from",
+        "2",
+        "--to",
+        "3",
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let picture = fs::read_to_string(format!("{out}/plot-X-invariant_energy.svg"));
+    assert!(picture.expect("a picture").contains("time 2 to 3"));
+    let again = [&run[..], &["--force"]].concat();
+    assert_eq!(shipped(&again).code, 0, "{}", shipped(&again).err);
+    for (arguments, words) in [
+        (&["--y", "Y"][..], "the run has no column `Y`"),
+        (
+            &["--y", "X.4"],
+            "`X.4` names no single column of `X`; give a component, X.1 to X.3",
+        ),
+        (&["--y", "X", "--from", "1e9"], "the run has times 0 to "),
+    ] {
+        let done = shipped(&[&["plot", &out], arguments].concat());
+        assert_eq!(done.code, 2, "{arguments:?}");
+        assert!(done.err.contains(words), "{}", done.err);
+    }
+    let nothing = shipped(&["plot", &folder.path("."), "--y", "X"]);
+    assert!(nothing.err.contains("no trajectory.npz"), "{}", nothing.err);
+}
+
+#[test]
+fn sites_are_counted_from_zero() {
+    let folder = Folder::new("plot-sites");
+    let out = folder.path("run");
+    assert_eq!(
+        shipped(&[
+            "run",
+            "toda-chain",
+            "--steps",
+            "5",
+            "--quiet",
+            "--out",
+            &out
+        ])
+        .code,
+        0
+    );
+    let listed = shipped(&["plot", &out]);
+    assert!(listed.out.contains("  q_0 to q_31\n"), "{}", listed.out);
+    let done = shipped(&["plot", &out, "--x", "momentum_q_31", "--y", "q_0"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let done = shipped(&["plot", &out, "--y", "q_32"]);
+    assert!(done.err.contains("give a site, q_0"), "{}", done.err);
+}
