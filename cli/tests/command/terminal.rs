@@ -3,7 +3,10 @@
 use super::common::{Folder, clebsch, gallery, on, with};
 use clebsch_cli::gallery::Gallery;
 
-const COMMANDS: [&str; 6] = ["list", "case", "run", "compare", "figures", "derive"];
+const COMMANDS: [&str; 12] = [
+    "list", "show", "case", "new", "check", "run", "sweep", "compare", "converge", "plot",
+    "figures", "derive",
+];
 
 /// Lines of at most so many letters.
 fn fits(text: &str, width: usize, what: &str) {

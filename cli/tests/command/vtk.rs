@@ -342,7 +342,15 @@ fn what_is_not_seen_is_refused_before_it_runs() {
         "number.clebsch",
         "model Number { param m, c: Real; field q: Real; lagrangian = m*(next(q) - q)^2/(2*h) - h*c*q^2/2; }",
     );
-    let done = program(&["run", &model, "--vtk", "--out", &folder.path("out")]);
+    let done = program(&[
+        "run",
+        &model,
+        "--case",
+        "sample",
+        "--vtk",
+        "--out",
+        &folder.path("out"),
+    ]);
     assert_eq!(done.code, 2, "{}", done.err);
     assert!(done.err.contains("nothing that is seen"), "{}", done.err);
     assert!(!Path::new(&folder.path("out")).exists());
