@@ -15,7 +15,7 @@ use crate::resolve_model::resolved;
 use crate::stated::JudgedTrajectory;
 use crate::step_limit::StepLimit;
 use crate::summary::{self, Told};
-use crate::verdict::{Verdict, judge, table};
+use crate::verdict::{Verdict, judge, lost, table};
 use crate::waiting::Waiting;
 use crate::width::paragraph;
 use clap::ArgMatches;
@@ -174,6 +174,8 @@ pub fn run(
         why,
     });
     let outcomes = judge(card, &plan.case, &summary.drifts);
+    let lost = lost(&outcomes, plan.case.h);
+    let warnings: Vec<String> = warnings.into_iter().chain(lost.iter().cloned()).collect();
     let run = Finished {
         card,
         plan: &plan,
@@ -253,6 +255,9 @@ pub fn run(
         for line in lines {
             out.write_all(paragraph(&line, width, 2).as_bytes())?;
         }
+    }
+    for warning in lost {
+        let _ = writeln!(streams.err, "clebsch: warning: {warning}");
     }
     // The exit code says the same; nothing is lost when these cannot be written.
     if !left.is_empty() {

@@ -2,7 +2,7 @@
 //! Takes the drifts of all components; gives one outcome per invariant and the table to print.
 
 use crate::gallery::Case;
-use crate::plots::axis::short;
+use crate::plots::axis::{plain, short};
 use crate::width::paragraph;
 use clebsch::card::{Card, Conserved, Invariant};
 use clebsch::integrate::Drift;
@@ -137,6 +137,7 @@ impl Outcome {
             "absolute": self.components.iter().any(Drift::is_absolute),
             "worst_drift": self.worst,
             "last_drift": self.last,
+            "lost_at": self.components.iter().filter_map(|drift| drift.lost).min(),
             "bound": self.bound,
             "zero_by": self.zero_by,
             "verdict": match self.verdict {
@@ -178,14 +179,22 @@ impl Outcome {
     fn cells(&self) -> Vec<String> {
         vec![
             self.invariant.name.to_owned(),
-            short(self.scale),
-            short(self.worst),
-            short(self.last),
+            number(self.scale),
+            number(self.worst),
+            number(self.last),
             self.bound
                 .map_or_else(|| "-".to_owned(), |bound| format!("{bound:e}")),
             self.word().to_owned(),
             shortened(self.invariant.formula),
         ]
+    }
+}
+
+/// A number with four digits, without an exponent where it is as short.
+fn number(x: f64) -> String {
+    match x.abs() {
+        size if size == 0.0 || (1e-3..1e5).contains(&size) => short(x),
+        _ => format!("{x:.3e}"),
     }
 }
 
@@ -202,6 +211,23 @@ fn shortened(formula: &str) -> String {
         .rsplit_once(' ')
         .map_or(start.as_str(), |(words, _)| words);
     format!("{whole_words} ...: see `clebsch derive`")
+}
+
+/// Sentences on invariants that left their scale at the start, without a bound that says so.
+#[must_use]
+pub fn lost(outcomes: &[Outcome], h: f64) -> Vec<String> {
+    let free = outcomes.iter().filter(|o| o.verdict == Verdict::Bounded);
+    let each = free.filter_map(|outcome| {
+        let node = outcome.components.iter().filter_map(|drift| drift.lost).min()?;
+        #[allow(clippy::cast_precision_loss)]
+        let time = plain(node as f64 * h);
+        Some(format!(
+            "the {} is lost from node {node} (time {time}) on: it changed by more than its terms at the start. The step is too \
+             long for the motion there; reduce h",
+            outcome.invariant.name
+        ))
+    });
+    each.collect()
 }
 
 /// Sentences on what is zero for every motion of this case, one for each list of parameters that are zero.

@@ -281,3 +281,38 @@ fn many_sites_are_compared_as_one_quantity() {
     );
     assert!(!done.out.contains("q_0"), "{}", done.out);
 }
+
+/// Two bodies that fall on each other meet between two nodes, which no step sees.
+#[test]
+fn an_energy_that_is_lost_is_told_with_its_node() {
+    let folder = Folder::new("options-lost");
+    let text = "model TwoBody { param G, M, m: Real; field X, Y: Vec<3>; let u = next(X) - X; let v = next(Y) - Y; let d = Y - X;
+        lagrangian = (M*dot(u, u) + m*dot(v, v))/(2*h) + h*G*M*m/sqrt(dot(d, d)); }";
+    let file = folder.write("two-body.clebsch", text);
+    let case = |y: &str, momentum: &str| {
+        format!(
+            "model = \"two-body\"\nh = 0.01\nsteps = 300\n[parameters]\nG = 1.0\nM = 1.0\nm = 1.0\n[initial]\nX = [0, 0, 0]\n\
+             Y = {y}\nmomentum_X = [0, 0, 0]\nmomentum_Y = {momentum}\n"
+        )
+    };
+    let fall = folder.write("fall.toml", &case("[1, 0, 0]", "[0, 0, 0]"));
+    let done = shipped(&["run", &file, "--case", &fall]);
+    assert!(
+        done.err
+            .contains("warning: the energy is lost from node 79 (time 0.79) on"),
+        "{}",
+        done.err
+    );
+    let json = shipped(&["run", &file, "--case", &fall, "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!(json["results"]["invariants"][0]["lost_at"], 79);
+    assert!(
+        json["warnings"][0]
+            .as_str()
+            .is_some_and(|w| w.contains("reduce h"))
+    );
+    // Bodies that pass at a distance keep theirs.
+    let pass = folder.write("pass.toml", &case("[1, 0, 0]", "[0, 0.5, 0]"));
+    let done = shipped(&["run", &file, "--case", &pass]);
+    assert!(!done.err.contains("is lost"), "{}", done.err);
+}

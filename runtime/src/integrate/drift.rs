@@ -30,6 +30,9 @@ pub struct Drift {
     pub last: f64,
     /// The natural scale of the component, in its own unit.
     pub scale: f64,
+    /// The first node looked at where `|I_k - I_0|` was larger than the scale at the start and than a tenth of the scale
+    /// there: the value has nothing to do with that at the start any more. None if the scale at the start is zero.
+    pub lost: Option<u64>,
 }
 
 impl Drift {
@@ -138,7 +141,15 @@ pub(super) struct Deviation {
     last: f64,
     /// The largest sum of the absolute values of the terms.
     scale: f64,
+    /// That at the start.
+    first: f64,
+    /// The first node at which the deviation was larger than the scale at the start and than a part of the terms there.
+    lost: Option<u64>,
 }
+
+/// A deviation of less than this part of the terms is not one of a value that is lost: the start may be near equilibrium,
+/// where the terms are small.
+const LOST: f64 = 0.1;
 
 impl Saved for Deviation {
     fn words(&mut self, words: &mut Words) {
@@ -147,10 +158,15 @@ impl Saved for Deviation {
             largest,
             last,
             scale,
+            first,
+            lost,
         } = self;
-        [start, largest, last, scale]
+        [start, largest, last, scale, first]
             .into_iter()
             .for_each(|x| x.words(words));
+        let mut node = lost.unwrap_or(u64::MAX);
+        node.words(words);
+        *lost = (node != u64::MAX).then_some(node);
     }
 }
 
@@ -162,15 +178,21 @@ impl Deviation {
             largest: 0.0,
             last: 0.0,
             scale: terms,
+            first: terms,
+            lost: None,
         }
     }
 
     /// Takes in the value at a node, and the size of its terms there.
     #[inline]
-    pub(super) fn record(&mut self, value: f64, terms: f64) {
+    pub(super) fn record(&mut self, node: u64, value: f64, terms: f64) {
         self.last = value - self.start;
         self.largest = larger(self.largest, self.last.abs());
         self.scale = larger(self.scale, terms);
+        let moved = self.last.abs();
+        if moved > self.first && moved > LOST * terms && self.first >= f64::MIN_POSITIVE {
+            self.lost = self.lost.or(Some(node));
+        }
     }
 
     /// The drift up to here.
@@ -179,6 +201,7 @@ impl Deviation {
             worst: Drift::of(self.largest, self.scale),
             last: Drift::of(self.last, self.scale),
             scale: self.scale,
+            lost: self.lost,
         }
     }
 }
@@ -190,7 +213,9 @@ mod tests {
     /// The drift after these deviations, the size of the terms the same throughout.
     fn after(terms: f64, deviations: &[f64]) -> Drift {
         let mut seen = Deviation::none(0.0, terms);
-        deviations.iter().for_each(|d| seen.record(*d, terms));
+        (1..)
+            .zip(deviations)
+            .for_each(|(node, d)| seen.record(node, *d, terms));
         seen.drift()
     }
 
@@ -213,12 +238,31 @@ mod tests {
         // From rest: nothing at the start, most in the middle.
         let mut seen = Deviation::none(10.0, 0.0);
         for (value, terms) in [(10.5, 1.0), (9.0, 8.0), (10.25, 4.0)] {
-            seen.record(value, terms);
+            seen.record(1, value, terms);
         }
         let drift = seen.drift();
         assert_eq!((drift.worst, drift.last), (0.125, 0.03125));
         assert_eq!(drift.scale, 8.0);
         assert!(!drift.is_absolute());
+    }
+
+    #[test]
+    fn a_value_that_leaves_its_scale_is_lost_at_a_node() {
+        // The terms grow with the deviation, as in a collision that a step did not see.
+        let after = |all: &[(f64, f64)]| {
+            let mut seen = Deviation::none(-1.0, 1.0);
+            (1..)
+                .zip(all)
+                .for_each(|(node, (value, terms))| seen.record(node, *value, *terms));
+            seen.drift().lost
+        };
+        assert_eq!(
+            after(&[(-1.0, 1.0), (-1.5, 1e3), (5e8, 6e8), (-1.0, 1.0)]),
+            Some(3)
+        );
+        // Large terms that cancel: the deviation is small beside them.
+        assert_eq!(after(&[(3.0, 1e3), (-2.0, 3.0)]), None);
+        assert_eq!(Deviation::none(0.0, 0.0).drift().lost, None);
     }
 
     #[test]
@@ -234,8 +278,8 @@ mod tests {
         }
         assert!(after(f64::NAN, &[0.0]).worst.is_nan());
         let mut seen = Deviation::none(0.0, 1.0);
-        seen.record(0.0, f64::NAN);
-        seen.record(0.0, 1.0);
+        seen.record(1, 0.0, f64::NAN);
+        seen.record(2, 0.0, 1.0);
         assert!(seen.drift().worst.is_nan());
     }
 }

@@ -205,7 +205,7 @@ impl Watch {
         }
         let values = self.invariants.iter().zip(&self.scales);
         for (seen, (value, terms)) in self.seen.iter_mut().zip(values) {
-            seen.record(*value, *terms);
+            seen.record(self.summary.node, *value, *terms);
         }
         let Summary {
             steps, node, time, ..
