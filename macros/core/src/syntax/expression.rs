@@ -245,7 +245,9 @@ fn signed_exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
                 .ok_or_else(|| c.unexpected("a non-zero number"))?;
             c.advance();
         }
-        c.delimiter(')')?;
+        c.delimiter(')').map_err(|e| {
+            e.help("an exponent is a number: of a positive x write `exp(p*log(x))` for the power p")
+        })?;
     }
     Ok(value)
 }

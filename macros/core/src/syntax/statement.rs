@@ -20,7 +20,9 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
     c.word("model").map_err(|e| {
         e.help("a model starts with `model NAME {`, or `pub model NAME {` to export it")
     })?;
-    let name = c.name("the name of the model")?;
+    let name = c
+        .name("the name of the model")
+        .map_err(|e| e.help("write for example `model HeavyTop {`"))?;
     c.delimiter('{')?;
     let mut errors = Errors::new();
     let (mut statements, mut remarks) = (Vec::new(), Vec::new());
@@ -49,8 +51,9 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
     }
     if !c.is_at_end() {
         errors.push(
-            c.unexpected("the end of the model")
-                .help("one `model! { ... }` holds one model"),
+            c.unexpected("the end of the model").help(
+                "a file or a `model! { ... }` holds one model: put the other one into its own",
+            ),
         );
     }
     errors.propagate()?;
@@ -235,9 +238,19 @@ pub(super) fn kindred(c: &mut Cursor) -> Result<Kindred, Diagnostic> {
     Ok(Kindred { name, sizes, place })
 }
 
+/// The `:` between names and their shape.
+fn shape_follows(c: &mut Cursor) -> Result<(), Diagnostic> {
+    c.punct(':').map_err(|e| match c.peek() {
+        Some(Token::Name(_)) => {
+            e.help("commas separate names, and `:` precedes their shape: `param a, b: Real;`")
+        }
+        _ => e,
+    })
+}
+
 fn param(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let mut names = names(c)?;
-    c.punct(':')?;
+    shape_follows(c)?;
     let shape = kindred(c)?;
     typeset(c, &mut names)?;
     let at = label::at(c)?;
@@ -246,7 +259,7 @@ fn param(c: &mut Cursor) -> Result<Statement, Diagnostic> {
 
 fn field(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let mut names = names(c)?;
-    c.punct(':')?;
+    shape_follows(c)?;
     let shape = kindred(c)?;
     typeset(c, &mut names)?;
     let at = label::at(c)?;

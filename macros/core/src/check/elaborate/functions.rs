@@ -44,13 +44,23 @@ impl Elaborator<'_> {
         if self.is_quantity(n) && (!function || HIDEABLE.contains(&n)) {
             let message = match function {
                 true => format!("`{n}` is declared here as a quantity, which hides the function"),
-                false => format!("`{n}` is a quantity, no function"),
+                false => format!("`{n}` is a quantity, not a function"),
             };
             let d = Diagnostic::new(name.place, message);
-            let d = d.help(format!("write `{n}*(...)` for the product"));
-            return Some(match function {
-                true => d.help(format!("rename the quantity to use the function `{n}`")),
-                false => d.help(format!("functions: {AVAILABLE}")),
+            let moves = self.names.symbols.find(n).is_some_and(|id| {
+                let role = self.names.symbols.get(id).role;
+                matches!(role, Role::Element | Role::Advected)
+            });
+            return Some(match (function, moves) {
+                (true, _) => d
+                    .help(format!("write `{n}*(...)` for the product"))
+                    .help(format!("rename the quantity to use the function `{n}`")),
+                (false, true) => d.help(format!(
+                    "write `{n}*(...)` for the product, `next({n})` for its value at the next node"
+                )),
+                (false, false) => d
+                    .help(format!("write `{n}*(...)` for the product"))
+                    .help(format!("functions: {AVAILABLE}")),
             });
         }
         if function {
@@ -68,6 +78,22 @@ impl Elaborator<'_> {
             None => d,
         };
         Some(d.help(format!("functions: {AVAILABLE}")))
+    }
+
+    /// How the kinetic energy of a body is stated, where an expression is the velocity of one.
+    fn kinetic_of_body(&self, e: &Expr) -> Option<String> {
+        let symbols = &self.names.symbols;
+        let Node::Letter(at) = e.node() else {
+            return None;
+        };
+        let velocity = symbols.get(at.symbol);
+        (velocity.role == Role::Velocity && velocity.structure == Structure::Orthogonal).then(|| {
+            let (w, h) = (&velocity.name, &symbols.get(self.names.step).name);
+            format!(
+                "the velocity `{w}` is the rotation of one step, a matrix: the kinetic energy of a body with second moments J \
+                 is stated by `-tr(J*{w})/{h}`"
+            )
+        })
     }
 
     /// Parts of quaternions and rigid motions.
@@ -240,8 +266,10 @@ impl Elaborator<'_> {
                             format!("`dot` pairs two vectors, and this is {what}"),
                         )
                         .help(match a.shape().is_scalar() {
-                            true => "numbers are multiplied, `a*b`, and squared, `a^2`",
-                            false => "the pairing of two matrices is `tr(A^T * B)`",
+                            true => "numbers are multiplied, `a*b`, and squared, `a^2`".to_owned(),
+                            false => self.kinetic_of_body(&a).unwrap_or_else(|| {
+                                "the pairing of two matrices is `tr(A^T * B)`".to_owned()
+                            }),
                         }),
                     );
                 }

@@ -25,6 +25,16 @@ fn next_of<'n>(name: &'n str, symbols: &Symbols) -> Option<&'n str> {
     stems.into_iter().flatten().find(moves)
 }
 
+/// The number at an end of the step that a name is: `q0`, `q_1`; and whether it is that at the end.
+fn end_of<'n>(name: &'n str, symbols: &Symbols) -> Option<(&'n str, bool)> {
+    let end = name.ends_with('1');
+    let stem = name.strip_suffix(['0', '1'])?;
+    let stem = stem.strip_suffix('_').unwrap_or(stem);
+    let symbol = symbols.get(symbols.find(stem)?);
+    let moves = matches!(symbol.role, Role::Element | Role::Advected);
+    (moves && symbol.shape.is_scalar()).then_some((stem, end))
+}
+
 /// The component that a name is meant for: `x_3`, `x3`, `x_z`.
 fn component_of(name: &str, symbols: &Symbols) -> Option<String> {
     let (at, last) = name.char_indices().next_back()?;
@@ -161,6 +171,11 @@ impl Elaborator<'_> {
             ));
         } else if let Some(moving) = next_of(n, &self.names.symbols) {
             d = d.help(format!("the value at the next node is `next({moving})`"));
+        } else if let Some((moving, end)) = end_of(n, &self.names.symbols) {
+            d = d.help(match end {
+                true => format!("the value at the end of the step is `next({moving})`"),
+                false => format!("the value at the start of the step is `{moving}`"),
+            });
         } else if let Some(component) = component_of(n, &self.names.symbols) {
             d = d.help(format!("a component is written `{component}`"));
         } else if FUNCTIONS.contains(&n) {
@@ -199,7 +214,9 @@ impl Elaborator<'_> {
                 UNITS.len()
             ));
         } else {
-            d = d.help(format!("declare it, for example `param {n}: Real;`"));
+            d = d.help(format!(
+                "declare it, for example `param {n}: Real;`, or name an expression, `let {n} = ...;`"
+            ));
         }
         fail(d)
     }

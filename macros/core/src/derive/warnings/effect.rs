@@ -4,6 +4,7 @@ use super::{Inputs, Topic, Warning};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Function, Node};
+use crate::syntax::unknown;
 
 /// One warning for each parameter that stands in no Lagrangian, constraint or definition.
 pub(super) fn parameters(x: &Inputs) -> Vec<Warning> {
@@ -45,7 +46,10 @@ pub(super) fn parameters(x: &Inputs) -> Vec<Warning> {
 /// The warning of an abbreviation that nothing uses.
 pub(crate) fn unused_let(name: &str, place: Place) -> Warning {
     let message = format!("`{name}` is named by `let` and never used: it has no effect");
-    let help = format!("use `{name}` in the Lagrangian, or leave it out");
+    let help = match unknown::is_force(name) {
+        true => "forces without a potential are not supported yet, and a name states none; a potential is a term of the Lagrangian".to_owned(),
+        false => format!("use `{name}` in the Lagrangian, or leave it out"),
+    };
     Warning::new(Topic::UnusedLet, Diagnostic::new(place, message).help(help))
 }
 

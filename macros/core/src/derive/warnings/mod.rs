@@ -197,9 +197,14 @@ impl Inputs<'_> {
 /// All warnings of a model, in the order of their topics.
 pub(crate) fn warnings(x: &Inputs) -> Vec<Warning> {
     let mut all = Vec::new();
-    all.extend(limit::limit(x));
-    all.extend(sign::degenerate(x));
-    all.extend(sign::sign(x));
+    match limit::per_unit_time(x) {
+        Some(whole) => all.push(whole),
+        None => {
+            all.extend(limit::limit(x));
+            all.extend(sign::degenerate(x));
+            all.extend(sign::sign(x));
+        }
+    }
     // Of a power of the step that is wrong one warning is enough.
     let none = |k: &Kinetic| !k.first_order && k.rank.is_some_and(|r| r.0 == 0);
     let mut power_is_wrong = x.limit.is_err() || x.kinetic.is_some_and(none);

@@ -61,6 +61,9 @@ pub(crate) fn function(name: &str) -> Option<&'static str> {
             "a vector is the sum of its components times unit vectors, `a*E1 + b*E2`, or a parameter, `param v: Vec<3>;`"
         }
         "eye" | "identity" => "the identity matrix is `Id`",
+        "mid" | "midpoint" | "mean" | "average" | "avg" => {
+            "the mean over a step is `(x + next(x))/2`"
+        }
         "diff" | "d" | "D" | "ddt" | "derivative" | "dt" => RATE,
         "grad" | "gradient" | "nabla" | "div" | "laplacian" | "integrate" | "integral" | "quad" => {
             ENGINE

@@ -37,11 +37,16 @@ const FRICTION: [&str; 9] = [
     "Rayleigh",
 ];
 
+/// Whether a name means a force.
+pub(crate) fn is_force(name: &str) -> bool {
+    FORCES.contains(&name) || FRICTION.contains(&name)
+}
+
 /// What a statement that begins with this word may have been meant to be; the cursor stands after the word.
 pub(in crate::syntax) fn statement(c: &Cursor, keyword: &Name) -> Diagnostic {
     let word = keyword.text.as_str();
     let force = FORCES.contains(&word);
-    if force || FRICTION.contains(&word) {
+    if is_force(word) {
         let message = format!(
             "`{word}` cannot be stated: forces without a potential, friction among them, are not supported yet"
         );
