@@ -31,7 +31,7 @@ fn a_momentum_that_is_not_tangent_is_told_of_the_constraint_that_takes_it() {
         x = [0.0, -1.0]\ny = [1.0, 0.0]\nmomentum_x = [1.0, 0.0]\nmomentum_y = [0.5, 0.25]\n";
     let (done, _) = run(&folder, PENDULA, case);
     assert_ne!(done.code, 0);
-    let told = "`q`: the initial momentum is not tangent to the constraint `dot(y, y) = 1`: constraint forces take 5.000e-1 \
+    let told = "q: the initial momentum is not tangent to the constraint `y_k·y_k = 1`: constraint forces take 5.000e-1 \
         of its size 1.559e0, with the multiplier 0.25 for this constraint; subtract the multiplier times the gradient";
     assert!(done.err.contains(told), "{}", done.err);
     // Without that part it runs.

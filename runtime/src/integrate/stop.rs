@@ -58,7 +58,7 @@ impl fmt::Display for NotFinite {
         }?;
         f.write_str(match value.is_nan() {
             true => {
-                ": the argument of a function left its domain, or infinite numbers were subtracted; "
+                ": the argument of a function left its domain, or a result is undefined, as 0/0 and inf - inf are; "
             }
             false => ": it is larger than any number of double precision, 1.8e308; ",
         })?;
