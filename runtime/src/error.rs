@@ -121,7 +121,7 @@ pub enum Problem {
     AcrossConstraint {
         /// The constraint as the model writes it.
         equation: &'static str,
-        /// How much of the derivative of the left side less the right one it holds.
+        /// The multiplier of the gradient of left side minus right side that is taken from the momentum.
         impulse: f64,
         /// The size of what all constraints take from the momentum.
         taken: f64,
@@ -228,9 +228,8 @@ impl fmt::Display for Problem {
                 whole,
             } => write!(
                 f,
-                "the initial momentum would move the configuration off the constraint `{equation}`: {taken:e} of its \
-                 size {whole:e} are along the reactions, of this one {impulse} times the derivative of the left side \
-                 less the right one"
+                "the initial momentum is not tangent to the constraint `{equation}`: constraint forces take {taken:.3e} \
+                 of its size {whole:.3e}, with the multiplier {impulse} for this constraint"
             ),
             Self::NoInertia => write!(
                 f,

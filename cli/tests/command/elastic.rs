@@ -293,7 +293,7 @@ fn multipliers_and_constraints_are_seen() {
         (
             "momentum = [0.0,",
             "momentum = [0.3,",
-            "along the reactions",
+            "is not tangent to the constraint",
         ),
     ] {
         assert!(text.contains(from));

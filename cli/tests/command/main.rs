@@ -18,6 +18,7 @@ mod groups;
 mod halved;
 mod lattices;
 mod longest_step;
+mod misstated;
 mod model_files;
 mod multipliers;
 mod names;

@@ -65,10 +65,17 @@ impl fmt::Display for NotFinite {
             Watched::Scale => write!(f, "the natural scale of the invariant `{name}` is {value}"),
             Watched::Observable => write!(f, "`{name}` is {value}"),
         }?;
-        f.write_str(
-            ": a function was left by its domain, or a number is too large for f64; reduce the \
-             step size, or check the parameters and initial values",
-        )
+        f.write_str(match value.is_nan() {
+            true => {
+                ": the argument of a function left its domain, or a result is undefined, as 0/0 and inf - inf are; "
+            }
+            false => ": it is larger than any number of double precision, 1.8e308; ",
+        })?;
+        // A shorter step changes nothing at the start.
+        f.write_str(match node {
+            0 => "check the parameters and initial values, and that no mass or inertia is zero",
+            _ => "reduce the step size, or check the parameters and initial values",
+        })
     }
 }
 

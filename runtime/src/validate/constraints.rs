@@ -7,7 +7,7 @@ use crate::{ParameterError, Problem, Real};
 /// The first step solves the constraint to rounding: data typed with ten digits are on it.
 const OFF: f64 = 1e-9;
 
-/// What is along the reactions is taken away: data typed with eight digits are along the constraint.
+/// Constraint forces take what is not tangent: data typed with eight digits are tangent.
 const ACROSS: f64 = 1e-7;
 
 /// The configuration at the start is on a constraint.
@@ -56,7 +56,8 @@ pub fn along_constraint<T: Real>(
         });
     }
     let (taken, whole) = (taken.magnitude(), whole.magnitude());
-    if taken <= ACROSS * whole {
+    // A constraint without impulse takes nothing: another one is refused.
+    if taken <= ACROSS * whole || impulse.magnitude() == 0.0 {
         return Ok(());
     }
     Err(ParameterError {
@@ -67,7 +68,8 @@ pub fn along_constraint<T: Real>(
             taken,
             whole,
         },
-        remedy: "subtract that from the momentum, or give one that belongs to a velocity along the constraint",
+        remedy: "subtract the multiplier times the gradient of the left side minus the right side, or give the momentum of a \
+                 velocity that keeps the constraint",
     })
 }
 

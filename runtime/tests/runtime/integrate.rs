@@ -343,8 +343,15 @@ fn a_number_that_is_none_stops_the_run_at_its_node() {
                 "{:?}",
                 notes.nodes
             );
-            let words = format!("{words}{value}: ");
+            let why = match value.is_nan() {
+                true => "the argument of a function left its domain",
+                false => "it is larger than any number of double precision",
+            };
+            let words = format!("{words}{value}: {why}");
             assert!(error.to_string().starts_with(&words), "{error}");
+            // At the start no step was made.
+            let shorter = error.to_string().contains("reduce the step size");
+            assert_eq!(shorter, at > 0, "{error}");
             let RunError::NotFinite(found) = error else {
                 panic!("{error}");
             };

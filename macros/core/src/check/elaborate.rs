@@ -9,7 +9,7 @@ mod names;
 mod products;
 
 use super::declare::Declared;
-use super::messages::shape_text;
+use super::messages::{self, shape_text};
 use crate::algebra::Rational;
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::{Dim, Shape};
@@ -270,6 +270,10 @@ impl<'a> Elaborator<'a> {
                 let base = self.elaborate(a, None)?;
                 if base.shape().is_scalar() {
                     return self.power(base, *q, a.place, e.place);
+                }
+                if base.shape().is_vector() {
+                    let what = shape_text(&self.names.symbols, base.shape());
+                    return fail(messages::power_of_vector(a.place, &what, *q));
                 }
                 self.square(&base, a.place, "a power")?;
                 match q.as_integer() {

@@ -119,14 +119,16 @@ fn refused(symbols: &Symbols, name: &Name, value: &Expr, place: Place) -> Option
             symbols.get(v.symbol).name
         );
         return Some(Diagnostic::new(place, message).help(
-            "state the holonomic constraint itself, for example `hold λ: dot(x, x) = L^2;`; its rate of change is held as well. Constraints on velocities alone (nonholonomic ones) are not derived",
+            "hold the configuration itself, for example `hold λ: dot(x, x) = L^2;`: its rate of change is held as well. Nonholonomic constraints, on velocities alone, are not supported yet",
         ));
     }
     if letters.iter().any(|l| l.shift != Shift::HERE) {
-        let message = "a held constraint stands at one node, and this one holds `next(...)`";
-        return Some(Diagnostic::new(place, message).help(
-            "leave `next` out: the constraint holds at every node, its rate of change with it",
-        ));
+        let mut moving = letters.iter().filter(|l| {
+            let role = symbols.get(l.symbol).role;
+            matches!(role, Role::Element | Role::Advected)
+        });
+        let end = moving.all(|l| l.shift == Shift::NEXT);
+        return Some(messages::held_over_the_step(place, end));
     }
     let algebra = Algebra::new(symbols);
     if algebra.is_zero(value) {

@@ -1,4 +1,4 @@
-//! Abbreviations that stand for one another in a circle: no order of the statements makes them ones.
+//! Abbreviations that lead back to themselves, which no order of the statements defines, and those that nothing uses.
 
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::syntax::ast::{Expression, Kind, Model, Name, Statement};
@@ -26,6 +26,29 @@ pub fn circular<'a>(model: &'a Model, errors: &mut Errors) -> Vec<&'a Name> {
     told.iter()
         .filter_map(|i| lets.get(*i).map(|l| l.name))
         .collect()
+}
+
+/// The names of definitions that no other statement uses, directly or through definitions.
+pub fn unused(model: &Model) -> Vec<&Name> {
+    let lets = lets(model);
+    let others = model
+        .statements
+        .iter()
+        .filter(|s| !matches!(s, Statement::Let { .. }));
+    let stated = others.flat_map(Statement::expressions);
+    let mut used: Vec<&str> = stated.flat_map(names).collect();
+    let mut left: Vec<&Let> = lets.iter().collect();
+    let mut at = 0;
+    while let Some(name) = used.get(at).copied() {
+        let found = left.iter().position(|l| l.name.text == name);
+        if let Some(found) = found {
+            let own = left.remove(found);
+            let needed = own.uses.iter().filter_map(|i| lets.get(*i));
+            used.extend(needed.map(|l| l.name.text.as_str()));
+        }
+        at += 1;
+    }
+    left.into_iter().map(|l| l.name).collect()
 }
 
 fn lets(model: &Model) -> Vec<Let<'_>> {

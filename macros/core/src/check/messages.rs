@@ -2,10 +2,12 @@
 
 use super::declare::DeclaredGroup;
 use super::spec::{Configuration, Spec};
+use crate::algebra::Rational;
 use crate::diagnostic::{Diagnostic, Place};
-use crate::expr::Shift;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
+use crate::expr::{Letter, Shift};
+use crate::syntax::ast::Name;
 
 /// A shape as the user writes it.
 pub fn shape_text(symbols: &Symbols, shape: Shape) -> String {
@@ -172,12 +174,23 @@ pub fn unused_velocity(spec: &Spec, c: &Configuration) -> Diagnostic {
 /// Time levels of the edge of one step.
 pub const EDGE: core::ops::RangeInclusive<i8> = 0..=1;
 
-pub fn shift_too_far(place: Place) -> Diagnostic {
-    Diagnostic::new(
+pub fn shift_too_far(place: Place, symbols: &Symbols, letter: Letter) -> Diagnostic {
+    let x = &symbols.get(letter.symbol).name;
+    let before = letter.shift.time < *EDGE.start();
+    let (which, written) = match before {
+        true => ("an earlier", format!("prev({x})")),
+        false => ("a later", format!("next(next({x}))")),
+    };
+    let d = Diagnostic::new(
         place,
-        "this lies outside the edge of the step, which has a start and an end, `next(...)`",
-    )
-    .help("shift the whole term by one step: `x * prev(x)` is `next(x) * x`")
+        format!(
+            "`{written}` belongs to {which} step: the Lagrangian of one step has `{x}` at its start and `next({x})` at its end"
+        ),
+    );
+    d.help(match before {
+        true => format!("write the term one step later: `{x}` for `prev({x})`, `next({x})` for `{x}`"),
+        false => format!("write the term one step earlier: `next({x})` for `next(next({x}))`, `{x}` for `next({x})`"),
+    })
 }
 
 pub fn shifted_velocity(place: Place, velocity: &str) -> Diagnostic {
@@ -190,4 +203,56 @@ pub fn shifted_velocity(place: Place, velocity: &str) -> Diagnostic {
     .help(format!(
         "write `{velocity}` for the velocity of the step from k to k+1"
     ))
+}
+
+/// `v^2` of a vector.
+pub fn power_of_vector(place: Place, what: &str, q: Rational) -> Diagnostic {
+    let two = Rational::integer(2);
+    let d = Diagnostic::new(
+        place,
+        format!("only numbers and square matrices have powers, and this is {what}"),
+    );
+    match q == two {
+        true => d.help("the square of its length is `dot(a, a)`"),
+        false => d.help("powers of its length are powers of a number: `dot(a, a)` is the square, `dot(a, a)^2` the fourth power"),
+    }
+}
+
+/// What a word with a meaning of its own means, for those that are taken for names.
+fn meaning(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "Id" => "the identity matrix",
+        "T" => "the transpose, as in `A^T`",
+        "E1" | "E2" | "E3" => "a unit vector along an axis",
+        "re" | "im" => "a function, a part of a quaternion",
+        "sum" => "a function, the sum over sites",
+        "rate" => "a function, a rate of change",
+        "tr" | "Tr" => "a function, the trace",
+        _ => return None,
+    })
+}
+
+/// A name that the language uses.
+pub fn reserved(name: &Name) -> Diagnostic {
+    let word = name.text.as_str();
+    let means = meaning(word).unwrap_or("a function");
+    let message = format!("`{word}` has a fixed meaning in the language: it is {means}");
+    Diagnostic::new(name.place, message).help(match word {
+        "T" => "choose another name, for example `K` for a kinetic energy",
+        _ => "choose another name",
+    })
+}
+
+/// A held constraint with values at both ends of a step; `end` where all are those of the end.
+pub fn held_over_the_step(place: Place, end: bool) -> Diagnostic {
+    if end {
+        let message =
+            "a held constraint states what holds at one node, and this one holds `next(...)`";
+        return Diagnostic::new(place, message)
+            .help("leave `next` out: the constraint then holds at every node");
+    }
+    let message = "this constraint is one on velocities, since it holds `next(...)`: nonholonomic constraints are not supported yet";
+    Diagnostic::new(place, message).help(
+        "if it is the increment of a function of the configuration, as `next(x) - x = r*(next(φ) - φ)` is, hold that function: `hold λ: x - r*φ = c;`",
+    )
 }

@@ -16,7 +16,7 @@ pub mod spec;
 #[cfg(test)]
 mod tests;
 
-use crate::diagnostic::{Diagnostic, Errors};
+use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
@@ -57,6 +57,12 @@ pub fn circular_definitions(model: &Model, errors: &mut Errors) {
     lets::circular(model, errors);
 }
 
+/// The names of definitions that nothing uses.
+pub fn unused_definitions(model: &Model) -> Vec<(String, Place)> {
+    let unused = lets::unused(model).into_iter();
+    unused.map(|n| (n.text.clone(), n.place)).collect()
+}
+
 /// Expressions that are numbers, in the names of a model; those that are none are left out.
 pub fn numbers(model: &Model, list: &[&Expression]) -> Vec<Option<Expr>> {
     let names = declare::declare(model, &mut Errors::new());
@@ -95,7 +101,7 @@ fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
     let mut elaborator = Elaborator::new(&names, lets.clone());
     let circular = lets::circular(model, &mut errors);
     circular.iter().for_each(|name| elaborator.spoil(name));
-    let mut typed: Option<(Expr, crate::diagnostic::Place)> = None;
+    let mut typed: Option<(Expr, Place)> = None;
     let mut scale = None;
     let mut assumptions = Vec::new();
     let mut node_rule = NodeRule::Symmetric;
@@ -249,6 +255,7 @@ fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
         node_rule,
     )?;
     spec.lets = elaborator.bound().to_vec();
+    spec.unused_lets = unused_definitions(model);
     usage(&spec)?;
     hold::without_clocks(&spec)?;
     Ok(spec)
@@ -272,8 +279,8 @@ fn finish(
     typed: Expr,
     scale: Option<Expr>,
     lagrangian: Expr,
-    lagrangian_place: crate::diagnostic::Place,
-    terms: Vec<(Expr, crate::diagnostic::Place)>,
+    lagrangian_place: Place,
+    terms: Vec<(Expr, Place)>,
     node_rule: NodeRule,
 ) -> Result<Spec, Errors> {
     let mut errors = Errors::new();
@@ -344,6 +351,7 @@ fn finish(
         assumptions,
         formulas: crate::syntax::formula::stated(model),
         lets: Vec::new(),
+        unused_lets: Vec::new(),
         configurations,
         advected,
         holds,
@@ -425,7 +433,11 @@ fn usage(spec: &Spec) -> Result<(), Errors> {
     }
     for l in &used {
         if !messages::EDGE.contains(&l.shift.time) {
-            errors.push(messages::shift_too_far(spec.lagrangian_place));
+            errors.push(messages::shift_too_far(
+                spec.lagrangian_place,
+                &spec.symbols,
+                *l,
+            ));
         }
         if spec.symbols.get(l.symbol).role == Role::Velocity && l.shift != Shift::HERE {
             let name = &spec.symbols.get(l.symbol).name;

@@ -1,6 +1,7 @@
 //! Which names a model cannot bear: those with a fixed meaning in the language, in derivations and in Rust, and
 //! letters that look like others. Takes a name; gives what is wrong with it.
 
+use super::messages;
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::spelling::{seen, twin};
 use crate::syntax::ast::Name;
@@ -32,9 +33,10 @@ pub(super) fn unusable(name: &Name) -> Option<Diagnostic> {
     let function = FUNCTIONS.contains(&text) && !HIDEABLE.contains(&text);
     let shown = seen(text, "");
     let printed = PRINTED.into_iter().find(|sign| seen(sign, "") == shown);
-    let message = if RESERVED.contains(&text) || function {
-        format!("`{text}` has a fixed meaning in the language")
-    } else if let Some(sign) = printed {
+    if RESERVED.contains(&text) || function {
+        return Some(messages::reserved(name));
+    }
+    let message = if let Some(sign) = printed {
         format!("`{text}` prints as `{sign}`, which has a fixed meaning in derivations")
     } else if RUST.contains(&text) {
         format!("`{text}` is a Rust keyword and cannot be used as a name")

@@ -9,6 +9,7 @@ use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
 use crate::groups;
 use crate::syntax::ast::{Kindred, Size};
+use crate::syntax::unknown;
 
 /// Largest matrix of the language.
 const LARGEST: u64 = 32;
@@ -132,7 +133,7 @@ pub fn shape(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Sha
         other => {
             let mut e = Diagnostic::new(k.name.place, format!("`{other}` is not a shape"));
             let near = closest(other, SHAPES.into_iter().chain(groups::families()));
-            let meant = sized(other).or_else(|| elsewhere(other).map(str::to_owned));
+            let meant = sized(other).or_else(|| unknown::shape(other).map(str::to_owned));
             e = match (meant, near) {
                 (Some(written), _) => e.help(format!("write `{written}`")),
                 (None, Some(near)) => e.help(format!("did you mean `{near}`?")),
@@ -144,20 +145,6 @@ pub fn shape(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Sha
             None
         }
     }
-}
-
-/// What other languages call a shape.
-fn elsewhere(name: &str) -> Option<&'static str> {
-    Some(match name {
-        "Scalar" | "Number" | "R" | "ℝ" | "f64" | "Float" | "float" | "Double" | "double" => {
-            "Real"
-        }
-        "Vector" | "vector" => "Vec<3>",
-        "Matrix" | "matrix" => "Mat<3>",
-        "Symmetric" => "Sym<3>",
-        "Quaternion" => "SU<2>",
-        _ => return None,
-    })
 }
 
 /// The shape that a name with its size glued to it means: `Vec3`, `SO3`.

@@ -224,6 +224,8 @@ pub struct Spec {
     pub formulas: Vec<String>,
     /// What the model names by `let`, with its names written out, in order.
     pub lets: Vec<(String, Expr)>,
+    /// Names of those that nothing uses, with their places.
+    pub unused_lets: Vec<(String, Place)>,
     /// Configurations in order.
     pub configurations: Vec<Configuration>,
     /// Advected quantities in order.

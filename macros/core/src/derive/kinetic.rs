@@ -5,6 +5,7 @@
 use super::Letters;
 use super::action::Action;
 use super::bracket;
+use super::first_order;
 use super::lie;
 use super::limit::Limit;
 use super::variation::at;
@@ -23,6 +24,8 @@ pub struct Kinetic {
     /// The rank of the form at a point in general position of parameters and configurations, and
     /// the number of velocities; nothing where the form is too large to be evaluated.
     pub rank: Option<(usize, usize)>,
+    /// Whether the Lagrangian is linear in all velocities and determines them: it has no kinetic energy and needs none.
+    pub first_order: bool,
 }
 
 impl Kinetic {
@@ -58,7 +61,12 @@ pub fn kinetic(
         None => expanded(spec, letters, action, algebra)?,
     };
     let rank = rank(spec, letters, &energy, assumed);
-    Some(Kinetic { energy, rank })
+    let first_order = limit.is_some_and(|l| first_order::is_first_order(spec, letters, l, assumed));
+    Some(Kinetic {
+        energy,
+        rank,
+        first_order,
+    })
 }
 
 /// The second-order part in 1/h of an action that has no limit as a whole.
@@ -169,8 +177,18 @@ pub(super) fn rank(
     form: &Expr,
     equations: &[Expr],
 ) -> Option<(usize, usize)> {
+    rank_of(spec, letters, &gradients(letters, form), equations)
+}
+
+/// The rank of a bilinear form at a point in general position, and the number of velocities. The form is given by its
+/// gradients, one for each configuration, linear in the letters of variation.
+pub(super) fn rank_of(
+    spec: &Spec,
+    letters: &Letters,
+    gradients: &[Expr],
+    equations: &[Expr],
+) -> Option<(usize, usize)> {
     let s = &letters.symbols;
-    let gradients = gradients(letters, form);
     let cost: u64 = gradients.iter().map(|g| u64::from(g.size())).sum();
     let (mut best, mut found) = (None, 0);
     for attempt in 0..crate::algebra::exact::ATTEMPTS {

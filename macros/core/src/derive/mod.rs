@@ -17,6 +17,7 @@ pub mod displaced;
 pub mod eliminated;
 pub mod explicit;
 pub(crate) mod far;
+mod first_order;
 #[cfg(test)]
 mod functionals;
 pub mod holds;

@@ -350,7 +350,7 @@ fn riccati(sheet: &Sheet, section: &mut Section, c: &Configuration, mv: &MoserVe
 
 /// What is degenerate, where the kinetic energy is for all parameters.
 fn degenerate(sheet: &Sheet) -> Option<String> {
-    let kinetic = sheet.d.kinetic.as_ref()?;
+    let kinetic = sheet.d.kinetic.as_ref().filter(|k| !k.first_order)?;
     let (rank, n) = kinetic.degenerate()?;
     Some(format!(
         "the kinetic energy has rank {rank} of {n} in the velocities"

@@ -9,12 +9,18 @@ use super::names::{Names, item};
 use super::sizes::Generics;
 use super::step::seen;
 use crate::derive::Derivation;
+use crate::derive::kinetic::Kinetic;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// `inertia_at`; nothing where the form is not known.
+/// The form that is judged, where it is known; a Lagrangian of first order needs none.
+pub fn judged(d: &Derivation) -> Option<&Kinetic> {
+    d.kinetic.as_ref().filter(|k| !k.first_order)
+}
+
+/// `inertia_at`; nothing where there is no form to judge.
 pub fn inertia_at(d: &Derivation, names: &Names) -> TokenStream {
-    let Some(form) = &d.kinetic else {
+    let Some(form) = judged(d) else {
         return TokenStream::new();
     };
     let state = item(d, "State");

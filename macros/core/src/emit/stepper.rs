@@ -34,7 +34,7 @@ pub fn protocol(d: &Derivation, names: &Names) -> TokenStream {
         (false, true) => quote!(symmetric),
         (false, false) => quote!(none),
     };
-    let judged = match d.kinetic {
+    let judged = match super::kinetic::judged(d) {
         Some(_) => {
             let coordinates = element::offset(d, d.spec.configurations.len());
             quote!(judged { #coordinates })

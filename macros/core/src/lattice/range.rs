@@ -5,6 +5,7 @@ use super::declared::{Lattice, Sites};
 use super::parts::{LINEAR, has_sum, parts};
 use crate::diagnostic::{Diagnostic, Place};
 use crate::syntax::ast::{Expression, Kind};
+use crate::syntax::unknown::PAIRS;
 
 /// Where the letters of an expression stand, seen from its index.
 #[derive(Clone, Default, Debug)]
@@ -92,11 +93,7 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
             ("sum", [inner, sites]) => {
                 let over = summed_over(sites)?;
                 if found.over.is_some() {
-                    let d = Diagnostic::new(
-                        e.place,
-                        "a second sum over sites in one term would join all sites with one another, and stands in no Lagrangian",
-                    );
-                    return Err(d.help("write one sum in a term, as in `sum(m*x^2, nodes)`; a constraint holds products of sums, as in `hold p: dot(sum(x), sum(x)) = a^2;`"));
+                    return Err(of_pairs("two sums over sites in one term are", e.place));
                 }
                 found.over = Some(over);
                 found.label = found.label.or(lattice.line);
@@ -109,6 +106,9 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
             .help("write `sum(expr)`, or `sum(expr, nodes)`; terms are added within: `sum(a + b)`")),
             ("sum", []) => Err(Diagnostic::new(e.place, "nothing is summed over sites here")
                 .help("write what is summed: `sum(m*x)`, or `sum(m*x, nodes)`")),
+            ("sum", [inner]) if has_sum(inner) => {
+                Err(of_pairs("a sum over sites within another one is", e.place))
+            }
             ("sum", [_]) => Err(Diagnostic::new(
                 e.place,
                 "a sum over all sites is a number or a vector of the whole line, which a held constraint alone may contain",
@@ -126,11 +126,11 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
 pub(super) fn beside_sum(lattice: &Lattice, e: &Expression) -> Option<Diagnostic> {
     let refused = |at: &Expression, what: &str| {
         let message = format!(
-            "{what} joins all sites with one another, and stands in no Lagrangian: `sum(expr, nodes)` states the sites over \
-             which a term is summed"
+            "{what} couples every site to all others, which a Lagrangian cannot do yet: `sum(expr, nodes)` only states the \
+             sites of a term"
         );
         let d = Diagnostic::new(at.place, message);
-        Some(d.help("write what stands at a site into the sum, as in `sum(x^2, nodes)`; a constraint holds functions of sums, as in `hold p: dot(sum(x), sum(x)) = a^2;`"))
+        Some(d.help("write what is summed into the sum, as in `sum(x^2, nodes)`; only a constraint may contain a function of sums, as in `hold p: dot(sum(x), sum(x)) = a^2;`"))
     };
     let differs = |e: &Expression| reach(lattice, e).is_ok_and(|r| !r.letters.is_empty());
     if !has_sum(e) || matches!(&e.kind, Kind::Call(f, _) if f.text == "sum") {
@@ -229,11 +229,18 @@ fn neighbour(
     Ok(())
 }
 
+/// A sum over pairs of sites.
+fn of_pairs(what: &str, place: Place) -> Diagnostic {
+    let message = format!("{what} a sum over pairs of sites, which is not supported yet");
+    Diagnostic::new(place, message).help(PAIRS)
+}
+
 /// `sum(expr, nodes)`.
 fn summed_over(sites: &Expression) -> Result<Sites, Diagnostic> {
     match &sites.kind {
         Kind::Name(n) if n == "nodes" => Ok(Sites::Nodes),
         Kind::Name(n) if n == "segments" => Ok(Sites::Segments),
+        Kind::Name(n) if n == "pairs" => Err(of_pairs("this is", sites.place)),
         _ => Err(
             Diagnostic::new(sites.place, "a sum goes over `nodes` or over `segments`")
                 .help("write `sum(expr, segments)`; the Lagrangian is summed over labels anyway"),

@@ -127,7 +127,7 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfol
             summands: Vec::new(),
             holds: Vec::new(),
             totals: Vec::new(),
-            warnings: Vec::new(),
+            warnings: warned::without_use(model),
             unnamed: warned::unnamed(model),
         },
     };

@@ -5,11 +5,14 @@ use super::delimiters::place;
 use super::text;
 use crate::diagnostic::{Diagnostic, Place};
 
+/// What a prime means in papers.
+pub(super) const PRIME: &str = "write `(next(x) - x)/h` for a rate of change, `next(x)` for the value at the next node, `A^T` for a transpose";
+
 /// What a character is in a paper, and how the language writes it.
 fn written(c: char) -> Option<&'static str> {
     Some(match c {
         '−' | '–' | '—' | '‐' => "write the minus of the keyboard, `-`",
-        '\'' | '′' | '’' => "write `^T` for a transpose and `next(x)` for the next time level",
+        '\'' | '′' | '’' => PRIME,
         '·' | '⋅' | '×' | '∙' | '∗' | '∧' | '⊗' => {
             "write `a*b` for a product, `dot(a, b)` and `cross(a, b)` for those of vectors"
         }
@@ -35,7 +38,7 @@ fn written(c: char) -> Option<&'static str> {
 /// A sign of products or of the transpose within a name, which Rust takes for one of its letters.
 pub(super) fn within(name: &str, place: Place) -> Option<Diagnostic> {
     let c = name.chars().find(|c| matches!(c, '·' | 'ᵀ'))?;
-    let d = Diagnostic::new(place, format!("`{c}` is no character of the language"));
+    let d = Diagnostic::new(place, format!("`{c}` is not a character of the language"));
     Some(d.help(written(c)?))
 }
 
@@ -51,7 +54,7 @@ pub(super) fn foreign(source: &str) -> Option<Diagnostic> {
     let (at, c) = found?;
     let d = Diagnostic::new(
         place(&text, at)?,
-        format!("`{c}` is no character of the language"),
+        format!("`{c}` is not a character of the language"),
     );
     Some(match written(c) {
         Some(remedy) => d.help(remedy),

@@ -6,6 +6,7 @@ mod ambiguous;
 
 use super::ast::{Expression, Kind};
 use super::token::{Cursor, Token};
+use super::unknown;
 use crate::algebra::Rational;
 use crate::diagnostic::Diagnostic;
 use crate::expr::Constant;
@@ -159,9 +160,7 @@ fn postfix(c: &mut Cursor) -> Parsed {
         e = Expression { kind, place };
     }
     if let Some(Token::Punct('\'', _)) = c.peek() {
-        return Err(c
-            .unexpected("an operator")
-            .help("write `^T` for a transpose and `next(x)` for the next time level"));
+        return Err(c.unexpected("an operator").help(super::characters::PRIME));
     }
     let remedy = match c.peek() {
         Some(Token::Open('{')) => {
@@ -180,10 +179,17 @@ fn indices(c: &mut Cursor) -> Result<Vec<u64>, Diagnostic> {
     let remedy = "components are counted from 1: `v[1]` of a vector, `A[1, 2]` of a matrix";
     let mut list = Vec::new();
     loop {
-        let of_label = matches!(c.peek(), Some(Token::Name(_)));
-        list.push(c.whole_number().map_err(|e| match of_label {
-            true => e.help(remedy).help("a neighbour along a label `i` is `next(q, i)` or `prev(q, i)`, at the site itself `q`; the next node in time is `next(q)`"),
-            false => e.help(remedy),
+        let label = match c.peek() {
+            Some(Token::Name(n)) => Some(n.clone()),
+            _ => None,
+        };
+        list.push(c.whole_number().map_err(|e| match label {
+            Some(i) if c.is_indexed_otherwise(&i) => {
+                let message = "a sum over pairs of sites is not supported yet";
+                Diagnostic::new(e.place, message).help(unknown::PAIRS)
+            }
+            Some(_) => e.help(remedy).help("a neighbour along a label `i` is `next(q, i)` or `prev(q, i)`, at the site itself `q`; the next node in time is `next(q)`"),
+            None => e.help(remedy),
         })?);
         if !c.take_punct(',') {
             break;
@@ -239,7 +245,9 @@ fn signed_exponent(c: &mut Cursor) -> Result<Rational, Diagnostic> {
                 .ok_or_else(|| c.unexpected("a non-zero number"))?;
             c.advance();
         }
-        c.delimiter(')')?;
+        c.delimiter(')').map_err(|e| {
+            e.help("an exponent is a number: of a positive x write `exp(p*log(x))` for the power p")
+        })?;
     }
     Ok(value)
 }
@@ -300,6 +308,9 @@ fn operand(c: &mut Cursor) -> Parsed {
         Some(Token::Open('(')) => {
             c.advance();
             let mut inner = expression(c)?;
+            if c.is_punct(',') {
+                return Err(c.unexpected("`)`").help(unknown::VECTOR));
+            }
             c.delimiter(')')?;
             inner.place = start.to(c.last_place());
             Ok(inner)
@@ -317,7 +328,8 @@ fn operand(c: &mut Cursor) -> Parsed {
             let mut arguments = Vec::new();
             while !c.take_delimiter(')') {
                 if !arguments.is_empty() && !c.take_punct(',') {
-                    return Err(c.unclosed().unwrap_or_else(|| c.unexpected("`,` or `)`")));
+                    let told = unknown::ends_expression(c).or_else(|| c.unclosed());
+                    return Err(told.unwrap_or_else(|| c.unexpected("`,` or `)`")));
                 }
                 arguments.push(expression(c)?);
             }
@@ -326,12 +338,6 @@ fn operand(c: &mut Cursor) -> Parsed {
                 place: start.to(c.last_place()),
             })
         }
-        _ if c.is_punct('|') => Err(c.unexpected("a quantity, a number or `(`").help(
-            "the length of a vector is `sqrt(dot(X, X))`, the magnitude of a number `abs(x)`",
-        )),
-        _ if c.is_punct('*') => Err(c
-            .unexpected("a quantity, a number or `(`")
-            .help("a power is written `a^2`")),
-        _ => Err(c.unexpected("a quantity, a number or `(`")),
+        _ => Err(unknown::instead_of_operand(c)),
     }
 }

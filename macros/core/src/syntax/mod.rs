@@ -15,6 +15,7 @@ mod statement;
 mod text;
 mod token;
 mod typeset;
+pub(crate) mod unknown;
 
 pub(crate) use circle::is_meant as is_circle;
 
@@ -31,7 +32,7 @@ pub const FUNCTIONS: [&str; 33] = [
 ];
 
 /// Functions that a declared name hides: models without these groups use the words freely.
-pub const HIDEABLE: [&str; 3] = ["quat", "rot", "pos"];
+pub const HIDEABLE: [&str; 5] = ["quat", "rot", "pos", "I1", "I2"];
 
 /// The functions that models of this version can use, as a message lists them.
 pub const AVAILABLE: &str = "tr det log exp sqrt sin cos sinh cosh tanh abs sign inv sym skew diag hat vee dot cross perp re im quat rot pos I1 I2 next";

@@ -122,6 +122,34 @@ impl Statement {
         }
     }
 
+    /// Every expression in it, those of functions that are written out among them.
+    pub(crate) fn expressions(&self) -> Vec<&Expression> {
+        match self {
+            Statement::Assume { left, right, .. } | Statement::Hold { left, right, .. } => {
+                vec![left, right]
+            }
+            Statement::Advected { definition, .. } => definition.iter().collect(),
+            Statement::Constraint { value, .. }
+            | Statement::Let { value, .. }
+            | Statement::Scale(value)
+            | Statement::Lagrangian(value) => vec![value],
+            Statement::End { alternatives, .. } => {
+                alternatives.iter().flat_map(|a| &a.terms).collect()
+            }
+            Statement::Given { components, .. } => components.iter().collect(),
+            Statement::Label { .. }
+            | Statement::Periodic(_)
+            | Statement::Dim { .. }
+            | Statement::Time { .. }
+            | Statement::Param { .. }
+            | Statement::Group { .. }
+            | Statement::Field { .. }
+            | Statement::Grid(_)
+            | Statement::Mesh { .. }
+            | Statement::Node(..) => Vec::new(),
+        }
+    }
+
     /// Every expression in it, to be changed.
     pub(crate) fn expressions_mut(&mut self) -> Vec<&mut Expression> {
         match self {

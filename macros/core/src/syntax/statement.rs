@@ -8,8 +8,9 @@ use super::expression::expression;
 use super::formula;
 use super::label;
 use super::mesh;
-use super::token::{Cursor, KEYWORDS, SIZES, Token};
+use super::token::{Cursor, SIZES, Token};
 use super::typeset::typeset;
+use super::unknown;
 use crate::diagnostic::{Diagnostic, Errors, closest};
 
 /// Parses a whole model.
@@ -19,7 +20,9 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
     c.word("model").map_err(|e| {
         e.help("a model starts with `model NAME {`, or `pub model NAME {` to export it")
     })?;
-    let name = c.name("the name of the model")?;
+    let name = c
+        .name("the name of the model")
+        .map_err(|e| e.help("write for example `model HeavyTop {`"))?;
     c.delimiter('{')?;
     let mut errors = Errors::new();
     let (mut statements, mut remarks) = (Vec::new(), Vec::new());
@@ -48,8 +51,9 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
     }
     if !c.is_at_end() {
         errors.push(
-            c.unexpected("the end of the model")
-                .help("one `model! { ... }` holds one model"),
+            c.unexpected("the end of the model").help(
+                "a file or a `model! { ... }` holds one model: put the other one into its own",
+            ),
         );
     }
     errors.propagate()?;
@@ -139,7 +143,7 @@ fn skip_statement(c: &mut Cursor) {
 }
 
 fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
-    let keyword = c.name("a statement")?;
+    let keyword = c.name("a statement").map_err(|e| unknown::no_start(c, e))?;
     let parsed = match keyword.text.as_str() {
         "dim" => dim(c)?,
         "time" => time(c)?,
@@ -173,37 +177,10 @@ fn statement(c: &mut Cursor) -> Result<Statement, Diagnostic> {
             )
             .help("models with `label`, `grid`, `group`, `field`, `mesh`, `advected`, `constraint`, `hold` and `lagrangian` are derived"));
         }
-        other => {
-            let e = Diagnostic::new(
-                keyword.place,
-                format!("`{other}` does not start a statement"),
-            );
-            return Err(e.help(meant(c, other)));
-        }
+        _ => return Err(unknown::statement(c, &keyword)),
     };
     c.punct(';')?;
     Ok(parsed)
-}
-
-/// What a statement that begins with this word may have been meant to be; the cursor stands after the word.
-fn meant(c: &Cursor, word: &str) -> String {
-    let near = closest(word, KEYWORDS);
-    match (near, c.peek()) {
-        (_, Some(Token::Punct('=', _))) if word == "L" || word == "l" || word == "ℓ" => {
-            "the discrete Lagrangian of a step is stated by `lagrangian = ...;`".to_owned()
-        }
-        (_, Some(Token::Punct('=', _))) if word == "H" || word.eq_ignore_ascii_case("hamiltonian") => {
-            "a model is stated by the discrete Lagrangian of a step, `lagrangian = ...;`".to_owned()
-        }
-        (Some(near), _) => format!("did you mean `{near}`?"),
-        (None, Some(Token::Punct('=', _))) => {
-            format!("an expression is given a name by `let {word} = ...;`")
-        }
-        (None, Some(Token::Punct(':' | ',', _))) => format!(
-            "say what it is: `param {word}: ...;` does not move, `field {word}: ...;` moves in a vector space, `group {word}: ... velocity ...;` in a Lie group"
-        ),
-        (None, _) => "statements start with dim, time, label, periodic, end, grid, param, assume, group, field, advected, constraint, hold, given, mesh, let, scale, node or lagrangian".to_owned(),
-    }
 }
 
 fn dim(c: &mut Cursor) -> Result<Statement, Diagnostic> {
@@ -261,9 +238,19 @@ pub(super) fn kindred(c: &mut Cursor) -> Result<Kindred, Diagnostic> {
     Ok(Kindred { name, sizes, place })
 }
 
+/// The `:` between names and their shape.
+fn shape_follows(c: &mut Cursor) -> Result<(), Diagnostic> {
+    c.punct(':').map_err(|e| match c.peek() {
+        Some(Token::Name(_)) => {
+            e.help("commas separate names, and `:` precedes their shape: `param a, b: Real;`")
+        }
+        _ => e,
+    })
+}
+
 fn param(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let mut names = names(c)?;
-    c.punct(':')?;
+    shape_follows(c)?;
     let shape = kindred(c)?;
     typeset(c, &mut names)?;
     let at = label::at(c)?;
@@ -272,7 +259,7 @@ fn param(c: &mut Cursor) -> Result<Statement, Diagnostic> {
 
 fn field(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let mut names = names(c)?;
-    c.punct(':')?;
+    shape_follows(c)?;
     let shape = kindred(c)?;
     typeset(c, &mut names)?;
     let at = label::at(c)?;
@@ -322,6 +309,11 @@ fn assume(c: &mut Cursor) -> Result<Statement, Diagnostic> {
             .help("write for example `assume dot(z, z) == 1;`"));
     };
     let right = expression(c)?;
+    if c.is_punct('<') || c.is_punct('>') {
+        return Err(c.unexpected("`;`").help(
+            "an assumption compares two expressions: write two of them, `assume 0 < m; assume m < 1;`",
+        ));
+    }
     let place = left.place.to(right.place);
     Ok(Statement::Assume {
         left,
@@ -385,8 +377,11 @@ fn advected(c: &mut Cursor) -> Result<Statement, Diagnostic> {
 }
 
 fn constraint(c: &mut Cursor, keyword: &Name) -> Result<Statement, Diagnostic> {
-    let remedy = "a constraint reads `constraint next(Γ) = Ω^T * Γ;`";
-    c.word("next").map_err(|e| e.help(remedy))?;
+    let remedy = "a constraint reads `constraint next(Γ) = Ω^T * Γ;`: it carries a quantity from node to node";
+    c.word("next").map_err(|e| {
+        e.help(remedy)
+            .help("a constraint on configurations is stated by `hold λ: dot(x, x) = L^2;`")
+    })?;
     c.delimiter('(')?;
     let name = c.name("the quantity that the constraint carries")?;
     if c.is_punct(',') {
@@ -409,6 +404,13 @@ fn hold(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         .map_err(|e| e.help(remedy))?;
     c.punct(':').map_err(|e| e.help(remedy))?;
     let left = expression(c)?;
+    if c.is_punct('<') || c.is_punct('>') {
+        let message =
+            "`hold` states an equation: inequalities, such as contact, are not supported yet";
+        return Err(Diagnostic::new(c.place(), message).help(
+            "a stiff spring keeps a distance d from falling below 0: the term `-h*K*(d - abs(d))^2/8` is zero where d > 0",
+        ));
+    }
     c.punct('=').map_err(|e| e.help(remedy))?;
     c.take_punct('=');
     let right = expression(c)?;
@@ -482,7 +484,13 @@ pub(super) fn path_goes_on(c: &mut Cursor, path: &mut Name) -> Result<(), Diagno
 
 fn binding(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     let name = c.name("a name")?;
-    c.punct('=')?;
+    c.punct('=').map_err(|e| match c.peek() {
+        Some(Token::Open('(')) => e.help(format!(
+            "a `let` takes no argument: write `let {n} = k*q^2/2;`, or state a function by `given {n}(Real): Real = \"k*x^2/2\";`",
+            n = name.text
+        )),
+        _ => e,
+    })?;
     let value = expression(c)?;
     Ok(Statement::Let { name, value })
 }

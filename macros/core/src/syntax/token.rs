@@ -4,6 +4,7 @@
 
 use super::ast::Name;
 use super::delimiters::not_closed;
+use super::unknown;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use proc_macro2::{Delimiter, Spacing, Span, TokenStream, TokenTree};
 
@@ -112,9 +113,6 @@ fn split_number(text: &str) -> usize {
 
 /// How the size of a shape or a group is written.
 pub const SIZES: &str = "sizes stand in angle brackets, `Vec<3>`, `SO<3>`";
-
-/// What is told of `x.z`.
-const COMPONENT: &str = "a component of a vector is written `x[1]`, counted from 1";
 
 impl Cursor {
     /// Flattens a token stream.
@@ -235,10 +233,15 @@ impl Cursor {
         Place::token(before.map_or(self.end, |(_, s)| *s))
     }
 
+    /// The token just read.
+    pub fn before(&self) -> Option<&Token> {
+        let at = self.at.checked_sub(1)?;
+        self.tokens.get(at).map(|(t, _)| t)
+    }
+
     /// Whether the token just read is this punctuation.
     pub fn follows_punct(&self, c: char) -> bool {
-        let before = self.at.checked_sub(1).and_then(|i| self.tokens.get(i));
-        matches!(before, Some((Token::Punct(p, _), _)) if *p == c)
+        matches!(self.before(), Some(Token::Punct(p, _)) if *p == c)
     }
 
     /// Steps over one token.
@@ -274,13 +277,22 @@ impl Cursor {
 
     /// Whether the token just read closes a block.
     pub fn follows_block(&self) -> bool {
-        let before = self.at.checked_sub(1).and_then(|i| self.tokens.get(i));
-        matches!(before, Some((Token::Close('}'), _)))
+        matches!(self.before(), Some(Token::Close('}')))
     }
 
     /// Whether all tokens are read.
     pub fn is_at_end(&self) -> bool {
         self.at >= self.tokens.len()
+    }
+
+    /// Whether a quantity in the rest of the statement has another index than this one, as `x[j]` beside `x[i]`.
+    pub fn is_indexed_otherwise(&self, index: &str) -> bool {
+        let rest = self.tokens.get(self.at..).unwrap_or_default();
+        let ends = |t: &Token| matches!(t, Token::Punct(';', _));
+        let end = rest.iter().position(|(t, _)| ends(t)).unwrap_or(rest.len());
+        rest.iter().zip(rest.iter().skip(1)).take(end).any(|((open, _), (name, _))| {
+            matches!((open, name), (Token::Open('['), Token::Name(n)) if n != index && n != "k")
+        })
     }
 
     /// Whether the next token is this word.
@@ -331,7 +343,7 @@ impl Cursor {
         if c != ';' {
             let error = self.unexpected(&format!("`{c}`"));
             return Err(match (c, self.peek()) {
-                (':', Some(Token::Punct('=', _))) => error.help(
+                (':', Some(Token::Punct('=' | ';', _))) => error.help(
                     "say what it is, for example `param m: Real;`; values stand in the case, not in the model",
                 ),
                 ('=', Some(Token::Punct(':', _))) => error.help("write `=` before an expression"),
@@ -346,16 +358,8 @@ impl Cursor {
         }
         // The partner of what was not closed in its own statement, where that was told.
         error.follows = matches!(self.peek(), Some(Token::Close(')' | ']')));
-        Err(error.help(match self.peek() {
-            Some(Token::Punct('.', _)) => COMPONENT,
-            Some(Token::Open('(')) => SIZES,
-            Some(Token::Punct('^', _)) => {
-                "of a function the expression stands in quotes, `= \"x^2\"`; a vector of three components is `Vec<3>`"
-            }
-            Some(Token::Punct('=', _)) => "values stand in the case, not in the model",
-            Some(Token::Punct('#', _)) => "remarks begin with `//`",
-            _ => "every statement ends with `;`",
-        }))
+        Err(unknown::ends_expression(self)
+            .unwrap_or_else(|| error.help(unknown::ends_statement(self))))
     }
 
     /// Whether the next tokens read as the start of a statement, not as a factor of a product
@@ -378,10 +382,8 @@ impl Cursor {
             return Ok(());
         }
         let error = self.unexpected(&format!("`{c}`"));
-        Err(match self.peek() {
-            Some(Token::Punct('.', _)) => error.help(COMPONENT),
-            _ => self.unclosed().unwrap_or(error),
-        })
+        let told = unknown::ends_expression(self).or_else(|| self.unclosed());
+        Err(told.unwrap_or(error))
     }
 
     /// Where a statement ends inside of parentheses, or its other side begins: the innermost opening delimiter, which is not

@@ -10,7 +10,7 @@ use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Function, Node, Part, Shift};
 use crate::groups::{self, Group};
 use crate::syntax::ast::{Expression, Name};
-use crate::syntax::{AVAILABLE, FUNCTIONS, HIDEABLE};
+use crate::syntax::{AVAILABLE, FUNCTIONS, HIDEABLE, unknown};
 
 /// Whether an expression is an element of the group of this structure whatever its letters are.
 fn is_element(symbols: &Symbols, e: &Expr, structure: Structure) -> bool {
@@ -44,27 +44,56 @@ impl Elaborator<'_> {
         if self.is_quantity(n) && (!function || HIDEABLE.contains(&n)) {
             let message = match function {
                 true => format!("`{n}` is declared here as a quantity, which hides the function"),
-                false => format!("`{n}` is a quantity, no function"),
+                false => format!("`{n}` is a quantity, not a function"),
             };
             let d = Diagnostic::new(name.place, message);
-            let d = d.help(format!("write `{n}*(...)` for the product"));
-            return Some(match function {
-                true => d.help(format!("rename the quantity to use the function `{n}`")),
-                false => d.help(format!("functions: {AVAILABLE}")),
+            let moves = self.names.symbols.find(n).is_some_and(|id| {
+                let role = self.names.symbols.get(id).role;
+                matches!(role, Role::Element | Role::Advected)
+            });
+            return Some(match (function, moves) {
+                (true, _) => d
+                    .help(format!("write `{n}*(...)` for the product"))
+                    .help(format!("rename the quantity to use the function `{n}`")),
+                (false, true) => d.help(format!(
+                    "write `{n}*(...)` for the product, `next({n})` for its value at the next node"
+                )),
+                (false, false) => d
+                    .help(format!("write `{n}*(...)` for the product"))
+                    .help(format!("functions: {AVAILABLE}")),
             });
         }
         if function {
             return None;
         }
-        let d = Diagnostic::new(name.place, format!("`{n}` is no function of the language"));
-        let d = match super::names::otherwise(n) {
-            Some(written) => d.help(format!("the language writes `{written}`")),
-            None => match closest(n, AVAILABLE.split(' ')) {
-                Some(near) => d.help(format!("did you mean `{near}`?")),
-                None => d,
-            },
+        let d = Diagnostic::new(
+            name.place,
+            format!("`{n}` is not a function of the language"),
+        );
+        if let Some(written) = unknown::function(n) {
+            return Some(d.help(written));
+        }
+        let d = match closest(n, AVAILABLE.split(' ')) {
+            Some(near) => d.help(format!("did you mean `{near}`?")),
+            None => d,
         };
         Some(d.help(format!("functions: {AVAILABLE}")))
+    }
+
+    /// How the kinetic energy of a body is stated, where an expression is the velocity of one.
+    fn kinetic_of_body(&self, e: &Expr) -> Option<String> {
+        let symbols = &self.names.symbols;
+        let Node::Letter(at) = e.node() else {
+            return None;
+        };
+        let velocity = symbols.get(at.symbol);
+        (velocity.role == Role::Velocity && velocity.structure == Structure::Orthogonal).then(|| {
+            let (w, h) = (&velocity.name, &symbols.get(self.names.step).name);
+            format!(
+                "the velocity `{w}` is the rotation of one step, a matrix: the kinetic energy of a body with second moments J \
+                 is stated by `-tr(J*{w})/{h}`"
+            )
+        })
     }
 
     /// Parts of quaternions and rigid motions.
@@ -141,10 +170,16 @@ impl Elaborator<'_> {
                 return Ok(());
             }
             let what = shape_text(symbols, a.shape());
-            fail(Diagnostic::new(
+            let d = Diagnostic::new(
                 at,
                 format!("`{f}` needs a vector of length 3, and this is {what}"),
-            ))
+            );
+            fail(
+                match f == "cross" && a.shape() == Shape::vector(Dim::Fixed(2)) {
+                    true => d.help("in the plane `dot(perp(a), b)` is a[1]*b[2] - a[2]*b[1]"),
+                    false => d,
+                },
+            )
         };
         let first = &args[0];
         let argument = |context: Option<Shape>| self.elaborate(first, context);
@@ -177,6 +212,10 @@ impl Elaborator<'_> {
             "sqrt" => {
                 let a = self.of_shape(first, Shape::SCALAR)?;
                 self.power(a, Rational::HALF, first.place, place)
+            }
+            "abs" if self.hint(first).is_some_and(Shape::is_vector) => {
+                let d = Diagnostic::new(first.place, "`abs` is of a number, and this is a vector");
+                fail(d.help("the length of a vector x is `sqrt(dot(x, x))`"))
             }
             _ if let Some(function) = Function::named(f) => {
                 let a = self.of_shape(first, Shape::SCALAR)?;
@@ -226,7 +265,12 @@ impl Elaborator<'_> {
                             first.place,
                             format!("`dot` pairs two vectors, and this is {what}"),
                         )
-                        .help("the pairing of two matrices is `tr(A^T * B)`"),
+                        .help(match a.shape().is_scalar() {
+                            true => "numbers are multiplied, `a*b`, and squared, `a^2`".to_owned(),
+                            false => self.kinetic_of_body(&a).unwrap_or_else(|| {
+                                "the pairing of two matrices is `tr(A^T * B)`".to_owned()
+                            }),
+                        }),
                     );
                 }
                 Ok(expr::dot(a, b))
@@ -260,7 +304,7 @@ impl Elaborator<'_> {
                         return fail(messages::shifted_velocity(place, name));
                     }
                     if !messages::EDGE.contains(&l.shift.time) {
-                        return fail(messages::shift_too_far(place));
+                        return fail(messages::shift_too_far(place, symbols, l));
                     }
                 }
                 Ok(shifted)

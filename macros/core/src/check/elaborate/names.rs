@@ -8,49 +8,7 @@ use crate::expr;
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::spelling::skeleton;
 use crate::expr::symbol::{Role, Symbols};
-use crate::syntax::FUNCTIONS;
-
-/// What the functions of the language are called elsewhere.
-const OTHERWISE: [(&str, &str); 26] = [
-    ("I3", "det(A)"),
-    ("trace", "tr(A)"),
-    ("determinant", "det(A)"),
-    ("inverse", "inv(A)"),
-    ("transpose", "A^T"),
-    ("ln", "log(a)"),
-    ("inner", "dot(a, b)"),
-    ("norm", "sqrt(dot(a, a))"),
-    ("previous", "prev(a)"),
-    ("tan", "sin(a)/cos(a)"),
-    ("pow", "a^2, a^(1/2)"),
-    ("sq", "a^2"),
-    ("fabs", "abs(a)"),
-    ("transposed", "A^T"),
-    ("PI", "pi"),
-    ("Pi", "pi"),
-    ("M_PI", "pi"),
-    ("e1", "E1"),
-    ("e2", "E2"),
-    ("e3", "E3"),
-    ("e_1", "E1"),
-    ("e_2", "E2"),
-    ("e_3", "E3"),
-    ("e_x", "E1"),
-    ("e_y", "E2"),
-    ("e_z", "E3"),
-];
-
-/// What the time step is called elsewhere.
-const STEPS: [&str; 7] = ["h", "dt", "Dt", "Δt", "delta_t", "deltat", "tau"];
-
-/// What time is called.
-const TIMES: [&str; 2] = ["t", "time"];
-
-/// How the language writes what this name means elsewhere.
-pub(super) fn otherwise(name: &str) -> Option<&'static str> {
-    let found = OTHERWISE.iter().find(|(other, _)| *other == name);
-    found.map(|(_, written)| *written)
-}
+use crate::syntax::{FUNCTIONS, unknown};
 
 /// The quantity whose value at the next node a name is: `q_next`, `q_new`, `next_q`.
 fn next_of<'n>(name: &'n str, symbols: &Symbols) -> Option<&'n str> {
@@ -65,6 +23,16 @@ fn next_of<'n>(name: &'n str, symbols: &Symbols) -> Option<&'n str> {
         matches!(role, Some(Role::Element | Role::Advected))
     };
     stems.into_iter().flatten().find(moves)
+}
+
+/// The number at an end of the step that a name is: `q0`, `q_1`; and whether it is that at the end.
+fn end_of<'n>(name: &'n str, symbols: &Symbols) -> Option<(&'n str, bool)> {
+    let end = name.ends_with('1');
+    let stem = name.strip_suffix(['0', '1'])?;
+    let stem = stem.strip_suffix('_').unwrap_or(stem);
+    let symbol = symbols.get(symbols.find(stem)?);
+    let moves = matches!(symbol.role, Role::Element | Role::Advected);
+    (moves && symbol.shape.is_scalar()).then_some((stem, end))
 }
 
 /// The component that a name is meant for: `x_3`, `x3`, `x_z`.
@@ -92,9 +60,27 @@ fn rate_of<'n>(name: &'n str, symbols: &Symbols) -> Option<&'n str> {
         name.strip_prefix('d'),
         name.strip_suffix("_dot"),
         name.strip_suffix("dot"),
+        name.strip_suffix(DOT),
+        DOTTED
+            .iter()
+            .find(|(dotted, _)| *dotted == name)
+            .map(|(_, plain)| *plain),
     ];
     stems.into_iter().flatten().find(|stem| moves(stem))
 }
+
+/// The dot above a letter that Unicode writes behind it.
+const DOT: char = '\u{307}';
+
+/// Letters with a dot above them.
+const DOTTED: [(&str, &str); 6] = [
+    ("ẋ", "x"),
+    ("ẏ", "y"),
+    ("ż", "z"),
+    ("ṙ", "r"),
+    ("ṡ", "s"),
+    ("ẇ", "w"),
+];
 
 impl Elaborator<'_> {
     /// The unit vector along an axis, if there is one in every size that is allowed.
@@ -159,6 +145,14 @@ impl Elaborator<'_> {
             let mut known = declared.iter().copied().chain(bound.clone());
             known.find(|other| skeleton(other) == skeleton(n)).cloned()
         };
+        let h = &self.names.symbols.get(self.names.step).name;
+        let mut fields = self
+            .names
+            .configurations
+            .iter()
+            .filter(|c| c.group.is_additive());
+        let field = fields.next().filter(|_| unknown::VELOCITIES.contains(&n));
+        let velocity = field.map(|c| &self.names.symbols.get(c.element).name);
         let mut d = Diagnostic::new(place, format!("`{n}` is not declared"));
         if self.names.was_declared(n) || self.unbound.contains(&(n.to_owned(), true)) {
             d = Diagnostic::following(place, format!("`{n}` has a faulty declaration"));
@@ -167,37 +161,47 @@ impl Elaborator<'_> {
                 "`{other}` is declared, which looks like it and is written with other characters: copy it from there"
             ));
         } else if n == "T" {
-            d = d.help("`T` is the transpose and only stands after `^`");
+            d = d.help("`T` stands for the transpose, as in `A^T`; give a kinetic energy another name, for example `K`");
         } else if self.unbound.contains(&(n.to_owned(), false)) {
             d = Diagnostic::new(place, format!("`{n}` is used before its `let`"))
                 .help(format!("move `let {n} = ...;` up, before its first use"));
         } else if let Some(moving) = rate_of(n, &self.names.symbols) {
             d = d.help(format!(
-                "a Lagrangian of one step has differences for rates: `(next({moving}) - {moving})/h`"
+                "a rate of change is a difference over the step: `(next({moving}) - {moving})/{h}`"
             ));
         } else if let Some(moving) = next_of(n, &self.names.symbols) {
             d = d.help(format!("the value at the next node is `next({moving})`"));
+        } else if let Some((moving, end)) = end_of(n, &self.names.symbols) {
+            d = d.help(match end {
+                true => format!("the value at the end of the step is `next({moving})`"),
+                false => format!("the value at the start of the step is `{moving}`"),
+            });
         } else if let Some(component) = component_of(n, &self.names.symbols) {
             d = d.help(format!("a component is written `{component}`"));
         } else if FUNCTIONS.contains(&n) {
             d = Diagnostic::new(place, format!("`{n}` is a function of the language"))
                 .help(format!("write `{n}(...)`"));
-        } else if STEPS.contains(&n) {
-            let h = &self.names.symbols.get(self.names.step).name;
+        } else if unknown::STEPS.contains(&n) {
             d = d.help(format!(
                 "the time step is `{h}` here; `time k step {n};` at the top calls it `{n}`"
             ));
-        } else if TIMES.contains(&n) {
-            let h = &self.names.symbols.get(self.names.step).name;
-            d = d.help(format!(
-                "time itself does not stand in a Lagrangian; let a clock go along, which starts at the time of the start: \
-                 `advected τ: Real; constraint next(τ) = τ + {h};`"
+        } else if unknown::TIMES.contains(&n) {
+            d = Diagnostic::new(
+                place,
+                format!("the Lagrangian cannot depend on the time `{n}` unless a clock is declared"),
+            )
+            .help(format!(
+                "declare one, `advected {n}: Real; constraint next({n}) = {n} + {h};`; the case gives its value at the start"
             ));
         } else if let Some(near) = closest(n, declared.into_iter().chain(bound).map(String::as_str))
         {
             d = d.help(format!("did you mean `{near}`?"));
-        } else if let Some(written) = otherwise(n) {
+        } else if let Some(written) = unknown::name(n) {
             d = d.help(format!("the language writes `{written}`"));
+        } else if let Some(moving) = velocity {
+            d = d.help(format!(
+                "a velocity is a difference over the step: `let {n} = (next({moving}) - {moving})/{h};`"
+            ));
         } else if let Some(near) = closest(n, FUNCTIONS) {
             d = d.help(format!("did you mean the function `{near}`?"));
         } else if n == self.names.time_index {
@@ -210,7 +214,9 @@ impl Elaborator<'_> {
                 UNITS.len()
             ));
         } else {
-            d = d.help(format!("declare it, for example `param {n}: Real;`"));
+            d = d.help(format!(
+                "declare it, for example `param {n}: Real;`, or name an expression, `let {n} = ...;`"
+            ));
         }
         fail(d)
     }

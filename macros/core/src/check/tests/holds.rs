@@ -50,7 +50,11 @@ fn constraints_that_cannot_be_held_are_told_on_their_tokens() {
             "hold λ: m = L;",
             "the constraint of `λ` contains no configuration",
         ),
-        ("hold λ: dot(x, next(x)) = L^2;", "stands at one node"),
+        (
+            "hold λ: dot(x, next(x)) = L^2;",
+            "nonholonomic constraints are not supported yet",
+        ),
+        ("hold λ: dot(next(x), next(x)) = L^2;", "leave `next` out"),
         (
             "hold λ: dot(x, x) = dot(x, x);",
             "both sides of the constraint of `λ` are the same",

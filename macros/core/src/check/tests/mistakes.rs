@@ -1,5 +1,7 @@
 //! What is written in the way of papers or of other languages, and what is said of it.
 
+mod elsewhere;
+
 use crate::pipeline::derive_source;
 
 fn said(statements: &str, term: &str) -> String {

@@ -56,8 +56,13 @@ impl Derivation {
             return ("not conserved", DRIVEN);
         }
         let degenerate = self.kinetic.as_ref().and_then(Kinetic::degenerate);
+        let first_order = self.kinetic.as_ref().is_some_and(|k| k.first_order);
         match (energy.exact, degenerate) {
             (true, _) => ("constant", &energy.reason),
+            (false, Some(_)) if first_order => (
+                "not known to be bounded",
+                "the Lagrangian is linear in the velocities",
+            ),
             (false, Some(_)) => (
                 "not known to be bounded",
                 "the kinetic energy is degenerate",

@@ -1,9 +1,10 @@
-//! Parameters that nothing uses, and functions that are not smooth. Takes the model; gives warnings.
+//! Parameters and abbreviations that nothing uses, and functions that are not smooth. Takes the model; gives warnings.
 
 use super::{Inputs, Topic, Warning};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Place};
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Function, Node};
+use crate::syntax::unknown;
 
 /// One warning for each parameter that stands in no Lagrangian, constraint or definition.
 pub(super) fn parameters(x: &Inputs) -> Vec<Warning> {
@@ -22,9 +23,13 @@ pub(super) fn parameters(x: &Inputs) -> Vec<Warning> {
     };
     let assumed = spec.assumptions.iter().flat_map(|a| [&a.left, &a.right]);
     let assumed: Vec<&Expr> = assumed.collect();
+    // What an unused definition holds is told with it.
+    let unused = |name: &str| spec.unused_lets.iter().any(|(own, _)| own == name);
+    let hidden = spec.lets.iter().filter(|(name, _)| unused(name));
+    let hidden: Vec<&Expr> = hidden.map(|(_, value)| value).collect();
     let places = spec.parameters.iter().zip(&spec.parameter_places);
     places
-        .filter(|(p, _)| !stands(&used, **p))
+        .filter(|(p, _)| !stands(&used, **p) && !stands(&hidden, **p))
         .map(|(p, place)| {
             let name = &spec.symbols.get(*p).name;
             let message = match stands(&assumed, *p) {
@@ -36,6 +41,16 @@ pub(super) fn parameters(x: &Inputs) -> Vec<Warning> {
             Warning::new(Topic::UnusedParameter, d)
         })
         .collect()
+}
+
+/// The warning of an abbreviation that nothing uses.
+pub(crate) fn unused_let(name: &str, place: Place) -> Warning {
+    let message = format!("`{name}` is named by `let` and never used: it has no effect");
+    let help = match unknown::is_force(name) {
+        true => "forces without a potential are not supported yet, and a name states none; a potential is a term of the Lagrangian".to_owned(),
+        false => format!("use `{name}` in the Lagrangian, or leave it out"),
+    };
+    Warning::new(Topic::UnusedLet, Diagnostic::new(place, message).help(help))
 }
 
 /// One warning for each absolute value or sign of what moves.

@@ -5,7 +5,7 @@ use super::terms::{action_of, place, typed};
 use super::{Inputs, Topic, Warning};
 use crate::derive::limit;
 use crate::diagnostic::Diagnostic;
-use crate::expr::Expr;
+use crate::expr::{self, Expr};
 
 /// The warning, if there is no limit.
 pub(super) fn limit(x: &Inputs) -> Option<Warning> {
@@ -51,6 +51,42 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
          divided by `h`, potentials multiplied by `h`, as in `{kinetic} - {potential}`"
     ));
     Some(Warning::new(Topic::NoLimit, d))
+}
+
+/// The warning of a Lagrangian per unit time, which times the step is one of a step: `m*v^2/2 - V` with `v = (next(x) - x)/h`.
+pub(super) fn per_unit_time(x: &Inputs) -> Option<Warning> {
+    if x.limit.as_ref().err()? != limit::STANDING {
+        return None;
+    }
+    let s = &x.letters.symbols;
+    let algebra = x.engine();
+    let of_step = |e: &Expr| {
+        let action = action_of(x, &expr::mul(expr::here(s, x.spec.step), e.clone()));
+        limit::limit(
+            x.spec,
+            x.letters,
+            &action,
+            x.variations,
+            x.assumed,
+            &algebra,
+        )
+    };
+    let whole = of_step(&x.spec.typed).ok()?;
+    // A potential that has the step already would vanish.
+    let vanishes = |term: &Expr| of_step(term).is_ok_and(|limit| limit.lagrangian.is_zero());
+    let (_, all) = typed(x);
+    if whole.kinetic.is_zero() || all.iter().any(vanishes) || algebra.exhausted() {
+        return None;
+    }
+    let h = &s.get(x.spec.step).name;
+    let d = Diagnostic::new(
+        x.spec.lagrangian_place,
+        format!(
+            "this is a Lagrangian per unit time: the discrete Lagrangian of a step is that times `{h}`"
+        ),
+    );
+    let help = format!("multiply it by the step: `lagrangian = {h}*(...);`");
+    Some(Warning::new(Topic::NoLimit, d.help(help)))
 }
 
 /// The first of the terms that has no limit by itself, for the same reason; none where no term has one.

@@ -17,6 +17,8 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use effect::unused_let;
+
 use super::action::Action;
 use super::kinetic::Kinetic;
 use super::limit::Limit;
@@ -44,6 +46,8 @@ pub enum Topic {
     FirstOrder,
     /// A parameter that is used nowhere.
     UnusedParameter,
+    /// An abbreviation that is used nowhere.
+    UnusedLet,
     /// A potential, or a term, that is constant along every motion.
     ConstantTerm,
     /// A function that has no derivative somewhere, of what moves.
@@ -63,6 +67,7 @@ impl Topic {
             Topic::SignOfKineticEnergy => "sign-of-kinetic-energy",
             Topic::FirstOrder => "first-order",
             Topic::UnusedParameter => "unused-parameter",
+            Topic::UnusedLet => "unused-let",
             Topic::ConstantTerm => "constant-term",
             Topic::NotSmooth => "not-smooth",
             Topic::Assumption => "assumption",
@@ -192,12 +197,17 @@ impl Inputs<'_> {
 /// All warnings of a model, in the order of their topics.
 pub(crate) fn warnings(x: &Inputs) -> Vec<Warning> {
     let mut all = Vec::new();
-    all.extend(limit::limit(x));
-    all.extend(sign::degenerate(x));
-    all.extend(sign::sign(x));
+    match limit::per_unit_time(x) {
+        Some(whole) => all.push(whole),
+        None => {
+            all.extend(limit::limit(x));
+            all.extend(sign::degenerate(x));
+            all.extend(sign::sign(x));
+        }
+    }
     // Of a power of the step that is wrong one warning is enough.
-    let mut power_is_wrong =
-        x.limit.is_err() || x.kinetic.is_some_and(|k| k.rank.is_some_and(|r| r.0 == 0));
+    let none = |k: &Kinetic| !k.first_order && k.rank.is_some_and(|r| r.0 == 0);
+    let mut power_is_wrong = x.limit.is_err() || x.kinetic.is_some_and(none);
     if !power_is_wrong {
         let vanishing = terms::vanishing(x);
         power_is_wrong = vanishing.is_some();
@@ -207,6 +217,8 @@ pub(crate) fn warnings(x: &Inputs) -> Vec<Warning> {
         all.extend(order::order(x));
     }
     all.extend(effect::parameters(x));
+    let unused = x.spec.unused_lets.iter();
+    all.extend(unused.map(|(name, place)| unused_let(name, *place)));
     all.extend(terms::without_effect(x));
     all.extend(effect::kinks(x));
     all.extend(assumptions::assumptions(x));

@@ -24,7 +24,8 @@ const OF_FIELDS: &str = "the Lagrangian states kinetic minus potential energy, t
 
 /// The warning that the kinetic energy does not depend on every velocity.
 pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
-    let (rank, n) = x.kinetic?.degenerate()?;
+    let kinetic = x.kinetic.filter(|k| !k.first_order)?;
+    let (rank, n) = kinetic.degenerate()?;
     let refused = match x.solve.needs_second_moments() {
         true => {
             ". The Moser-Veselov equation does not determine the velocity: no step can be made, and \

@@ -1,6 +1,7 @@
 //! Models that derive but are hardly meant, and their sound neighbours, which are not warned of.
 
 mod fields;
+mod typed;
 
 use super::Topic::{self, *};
 use crate::pipeline::derive_source;
@@ -235,7 +236,7 @@ fn what_has_no_effect_is_said() {
     assert_eq!(topics(&assumed), [UnusedParameter]);
     assert!(words(&assumed).contains("an assumption only"));
     let hidden = format!("{BODY} param a: Real; let w = a*a; lagrangian = -tr(J*Ω)/h;");
-    assert_eq!(topics(&hidden), [UnusedParameter]);
+    assert_eq!(topics(&hidden), [UnusedLet]);
     // Used in a scale, or in the definition of what is carried.
     let scaled = format!("{BODY} param c: Real; scale c; lagrangian = -c*tr(J*Ω)/h;");
     assert_eq!(topics(&scaled), []);

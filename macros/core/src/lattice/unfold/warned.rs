@@ -1,7 +1,7 @@
 //! What derives on a lattice and is hardly meant, in the words of the statement.
 
 use super::Unfolded;
-use crate::derive::warnings::{Topic, Warning};
+use crate::derive::warnings::{Topic, Warning, unused_let};
 use crate::diagnostic::Diagnostic;
 use crate::lattice::{Choice, any_name};
 use crate::syntax::ast::{Expression, Extent, Model, Name, Statement};
@@ -14,6 +14,14 @@ pub(super) fn one_neighbour(stated: &Expression) -> Warning {
         "write it at the site itself, or in one bracket with what it is compared with, as in `a*(next(q, i) - q)`",
     );
     Warning::new(Topic::OneNeighbour, d)
+}
+
+/// Abbreviations that nothing uses.
+pub(super) fn without_use(model: &Model) -> Vec<Warning> {
+    let unused = crate::check::unused_definitions(model).into_iter();
+    unused
+        .map(|(name, place)| unused_let(&name, place))
+        .collect()
 }
 
 /// An offset acts across the seam of a ring only.

@@ -123,3 +123,21 @@ fn what_nothing_names_is_told_of_every_line() {
     let with = source("(next(q, i) - q)^2/(2*s)");
     assert!(unused(&with, None, Some(["pinned", "load"])).is_empty());
 }
+
+#[test]
+fn a_definition_that_nothing_uses_is_said_once() {
+    let source = "model Beads { label i in 0..N; param m, k: Real; field q: Real at nodes; let d = next(q, i) - q; let f = k*d;
+         lagrangian = m*(next(q) - q)^2/(2*h) - h*k*d^2/2; end i = 0 { free; pulled { param F: Real; term h*F*q; } } }";
+    let unused = |source: &str| {
+        let all = told(source, None, Some(["free", "free"]));
+        let own = all.iter().filter(|w| w.topic == Topic::UnusedLet);
+        own.map(|w| w.diagnostic.message.clone())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        unused(source),
+        ["`f` is named by `let` and never used: it has no effect"]
+    );
+    // A term of an end that is not chosen uses it.
+    assert!(unused(&source.replace("h*F*q", "h*F*f")).is_empty());
+}

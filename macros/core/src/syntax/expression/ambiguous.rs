@@ -1,9 +1,10 @@
 //! What could be read in two ways, or is written as in another language: each is refused with both
 //! ways to write it. Takes what was read and the cursor after it; gives the error, if there is one.
 
-use super::{Cursor, Expression, Kind, Token};
+use super::{Cursor, Expression, Kind, Token, unknown};
 use crate::algebra::Rational;
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Place};
+use crate::syntax::FUNCTIONS;
 
 /// Types that Rust glues to numbers.
 const SUFFIXES: [&str; 14] = [
@@ -99,6 +100,9 @@ pub(super) fn after_factor(
                 Kind::Neg(inner) => &inner.kind,
                 other => other,
             };
+            if let Some(told) = power_of_function(inner, factor.place) {
+                return Some(told);
+            }
             let what = match inner {
                 Kind::Call(..) => "a function",
                 Kind::Component(..) => "a component",
@@ -116,6 +120,26 @@ pub(super) fn after_factor(
         _ => return None,
     };
     Some(Diagnostic::new(factor.place.to(c.place()), what).help(remedy))
+}
+
+/// `sin^2(q)`, `sin^-1(x)`: a function stands before its argument, a power behind it.
+fn power_of_function(factor: &Kind, place: Place) -> Option<Diagnostic> {
+    let Kind::Power(base, q) = factor else {
+        return None;
+    };
+    let Kind::Name(f) = &base.kind else {
+        return None;
+    };
+    if !FUNCTIONS.contains(&f.as_str()) || q.denominator() != 1 {
+        return None;
+    }
+    let power = q.numerator();
+    let message = format!("`{f}^{power}(...)`: a power stands behind the argument of a function");
+    let help = match unknown::function(&format!("a{f}")).filter(|_| power == -1) {
+        Some(inverse) => inverse.to_owned(),
+        None => format!("write `{f}(...)^{power}`"),
+    };
+    Some(Diagnostic::new(place, message).help(help))
 }
 
 /// `x^1/2` is half of `x`, and nobody writes the exponent 1 who does not mean the root; `x^2/2` is

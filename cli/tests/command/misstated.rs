@@ -1,0 +1,89 @@
+//! What a run says of a start or of numbers that a model does not have, and of Lagrangians that look like a mistake and are none.
+
+use crate::common::{Folder, clebsch};
+
+/// What a run of a model with a case says, and what it wrote.
+fn run(folder: &Folder, model: &str, case: &str) -> (crate::common::Done, String) {
+    let (model, case) = (
+        folder.write("own.clebsch", model),
+        folder.write("own.toml", case),
+    );
+    let out = folder.path("out");
+    let done = clebsch(&[
+        "run", &model, "--case", &case, "--every", "1", "--out", &out, "--force",
+    ]);
+    let table = std::fs::read_to_string(format!("{out}/trajectory.csv"));
+    (done, table.unwrap_or_default())
+}
+
+const PENDULA: &str = "model Pendula {
+    param m, g: Real;
+    field x, y: Vec<2>;
+    hold p: dot(x, x) = 1;
+    hold q: dot(y, y) = 1;
+    lagrangian = m*(dot(next(x) - x, next(x) - x) + dot(next(y) - y, next(y) - y))/(2*h) - h*m*g*(x[2] + y[2]);
+}";
+
+#[test]
+fn a_momentum_that_is_not_tangent_is_told_of_the_constraint_that_takes_it() {
+    let folder = Folder::new("not-tangent");
+    let case = "model = \"pendula\"\nname = \"own\"\nh = 0.01\nsteps = 2\n[parameters]\nm = 1.0\ng = 1.0\n[initial]\n\
+        x = [0.0, -1.0]\ny = [1.0, 0.0]\nmomentum_x = [1.0, 0.0]\nmomentum_y = [0.5, 0.25]\n";
+    let (done, _) = run(&folder, PENDULA, case);
+    assert_ne!(done.code, 0);
+    let told = "q: the initial momentum is not tangent to the constraint `y_k·y_k = 1`: constraint forces take 5.000e-1 \
+        of its size 1.559e0, with the multiplier 0.25 for this constraint; subtract the multiplier times the gradient";
+    assert!(done.err.contains(told), "{}", done.err);
+    // Without that part it runs.
+    let (done, _) = run(
+        &folder,
+        PENDULA,
+        &case.replace("[0.5, 0.25]", "[0.0, 0.25]"),
+    );
+    assert_eq!(done.code, 0, "{}", done.err);
+}
+
+#[test]
+fn what_overflows_is_told_from_what_has_no_value() {
+    let folder = Folder::new("overflow");
+    let model = "model Spring { param m, k: Real; field x: Real; lagrangian = m*(next(x) - x)^2/(2*h) - h*k*x^2/2; }";
+    let case = "model = \"spring\"\nname = \"own\"\nh = 5.0\nsteps = 400\n[parameters]\nm = 1.0\nk = 1.0\n[initial]\nx = 1.0\nmomentum = 0.0\n";
+    let (done, _) = run(&folder, model, case);
+    assert_ne!(done.code, 0);
+    let why = "the invariant `energy` is inf: it is larger than any number of double precision, 1.8e308; reduce the step size";
+    assert!(done.err.contains(why), "{}", done.err);
+}
+
+const VORTICES: &str = "model Vortices {
+    param a, b: Real;
+    field x, y: Vec<2>;
+    let d = x - y;
+    lagrangian = (a*dot(perp(x), next(x) - x) + b*dot(perp(y), next(y) - y))/2 + h*a*b*log(dot(d, d))/(4*pi);
+}";
+
+#[test]
+fn point_vortices_run_without_a_warning() {
+    let folder = Folder::new("vortices");
+    let case = "model = \"vortices\"\nname = \"pair\"\nh = 0.01\nsteps = 1000\n[parameters]\na = 1.0\nb = 1.0\n[initial]\n\
+        x = [0.5, 0.0]\ny = [-0.5, 0.0]\nmomentum_x = [0.0, 0.25]\nmomentum_y = [0.0, -0.25]\n";
+    let (done, table) = run(&folder, VORTICES, case);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(!done.err.contains("warning"), "{}", done.err);
+    let mut lines = table.lines().map(|l| l.split(',').collect::<Vec<_>>());
+    let names = lines.next().expect("names");
+    let last = lines.last().expect("rows");
+    let value = |name: &str| -> f64 {
+        let at = names.iter().position(|n| *n == name).expect("is a column");
+        last[at].parse().expect("a number")
+    };
+    // Equal vortices at the distance d turn about their middle at the rate Γ/(π d²).
+    let angle = 10.0 / std::f64::consts::PI;
+    let turned = [0.5 * angle.cos(), 0.5 * angle.sin()];
+    for (name, wanted) in ["x_1", "x_2"].into_iter().zip(turned) {
+        assert!(
+            (value(name).abs() - wanted.abs()).abs() < 1e-4,
+            "{name}: {} {wanted}",
+            value(name)
+        );
+    }
+}

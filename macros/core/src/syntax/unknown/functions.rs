@@ -1,0 +1,81 @@
+//! Functions of other languages: how the language writes them, or that it cannot.
+
+/// There is no function for the angle of a ratio.
+const NO_INVERSE: &str = "the language has no inverse of sine, cosine or tangent. Make the angle itself a configuration, for \
+    example `field θ: Real;`, so that its potential `k*θ^2/2` can be stated";
+
+/// Cases are made of `abs` and `sign`.
+const NO_CASES: &str = "functions in pieces are not supported yet, except by `abs` and `sign`: `(x + abs(x))/2` is x where x > 0 \
+    and 0 elsewhere, `(1 + sign(x))/2` is 1 or 0";
+
+/// A rate of change is a difference.
+const RATE: &str = "the discrete Lagrangian writes a rate of change as a difference over the step: `(next(x) - x)/h`";
+
+/// Derivatives and integrals are taken by the engine.
+const ENGINE: &str = "state the Lagrangian itself: derivatives are taken by the engine";
+
+/// There is no sum over pairs of sites.
+pub(crate) const PAIRS: &str = "terms couple neighbours along a label, not all pairs of sites. Declare the bodies one by one, \
+    `field x, y, z: Vec<3>;`, and write a term for each pair";
+
+/// How the language writes a function of another language, or what to do where it has none.
+pub(crate) fn function(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "norm" | "Norm" | "length" | "len" | "magnitude" | "mag" | "hypot" | "modulus" => {
+            "the length of a vector x is `sqrt(dot(x, x))`"
+        }
+        "min" | "minimum" | "fmin" => "the smaller of a and b is `(a + b - abs(a - b))/2`",
+        "max" | "maximum" | "fmax" => "the larger of a and b is `(a + b + abs(a - b))/2`",
+        "acos" | "arccos" | "asin" | "arcsin" | "atan" | "arctan" | "atan2" | "arctan2" | "arg"
+        | "angle" => NO_INVERSE,
+        "asinh" | "arcsinh" => "write `log(x + sqrt(x^2 + 1))`",
+        "acosh" | "arccosh" => "write `log(x + sqrt(x^2 - 1))`",
+        "atanh" | "arctanh" => "write `log((1 + x)/(1 - x))/2`",
+        "tan" => "write `sin(a)/cos(a)`",
+        "cot" => "write `cos(a)/sin(a)`",
+        "sec" => "write `1/cos(a)`",
+        "csc" => "write `1/sin(a)`",
+        "if" | "where" | "piecewise" | "Piecewise" | "heaviside" | "Heaviside" | "step"
+        | "relu" | "ramp" | "clip" | "clamp" | "select" => NO_CASES,
+        "sgn" | "signum" => "write `sign(x)`",
+        "ln" => "write `log(x)`",
+        "log10" => "write `log(x)/log(10)`",
+        "log2" => "write `log(x)/log(2)`",
+        "pow" | "power" => "a power is written `x^2`, `x^(1/2)`, `exp(p*log(x))`",
+        "sq" | "square" | "sqr" => "write `x^2` of a number, `dot(x, x)` of a vector",
+        "cbrt" => "write `x^(1/3)`",
+        "fabs" | "Abs" | "absolute" => "write `abs(x)`",
+        "mod" | "fmod" | "floor" | "ceil" | "round" | "rint" => {
+            "the language has no whole part or remainder. An angle needs none: `cos(q)` repeats by itself"
+        }
+        "I3" | "determinant" => "write `det(A)`",
+        "trace" => "write `tr(A)`",
+        "inverse" => "write `inv(A)`",
+        "transpose" | "transposed" => "write `A^T`",
+        "inner" | "scalar" | "vdot" | "matmul" => {
+            "write `dot(a, b)` for vectors, `A*b` for a matrix times what follows"
+        }
+        "outer" => "write `a*b^T`",
+        "wedge" | "curl" => "write `cross(a, b)` of vectors with three components",
+        "vec" | "Vec" | "vector" | "Vector" | "array" | "list" | "Matrix" | "matrix" => {
+            "a vector is the sum of its components times unit vectors, `a*E1 + b*E2`, or a parameter, `param v: Vec<3>;`"
+        }
+        "eye" | "identity" => "the identity matrix is `Id`",
+        "mid" | "midpoint" | "mean" | "average" | "avg" => {
+            "the mean over a step is `(x + next(x))/2`"
+        }
+        "diff" | "d" | "D" | "ddt" | "derivative" | "dt" => RATE,
+        "grad" | "gradient" | "nabla" | "div" | "laplacian" | "integrate" | "integral" | "quad" => {
+            ENGINE
+        }
+        "pairs" | "combinations" => PAIRS,
+        "range" | "product" | "prod" => {
+            "sums over a label are meant by `at nodes` and `at segments`; other loops are not supported"
+        }
+        "random" | "rand" | "randn" | "normal" => {
+            "a Lagrangian has no random numbers: make them parameters, with values in the case"
+        }
+        "previous" => "write the term one step later: `x` for `previous(x)`, `next(x)` for `x`",
+        _ => return None,
+    })
+}

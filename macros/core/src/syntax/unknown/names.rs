@@ -1,0 +1,54 @@
+//! Names of constants and of quantities as other languages and papers have them.
+
+/// Names of constants, with what the language writes.
+const CONSTANTS: [(&str, &str); 15] = [
+    ("PI", "pi"),
+    ("Pi", "pi"),
+    ("M_PI", "pi"),
+    ("e1", "E1"),
+    ("e2", "E2"),
+    ("e3", "E3"),
+    ("e_1", "E1"),
+    ("e_2", "E2"),
+    ("e_3", "E3"),
+    ("e_x", "E1"),
+    ("e_y", "E2"),
+    ("e_z", "E3"),
+    ("eye", "Id"),
+    ("Identity", "Id"),
+    ("identity", "Id"),
+];
+
+/// What the time step is called elsewhere.
+pub(crate) const STEPS: [&str; 7] = ["h", "dt", "Dt", "Δt", "delta_t", "deltat", "tau"];
+
+/// What time is called.
+pub(crate) const TIMES: [&str; 2] = ["t", "time"];
+
+/// What a velocity is called.
+pub(crate) const VELOCITIES: [&str; 5] = ["v", "vel", "velocity", "xdot", "qdot"];
+
+/// Modules of functions in Python.
+pub(crate) const MODULES: [&str; 12] = [
+    "np", "numpy", "math", "cmath", "scipy", "sp", "sympy", "sym", "jnp", "jax", "torch", "linalg",
+];
+
+/// How the language writes a constant of this name.
+pub(crate) fn name(name: &str) -> Option<&'static str> {
+    let found = CONSTANTS.iter().find(|(other, _)| *other == name);
+    found.map(|(_, written)| *written)
+}
+
+/// What other languages call a shape.
+pub(crate) fn shape(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "Scalar" | "Number" | "R" | "ℝ" | "f64" | "Float" | "float" | "Double" | "double"
+        | "real" | "scalar" | "int" | "Int" | "angle" | "Angle" | "S1" => "Real",
+        "Vector" | "vector" | "R3" | "ℝ3" | "array" | "ndarray" => "Vec<3>",
+        "R2" | "ℝ2" => "Vec<2>",
+        "Matrix" | "matrix" => "Mat<3>",
+        "Symmetric" => "Sym<3>",
+        "Quaternion" => "SU<2>",
+        _ => return None,
+    })
+}
