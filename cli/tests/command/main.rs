@@ -31,6 +31,7 @@ mod results;
 mod resumed;
 mod scales;
 mod staging;
+mod starts;
 mod stated;
 mod stopped;
 mod sweeps;
