@@ -137,6 +137,15 @@ fn run() -> Command {
     .arg(flag("verbose", "Print what was derived, and how steps are solved, before the result").conflicts_with("json"))
     .arg(
         option(
+            "stability-limit",
+            "SECONDS",
+            "Search at most this long for the stability limit of the step size, which is only reported; 0 skips the search",
+        )
+        .default_value("1")
+        .value_parser(seconds),
+    )
+    .arg(
+        option(
             "check",
             "STEPS",
             "Which steps are judged by the action as stated, independently of derivation and program: a sample of a \
@@ -515,6 +524,13 @@ pub(crate) fn whole(text: &str) -> Option<u64> {
 fn order_number(text: &str) -> Result<u32, String> {
     let order = text.parse::<u32>();
     order.map_err(|_| "give a whole number: 2, 4, 6, 8, or 10 for a free body".to_owned())
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() && number >= 0.0 => Ok(number),
+        _ => Err("give a finite number that is not negative".to_owned()),
+    }
 }
 
 fn positive_number(text: &str) -> Result<f64, String> {

@@ -13,7 +13,7 @@ use crate::plan::Plan;
 use crate::record::{LARGEST, Recorder};
 use crate::resolve_model::resolved;
 use crate::stated::JudgedTrajectory;
-use crate::step_limit::StepLimit;
+use crate::step_limit::{self, StepLimit};
 use crate::summary::{self, Told};
 use crate::verdict::{Verdict, judge, lost, table};
 use crate::waiting::Waiting;
@@ -78,12 +78,6 @@ pub fn run(
             }
         }
     };
-    let limit = {
-        let what = "looking for the longest step of small motions".to_owned();
-        let _told = Waiting::told(what, streams.progress);
-        StepLimit::of(card, &plan)
-    };
-    let too_long = limit.warning(plan.case.h);
     // With `--json` a warning stands in the object as well; nothing is lost when it cannot be written.
     let mut warn = |warning: &str| {
         let _ = writeln!(streams.err, "clebsch: warning: {warning}");
@@ -94,6 +88,17 @@ pub fn run(
         let _told = Waiting::told(what, streams.progress);
         plan.open(card)
     };
+    // Values that the model cannot work with are told before anything is searched for.
+    let started = match started {
+        Err(wrong @ Failure::Usage(_)) => return Err(wrong),
+        other => other,
+    };
+    let limit = {
+        let what = "searching for the stability limit of the step size".to_owned();
+        let _told = Waiting::told(what, streams.progress);
+        StepLimit::of(card, &plan, step_limit::patience(matches))
+    };
+    let too_long = limit.warning(plan.case.h);
     // Where the first step is refused, that it is too long is why, mostly.
     let trajectory = started.inspect_err(|_| {
         too_long.iter().for_each(|warning| warn(warning));

@@ -4,15 +4,27 @@
 use crate::model_file;
 use crate::plan::Plan;
 use crate::plots::axis::plain;
+use clap::ArgMatches;
 use clebsch::card::Card;
-use clebsch::integrate::LongestStep;
+use clebsch::integrate::{LongestStep, Unknown};
 use serde_json::{Value, json};
+use std::time::{Duration, Instant};
 
 /// Most numbers of initial values of which the longest step is sought: each of some sixty openings reads them all.
 const SOUGHT: usize = 20_000;
 
 /// The same where constraints are held, whose steps are searches and of which twice as many are taken.
 const SOUGHT_HELD: usize = 5_000;
+
+/// The option that says how long is searched.
+const OPTION: &str = "--stability-limit";
+
+/// For how long the stability limit is searched; zero for no search.
+pub(crate) fn patience(matches: &ArgMatches) -> Duration {
+    let seconds = matches.get_one::<f64>("stability-limit").copied();
+    // A number of seconds that no clock counts to is no bound.
+    Duration::try_from_secs_f64(seconds.unwrap_or(1.0)).unwrap_or(Duration::MAX)
+}
 
 /// What is known of the longest step before a run.
 #[derive(Clone, Debug)]
@@ -21,13 +33,18 @@ pub(crate) enum StepLimit {
     Known(LongestStep),
     /// Of a line it would be told, but is not sought.
     NotSought(String),
+    /// The search was given up after so long.
+    Cut(Duration),
     /// Nothing is to be said.
     Silent,
 }
 
 impl StepLimit {
-    /// Of a plain step, which the others are made of.
-    pub(crate) fn of(card: &Card, plan: &Plan) -> Self {
+    /// Of a plain step, which the others are made of, where it is found within this time. No step of a run depends on it.
+    pub(crate) fn of(card: &Card, plan: &Plan, patience: Duration) -> Self {
+        if patience.is_zero() {
+            return Self::Silent;
+        }
         let case = &plan.case;
         let has_sites = plan.choice.is_some();
         let numbers: usize = case.initial.iter().map(Vec::len).sum();
@@ -39,12 +56,16 @@ impl StepLimit {
         let why = if numbers > most {
             format!("the state has {numbers} numbers, more than {most}")
         } else {
-            let found = LongestStep::of(card, &case.parameters, &case.initial, case.h);
+            let begun = Instant::now();
+            let ended = || begun.elapsed() >= patience;
+            let found =
+                LongestStep::of_until(card, &case.parameters, &case.initial, case.h, &ended);
             let near = |limit: &LongestStep| {
                 case.h.abs() > 0.5 * limit.step || limit.warning(case.h).is_some()
             };
             match found {
                 Ok(limit) if has_sites || near(&limit) => return Self::Known(limit),
+                Err(Unknown::Unfinished) => return Self::Cut(patience),
                 Err(why) if has_sites => why.to_string(),
                 Ok(_) | Err(_) => return Self::Silent,
             }
@@ -59,7 +80,7 @@ impl StepLimit {
     pub(crate) fn warning(&self, h: f64) -> Option<String> {
         match self {
             Self::Known(limit) => limit.warning(h),
-            Self::NotSought(_) | Self::Silent => None,
+            Self::NotSought(_) | Self::Cut(_) | Self::Silent => None,
         }
     }
 
@@ -75,6 +96,10 @@ impl StepLimit {
             )),
             Self::NotSought(why) => Some(format!(
                 "longest step of small motions about the start: not computed, since {why}"
+            )),
+            Self::Cut(patience) => Some(format!(
+                "stability limit of the step size: not found within {} s; {OPTION} SECONDS searches longer",
+                plain(patience.as_secs_f64())
             )),
             Self::Known(_) | Self::Silent => None,
         }

@@ -64,7 +64,7 @@ impl Opened {
         }
         let given = collected(&self.initial, card.initial, &initial)?;
         put(&mut places, at::GIVEN, given);
-        let projecting = f.projecting.as_ref().filter(|_| settings.projected);
+        let projecting = f.projecting.as_ref().filter(|_| settings.inquiry);
         let begin = projecting.unwrap_or(&f.begin);
         let state = run(begin, &mut places).map_err(Failure::start)?;
         put(&mut places, at::STATE, state.clone());
@@ -114,7 +114,7 @@ impl Opened {
                     true => Value::Order(way.moments()),
                     false => self.usual(),
                 };
-                self.prepare(places, settings.h, choice)?;
+                self.prepare(places, settings, choice)?;
                 if let (Way::Modified(_, true), Some(compensated)) = (way, &f.compensated) {
                     let work = run(compensated, places).map_err(Failure::open)?;
                     put(places, at::WORK, work);
@@ -150,23 +150,40 @@ impl Opened {
         }
     }
 
-    /// The workspace of the state, put where steps expect it; the first step is tried on a copy.
+    /// The workspace of the state, put where steps expect it; the first step is tried on a copy, unless steps are only
+    /// looked at.
     fn prepare(
         &self,
         places: &mut Places<f64>,
-        h: f64,
+        settings: Settings,
         choice: Value<f64>,
     ) -> Result<(), StartError> {
-        validate::directed_step(h)?;
+        validate::directed_step(settings.h)?;
         put(places, at::GIVEN, choice);
         let state = places.get(at::STATE).cloned().unwrap_or(Value::Unit);
-        let work = run(&self.functions.prepared, places).map_err(Failure::start)?;
+        let mut work = run(&self.functions.prepared, places).map_err(Failure::start)?;
+        if settings.inquiry {
+            to_try(&mut work);
+            put(places, at::STATE, state);
+            put(places, at::WORK, work);
+            return Ok(());
+        }
         put(places, at::STATE, state.clone());
         put(places, at::WORK, work.clone());
         run(&self.functions.step, places).map_err(|e| StartError::Refused(e.cause()))?;
         put(places, at::STATE, state);
         put(places, at::WORK, work);
         Ok(())
+    }
+}
+
+/// The searches of a workspace follow roots from rest without a proof.
+fn to_try(work: &mut Value<f64>) {
+    match work {
+        Value::Search(held) => held.to_try(),
+        Value::Struct(all) => all.values.iter_mut().for_each(to_try),
+        Value::List(all) => all.iter_mut().for_each(to_try),
+        _ => {}
     }
 }
 
@@ -420,7 +437,8 @@ impl Stepper for Model {
         state.put(&mut here);
         put(&mut places, at::STATE, here);
         put(&mut places, at::STEP, Value::Real(h));
-        self.opened.prepare(&mut places, h, self.opened.usual())?;
+        self.opened
+            .prepare(&mut places, Settings::step(h), self.opened.usual())?;
         Ok(places)
     }
 

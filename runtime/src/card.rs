@@ -168,9 +168,10 @@ pub struct Settings {
     /// Whether steps with modified moments are made symplectic with the attitude by a constant turn
     /// about the momentum; only for the orders of [`Settings::COMPENSATED`].
     pub compensated: bool,
-    /// Whether of momenta at the start what points across held constraints is taken away, however much it is; else more
-    /// than rounding is refused. Models that are built refuse it always.
-    pub projected: bool,
+    /// Whether single steps are only looked at, and none is gone on from. Of models that are read, the momenta at the start
+    /// are then projected on held constraints, which refuse more than rounding across them otherwise; the first step is
+    /// not tried before it is made; and its root is followed without a proof.
+    pub inquiry: bool,
 }
 
 impl Settings {
@@ -186,15 +187,15 @@ impl Settings {
             order: None,
             solver: None,
             compensated: false,
-            projected: false,
+            inquiry: false,
         }
     }
 
-    /// The same steps, of a start whose momenta are projected on held constraints.
+    /// The same steps, only to look at them: see [`Settings::inquiry`].
     #[must_use]
-    pub fn projected(self) -> Self {
+    pub fn to_inquire(self) -> Self {
         Self {
-            projected: true,
+            inquiry: true,
             ..self
         }
     }

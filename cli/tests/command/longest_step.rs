@@ -1,6 +1,12 @@
 //! The longest step that small motions about the start allow: printed before a run, sharp, and warned of beyond it.
 
-use crate::common::{Folder, program as clebsch};
+use crate::common::{Done, Folder, program};
+use std::time::{Duration, Instant};
+
+/// Runs the program with a search that no load of the machine cuts.
+fn searched(arguments: &[&str]) -> Done {
+    program(&[arguments, &["--stability-limit", "600"]].concat())
+}
 
 fn shipped(file: &str) -> String {
     format!("{}/../models/{file}", env!("CARGO_MANIFEST_DIR"))
@@ -9,7 +15,7 @@ fn shipped(file: &str) -> String {
 /// The longest step that is printed for a model with a case, beside the frequency of which it is twice the inverse.
 fn printed(model: &str, case: &str, more: &[&str]) -> f64 {
     let arguments = ["run", model, "--case", case, "--steps", "1"];
-    let done = clebsch(&[&arguments[..], more].concat());
+    let done = searched(&[&arguments[..], more].concat());
     let number = |before: &str, behind: &str| -> f64 {
         let rest = done.out.split_once(before).map(|(_, rest)| rest);
         let number = rest.and_then(|rest| rest.split_once(behind));
@@ -46,7 +52,7 @@ fn a_straight_rod_has_the_limit_of_its_coupled_modes() {
     // Below it the rod goes on, above it is lost within a few steps.
     let run = |part: f64| {
         let h = format!("{}", part * limit);
-        clebsch(&["run", &model, "--case", &case, "--h", &h, "--steps", "300"])
+        searched(&["run", &model, "--case", &case, "--h", &h, "--steps", "300"])
     };
     let (below, above) = (run(0.97), run(1.15));
     assert_eq!(below.code, 0, "{}{}", below.out, below.err);
@@ -106,7 +112,7 @@ fn a_wrong_sign_between_neighbours_is_warned_of() {
     for h in ["0.04", "0.0001"] {
         for (text, warned) in [(&text, false), (&wrong, true)] {
             let model = folder.write("model.clebsch", text);
-            let done = clebsch(&["run", &model, "--case", &case, "--steps", "1", "--h", h]);
+            let done = searched(&["run", &model, "--case", &case, "--steps", "1", "--h", h]);
             let said = done.err.contains("is there a sign wrong");
             assert_eq!(said, warned, "{h}: {}{}", done.out, done.err);
             assert_eq!(done.err.contains("elliptic"), warned, "{}", done.err);
@@ -195,7 +201,7 @@ fn a_bent_start_has_the_limit_of_the_symmetric_part() {
             (found / frequency - 1.0).abs() < 0.02,
             "{n}: {found} {frequency}"
         );
-        let done = clebsch(&["run", &model, "--case", &case]);
+        let done = searched(&["run", &model, "--case", &case]);
         let told = done.err.contains(growth);
         assert_eq!(told, n == 40, "{}", done.err);
     }
@@ -211,7 +217,7 @@ fn of_steps_of_another_kind_nothing_is_said() {
         assert!(!done.err.contains("longest"), "{}", done.err);
         assert!(!done.out.contains("longest"), "{}", done.out);
     };
-    silent(clebsch(&[
+    silent(searched(&[
         "run",
         "charged-particle",
         "--h",
@@ -228,7 +234,7 @@ fn of_steps_of_another_kind_nothing_is_said() {
             "model = \"spring\"\nname = \"own\"\nh = {h}\nsteps = 20\n[parameters]\nm = 1.0\nk = 1.0\n[initial]\nq = 0.0\nmomentum = 0.1\n"
         );
         let case = folder.write(&format!("{name}.toml"), &case);
-        clebsch(&["run", &model, "--case", &case])
+        searched(&["run", &model, "--case", &case])
     };
     silent(of("middle", "h*(k/2)*((q + next(q))/2)^2", "5.0"));
     // The same spring at the node has the limit 2.
@@ -250,7 +256,7 @@ fn of_one_body_that_is_unstable_no_sign_is_doubted() {
         shipped("elastic/kirchhoff-static.toml"),
     );
     let run = |h: &str| {
-        clebsch(&[
+        searched(&[
             "run", &model, "--case", &case, "--h", h, "--steps", "2", "--json",
         ])
     };
@@ -277,7 +283,7 @@ fn of_a_step_that_is_far_too_long_the_limit_is_told() {
         shipped("lattices/geometrically-exact-rod.toml"),
     );
     let run = |h: &str| {
-        clebsch(&[
+        searched(&[
             "run", &model, "--case", &case, "--h", h, "--steps", "1", "--json",
         ])
     };
@@ -292,7 +298,7 @@ fn of_a_step_that_is_far_too_long_the_limit_is_told() {
         shipped("lattices/circular-rod.clebsch"),
         shipped("lattices/circular-rod.toml"),
     );
-    let refused = clebsch(&["run", &struck, "--case", &start, "--h", "100"]);
+    let refused = searched(&["run", &struck, "--case", &start, "--h", "100"]);
     assert_eq!(refused.code, 1, "{}{}", refused.out, refused.err);
     for words in ["times the longest one", "cannot take the first step"] {
         assert!(refused.err.contains(words), "{}", refused.err);
@@ -333,7 +339,7 @@ fn chains_that_hang_have_the_limits_of_laguerre() {
         assert!((found / limit - 1.0).abs() < 0.01, "{n}: {found} {limit}");
         let run = |part: f64| {
             let h = format!("{}", part * limit);
-            clebsch(&["run", &model, "--case", &case, "--h", &h, "--steps", "600"])
+            searched(&["run", &model, "--case", &case, "--h", &h, "--steps", "600"])
         };
         let (below, above) = (run(0.98), run(1.02));
         assert_eq!(below.code, 0, "{n}: {}{}", below.out, below.err);
@@ -421,7 +427,7 @@ fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
         let case = "model = \"chain\"\nname = \"own\"\nh = 0.1\nsteps = 1\n[labels]\ni = 6\n[ends]\ni = [\"free\", \"free\"]\n\
             [parameters]\na = 0.1\n[initial]\nx = [0.0, 0.0, \"0.1*(i - N/2)\"]\nmomentum_x = [0.0, 0.0, 0.0]\n";
         let case = folder.write("case.toml", case);
-        let done = clebsch(&["run", &model, "--case", &case]);
+        let done = searched(&["run", &model, "--case", &case]);
         assert!(!done.out.contains("frequency"), "{name}: {}", done.out);
         format!("{}{}", done.out.replace("\n", " "), done.err)
     };

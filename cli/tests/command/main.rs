@@ -35,6 +35,7 @@ mod resumed;
 mod scales;
 mod shipped;
 mod staging;
+mod starts;
 mod stated;
 mod stopped;
 mod sweeps;

@@ -108,7 +108,7 @@ impl Carded {
                 .map_or(settings.h, |f| settings.h * f),
             Way::Plain | Way::Modified(..) => settings.h,
         };
-        let start = |h: f64| match settings.projected {
+        let start = |h: f64| match settings.inquiry {
             true => self.model.start_projected(&self.choice, h, &numbers),
             false => self.model.start(&self.choice, h, &numbers),
         };

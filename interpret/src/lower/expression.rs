@@ -74,7 +74,12 @@ impl<T: Lowered> Lower<'_, '_, T> {
                     _ => None,
                 };
                 let all = a.elems.iter().map(|e| self.expression(e, ty));
-                Code::List(all.collect::<Result<_, _>>()?)
+                let all: Vec<Code<T>> = all.collect::<Result<_, _>>()?;
+                match all.is_empty() {
+                    // An array of nothing is a list still; a tuple of nothing is `()`.
+                    true => Code::Constant(Value::List(Vec::new())),
+                    false => Code::List(all),
+                }
             }
             syn::Expr::Repeat(r) => {
                 let (value, count) = (self.expression(&r.expr, None)?, self.size(&r.len));

@@ -49,6 +49,11 @@ impl Held {
         }
     }
 
+    /// From here on steps are only tried: see [`Purpose::Trial`].
+    pub fn to_try(&mut self) {
+        self.search.to_try();
+    }
+
     /// A search for what another is for, with the purpose of this one.
     pub fn alike(&self, other: &Held) -> Held {
         Self::begun(other.sought, self.search.purpose())

@@ -11,7 +11,9 @@ mod waves;
 pub use unknown::Unknown;
 
 use crate::card::Card;
+use crate::solvers::largest_step::search_of;
 use probe::Probe;
+use std::cell::Cell;
 
 /// Steps of the inquiry in parts of the run's own: with ω h at most about 2, ω² h² of them is 4e-6 at most.
 const SHORT: f64 = 1e-3;
@@ -52,11 +54,28 @@ pub struct LongestStep {
     pub alternating: f64,
 }
 
+/// Why the longest step is not known, although the fastest motion may be.
+#[derive(Clone, Copy, Debug)]
+struct Missed {
+    why: Unknown,
+    /// The time in which the fastest motion swings or grows; NaN where it is not known.
+    fastest: f64,
+}
+
+impl From<Unknown> for Missed {
+    fn from(why: Unknown) -> Self {
+        Self {
+            why,
+            fastest: f64::NAN,
+        }
+    }
+}
+
 impl LongestStep {
     /// Of a model in these data, each field one vector, row-major; `h` is a step of about the size that is asked of.
     ///
     /// Where constraints are held small motions are those along them, resisted by their reactions at the start too; momenta
-    /// are projected by the model itself ([`crate::card::Settings::projected`]).
+    /// are projected by the model itself ([`crate::card::Settings::inquiry`]).
     ///
     /// # Errors
     /// [`Unknown`] with the reason.
@@ -66,31 +85,70 @@ impl LongestStep {
         initial: &[Vec<f64>],
         h: f64,
     ) -> Result<Self, Unknown> {
-        let asked = |part: f64| Self::asked(card, parameters, initial, h * part);
-        let found = asked(1.0);
-        let has_an_end = found.is_ok_and(|found| found.step > FAR * h.abs());
-        if has_an_end || matches!(found, Err(Unknown::Kind)) {
-            return found;
-        }
-        if matches!(found, Err(Unknown::Still)) {
-            let longer = LONGER.into_iter().filter_map(|part| asked(part).ok());
-            let mut longer = longer.filter(|found| found.step > h.abs());
-            return longer.next().map_or(found, Ok);
-        }
-        // Of a step that is hundreds of times too long even a small part is no short one.
-        let shorter = SHORTER.into_iter().filter_map(|part| asked(part).ok());
-        let mut shorter = shorter.filter(|found| found.step < h.abs());
-        shorter.next().map_or(found, Ok)
+        Self::of_until(card, parameters, initial, h, &|| false)
     }
 
-    /// The same, asked by steps that are short beside `h`.
-    fn asked(
+    /// The same, given up as soon as `ended` says so; it is asked before every step of the inquiry.
+    ///
+    /// # Errors
+    /// As [`LongestStep::of`]; [`Unknown::Unfinished`] where the inquiry was given up.
+    pub fn of_until(
         card: &Card,
         parameters: &[Vec<f64>],
         initial: &[Vec<f64>],
         h: f64,
+        ended: &dyn Fn() -> bool,
     ) -> Result<Self, Unknown> {
-        let probe = Probe::new(card, parameters, initial, h * SHORT)?;
+        let cut = Cell::new(false);
+        let ended = || {
+            cut.set(cut.get() || ended());
+            cut.get()
+        };
+        // Which step could be made in place of one that is refused is of no use here, and takes a hundred trials.
+        let found = search_of(|| Self::sought([parameters, initial], card, h, &ended));
+        match cut.get() {
+            true => Err(Unknown::Unfinished),
+            false => found.unwrap_or(Err(Unknown::Start)),
+        }
+    }
+
+    fn sought(
+        [parameters, initial]: [&[Vec<f64>]; 2],
+        card: &Card,
+        h: f64,
+        ended: &dyn Fn() -> bool,
+    ) -> Result<Self, Unknown> {
+        let asked = |part: f64| {
+            let probe = Probe::new(card, parameters, initial, h * part * SHORT, ended)?;
+            Self::asked(&probe, h * part)
+        };
+        let found = asked(1.0);
+        let has_an_end = match &found {
+            Ok(found) => found.step > FAR * h.abs(),
+            // Shorter steps are asked for limits below this one alone.
+            Err(missed) => missed.fastest >= h.abs() || missed.why == Unknown::Kind,
+        };
+        if has_an_end {
+            return found.map_err(|missed| missed.why);
+        }
+        let is_still = |missed: &Missed| missed.why == Unknown::Still;
+        if found.as_ref().is_err_and(is_still) {
+            let longer = LONGER.into_iter().map(asked);
+            // Where a step is refused, longer ones are too.
+            let longer = longer.take_while(|found| found.as_ref().map_or_else(is_still, |_| true));
+            let mut longer = longer.flatten().filter(|found| found.step > h.abs());
+            return longer.next().ok_or(Unknown::Still);
+        }
+        // Of a step that is hundreds of times too long even a small part is no short one.
+        let shorter = SHORTER.into_iter().filter_map(|part| asked(part).ok());
+        let mut shorter = shorter.filter(|found| found.step < h.abs());
+        shorter
+            .next()
+            .map_or(found.map_err(|missed| missed.why), Ok)
+    }
+
+    /// The same, asked by steps that are short beside `h`.
+    fn asked(probe: &Probe<'_>, h: f64) -> Result<Self, Missed> {
         let [least, largest] = probe.extremes()?;
         // What does not swing within a hundred thousand steps of this size is the rounding of forces that are none, as
         // what is rounding beside the other.
@@ -107,8 +165,12 @@ impl LongestStep {
             false => 0.0,
         };
         if !swings && !grows {
-            return Err(Unknown::Still);
+            return Err(Unknown::Still.into());
         }
+        let missed = |why| Missed {
+            why,
+            fastest: step.min(1.0 / growth),
+        };
         // A step of the model must move what it is told of as steps of this kind do. Where constraints turn in a step that
         // resolves what grows, only the other is known.
         let resolving = match probe.is_held() {
@@ -117,7 +179,7 @@ impl LongestStep {
         };
         let growing = grows && probe.is_left(&least, resolving) == Some(true);
         let swung = match swings {
-            true => probe.is_left(&largest, step).ok_or(Unknown::Far)?,
+            true => probe.is_left(&largest, step).ok_or(missed(Unknown::Far))?,
             false => true,
         };
         // What grows hardly beside the fastest may be the turn of forces with the frames that they are seen from.
@@ -138,7 +200,7 @@ impl LongestStep {
                 configurations: probe.moves.len(),
                 alternating,
             }),
-            false => Err(Unknown::OtherSteps),
+            false => Err(missed(Unknown::OtherSteps)),
         }
     }
 

@@ -51,6 +51,8 @@ pub(super) struct Probe<'a> {
     drift: Option<Vec<f64>>,
     /// Whether the model refused a state that it was asked of.
     refused: Cell<bool>,
+    /// Whether the inquiry is given up.
+    ended: &'a dyn Fn() -> bool,
 }
 
 impl<'a> Probe<'a> {
@@ -59,6 +61,7 @@ impl<'a> Probe<'a> {
         parameters: &'a [Vec<f64>],
         initial: &[Vec<f64>],
         h: f64,
+        ended: &'a dyn Fn() -> bool,
     ) -> Result<Self, Unknown> {
         let moves = Moves::all(card).ok_or(Unknown::Kind)?;
         let mut initial = initial.to_vec();
@@ -82,6 +85,7 @@ impl<'a> Probe<'a> {
             held: false,
             drift: None,
             refused: Cell::new(false),
+            ended,
         };
         probe.resting = probe.given(&probe.initial);
         let step = probe.after(&probe.initial, h);
@@ -152,11 +156,14 @@ impl<'a> Probe<'a> {
 
     /// The trajectory from a state; momenta are projected.
     fn open(&self, initial: &[Vec<f64>], h: f64) -> Result<Box<dyn Trajectory>, OpenError> {
-        (self.card.open)(self.parameters, initial, Settings::step(h).projected())
+        (self.card.open)(self.parameters, initial, Settings::step(h).to_inquire())
     }
 
     /// What is observed of a trajectory after so many steps.
     pub(super) fn observed(&self, initial: &[Vec<f64>], h: f64, steps: usize) -> Option<Vec<f64>> {
+        if (self.ended)() {
+            return None;
+        }
         let mut trajectory = self.open(initial, h).ok()?;
         for _ in 0..steps {
             trajectory.step().ok()?;

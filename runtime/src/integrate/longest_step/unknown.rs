@@ -20,6 +20,8 @@ pub enum Unknown {
     /// A step does not move the fastest motion as steps with the potential at the nodes do: with a potential in the
     /// middle of steps, with strong terms linear in velocities, at a kink, all steps may be stable.
     OtherSteps,
+    /// The inquiry was given up before its end.
+    Unfinished,
 }
 
 impl fmt::Display for Unknown {
@@ -36,6 +38,7 @@ impl fmt::Display for Unknown {
             Self::OtherSteps => {
                 "the step does not move the fastest one as steps with the potential at the nodes do"
             }
+            Self::Unfinished => "the search was given up before its end",
         })
     }
 }

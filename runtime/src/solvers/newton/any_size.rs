@@ -129,6 +129,11 @@ impl<C: Chart> AnySearch<C> {
         }
     }
 
+    /// From here on steps are only tried: their roots are followed from rest without a proof.
+    pub fn to_try(&mut self) {
+        self.certificate.purpose = Purpose::Trial;
+    }
+
     /// What its steps are made for.
     #[must_use]
     pub fn purpose(&self) -> Purpose {
