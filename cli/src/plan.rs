@@ -3,7 +3,7 @@
 
 use crate::blamed::{Origin, blamed};
 use crate::case_file::labels::{self, Stated};
-use crate::case_file::{self, Located};
+use crate::case_file::{self, Located, Motion};
 use crate::failure::Failure;
 use crate::gallery::{self, Case, Entry};
 use crate::plain::shown;
@@ -41,6 +41,8 @@ pub struct Plan {
     pub choice: Option<Choice>,
     /// For a case read from a file: its name, and the line of each key.
     origin: Option<Origin>,
+    /// How what is not given by momenta starts.
+    pub(crate) motion: Motion,
 }
 
 impl Plan {
@@ -69,15 +71,17 @@ impl Plan {
         };
         let size = matches.get_one::<u64>("dim").copied();
         let cards = of_size(entry, size)?;
-        let (mut case, origin, choice) = match asked.filter(|name| is_file(name)) {
+        let (mut case, origin, choice, motion) = match asked.filter(|name| is_file(name)) {
             Some(file) => {
-                let (Located { case, file, lines }, choice) = read(file, &cards)?;
-                (case, Some((file, lines)), choice)
+                let (located, choice) = read(file, &cards)?;
+                let origin = Some((located.file, located.lines));
+                (located.case, origin, choice, located.motion)
             }
             None => {
                 let stated = Stated::read(entry.card.source);
                 let choice = stated.and_then(|stated| stated.default_choice());
-                (case_of_size(entry, asked, size)?.clone(), None, choice)
+                let case = case_of_size(entry, asked, size)?.clone();
+                (case, None, choice, Motion::default())
             }
         };
         case.steps = steps.unwrap_or(case.steps);
@@ -109,6 +113,7 @@ impl Plan {
                 .unwrap_or(false),
             choice,
             origin,
+            motion,
         })
     }
 
@@ -126,7 +131,22 @@ impl Plan {
             paper: false,
             choice: None,
             origin: None,
+            motion: Motion::default(),
         }
+    }
+
+    /// Puts the momenta of velocities into the case again, where its parameters or its configuration are others now.
+    ///
+    /// # Errors
+    /// Usage: the velocities have no momenta there.
+    pub(crate) fn start_anew(&mut self, card: &Card) -> Result<(), Failure> {
+        let put = self.motion.put(card, self.choice.as_ref(), &mut self.case);
+        put.map_err(|wrong| Failure::Usage(format!("initial.{}: {}", wrong.key, wrong.why)))
+    }
+
+    /// What a reader is told of momenta that were made of velocities.
+    pub(crate) fn starts(&self, card: &Card) -> Vec<String> {
+        self.motion.told(card, &self.case)
     }
 
     /// Starts the trajectory.

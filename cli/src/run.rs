@@ -509,6 +509,9 @@ fn introduce(
         &format!("h = {}, {}, to time {end}", case.h, steps(case.steps)),
         2,
     )?;
+    for line in plan.starts(card) {
+        say(&line, 2)?;
+    }
     Ok(())
 }
 

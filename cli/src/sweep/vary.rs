@@ -2,10 +2,10 @@
 //! Takes texts and a card; gives the entries of parameters, initial values or the step that take the values, and the
 //! values of each point of the grid.
 
-use crate::case_file::at_site;
+use crate::case_file::{Motion, at_site};
 use crate::failure::Failure;
-use crate::gallery::Case;
 use crate::plain::shown;
+use crate::plan::Plan;
 use clebsch::card::{Card, Field, Kind};
 
 /// Most values of one quantity, so that a slip of the keyboard does not fill the memory.
@@ -30,6 +30,8 @@ pub(super) enum Place {
     /// Entries of a parameter, each with the sign that its kind asks for; along a line those of several sites.
     Parameter(Vec<usize>, Vec<(usize, f64)>),
     Initial(Vec<usize>, Vec<(usize, f64)>),
+    /// Entries of velocities that the case gives.
+    Velocity(Vec<usize>, Vec<(usize, f64)>),
 }
 
 impl Axis {
@@ -37,14 +39,14 @@ impl Axis {
     ///
     /// # Errors
     /// Usage: what is wrong with it, and what the model has.
-    pub(super) fn read(text: &str, card: &Card) -> Result<Self, Failure> {
+    pub(super) fn read(text: &str, card: &Card, motion: &Motion) -> Result<Self, Failure> {
         let wrong = |why: String| Failure::Usage(format!("--vary {}: {why}", shown(text)));
         let Some((name, values)) = text.split_once('=') else {
             return Err(wrong(
                 "give NAME=FROM:TO:COUNT or NAME=VALUE,VALUE,..., such as gU.z=0:1:100".to_owned(),
             ));
         };
-        let place = place(name.trim(), card).map_err(wrong)?;
+        let place = place(name.trim(), card, motion).map_err(wrong)?;
         let values = read_values(values).map_err(wrong)?;
         Ok(Self {
             name: name.trim().to_owned(),
@@ -58,7 +60,8 @@ impl Axis {
         match (&self.place, &other.place) {
             (Place::Step, Place::Step) => true,
             (Place::Parameter(a, own), Place::Parameter(b, others))
-            | (Place::Initial(a, own), Place::Initial(b, others)) => {
+            | (Place::Initial(a, own), Place::Initial(b, others))
+            | (Place::Velocity(a, own), Place::Velocity(b, others)) => {
                 let is_other = |at: usize| others.iter().any(|(other, _)| *other == at);
                 // Fields stand in their order, along a line a hundred thousand of them.
                 own.iter().any(|(at, _)| is_other(*at))
@@ -68,8 +71,9 @@ impl Axis {
         }
     }
 
-    /// Puts a value into a case.
-    pub(super) fn put(&self, value: f64, case: &mut Case) {
+    /// Puts a value into the case of a plan.
+    pub(super) fn put(&self, value: f64, plan: &mut Plan) {
+        let (case, motion) = (&mut plan.case, &mut plan.motion);
         let entries = |list: &mut Vec<Vec<f64>>, fields: &[usize], entries: &[(usize, f64)]| {
             for (field, (entry, sign)) in fields
                 .iter()
@@ -83,12 +87,22 @@ impl Axis {
         match &self.place {
             Place::Step => case.h = value,
             Place::Parameter(fields, list) => entries(&mut case.parameters, fields, list),
-            Place::Initial(fields, list) => entries(&mut case.initial, fields, list),
+            Place::Initial(fields, list) => {
+                entries(&mut case.initial, fields, list);
+                fields.iter().for_each(|field| motion.gives(*field));
+            }
+            Place::Velocity(places, list) => {
+                for place in places {
+                    for (entry, sign) in list {
+                        motion.set(*place, *entry, sign * value);
+                    }
+                }
+            }
         }
     }
 }
 
-fn place(name: &str, card: &Card) -> Result<Place, String> {
+fn place(name: &str, card: &Card, motion: &Motion) -> Result<Place, String> {
     if name == "h" {
         return Ok(Place::Step);
     }
@@ -99,7 +113,13 @@ fn place(name: &str, card: &Card) -> Result<Place, String> {
     if let Some((at, own)) = found(field, card.parameters, card) {
         return Ok(Place::Parameter(at, entries(&own, field, component)?));
     }
+    if let Some((at, own)) = motion.named(field, card) {
+        return Ok(Place::Velocity(at, entries(&own, field, component)?));
+    }
     if let Some((at, own)) = found(field, card.initial, card) {
+        if let Some(key) = at.iter().find_map(|at| motion.key_of(*at)) {
+            return Err(format!("the case gives {key} instead; vary that"));
+        }
         return Ok(Place::Initial(at, entries(&own, field, component)?));
     }
     let mut names: Vec<&str> = Vec::new();
