@@ -120,6 +120,13 @@ impl Expression {
         }
     }
 
+    /// Whether a name stands in it.
+    pub fn has(&self, name: &str) -> bool {
+        let mut found = false;
+        self.each(&mut |e| found |= matches!(&e.kind, Kind::Name(n) if n == name));
+        found
+    }
+
     /// Puts what `of` gives in the place of parts, larger ones first; into what is put in it does not look.
     pub fn replace(&mut self, of: &dyn Fn(&Self) -> Option<Self>) {
         match of(self) {

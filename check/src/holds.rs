@@ -63,6 +63,33 @@ pub fn held(
     Ok((parts, gradients))
 }
 
+/// The gradients of all held numbers at the first node, with the name of the constraint and the index it stands at.
+///
+/// # Errors
+/// One cannot be evaluated.
+pub fn gradients(
+    scene: &Scene<'_>,
+    stated: &Stated,
+    setup: &Setup,
+    moving: &[Moving<'_>],
+) -> Result<Vec<(String, Option<usize>, Vec<(usize, f64)>)>, String> {
+    let mut out = Vec::new();
+    for hold in &stated.holds {
+        for (index, value) in values(scene, stated, setup, (hold, moving), 0)? {
+            let Value::Known(m) = value else {
+                return Err(format!("`{}` holds what has no size", hold.name));
+            };
+            let site = index.and_then(|i| usize::try_from(i).ok());
+            for x in m.entries {
+                let slopes = x.slopes.iter();
+                let gradient = slopes.filter_map(|s| Some((usize::try_from(s.of).ok()?, s.value)));
+                out.push((hold.name.clone(), site, gradient.collect()));
+            }
+        }
+    }
+    Ok(out)
+}
+
 fn is_long(stated: &Stated, setup: &Setup, hold: &Hold) -> bool {
     let count = hold
         .value

@@ -136,7 +136,10 @@ impl Judge {
     /// Why it cannot be judged.
     pub fn new(model: &Model, sizes: &[(String, usize)], setup: Setup) -> Result<Self, String> {
         let stated = Stated::read(model, sizes)?;
-        Ok(Self { stated, setup })
+        match stated.functionals.is_empty() {
+            true => Ok(Self { stated, setup }),
+            false => Err("functionals of all sites are not evaluated here".to_owned()),
+        }
     }
 
     /// The step number `step`, from the numbers of one node to those of the next.

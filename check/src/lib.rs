@@ -5,6 +5,8 @@
 //! Of the step from node k to node k+1 it is asked, with the stored elements and momenta of both nodes,
 //! that `p_k = -D1 L` and `p_{k+1} = D2 L`, along variations `R exp(hat xi)` where the velocity is seen from the body and
 //! `exp(hat xi) R` where it is seen from space; that what is carried went on as its constraint says; and that what is held is zero.
+//!
+//! The same derivative gives the momenta of initial velocities: [`Legendre`] evaluates `-D1 L` for steps that begin with these velocities.
 
 mod calls;
 mod carlson;
@@ -15,10 +17,13 @@ mod group;
 mod holds;
 mod judge;
 mod lagrangian;
+mod legendre;
 mod lets;
 mod matrix;
+mod moved;
 mod number;
 mod records;
+mod refined;
 mod run;
 mod scene;
 mod setup;
@@ -32,6 +37,8 @@ mod words;
 
 pub use functions::named as function;
 pub use judge::{Judge, Judged, Part};
+pub use legendre::{Legendre, Momentum, NoMomentum, Velocities};
+pub use moved::{Frame, Velocity};
 pub use number::{Number, Slope, UNIT};
 pub use run::{Chosen, Verdict, Which};
 pub use setup::{Field, Setup};

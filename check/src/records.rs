@@ -4,7 +4,7 @@ use crate::expression::Expression;
 use crate::group::Group;
 use crate::terms::Term;
 use clebsch_core::syntax::ast::NodeRule;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Where a quantity lives along a label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -122,4 +122,6 @@ pub struct Stated {
     pub ends: [Vec<End>; 2],
     /// Whether there is a line, by the number of its label.
     pub line: Option<usize>,
+    /// The functionals of all sites, which are not evaluated here.
+    pub functionals: BTreeSet<String>,
 }

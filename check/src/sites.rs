@@ -53,6 +53,21 @@ fn judged(count: usize, step: u64) -> Vec<usize> {
 /// The configurations that are judged in this step.
 #[must_use]
 pub fn moving<'a>(stated: &'a Stated, setup: &Setup, step: u64) -> Vec<Moving<'a>> {
+    moving_at(stated, setup, |count| judged(count, step))
+}
+
+/// All configurations.
+#[must_use]
+pub fn all_moving<'a>(stated: &'a Stated, setup: &Setup) -> Vec<Moving<'a>> {
+    moving_at(stated, setup, |count| (0..count).collect())
+}
+
+/// The configurations at the sites that are chosen of each number of sites.
+fn moving_at<'a>(
+    stated: &'a Stated,
+    setup: &Setup,
+    chosen: impl Fn(usize) -> Vec<usize>,
+) -> Vec<Moving<'a>> {
     let mut out: Vec<Moving> = Vec::new();
     let mut first = 0;
     for q in stated.quantities.values() {
@@ -61,7 +76,7 @@ pub fn moving<'a>(stated: &'a Stated, setup: &Setup, step: u64) -> Vec<Moving<'a
             (_, None) => vec![None],
             (_, Some((label, sites))) => {
                 let count = setup.sites(stated, label, sites);
-                judged(count, step).into_iter().map(Some).collect()
+                chosen(count).into_iter().map(Some).collect()
             }
         };
         for site in sites {

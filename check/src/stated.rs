@@ -7,7 +7,7 @@ use crate::lets::Lets;
 pub use crate::records::{End, Hold, Layout, Quantity, Role, Side, Sites, Stated};
 use crate::terms::Terms;
 use clebsch_core::syntax::ast::{At, Kindred, Model, NodeRule, Site, Size, Statement};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 impl Stated {
     /// Reads a model.
@@ -28,6 +28,7 @@ impl Stated {
             holds: Vec::new(),
             ends: [Vec::new(), Vec::new()],
             line: None,
+            functionals: BTreeSet::new(),
         };
         out.labels = labels(model);
         for statement in &model.statements {
@@ -49,8 +50,8 @@ impl Stated {
             Statement::Label {
                 step: Some(step), ..
             } => self.add(&step.text, Role::Parameter, None, true, false),
-            Statement::Grid(_) | Statement::Mesh { .. } => {
-                return Err("functionals of all sites are not evaluated here".to_owned());
+            Statement::Mesh { name, .. } => {
+                self.functionals.insert(name.text.clone());
             }
             Statement::Param { names, shape, at } => {
                 let at = self.place(at.as_ref())?;
@@ -264,6 +265,7 @@ impl Stated {
 fn labels(model: &Model) -> Vec<String> {
     let each = model.statements.iter().filter_map(|s| match s {
         Statement::Label { index, .. } => Some(index.text.clone()),
+        Statement::Grid(index) => Some(index.text.clone()),
         _ => None,
     });
     each.collect()

@@ -1,6 +1,7 @@
 //! Options that replace numbers of a case: `--set`, `--h`, `--steps` and `--until`.
 //! Takes the matches of a command and a case; changes the case.
 
+use crate::case_file::Motion;
 use crate::failure::Failure;
 use crate::gallery::Case;
 use crate::plain::shown;
@@ -17,15 +18,16 @@ const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
 /// Usage: a quantity that the model does not have, a value that is not a number, or more steps than can be counted.
 pub(crate) fn apply(
     case: &mut Case,
+    motion: &mut Motion,
     card: &Card,
     matches: &ArgMatches,
 ) -> Result<Vec<String>, Failure> {
     let mut names = Vec::new();
     for text in set(matches) {
-        for (quantity, value) in read(text, card)
+        for (quantity, value) in read(text, card, motion)
             .map_err(|why| Failure::Usage(format!("--set {}: {why}", shown(text))))?
         {
-            quantity.put(value, case);
+            quantity.put(value, case, motion);
             names.push(quantity.name);
         }
     }
@@ -65,16 +67,16 @@ pub(crate) fn steps_to(time: f64, h: f64) -> Option<u64> {
 }
 
 /// Reads `NAME=VALUE`, of a vector also `NAME=VALUE,VALUE,...`.
-fn read(text: &str, card: &Card) -> Result<Vec<(Quantity, f64)>, String> {
+fn read(text: &str, card: &Card, motion: &Motion) -> Result<Vec<(Quantity, f64)>, String> {
     let Some((name, values)) = text.split_once('=') else {
         return Err("give NAME=VALUE, such as gU.z=0.5".to_owned());
     };
     let values = values.trim().trim_start_matches('[').trim_end_matches(']');
     let numbers: Vec<f64> = values.split(',').map(number).collect::<Result<_, _>>()?;
     if let [value] = numbers.as_slice() {
-        return Ok(vec![(Quantity::read(name, card)?, *value)]);
+        return Ok(vec![(Quantity::read(name, card, motion)?, *value)]);
     }
-    match Quantity::components(name, card) {
+    match Quantity::components(name, card, motion) {
         Some(each) if each.len() == numbers.len() => Ok(each.into_iter().zip(numbers).collect()),
         Some(each) => Err(format!(
             "`{}` has {} components, and {} values are given",
@@ -83,7 +85,7 @@ fn read(text: &str, card: &Card) -> Result<Vec<(Quantity, f64)>, String> {
             numbers.len()
         )),
         // The message names what the model has, or the components.
-        None => Err(match Quantity::read(name, card) {
+        None => Err(match Quantity::read(name, card, motion) {
             Err(why) => why,
             Ok(_) => format!("`{}` takes one number", shown(name)),
         }),

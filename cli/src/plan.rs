@@ -3,7 +3,7 @@
 
 use crate::blamed::{Origin, blamed};
 use crate::case_file::labels::{self, Stated};
-use crate::case_file::{self, Located};
+use crate::case_file::{self, Located, Motion};
 use crate::failure::Failure;
 use crate::gallery::{self, Case, Entry};
 use crate::named_cases::{CaseText, WhichCase};
@@ -51,6 +51,8 @@ pub struct Plan {
     set: Vec<String>,
     /// For a case read from a file: its name, and the line of each key.
     origin: Option<Origin>,
+    /// How what is not given by momenta starts.
+    pub(crate) motion: Motion,
 }
 
 impl Plan {
@@ -79,10 +81,11 @@ impl Plan {
         };
         let size = matches.get_one::<u64>("dim").copied();
         let cards = of_size(entry, size)?;
-        let (mut case, origin, choice) = match &resolved.case {
+        let (mut case, origin, choice, mut motion) = match &resolved.case {
             WhichCase::Text(text) => {
-                let (Located { case, file, lines }, choice) = read(text, &cards)?;
-                (case, Some((file, lines)), choice)
+                let (located, choice) = read(text, &cards)?;
+                let origin = Some((located.file, located.lines));
+                (located.case, origin, choice, located.motion)
             }
             named => {
                 let asked = match named {
@@ -91,11 +94,16 @@ impl Plan {
                 };
                 let stated = Stated::read(entry.card.source);
                 let choice = stated.and_then(|stated| stated.default_choice());
-                (case_of_size(entry, asked, size)?.clone(), None, choice)
+                let case = case_of_size(entry, asked, size)?.clone();
+                (case, None, choice, Motion::default())
             }
         };
         let card = entry.card_of(&case);
-        let set = overrides::apply(&mut case, &card, matches)?;
+        let h = case.h;
+        let set = overrides::apply(&mut case, &mut motion, &card, matches)?;
+        if !set.is_empty() || h.to_bits() != case.h.to_bits() {
+            start(&motion, &card, choice.as_ref(), &mut case)?;
+        }
         let steps = matches.get_one::<u64>("steps").copied();
         Ok(Self {
             every: every.unwrap_or_else(|| case.steps.div_ceil(SAMPLES).max(1)),
@@ -124,6 +132,7 @@ impl Plan {
             keeps_time: steps.is_none(),
             set,
             origin,
+            motion,
         })
     }
 
@@ -155,7 +164,21 @@ impl Plan {
             keeps_time: true,
             set: Vec::new(),
             origin: None,
+            motion: Motion::default(),
         }
+    }
+
+    /// Puts the momenta of velocities into the case again, where its parameters or its configuration are others now.
+    ///
+    /// # Errors
+    /// Usage: the velocities have no momenta there.
+    pub(crate) fn start_anew(&mut self, card: &Card) -> Result<(), Failure> {
+        start(&self.motion, card, self.choice.as_ref(), &mut self.case)
+    }
+
+    /// What a reader is told of momenta that were made of velocities.
+    pub(crate) fn starts(&self, card: &Card) -> Vec<String> {
+        self.motion.told(card, &self.case)
     }
 
     /// Starts the trajectory.
@@ -251,6 +274,17 @@ impl Plan {
             },
         }
     }
+}
+
+/// Puts the momenta of velocities into a case.
+fn start(
+    motion: &Motion,
+    card: &Card,
+    choice: Option<&Choice>,
+    case: &mut Case,
+) -> Result<(), Failure> {
+    let put = motion.put(card, choice, case);
+    put.map_err(|wrong| Failure::Usage(format!("initial.{}: {}", wrong.key, wrong.why)))
 }
 
 /// The case of a file, by the first card whose fields it fits; the message is that of the first.

@@ -1,7 +1,7 @@
 //! A number of a case by its name on the command line: `gU.z`, `q_3`, `h`.
 //! Takes a name and a card; gives the entries of parameters, initial values or the step that the name stands for.
 
-use crate::case_file::at_site;
+use crate::case_file::{Motion, at_site};
 use crate::gallery::Case;
 use clebsch::card::{Card, Field, Kind};
 
@@ -20,6 +20,8 @@ enum Place {
     /// Entries of a parameter, each with the sign that its kind asks for; along a line those of several sites.
     Parameter(Vec<usize>, Vec<(usize, f64)>),
     Initial(Vec<usize>, Vec<(usize, f64)>),
+    /// Entries of velocities that the case gives.
+    Velocity(Vec<usize>, Vec<(usize, f64)>),
 }
 
 impl Quantity {
@@ -27,9 +29,9 @@ impl Quantity {
     ///
     /// # Errors
     /// What is wrong with the name, and what the model has.
-    pub fn read(name: &str, card: &Card) -> Result<Self, String> {
+    pub fn read(name: &str, card: &Card, motion: &Motion) -> Result<Self, String> {
         let name = name.trim();
-        let place = place(name, card)?;
+        let place = place(name, card, motion)?;
         Ok(Self {
             name: name.to_owned(),
             place,
@@ -37,11 +39,13 @@ impl Quantity {
     }
 
     /// The components of a vector, if `name` is one.
-    pub fn components(name: &str, card: &Card) -> Option<Vec<Self>> {
+    pub fn components(name: &str, card: &Card, motion: &Motion) -> Option<Vec<Self>> {
         let name = name.trim();
-        let own = found(name, card.parameters, card).or_else(|| found(name, card.initial, card));
+        let own = found(name, card.parameters, card)
+            .or_else(|| motion.named(name, card))
+            .or_else(|| found(name, card.initial, card));
         let (_, field) = own.filter(|(_, field)| field.cols == 1 && field.rows > 1)?;
-        let each = (1..=field.rows).map(|i| Self::read(&format!("{name}.{i}"), card).ok());
+        let each = (1..=field.rows).map(|i| Self::read(&format!("{name}.{i}"), card, motion).ok());
         each.collect()
     }
 
@@ -64,7 +68,8 @@ impl Quantity {
         match (&self.place, &other.place) {
             (Place::Step, Place::Step) => true,
             (Place::Parameter(a, own), Place::Parameter(b, others))
-            | (Place::Initial(a, own), Place::Initial(b, others)) => {
+            | (Place::Initial(a, own), Place::Initial(b, others))
+            | (Place::Velocity(a, own), Place::Velocity(b, others)) => {
                 let is_other = |at: usize| others.iter().any(|(other, _)| *other == at);
                 // Fields stand in their order, along a line a hundred thousand of them.
                 own.iter().any(|(at, _)| is_other(*at))
@@ -74,8 +79,8 @@ impl Quantity {
         }
     }
 
-    /// Puts a value into a case.
-    pub fn put(&self, value: f64, case: &mut Case) {
+    /// Puts a value into a case, or into the velocities with which it starts.
+    pub fn put(&self, value: f64, case: &mut Case, motion: &mut Motion) {
         let entries = |list: &mut Vec<Vec<f64>>, fields: &[usize], entries: &[(usize, f64)]| {
             for (field, (entry, sign)) in fields
                 .iter()
@@ -89,12 +94,22 @@ impl Quantity {
         match &self.place {
             Place::Step => case.h = value,
             Place::Parameter(fields, list) => entries(&mut case.parameters, fields, list),
-            Place::Initial(fields, list) => entries(&mut case.initial, fields, list),
+            Place::Initial(fields, list) => {
+                entries(&mut case.initial, fields, list);
+                fields.iter().for_each(|field| motion.gives(*field));
+            }
+            Place::Velocity(places, list) => {
+                for place in places {
+                    for (entry, sign) in list {
+                        motion.set(*place, *entry, sign * value);
+                    }
+                }
+            }
         }
     }
 }
 
-fn place(name: &str, card: &Card) -> Result<Place, String> {
+fn place(name: &str, card: &Card, motion: &Motion) -> Result<Place, String> {
     if name == "h" {
         return Ok(Place::Step);
     }
@@ -105,7 +120,13 @@ fn place(name: &str, card: &Card) -> Result<Place, String> {
     if let Some((at, own)) = found(field, card.parameters, card) {
         return Ok(Place::Parameter(at, entries(&own, field, component)?));
     }
+    if let Some((at, own)) = motion.named(field, card) {
+        return Ok(Place::Velocity(at, entries(&own, field, component)?));
+    }
     if let Some((at, own)) = found(field, card.initial, card) {
+        if let Some(key) = at.iter().find_map(|at| motion.key_of(*at)) {
+            return Err(format!("the case gives {key} instead; set that"));
+        }
         return Ok(Place::Initial(at, entries(&own, field, component)?));
     }
     let mut names: Vec<&str> = Vec::new();

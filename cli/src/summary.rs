@@ -75,6 +75,9 @@ pub(crate) fn title(
         ),
         2,
     )?;
+    for line in plan.starts(card) {
+        say(&line, 2)?;
+    }
     Ok(())
 }
 

@@ -3,6 +3,7 @@
 
 use super::labels::{SITES, Stated, table};
 use super::location::File;
+use super::scope::Scope;
 use super::space::Space;
 use crate::failure::Failure;
 use crate::plain::shown;
@@ -37,6 +38,7 @@ pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<C
         return Err(file.wrong(None, &message));
     };
     let space = Space::read(&file, top, stated)?;
+    let scope = Scope::of(top);
     for (key, value) in labels {
         let asked = key.get_ref().as_ref();
         let own = lattice
@@ -44,14 +46,16 @@ pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<C
             .iter()
             .find(|l| l.index.text == asked || l.count.text == asked);
         let label = own.map_or(asked, |l| l.index.text.as_str());
+        let wrong =
+            |message: &str| file.wrong(Some(&value.span()), &format!("labels.{asked}: {message}"));
         let count = match value.get_ref() {
             // Of a grid its cells are given.
             _ if own.is_some_and(|l| l.grid) => space.as_ref().map(Space::count),
-            DeValue::Integer(n) => usize::from_str_radix(n.as_str(), n.radix()).ok(),
-            _ => None,
+            other => {
+                let count = scope.whole(other).map_err(|why| wrong(&why))?;
+                count.and_then(|n| usize::try_from(n).ok())
+            }
         };
-        let wrong =
-            |message: &str| file.wrong(Some(&value.span()), &format!("labels.{asked}: {message}"));
         let count = count.ok_or_else(|| wrong("expected a whole number of sites, at least 1"))?;
         choice = choice
             .with_count(lattice, label, count)

@@ -7,18 +7,16 @@ mod meshes;
 use super::from_npz::{self, Arrays, Fault};
 use super::labels::{Stated, table};
 use super::location::File;
-use super::sites;
+use super::scope::Scope;
 use super::space::Space;
 use super::start::places;
 use crate::failure::Failure;
 use clebsch::card::Field;
-use clebsch::line::LineError;
 use clebsch::mesh::{Domain, Voronoi};
 use clebsch::nalgebra::SVector;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Choice, Kind, Quantity};
 use clebsch_interpret::AtParticles;
-use clebsch_interpret::lines::{LineModel, Unstarted};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::collections::HashSet;
@@ -53,8 +51,7 @@ struct Reader<'a> {
     stated: &'a Stated,
     choice: &'a Choice,
     space: &'a Space,
-    parameters: Option<&'a DeTable<'a>>,
-    numbers: Vec<(String, f64)>,
+    scope: Scope,
     /// Where the nodes of the grid are, and their weights.
     nodes: (Vec<Vec<f64>>, Vec<f64>),
     /// Meshes at the particles, by number, once an expression takes them.
@@ -93,7 +90,6 @@ impl Fluid {
         top: &DeTable<'_>,
         stated: &Stated,
         choice: &Choice,
-        source: &str,
     ) -> Result<Option<Fluid>, Failure> {
         let Some(space) = Space::read(file, top, stated)? else {
             return Ok(None);
@@ -109,8 +105,7 @@ impl Fluid {
             stated,
             choice,
             space: &space,
-            parameters,
-            numbers: sites::numbers(top, parameters),
+            scope: Scope::of(top),
             nodes,
             meshes: RefCell::default(),
             arrays: Arrays::of(file),
@@ -132,7 +127,7 @@ impl Fluid {
             reader.beside_places(q, initial.and_then(|t| t.get(key.as_str())))?;
         }
         for q in moving() {
-            reader.motion(q, initial, source)?;
+            reader.motion(q, initial)?;
         }
         Ok(Some(reader.fluid))
     }
@@ -245,12 +240,49 @@ impl Reader<'_> {
         };
         let read = match given.get_ref() {
             own if from_npz::is_meant(own) => self.read(q, &key, given),
-            DeValue::Table(table) => places(table, self.space, self.count(q)).map_err(Wrong::from),
+            DeValue::Table(table) => {
+                places(table, self.space, self.count(q), &self.scope).map_err(Wrong::from)
+            }
             _ => self.read(q, &key, given),
         };
         let numbers = read.map_err(|wrong| self.wrong_part(&named, value, &wrong))?;
+        if let Some(why) = self.outside(&numbers) {
+            return Err(self.wrong(&named, value, &why));
+        }
         self.keep(&key, numbers, size(q), value);
         Ok(())
+    }
+
+    /// The first particle that starts beyond a wall: the reflections of a step are not meant for it.
+    fn outside(&self, places: &[f64]) -> Option<String> {
+        const ROUNDING: f64 = 1e-12;
+        let d = self.space.lengths.len();
+        let sides = self.space.lengths.iter().zip(&self.space.walls).cycle();
+        let mut all = places.iter().zip(sides).enumerate();
+        let is_beyond = |(_, (x, (length, solid))): &(usize, (&f64, (&f64, &bool)))| {
+            let inside = -ROUNDING * **length..=(1.0 + ROUNDING) * **length;
+            **solid && !inside.contains(*x)
+        };
+        let (at, (_, (length, _))) = all.find(is_beyond)?;
+        let particle = at / d;
+        let place: Vec<String> = places
+            .iter()
+            .skip(particle * d)
+            .take(d)
+            .map(f64::to_string)
+            .collect();
+        let place = match place.as_slice() {
+            [x] => x.clone(),
+            all => format!("({})", all.join(", ")),
+        };
+        let which = match (d, at % d) {
+            (1, _) => "",
+            (_, 0) => " of x",
+            _ => " of y",
+        };
+        Some(format!(
+            "particle {particle} at {place} lies outside the walls{which}, 0 to {length}; place it between them"
+        ))
     }
 
     /// A field that is no place of particles; what is missing is told where the card is filled.
@@ -329,88 +361,18 @@ impl Reader<'_> {
         }
     }
 
-    /// Momenta, given or by their velocities.
-    fn motion(
-        &mut self,
-        q: &Quantity,
-        initial: Option<&DeTable<'_>>,
-        source: &str,
-    ) -> Result<(), Failure> {
+    /// Momenta or velocities; what has neither rests. The momenta of velocities are computed once the card is filled.
+    fn motion(&mut self, q: &Quantity, initial: Option<&DeTable<'_>>) -> Result<(), Failure> {
         let name = ascii(&q.name.text);
-        let [momentum, velocity] = ["momentum", "velocity"].map(|w| format!("{w}_{name}"));
-        let get = |key: &str| initial.and_then(|t| t.get(key));
-        let (p, v) = (get(&momentum), get(&velocity));
-        let (key, value) = match (p, v) {
-            (Some(_), None) => (&momentum, p),
-            (None, Some(_)) => (&velocity, v),
-            (Some(_), Some(_)) => {
-                let message = format!("is given beside {velocity}: give one of them");
-                return Err(self.wrong(&format!("initial.{momentum}"), p, &message));
-            }
-            (None, None) => {
-                let message =
-                    format!("missing: give it, or {velocity}, in expressions of the place x, y");
-                return Err(self.wrong(&format!("initial.{momentum}"), None, &message));
-            }
-        };
-        let Some(given) = value else { return Ok(()) };
-        let named = format!("initial.{key}");
-        let numbers = self.read(q, key, given);
-        let mut numbers = numbers.map_err(|wrong| self.wrong_part(&named, value, &wrong))?;
-        if v.is_some() {
-            let own = self.of_velocities(q, &numbers, source);
-            numbers = own.map_err(|why| match why {
-                Untold::Number(key) => self.no_number(&key),
-                Untold::Parameter(why) => self.wrong("parameters", None, &why),
-                Untold::Velocity(why) => self.wrong(&named, value, &why),
-            })?;
-            self.fluid.used.insert(velocity);
+        for key in ["momentum", "velocity"].map(|word| format!("{word}_{name}")) {
+            let value = initial.and_then(|t| t.get(key.as_str()));
+            let Some(given) = value else { continue };
+            let numbers = self.read(q, &key, given);
+            let named = format!("initial.{key}");
+            let numbers = numbers.map_err(|wrong| self.wrong_part(&named, value, &wrong))?;
+            self.keep(&key, numbers, size(q), value);
         }
-        self.keep(&momentum, numbers, size(q), value);
         Ok(())
-    }
-
-    /// A parameter that is missing, or has no value where it is given.
-    fn no_number(&self, key: &str) -> Failure {
-        let value = self.parameters.and_then(|t| t.get(key));
-        let of = |name: &str| {
-            let own = self.numbers.iter().find(|(own, _)| own == name);
-            own.map(|(_, x)| *x)
-        };
-        if let Some(given) = value
-            && let Err(why) = sites::plain(given.get_ref(), &of)
-        {
-            return self.wrong(&format!("parameters.{key}"), value, &why);
-        }
-        let why = format!(
-            "missing key `parameters.{key}`, or no finite number there: the momenta of velocities take it"
-        );
-        self.wrong("parameters", None, &why)
-    }
-
-    /// The momenta that the model gives to velocities.
-    fn of_velocities(
-        &self,
-        q: &Quantity,
-        velocities: &[f64],
-        source: &str,
-    ) -> Result<Vec<f64>, Untold> {
-        let model = LineModel::read(source).map_err(|e| Untold::Velocity(e.to_string()))?;
-        let found = model.momenta(
-            self.choice,
-            &|name| self.given(name),
-            &q.name.text,
-            velocities,
-        );
-        let found = found.map_err(|e| match e {
-            Unstarted::Missing(name) => Untold::Number(ascii(&name)),
-            Unstarted::Line(LineError::Parameter(e)) => Untold::Parameter(e.to_string()),
-            other => Untold::Velocity(other.to_string()),
-        })?;
-        found.ok_or_else(|| {
-            let message = "the model does not tell the momenta of velocities: give momenta";
-            Untold::Velocity(message.to_owned())
-        })
     }
 }
 
@@ -423,16 +385,6 @@ fn positive(depths: Vec<f64>) -> Result<Vec<f64>, String> {
             depths[site]
         )),
     }
-}
-
-/// Why velocities have no momenta.
-enum Untold {
-    /// This parameter is missing or no number.
-    Number(String),
-    /// A parameter is not admissible.
-    Parameter(String),
-    /// The velocities are not, or the model does not say.
-    Velocity(String),
 }
 
 /// The areas of the Voronoi cells of particles on a torus.

@@ -251,6 +251,7 @@ pub(super) fn shapes(field: &Field) -> Vec<Vec<usize>> {
     match field.kind {
         _ if rows * cols == 1 => vec![vec![]],
         Kind::Rotation if rows == 3 => vec![vec![3, 3], vec![4]],
+        Kind::UnitQuaternion if cols == 4 => vec![vec![4, 4], vec![4]],
         Kind::Diagonal => vec![vec![rows, cols], vec![rows]],
         _ if cols == 1 => vec![vec![rows]],
         _ => vec![vec![rows, cols]],

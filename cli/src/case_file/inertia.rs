@@ -1,7 +1,7 @@
 //! A body by its inertia, where the model asks for second moments: principal moments or the matrix
 //! I in the place of J. Takes a table of a case file; gives J with `I = tr(J) Id - J`.
 
-use super::value::numbers;
+use super::value::{Numbers, numbers};
 use clebsch::card::{Field, Kind};
 use std::collections::HashSet;
 use toml::Spanned;
@@ -10,10 +10,15 @@ use toml::de::{DeTable, DeValue};
 /// The key under which the inertia may stand beside the field's own: `I` for `J`, `I2` for `J2`.
 /// None where the field is no matrix of second moments, has another letter, or the key is taken.
 pub(super) fn key(field: &Field, taken: &Taken<'_>) -> Option<String> {
+    key_of(field, field.ascii, taken)
+}
+
+/// The same of a field that is given by this name.
+pub(super) fn key_of(field: &Field, name: &str, taken: &Taken<'_>) -> Option<String> {
     if field.kind != Kind::SecondMoments {
         return None;
     }
-    let key = format!("I{}", field.ascii.strip_prefix('J')?);
+    let key = format!("I{}", name.strip_prefix('J')?);
     (!taken.0.contains(key.as_str())).then_some(key)
 }
 
@@ -41,14 +46,15 @@ pub(super) enum Given<'a, 'i> {
     Missing,
 }
 
-/// How a table gives a field.
+/// How a table gives a field by a name: its own, or that of all its copies.
 pub(super) fn given<'a, 'i>(
     table: &'a DeTable<'i>,
     field: &Field,
+    name: &str,
     fields: &Taken<'_>,
 ) -> Given<'a, 'i> {
-    let own = table.get(field.ascii);
-    let beside = key(field, fields).and_then(|key| table.get(key.as_str()));
+    let own = table.get(name);
+    let beside = key_of(field, name, fields).and_then(|key| table.get(key.as_str()));
     let inside = own
         .filter(|_| field.kind == Kind::SecondMoments)
         .and_then(|value| value.get_ref().as_table())
@@ -64,11 +70,16 @@ pub(super) fn given<'a, 'i>(
 }
 
 /// What the key of a given field is called in messages: `I` where it is the inertia that was given.
-pub(super) fn shown_key(table: &DeTable<'_>, field: &Field, fields: &Taken<'_>) -> String {
-    match given(table, field, fields) {
-        Given::Inertia(_) if table.contains_key(field.ascii) => format!("{}.I", field.ascii),
-        Given::Inertia(_) => key(field, fields).unwrap_or_else(|| field.ascii.to_owned()),
-        Given::Own(_) | Given::Twice(_) | Given::Missing => field.ascii.to_owned(),
+pub(super) fn shown_key(
+    table: &DeTable<'_>,
+    field: &Field,
+    name: &str,
+    fields: &Taken<'_>,
+) -> String {
+    match given(table, field, name, fields) {
+        Given::Inertia(_) if table.contains_key(name) => format!("{name}.I"),
+        Given::Inertia(_) => key_of(field, name, fields).unwrap_or_else(|| name.to_owned()),
+        Given::Own(_) | Given::Twice(_) | Given::Missing => name.to_owned(),
     }
 }
 
@@ -91,10 +102,14 @@ pub(super) fn field(field: &Field) -> Field {
 }
 
 /// J of an inertia given by its principal moments or in full: `tr(I)/2 Id - I`.
-pub(super) fn second_moments(field: &Field, value: &DeValue<'_>) -> Result<Vec<f64>, String> {
+pub(super) fn second_moments(
+    field: &Field,
+    value: &DeValue<'_>,
+    of: &Numbers<'_>,
+) -> Result<Vec<f64>, String> {
     let inertia = self::field(field);
     let wanted = "expected the principal moments of inertia [a, b, c] or the matrix [[..], ..]";
-    let entries = numbers(&inertia, value).map_err(|message| {
+    let entries = numbers(&inertia, value, of).map_err(|message| {
         // What is said of one entry stands; of the whole, it is the inertia that was asked for.
         match message.split_once(", found ") {
             Some((_, found)) => format!("{wanted}, found {found}"),

@@ -2,7 +2,6 @@
 //! expressions in the label, or lists. Gives the same case with a key for every copy, which is read
 //! like any other, and the line that each of its lines came from.
 
-use super::attitudes;
 use super::beside::Beside;
 use super::chosen::choice;
 use super::copies::Copies;
@@ -10,9 +9,12 @@ use super::fluid::Fluid;
 use super::from_npz::{self, Arrays, Fault, Wanted};
 use super::inertia::{self, Taken};
 use super::location::File;
+use super::motion::{elements, is_momentum};
+use super::scope::Scope;
 use super::sites::{self, Site};
 use super::space::Space;
 use super::value::expected;
+use super::velocity::{Way, suffix};
 use crate::failure::Failure;
 use crate::plain::shown;
 use crate::suggestion::did_you_mean;
@@ -21,7 +23,7 @@ use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Choice, Lattice};
 use clebsch_core::syntax::ast::Model;
 use clebsch_core::{document, pipeline};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -140,6 +142,7 @@ pub(crate) fn written_out(
     };
     let document = file.document()?;
     let top = document.get_ref();
+    let scope = Scope::of(top);
     let mut out = WrittenOut {
         text: String::new(),
         lines: Vec::new(),
@@ -163,21 +166,33 @@ pub(crate) fn written_out(
         return Err(file.wrong(Some(&key.span()), &message));
     }
     for (key, value) in top {
-        if !TABLES.contains(&key.get_ref().as_ref()) {
-            let line = format!("{} = {}", key_text(key.get_ref()), raw(&value.span()));
-            out.push(&line, file.line(&value.span()));
+        let name = key.get_ref().as_ref();
+        if TABLES.contains(&name) {
+            continue;
         }
+        // Expressions are evaluated here, where all names have their values.
+        let is_number = ["h", "steps"].contains(&name) && value.get_ref().is_str();
+        let text = match is_number {
+            true => {
+                let found = scope.read(value.get_ref());
+                let wrong = |why| file.wrong(Some(&value.span()), &format!("{name}: {why}"));
+                sites::spelt(found.map_err(wrong)?)
+            }
+            false => raw(&value.span()),
+        };
+        let line = format!("{} = {text}", key_text(name));
+        out.push(&line, file.line(&value.span()));
     }
     let parameters = table(&file, top, "parameters")?;
     let initial = table(&file, top, "initial")?;
-    let fluid = Fluid::read(&file, top, stated, &choice, card.source)?;
+    let fluid = Fluid::read(&file, top, stated, &choice)?;
     let writer = Writer {
         fluid: fluid.as_ref(),
         file: &file,
         stated,
         choice: &choice,
         copies: &copies,
-        numbers: sites::numbers(top, parameters),
+        scope,
         arrays: Arrays::of(&file),
     };
     writer.fields(&mut out, "parameters", card.parameters, parameters, initial)?;
@@ -266,7 +281,7 @@ struct Writer<'a> {
     stated: &'a Stated,
     choice: &'a Choice,
     copies: &'a Copies,
-    numbers: Vec<(String, f64)>,
+    scope: Scope,
     arrays: Arrays,
 }
 
@@ -284,6 +299,7 @@ impl Writer<'_> {
     ) -> Result<(), Failure> {
         out.push(&format!("[{name}]"), 0);
         let taken = Taken::of(fields);
+        let elements = elements(fields);
         let read = self.fluid.into_iter().flat_map(Fluid::used);
         let mut used: HashSet<String> = read.map(str::to_owned).collect();
         let mut told: Vec<String> = Vec::new();
@@ -318,49 +334,125 @@ impl Writer<'_> {
                     break;
                 }
             }
-            let Some((own, site, value)) = found else {
-                if let Some(base) = &base {
-                    return Err(self.missing(name, field, base));
-                }
+            if let Some((own, site, value)) = found {
+                let of_inertia = own.starts_with('I') && field.ascii.starts_with('J');
+                // The inertia of a copy stands under the key of its own.
+                let inertial = inertia::key(field, &taken);
+                let written = match (&inertial, of_inertia) {
+                    (Some(key), true) => key.as_str(),
+                    _ => field.ascii,
+                };
+                let asked = match of_inertia && from_npz::is_meant(value.get_ref()) {
+                    true => inertia::field(field),
+                    false => *field,
+                };
+                let place = (base.as_ref(), site);
+                self.one(out, (name, written), (&asked, place), (&own, value))?;
                 continue;
-            };
-            let line = self.file.line(&value.span());
-            let table = match out.beside.initial(field.ascii) {
-                true => "initial",
-                false => name,
-            };
-            let wrong = |why: &str, at: &Range<usize>| {
-                let message = format!("{table}.{}: {why}", shown(&own));
-                self.file.wrong(Some(at), &message)
-            };
-            let of_inertia = own.starts_with('I') && field.ascii.starts_with('J');
-            let text = match (&base, site) {
-                _ if from_npz::is_meant(value.get_ref()) => {
-                    let place = base.as_ref().map(|b| (b, site));
-                    let asked = match of_inertia {
-                        true => inertia::field(field),
-                        false => *field,
-                    };
-                    let text = self.of_array(&asked, place, &own, value);
-                    Ok(text.map_err(|fault| wrong(&fault.why, &fault.at))?)
-                }
-                (Some(base), true) => self.at_site(field, base, value),
-                (Some(base), false) => self.by_own_name(field, base, value),
-                _ => sites::plain(value.get_ref(), &|n| self.number(n, None)),
-            };
-            let text = text.map_err(|why| wrong(&why, &value.span()))?;
-            // The inertia of a copy stands under the key of its own.
-            let inertial = inertia::key(field, &taken);
-            let written = match (&inertial, of_inertia) {
-                (Some(key), true) => key.as_str(),
-                _ => field.ascii,
-            };
-            out.push(&format!("{written} = {text}"), line);
+            }
+            if is_momentum(field) {
+                self.velocities(
+                    out,
+                    (name, index),
+                    fields,
+                    (&elements, base.as_ref()),
+                    values,
+                    &mut used,
+                )?;
+                continue;
+            }
+            if let Some(base) = &base {
+                return Err(self.missing(name, field, base));
+            }
         }
         if name == "initial" {
             used.extend(out.beside.all_initial().map(str::to_owned));
         }
         self.unknown(name, values, &used)
+    }
+
+    /// Writes the value of a field that was found under a key.
+    fn one(
+        &self,
+        out: &mut WrittenOut,
+        (name, written): (&str, &str),
+        (field, (base, site)): (&Field, (Option<&Base>, bool)),
+        (own, value): (&str, &Spanned<DeValue<'_>>),
+    ) -> Result<(), Failure> {
+        let table = match out.beside.initial(field.ascii) {
+            true => "initial",
+            false => name,
+        };
+        let wrong = |why: &str, at: &Range<usize>| {
+            let message = format!("{table}.{}: {why}", shown(own));
+            self.file.wrong(Some(at), &message)
+        };
+        let text = match (base, site) {
+            _ if from_npz::is_meant(value.get_ref()) => {
+                let text = self.of_array(field, base.map(|b| (b, site)), own, value);
+                Ok(text.map_err(|fault| wrong(&fault.why, &fault.at))?)
+            }
+            (Some(base), true) => self.at_site(field, base, value),
+            _ => self.by_own_name(field, value),
+        };
+        let text = text.map_err(|why| wrong(&why, &value.span()))?;
+        let line = self.file.line(&value.span());
+        out.push(&format!("{written} = {text}"), line);
+        Ok(())
+    }
+
+    /// Writes the velocities of a configuration whose momentum is not given; without any it rests.
+    fn velocities(
+        &self,
+        out: &mut WrittenOut,
+        (name, index): (&'static str, usize),
+        fields: &[Field],
+        (elements, base): (&HashMap<usize, usize>, Option<&Base>),
+        values: Table<'_, '_>,
+        used: &mut HashSet<String>,
+    ) -> Result<(), Failure> {
+        let momentum = fields.get(index);
+        let element = elements.get(&index).and_then(|at| fields.get(*at));
+        let (Some(momentum), Some(element)) = (momentum, element) else {
+            return Ok(());
+        };
+        for way in Way::ALL
+            .into_iter()
+            .filter(|way| way.is_of(element, momentum))
+        {
+            let Some(written) = way.key(momentum.ascii) else {
+                continue;
+            };
+            if let Some((text, line)) = base
+                .and_then(|b| Some((way.key(&b.key)?, b.site)))
+                .and_then(|(key, site)| self.fluid?.text(&written, Some((&key, site))))
+            {
+                out.push(&format!("{written} = {text}"), line);
+                continue;
+            }
+            let of_all = base.and_then(|b| way.key(&b.key));
+            let named = suffix(momentum.ascii)
+                .is_some_and(str::is_empty)
+                .then(|| format!("{written}_{}", element.ascii));
+            let keys = [
+                (Some(written.clone()), false),
+                (named, false),
+                (of_all, true),
+            ];
+            let mut keys = keys
+                .into_iter()
+                .filter_map(|(key, site)| Some((key?, site)));
+            let found = keys.find_map(|(key, site)| {
+                let value = values.and_then(|t| t.get(key.as_str()));
+                used.insert(key.clone());
+                Some((key, site, value?))
+            });
+            if let Some((own, site, value)) = found {
+                let field = way.field(element, momentum);
+                self.one(out, (name, &written), (&field, (base, site)), (&own, value))?;
+            }
+        }
+        Ok(())
     }
 
     /// The keys under which a field may stand, and whether each is that of all sites.
@@ -397,8 +489,7 @@ impl Writer<'_> {
             #[allow(clippy::cast_precision_loss)]
             return Some(base.site as f64);
         }
-        let known = self.numbers.iter().find(|(n, _)| n == name);
-        known.map(|(_, value)| *value)
+        self.scope.number(name)
     }
 
     /// The value of a copy.
@@ -424,9 +515,7 @@ impl Writer<'_> {
                 false => None,
             },
         };
-        let numbers = |n: &str| self.number(n, Some(base));
-        let held = attitudes::at(self.stated, base, &at, value.get_ref(), &numbers);
-        held.map_or_else(|| sites::at(&at, value.get_ref(), &numbers), Ok)
+        sites::at(&at, value.get_ref(), &|n| self.number(n, Some(base)))
     }
 
     /// The value of a copy, or of what belongs to no site, from an array of a file.
@@ -437,9 +526,7 @@ impl Writer<'_> {
         named: &str,
         value: &Spanned<DeValue<'_>>,
     ) -> Result<String, Fault> {
-        let mut values = from_npz::shapes(field);
-        let four = place.and_then(|(base, _)| attitudes::size(self.stated, base, field));
-        values.extend(four.map(|_| vec![4]).filter(|own| !values.contains(own)));
+        let values = from_npz::shapes(field);
         let base = place.filter(|(b, site)| *site && !b.end).map(|(b, _)| b);
         let group = base.and_then(|b| self.copies.groups.iter().find(|g| g.of == b.of));
         let may_move = base.is_some_and(|b| b.is_momentum);
@@ -454,30 +541,14 @@ impl Writer<'_> {
             at: value.span(),
         };
         let text = taken.text(base.map_or(0, |b| b.site)).map_err(whole)?;
-        let Some((base, _)) = place else {
-            return Ok(text);
-        };
         let own = DeValue::parse(&text).map_err(|e| whole(e.message().to_owned()))?;
-        self.by_own_name(field, base, &own).map_err(whole)
+        self.by_own_name(field, &own).map_err(whole)
     }
 
-    /// A value under the name with its site.
-    fn by_own_name(
-        &self,
-        field: &Field,
-        base: &Base,
-        value: &Spanned<DeValue<'_>>,
-    ) -> Result<String, String> {
-        let only = Site {
-            named: "",
-            field,
-            place: 0,
-            count: 1,
-            moving: None,
-        };
-        let numbers = |n: &str| self.number(n, None);
-        let held = attitudes::at(self.stated, base, &only, value.get_ref(), &numbers);
-        held.map_or_else(|| sites::plain(value.get_ref(), &numbers), Ok)
+    /// A value under the name with its site, or of what has none.
+    fn by_own_name(&self, field: &Field, value: &Spanned<DeValue<'_>>) -> Result<String, String> {
+        let found = sites::of_field(field, value.get_ref(), &|n| self.number(n, None));
+        found.map_err(|why| self.scope.explained(why))
     }
 
     fn missing(&self, table: &str, field: &Field, base: &Base) -> Failure {

@@ -1,6 +1,7 @@
 //! Where in a case file a key stands, so that every message can name file, line and field.
 //! Takes the file's name and text; gives lines and placed messages.
 
+use super::motion::Motion;
 use crate::failure::Failure;
 use crate::gallery::Case;
 use crate::plain::shown;
@@ -18,6 +19,8 @@ pub struct Located {
     pub file: String,
     /// Line, from 1, of each key such as `parameters.J`.
     pub lines: BTreeMap<String, usize>,
+    /// How what is not given by momenta starts.
+    pub(crate) motion: Motion,
 }
 
 /// A file being read.
@@ -69,6 +72,11 @@ impl<'a> File<'a> {
             Some(own) => (*own).max(1),
             None => 1 + line,
         }
+    }
+
+    /// A usage failure at a line.
+    pub fn wrong_at(&self, line: usize, message: &str) -> Failure {
+        Failure::Usage(format!("{}:{line}: {message}", shown(self.name)))
     }
 
     /// A usage failure at `span` (or for the file as a whole).

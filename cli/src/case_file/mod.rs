@@ -3,10 +3,11 @@
 //! and of models with labels `[labels]` and `[ends]`.
 
 pub(crate) mod archive;
-mod attitudes;
+mod attitude;
 mod beside;
 mod chosen;
 mod copies;
+mod fields;
 mod fluid;
 mod from_npz;
 pub(crate) mod functions;
@@ -14,18 +15,22 @@ mod inertia;
 pub(crate) mod labels;
 mod lattice;
 mod location;
+mod motion;
 mod read;
 mod sample;
+mod scope;
 mod sites;
 pub(crate) mod space;
 mod start;
 mod value;
+mod velocity;
 mod write;
 
 pub(crate) use beside::{at_site, line_of, quantity_of};
 pub(crate) use chosen::choice;
 pub(crate) use lattice::write_lattice;
 pub use location::Located;
+pub(crate) use motion::Motion;
 pub use read::read;
 pub(crate) use read::read_written_out;
 pub use write::write;

@@ -2,19 +2,20 @@
 //! Takes the text; gives the case with the lines of its keys, or the first thing wrong with it.
 
 use super::beside::Beside;
-use super::from_npz::{self, Arrays};
-use super::inertia::{self, Given, Taken};
+use super::fields::Fields;
 use super::labels::WrittenOut;
 use super::location::{File, Located};
-use super::value::{expected, number, numbers};
+use super::motion::Motion;
+use super::scope::{Scope, rounded};
 use crate::arguments::whole;
 use crate::failure::Failure;
 use crate::gallery::Case;
 use crate::plain::shown;
 use crate::suggestion::did_you_mean;
-use clebsch::card::{Card, Field};
+use clebsch::card::Card;
+use clebsch_core::lattice::Choice;
 use clebsch_core::pipeline;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -30,18 +31,13 @@ const KEYS: [&str; 8] = [
     "bounds",
 ];
 
-type Lines = BTreeMap<String, usize>;
-
-/// Reads the numbers of a field from a value.
-type Numbers = fn(&Field, &DeValue<'_>) -> Result<Vec<f64>, String>;
-
 /// Reads the case in `text`, which came from the file `name`, for the model of `card`.
 ///
 /// # Errors
 /// Usage: no TOML, another model, an unknown, missing, mistyped or misshapen value. The message
 /// names file, line and key.
 pub fn read(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
-    located(&File::new(name, text), &Beside::default(), card)
+    located(&File::new(name, text), &Beside::default(), card, None)
 }
 
 /// The same of a case that was written out from a file, whose lines are told.
@@ -54,10 +50,15 @@ pub(crate) fn read_written_out(
     card: &Card,
 ) -> Result<Located, Failure> {
     let file = File::written_out(name, &out.text, &out.lines);
-    located(&file, &out.beside, card)
+    located(&file, &out.beside, card, Some(&out.choice))
 }
 
-fn located(file: &File<'_>, beside: &Beside, card: &Card) -> Result<Located, Failure> {
+fn located(
+    file: &File<'_>,
+    beside: &Beside,
+    card: &Card,
+    choice: Option<&Choice>,
+) -> Result<Located, Failure> {
     let name = file.name;
     let document = file.document()?;
     let top = document.get_ref();
@@ -70,7 +71,7 @@ fn located(file: &File<'_>, beside: &Beside, card: &Card) -> Result<Located, Fai
     if matches!(&model, Some(Ok(model)) if super::functions::are_given(model)) {
         known.push(functions);
     }
-    known_keys(file, top, &known, "at the top level", None)?;
+    known_keys(file, top, &known, "at the top level", &|_| None)?;
     let model = required(
         file,
         top,
@@ -92,25 +93,39 @@ fn located(file: &File<'_>, beside: &Beside, card: &Card) -> Result<Located, Fai
     for (key, value) in top {
         lines.insert(key.get_ref().to_string(), file.line(&value.span()));
     }
-    let case = Case {
+    let scope = Scope::of(top);
+    let h = step_size(file, &scope, required(file, top, "h", "the step size")?)?;
+    let count = required(file, top, "steps", "the number of steps")?;
+    let steps = steps(file, &scope, count)?;
+    let mut fields = Fields {
+        file,
+        beside,
+        scope: &scope,
+        lines: &mut lines,
+        motion: Motion::default(),
+    };
+    let parameters = fields.read(top, "parameters", card.parameters)?;
+    let initial = fields.read(top, "initial", card.initial)?;
+    let motion = fields.motion;
+    let mut case = Case {
         name: optional_string(file, top, "name")?.unwrap_or_else(|| stem(name)),
         doc: optional_string(file, top, "doc")?.unwrap_or_default(),
-        h: step_size(file, required(file, top, "h", "the step size")?)?,
-        steps: steps(file, required(file, top, "steps", "the number of steps")?)?,
-        parameters: fields(
-            file,
-            top,
-            beside,
-            ("parameters", card.parameters),
-            &mut lines,
-        )?,
-        initial: fields(file, top, beside, ("initial", card.initial), &mut lines)?,
-        bounds: bounds(file, top, card)?,
+        h,
+        steps,
+        parameters,
+        initial,
+        bounds: bounds(file, &scope, top, card)?,
     };
+    let put = motion.put(card, choice, &mut case);
+    put.map_err(|wrong| {
+        let message = format!("initial.{}: {}", wrong.key, wrong.why);
+        file.wrong_at(wrong.line, &message)
+    })?;
     Ok(Located {
         case,
         file: name.to_owned(),
         lines,
+        motion,
     })
 }
 
@@ -123,12 +138,12 @@ fn stem(name: &str) -> String {
     )
 }
 
-fn known_keys(
+pub(super) fn known_keys(
     file: &File<'_>,
     table: &DeTable<'_>,
     known: &[&str],
     place: &str,
-    written: Option<&[Field]>,
+    otherwise: &dyn Fn(&str) -> Option<String>,
 ) -> Result<(), Failure> {
     let all: HashSet<&str> = known.iter().copied().collect();
     for key in table.keys() {
@@ -136,15 +151,7 @@ fn known_keys(
         if all.contains(name) {
             continue;
         }
-        // `"Λ"` is how the model writes it, but files use the ASCII name.
-        let ascii = written
-            .unwrap_or_default()
-            .iter()
-            .find(|field| field.name == name);
-        let hint = match ascii {
-            Some(field) => format!("; did you mean `{}`?", field.ascii),
-            None => did_you_mean(name, known.iter().copied()),
-        };
+        let hint = otherwise(name).unwrap_or_else(|| did_you_mean(name, known.iter().copied()));
         return Err(file.wrong(
             Some(&key.span()),
             &format!("unknown key `{}` {place}{hint}", shown(name)),
@@ -185,9 +192,11 @@ fn optional_string(
         .transpose()
 }
 
-fn step_size(file: &File<'_>, value: &Spanned<DeValue<'_>>) -> Result<f64, Failure> {
+fn step_size(file: &File<'_>, scope: &Scope, value: &Spanned<DeValue<'_>>) -> Result<f64, Failure> {
     let wrong = |message: &str| file.wrong(Some(&value.span()), &format!("h: {message}"));
-    let h = number(value.get_ref()).map_err(|message| wrong(&message))?;
+    let h = scope
+        .read(value.get_ref())
+        .map_err(|message| wrong(&message))?;
     if h > 0.0 {
         Ok(h)
     } else {
@@ -195,7 +204,7 @@ fn step_size(file: &File<'_>, value: &Spanned<DeValue<'_>>) -> Result<f64, Failu
     }
 }
 
-fn steps(file: &File<'_>, value: &Spanned<DeValue<'_>>) -> Result<u64, Failure> {
+fn steps(file: &File<'_>, scope: &Scope, value: &Spanned<DeValue<'_>>) -> Result<u64, Failure> {
     let wrong = |message: &str| file.wrong(Some(&value.span()), &format!("steps: {message}"));
     let (text, steps) = match value.get_ref() {
         DeValue::Integer(text) => {
@@ -204,6 +213,10 @@ fn steps(file: &File<'_>, value: &Spanned<DeValue<'_>>) -> Result<u64, Failure> 
         }
         // `1e6` is a whole number, too.
         DeValue::Float(text) => (text.to_string(), whole(text.as_str())),
+        own @ DeValue::String(_) => {
+            let found = scope.read(own).map_err(|message| wrong(&message))?;
+            (found.to_string(), rounded(found))
+        }
         other => {
             let found = other.type_str();
             return Err(wrong(&format!(
@@ -220,7 +233,7 @@ fn steps(file: &File<'_>, value: &Spanned<DeValue<'_>>) -> Result<u64, Failure> 
 }
 
 /// The table `name`, with the line it starts on; `None` when the file has none.
-fn table<'a, 'i>(
+pub(super) fn table<'a, 'i>(
     file: &File<'_>,
     top: &'a DeTable<'i>,
     name: &str,
@@ -240,84 +253,12 @@ fn table<'a, 'i>(
     }
 }
 
-fn fields(
+fn bounds(
     file: &File<'_>,
+    scope: &Scope,
     top: &DeTable<'_>,
-    beside: &Beside,
-    (name, fields): (&'static str, &[Field]),
-    lines: &mut Lines,
-) -> Result<Vec<Vec<f64>>, Failure> {
-    let Some((table, span)) = table(file, top, name)? else {
-        return match fields.first() {
-            None => Ok(Vec::new()),
-            Some(_) => {
-                let keys: Vec<&str> = fields.iter().map(|field| field.ascii).collect();
-                let message = format!("missing table [{name}] with keys {}", keys.join(", "));
-                Err(file.wrong(None, &message))
-            }
-        };
-    };
-    let taken = Taken::of(fields);
-    let arrays = Arrays::of(file);
-    let inertias: Vec<String> = fields
-        .iter()
-        .filter_map(|field| inertia::key(field, &taken))
-        .collect();
-    let in_text = fields.iter().enumerate();
-    let in_text = in_text.filter(|(index, _)| beside.get(name, *index).is_none());
-    let known = in_text.map(|(_, field)| field.ascii);
-    let known: Vec<&str> = known.chain(inertias.iter().map(String::as_str)).collect();
-    known_keys(file, table, &known, &format!("in [{name}]"), Some(fields))?;
-    let mut values = Vec::with_capacity(fields.len());
-    for (index, field) in fields.iter().enumerate() {
-        if let Some(numbers) = beside.get(name, index) {
-            values.push(numbers.to_vec());
-            continue;
-        }
-        let stands = match beside.initial(field.ascii) {
-            true => "initial",
-            false => name,
-        };
-        let key = format!("{stands}.{}", field.ascii);
-        let read = |own: &Field, value: &Spanned<DeValue<'_>>, of: Numbers| {
-            if !from_npz::is_meant(value.get_ref()) {
-                return Ok::<_, Failure>(of(field, value.get_ref()));
-            }
-            let shown = inertia::shown_key(table, field, &taken);
-            let text = arrays.whole(own, value, shown.trim_end_matches(".I"));
-            let text = text.map_err(|fault| {
-                file.wrong(Some(&fault.at), &format!("{stands}.{shown}: {}", fault.why))
-            })?;
-            let one = DeValue::parse(&text);
-            let one = one.map_err(|e| file.wrong(Some(&value.span()), e.message()))?;
-            Ok(of(field, one.get_ref()))
-        };
-        let (value, found) = match inertia::given(table, field, &taken) {
-            Given::Own(value) => (value, read(field, value, numbers)?),
-            Given::Inertia(value) => {
-                let inertia = inertia::field(field);
-                (value, read(&inertia, value, inertia::second_moments)?)
-            }
-            Given::Twice(value) => (
-                value,
-                Err("is given twice, by itself and by its inertia".to_owned()),
-            ),
-            Given::Missing => {
-                let message = format!("missing key `{key}`: {}", expected(field));
-                return Err(file.wrong(Some(&span), &message));
-            }
-        };
-        let found = found.map_err(|message| {
-            let shown = inertia::shown_key(table, field, &taken);
-            file.wrong(Some(&value.span()), &format!("{stands}.{shown}: {message}"))
-        })?;
-        lines.insert(key, file.line(&value.span()));
-        values.push(found);
-    }
-    Ok(values)
-}
-
-fn bounds(file: &File<'_>, top: &DeTable<'_>, card: &Card) -> Result<Vec<(String, f64)>, Failure> {
+    card: &Card,
+) -> Result<Vec<(String, f64)>, Failure> {
     let Some((table, _)) = table(file, top, "bounds")? else {
         return Ok(Vec::new());
     };
@@ -326,7 +267,7 @@ fn bounds(file: &File<'_>, top: &DeTable<'_>, card: &Card) -> Result<Vec<(String
         .iter()
         .map(|invariant| invariant.name)
         .collect();
-    known_keys(file, table, &known, "in [bounds]", None)?;
+    known_keys(file, table, &known, "in [bounds]", &|_| None)?;
     let mut bounds = Vec::new();
     // In the order of the card, so that the order in the file does not matter.
     for name in known {
@@ -335,7 +276,9 @@ fn bounds(file: &File<'_>, top: &DeTable<'_>, card: &Card) -> Result<Vec<(String
         };
         let wrong =
             |message: &str| file.wrong(Some(&value.span()), &format!("bounds.{name}: {message}"));
-        let bound = number(value.get_ref()).map_err(|message| wrong(&message))?;
+        let bound = scope
+            .read(value.get_ref())
+            .map_err(|message| wrong(&message))?;
         if bound < 0.0 {
             return Err(wrong(&format!("a bound is never negative, found {bound}")));
         }

@@ -2,10 +2,11 @@
 //! are expressions in the label, the number of sites and the numbers of the case, and lists have an
 //! element for each site.
 
-use super::value::number;
+use super::attitude;
+use super::scope;
+use super::value::{Numbers, number, numbers};
 use clebsch::card::{Field, Kind};
-use clebsch_core::lattice::value::SiteData;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 /// Of which field a value is asked, at which of its sites.
 pub(super) struct Site<'a> {
@@ -20,41 +21,6 @@ pub(super) struct Site<'a> {
     pub named: &'a str,
 }
 
-pub(super) type Numbers<'a> = dyn Fn(&str) -> Option<f64> + 'a;
-
-/// The numbers that expressions may hold: parameters of the case that are numbers or expressions of others,
-/// and its step.
-pub(super) fn numbers(top: &DeTable<'_>, parameters: Option<&DeTable<'_>>) -> Vec<(String, f64)> {
-    let step = top.get("h").map(|v| ("h".to_owned(), v));
-    let stated = parameters.into_iter().flatten();
-    let stated = stated.map(|(k, v)| (k.get_ref().to_string(), v));
-    let all: Vec<_> = step.into_iter().chain(stated).collect();
-    let plain = all
-        .iter()
-        .filter_map(|(key, value)| Some((key.clone(), number(value.get_ref()).ok()?)));
-    let mut known: Vec<(String, f64)> = plain.collect();
-    let mut rest: Vec<(String, SiteData)> = all
-        .iter()
-        .filter_map(|(key, value)| {
-            let data = SiteData::read(value.get_ref().as_str()?).ok()?;
-            Some((key.clone(), data))
-        })
-        .collect();
-    // Until none is found any more: others are of the site, and are read there.
-    loop {
-        let before = known.len();
-        rest.retain(|(key, data)| {
-            let of = |name: &str| known.iter().find(|(own, _)| own == name).map(|(_, x)| *x);
-            let value = data.value(&of).ok().filter(|x| x.is_finite());
-            known.extend(value.map(|x| (key.clone(), x)));
-            value.is_none()
-        });
-        if known.len() == before {
-            return known;
-        }
-    }
-}
-
 /// What expressions read.
 const READS: &str = ": an expression of a site reads its label, the number of sites, and numbers of the case that are the same at \
                      all sites";
@@ -62,11 +28,8 @@ const READS: &str = ": an expression of a site reads its label, the number of si
 /// The value as TOML, texts in it evaluated.
 pub(super) fn plain(value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, String> {
     match value {
-        DeValue::String(text) => {
-            let value = SiteData::read(text).and_then(|data| data.value(of));
-            let value = value.map_err(|why| format!("\"{text}\": {why}"))?;
-            Ok(spelt(value))
-        }
+        // What is no finite number is told with its site, where the case is read.
+        DeValue::String(text) => Ok(spelt(scope::value(text, of)?)),
         DeValue::Array(list) => {
             let each = list.iter().map(|v| plain(v.get_ref(), of));
             let each: Result<Vec<String>, String> = each.collect();
@@ -80,7 +43,40 @@ pub(super) fn plain(value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, Str
             let each: Result<Vec<String>, String> = each.collect();
             Ok(format!("{{ {} }}", each?.join(", ")))
         }
-        other => Ok(spelt(number(other)?)),
+        other => Ok(spelt(number(other, of)?)),
+    }
+}
+
+/// The value of a field that belongs to one site or to none, as TOML: an element of a group by its numbers.
+pub(super) fn of_field(
+    field: &Field,
+    value: &DeValue<'_>,
+    of: &Numbers<'_>,
+) -> Result<String, String> {
+    match field.kind {
+        Kind::Rotation | Kind::UnitQuaternion | Kind::RigidMotion => {
+            Ok(by_rows(field, &numbers(field, value, of)?))
+        }
+        // The inertia in the place of second moments.
+        _ if value.as_table().is_some_and(|t| !t.contains_key("I")) => {
+            numbers(field, value, of).map(|all| by_rows(field, &all))
+        }
+        _ => plain(value, of),
+    }
+}
+
+/// Numbers as TOML, row by row.
+fn by_rows(field: &Field, all: &[f64]) -> String {
+    let list = |row: &[f64]| {
+        let each: Vec<String> = row.iter().map(|x| spelt(*x)).collect();
+        format!("[{}]", each.join(", "))
+    };
+    match field.cols {
+        1 => list(all),
+        cols => {
+            let rows: Vec<String> = all.chunks(cols).map(list).collect();
+            format!("[{}]", rows.join(", "))
+        }
     }
 }
 
@@ -103,10 +99,10 @@ pub(super) fn at(site: &Site<'_>, value: &DeValue<'_>, of: &Numbers<'_>) -> Resu
 
 fn found(site: &Site<'_>, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, String> {
     let DeValue::Array(list) = value else {
-        return plain(value, of);
+        return of_field(site.field, value, of);
     };
     if !is_list_of_sites(site.field, value) {
-        return plain(value, of);
+        return of_field(site.field, value, of);
     }
     let place = match site.moving {
         Some((place, count)) if list.len() == count => place,
@@ -121,8 +117,9 @@ fn found(site: &Site<'_>, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Strin
         ));
     }
     match list.get(place) {
-        Some(one) => plain(one.get_ref(), of).map_err(|why| format!("at {}, {why}", site.named)),
-        None => plain(value, of),
+        Some(one) => of_field(site.field, one.get_ref(), of)
+            .map_err(|why| format!("at {}, {why}", site.named)),
+        None => of_field(site.field, value, of),
     }
 }
 
@@ -135,14 +132,25 @@ fn is_list_of_sites(field: &Field, value: &DeValue<'_>) -> bool {
         .and_then(|l| l.first().map(|f| lengths(f.get_ref())));
     match field.kind {
         _ if field.count() == 1 => depth >= 1,
+        Kind::Rotation | Kind::UnitQuaternion | Kind::RigidMotion if first_is_table(value) => true,
+        Kind::Rotation if field.rows == 2 => depth == 1 || depth >= 3,
         Kind::Rotation if field.rows == 3 => match depth {
             2 => inner == Some(4),
+            d => d >= 3,
+        },
+        Kind::UnitQuaternion => match depth {
+            2 => inner == Some(4) && !(field.cols == 4 && attitude::is_left_factor(value)),
             d => d >= 3,
         },
         Kind::Diagonal => depth >= 3 || (depth == 2 && lengths(value) != field.rows),
         _ if field.cols == 1 => depth >= 2,
         _ => depth >= 3,
     }
+}
+
+fn first_is_table(value: &DeValue<'_>) -> bool {
+    let first = value.as_array().and_then(|list| list.first());
+    first.is_some_and(|one| one.get_ref().is_table())
 }
 
 fn depth(value: &DeValue<'_>) -> usize {

@@ -3,7 +3,7 @@
 
 use super::labels::Stated;
 use super::location::File;
-use super::value::number;
+use super::scope::Scope;
 use crate::failure::Failure;
 use clebsch::mesh::{Domain, Nodes, Setting, Wall};
 use clebsch_core::syntax::ast::Extent;
@@ -85,7 +85,10 @@ impl Space {
         let wrong = |value: &Spanned<DeValue<'_>>, key: &str, message: &str| {
             file.wrong(Some(&value.span()), &format!("domain.{key}: {message}"))
         };
-        let lengths = listed(value.get_ref(), d, |v| number(v).ok().filter(|x| *x > 0.0));
+        let scope = Scope::of(top);
+        let lengths = listed(value.get_ref(), d, |v| {
+            scope.read(v).ok().filter(|x| *x > 0.0)
+        });
         let lengths = lengths.ok_or_else(|| {
             wrong(
                 value,
@@ -255,11 +258,10 @@ fn cells(
         );
         return Err(file.wrong(None, &message));
     };
-    let whole = |v: &DeValue<'_>| match v {
-        DeValue::Integer(n) => usize::from_str_radix(n.as_str(), n.radix())
-            .ok()
-            .filter(|n| *n > 0),
-        _ => None,
+    let scope = Scope::of(top);
+    let whole = |v: &DeValue<'_>| {
+        let count = scope.whole(v).ok().flatten().filter(|n| *n > 0);
+        count.and_then(|n| usize::try_from(n).ok())
     };
     match listed(value.get_ref(), d, whole) {
         Some(cells) => Ok(Some(cells)),

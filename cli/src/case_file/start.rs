@@ -1,17 +1,22 @@
 //! Where the particles of a fluid start: `{ lattice = "brick", jitter = 0.1, seed = 1 }`. Takes the table and the
 //! domain; gives so many places in it.
 
+use super::scope::Scope;
 use super::space::Space;
-use super::value::number;
 use clebsch::mesh::Domain;
 use clebsch::mesh::placement::{self, Jitter};
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 
 /// Times that places at random are moved to the centres of their cells, where no number is given.
 const SWEEPS: u64 = 20;
 
 /// The places of `count` particles, one after the other.
-pub(super) fn places(table: &DeTable<'_>, space: &Space, count: usize) -> Result<Vec<f64>, String> {
+pub(super) fn places(
+    table: &DeTable<'_>,
+    space: &Space,
+    count: usize,
+    scope: &Scope,
+) -> Result<Vec<f64>, String> {
     const KEYS: [&str; 5] = ["lattice", "jitter", "seed", "columns", "sweeps"];
     if let Some((key, _)) = table
         .iter()
@@ -38,9 +43,11 @@ pub(super) fn places(table: &DeTable<'_>, space: &Space, count: usize) -> Result
     }
     let size = match table.get("jitter") {
         None => 0.0,
-        Some(v) => number(v.get_ref()).map_err(|why| format!("jitter: {why}"))?,
+        Some(v) => scope
+            .read(v.get_ref())
+            .map_err(|why| format!("jitter: {why}"))?,
     };
-    let seed = whole(table, "seed")?.unwrap_or(1);
+    let seed = whole(table, "seed", scope)?.unwrap_or(1);
     let jitter = Jitter { size, seed };
     let mut all = match space.lengths.as_slice() {
         // A row: its height is what a particle takes of its length.
@@ -59,7 +66,7 @@ pub(super) fn places(table: &DeTable<'_>, space: &Space, count: usize) -> Result
         }
         [width, height] => {
             let domain = Domain::torus([*width, *height]);
-            let columns = whole(table, "columns")?;
+            let columns = whole(table, "columns", scope)?;
             let columns = columns
                 .and_then(|n| usize::try_from(n).ok())
                 .filter(|n| *n > 0);
@@ -78,7 +85,7 @@ pub(super) fn places(table: &DeTable<'_>, space: &Space, count: usize) -> Result
                 }
                 "hex" => hexagons(&domain, count, columns, jitter)?,
                 "random" => {
-                    let sweeps = whole(table, "sweeps")?.unwrap_or(SWEEPS);
+                    let sweeps = whole(table, "sweeps", scope)?.unwrap_or(SWEEPS);
                     let sweeps = usize::try_from(sweeps).unwrap_or(usize::MAX);
                     let found = placement::scattered(&domain, count, sweeps, seed);
                     found.map_err(|e| e.to_string())?
@@ -99,14 +106,14 @@ pub(super) fn places(table: &DeTable<'_>, space: &Space, count: usize) -> Result
     Ok(all)
 }
 
-fn whole(table: &DeTable<'_>, key: &str) -> Result<Option<u64>, String> {
-    match table.get(key).map(|v| v.get_ref()) {
-        None => Ok(None),
-        Some(DeValue::Integer(n)) => match u64::from_str_radix(n.as_str(), n.radix()) {
-            Ok(n) => Ok(Some(n)),
-            Err(_) => Err(format!("{key}: expected a whole number, 0 or more")),
-        },
-        Some(_) => Err(format!("{key}: expected a whole number")),
+fn whole(table: &DeTable<'_>, key: &str, scope: &Scope) -> Result<Option<u64>, String> {
+    let Some(value) = table.get(key) else {
+        return Ok(None);
+    };
+    let read = scope.whole(value.get_ref());
+    match read.map_err(|why| format!("{key}: {why}"))? {
+        Some(n) => Ok(Some(n)),
+        None => Err(format!("{key}: expected a whole number, 0 or more")),
     }
 }
 

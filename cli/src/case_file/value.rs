@@ -1,24 +1,23 @@
-//! One value of a case file: a number, a vector, a matrix or a rotation.
+//! One value of a case file: a number, a vector, a matrix or an element of a group.
 //! Takes a TOML value and the field it is for; gives its numbers row-major, or what is wrong with it.
+//! A number may be an expression in quotes.
 //! Shapes are checked here; symmetry, orthogonality and the like by the model that is opened with them.
 
+use super::attitude;
+use super::scope::evaluated;
 use clebsch::card::{Field, Kind};
-use clebsch::groups::Rotation;
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// How far the norm of a quaternion may be from 1. Six digits typed by hand pass; a quaternion that
-/// was never normalised does not.
-const QUATERNION: f64 = 1e-6;
+/// The values of names in expressions.
+pub(super) type Numbers<'a> = dyn Fn(&str) -> Option<f64> + 'a;
 
 /// What to write for a field, in words.
 pub(super) fn expected(field: &Field) -> String {
     let Field { rows, cols, .. } = *field;
     match field.kind {
         _ if rows * cols == 1 => "a number".to_owned(),
-        Kind::Rotation if rows == 3 => {
-            "a 3x3 matrix [[..], [..], [..]] or a unit quaternion [w, x, y, z]".to_owned()
-        }
+        Kind::Rotation | Kind::UnitQuaternion | Kind::RigidMotion => attitude::expected(field),
         Kind::Diagonal => format!("the {rows} diagonal entries [a, ..] or a {rows}x{cols} matrix"),
         Kind::SecondMoments => format!(
             "a symmetric {rows}x{cols} matrix [[..], ..], written in full{}",
@@ -32,20 +31,39 @@ pub(super) fn expected(field: &Field) -> String {
 }
 
 /// The numbers of `field`, row-major; a rotation as its matrix.
-pub(super) fn numbers(field: &Field, value: &DeValue<'_>) -> Result<Vec<f64>, String> {
+pub(super) fn numbers(
+    field: &Field,
+    value: &DeValue<'_>,
+    of: &Numbers<'_>,
+) -> Result<Vec<f64>, String> {
+    let is_element = matches!(
+        field.kind,
+        Kind::Rotation | Kind::UnitQuaternion | Kind::RigidMotion
+    );
+    match is_element {
+        true => attitude::numbers(field, value, of),
+        false => entries(field, value, of),
+    }
+}
+
+/// The same of a field that is given by its entries alone.
+pub(super) fn entries(
+    field: &Field,
+    value: &DeValue<'_>,
+    of: &Numbers<'_>,
+) -> Result<Vec<f64>, String> {
     let Field { rows, cols, .. } = *field;
     let (flat, one) = (cols == 1, rows * cols == 1);
     match shape(value) {
-        Shape::Number if one => Ok(vec![number(value)?]),
-        Shape::Vector(n) if flat && !one && n == rows => row(value),
-        Shape::Vector(4) if field.kind == Kind::Rotation && rows == 3 => quaternion(&row(value)?),
+        Shape::Number | Shape::Text if one => Ok(vec![number(value, of)?]),
+        Shape::Vector(n) if flat && !one && n == rows => row(value, of),
         Shape::Vector(n) if field.kind == Kind::Diagonal && n == rows => {
-            Ok(on_diagonal(&row(value)?))
+            Ok(on_diagonal(&row(value, of)?))
         }
         Shape::Matrix(r, c) if !flat && (r, c) == (rows, cols) => {
             let mut entries = Vec::with_capacity(rows * cols);
             for line in items(value) {
-                entries.extend(row(line.get_ref())?);
+                entries.extend(row(line.get_ref(), of)?);
             }
             Ok(entries)
         }
@@ -57,8 +75,8 @@ pub(super) fn numbers(field: &Field, value: &DeValue<'_>) -> Result<Vec<f64>, St
     }
 }
 
-/// A finite number; integers count.
-pub(super) fn number(value: &DeValue<'_>) -> Result<f64, String> {
+/// A finite number; integers count, and expressions in quotes.
+pub(super) fn number(value: &DeValue<'_>, of: &Numbers<'_>) -> Result<f64, String> {
     let parsed = match value {
         // An integer beyond f64's exact range is rounded, as a float literal would be.
         DeValue::Integer(text) =>
@@ -69,6 +87,7 @@ pub(super) fn number(value: &DeValue<'_>) -> Result<f64, String> {
                 .map(|integer| integer as f64)
         }
         DeValue::Float(text) => text.as_str().parse::<f64>().ok(),
+        DeValue::String(text) => return evaluated(text, of),
         other => return Err(format!("expected a number, found {}", shape(other).words())),
     };
     match parsed {
@@ -78,8 +97,10 @@ pub(super) fn number(value: &DeValue<'_>) -> Result<f64, String> {
     }
 }
 
-enum Shape {
+pub(super) enum Shape {
     Number,
+    /// An expression.
+    Text,
     Vector(usize),
     Matrix(usize, usize),
     Ragged,
@@ -87,19 +108,27 @@ enum Shape {
 }
 
 impl Shape {
-    fn words(&self) -> String {
+    pub(super) fn words(&self) -> String {
         match self {
             Self::Number => "one number".to_owned(),
+            Self::Text => "an expression in quotes, which is one number".to_owned(),
             Self::Vector(n) => format!("a vector of {n} numbers"),
             Self::Matrix(rows, cols) => format!("a {rows}x{cols} matrix"),
             Self::Ragged => "an array that is neither a vector nor a matrix of numbers".to_owned(),
+            Self::Other("table") => {
+                "a table; of an array in a file write { npz = \"out/trajectory.npz\", key = \"q\" }"
+                    .to_owned()
+            }
             Self::Other(kind) => format!("a value of type {kind}"),
         }
     }
 }
 
-fn shape(value: &DeValue<'_>) -> Shape {
-    let is_number = |value: &DeValue<'_>| value.is_integer() || value.is_float();
+pub(super) fn shape(value: &DeValue<'_>) -> Shape {
+    let is_number = |value: &DeValue<'_>| value.is_integer() || value.is_float() || value.is_str();
+    if value.is_str() {
+        return Shape::Text;
+    }
     if is_number(value) {
         return Shape::Number;
     }
@@ -122,14 +151,14 @@ fn shape(value: &DeValue<'_>) -> Shape {
     }
 }
 
-fn items<'a, 'i>(value: &'a DeValue<'i>) -> &'a [Spanned<DeValue<'i>>] {
+pub(super) fn items<'a, 'i>(value: &'a DeValue<'i>) -> &'a [Spanned<DeValue<'i>>] {
     value.as_array().map_or(&[], |array| array)
 }
 
-fn row(value: &DeValue<'_>) -> Result<Vec<f64>, String> {
+pub(super) fn row(value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Vec<f64>, String> {
     items(value)
         .iter()
-        .map(|item| number(item.get_ref()))
+        .map(|item| number(item.get_ref(), of))
         .collect()
 }
 
@@ -140,20 +169,4 @@ fn on_diagonal(entries: &[f64]) -> Vec<f64> {
         *slot = entry;
     }
     matrix
-}
-
-fn quaternion(q: &[f64]) -> Result<Vec<f64>, String> {
-    let &[w, x, y, z] = q else {
-        return Err("a quaternion has four numbers".to_owned());
-    };
-    let norm = (w * w + x * x + y * y + z * z).sqrt();
-    // Written so that NaN is refused.
-    let unit = (norm - 1.0).abs() <= QUATERNION;
-    if !unit {
-        return Err(format!(
-            "the quaternion has norm {norm}; divide by it (a rotation needs norm 1 within {QUATERNION:e})"
-        ));
-    }
-    let rotation = Rotation::from_quaternion([w, x, y, z]).map_err(|error| error.to_string())?;
-    Ok(rotation.matrix().transpose().iter().copied().collect())
 }

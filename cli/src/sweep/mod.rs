@@ -89,7 +89,7 @@ pub(crate) fn sweep(
     let card = &entry.card_of(&plan.case);
     let axes = matches.get_many::<String>("vary").into_iter().flatten();
     let axes: Vec<Axis> = axes
-        .map(|axis| Axis::read(axis, card))
+        .map(|axis| Axis::read(axis, card, &plan.motion))
         .collect::<Result<_, _>>()?;
     let mut pairs = axes
         .iter()
@@ -355,23 +355,24 @@ impl Sweep<'_> {
         Ok(listening.asked().filter(|_| !all))
     }
 
-    /// What is run at a point, and the values that are varied there.
-    fn at(&self, point: u64) -> (Plan, Vec<f64>) {
+    /// What is run at a point, and the values that are varied there. Velocities have the momenta of that point.
+    fn at(&self, point: u64) -> (Result<Plan, Failure>, Vec<f64>) {
         let values = vary::at(self.axes, point);
         let mut plan = self.plan.clone();
         for (axis, value) in self.axes.iter().zip(&values) {
             match axis.quantity.is_step() {
                 true => plan = plan.with_step(*value),
-                false => axis.quantity.put(*value, &mut plan.case),
+                false => axis.quantity.put(*value, &mut plan.case, &mut plan.motion),
             }
         }
-        (plan, values)
+        let started = plan.start_anew(self.card);
+        (started.map(|()| plan), values)
     }
 
     /// Why a point is refused, in words.
     fn refusal(&self, point: u64) -> String {
         let (plan, _) = self.at(point);
-        match plan.open(self.card) {
+        match plan.and_then(|plan| plan.open(self.card)) {
             Err(failure) => failure.to_string(),
             Ok(mut trajectory) => match trajectory.step() {
                 Err(error) => error.to_string(),
@@ -395,7 +396,8 @@ impl Sweep<'_> {
             }
         };
         values.into_iter().for_each(&mut put);
-        let Ok(mut trajectory) = plan.open(self.card) else {
+        let opened = plan.and_then(|plan| Ok((plan.open(self.card)?, plan)));
+        let Ok((mut trajectory, plan)) = opened else {
             put(table::REFUSED);
             put(0.0);
             put(0.0);

@@ -1,6 +1,7 @@
 //! What a sweep varies: `gU.z=0:1:100`, `h=0.1,0.05`, `kappa=2`.
 //! Takes texts and a card; gives quantities with their values, and the values of each point of the grid.
 
+use crate::case_file::Motion;
 use crate::failure::Failure;
 use crate::plain::shown;
 use crate::quantity::Quantity;
@@ -25,14 +26,14 @@ impl Axis {
     ///
     /// # Errors
     /// Usage: what is wrong with it, and what the model has.
-    pub(super) fn read(text: &str, card: &Card) -> Result<Self, Failure> {
+    pub(super) fn read(text: &str, card: &Card, motion: &Motion) -> Result<Self, Failure> {
         let wrong = |why: String| Failure::Usage(format!("--vary {}: {why}", shown(text)));
         let Some((name, values)) = text.split_once('=') else {
             return Err(wrong(
                 "give NAME=FROM:TO:COUNT or NAME=VALUE,VALUE,..., such as gU.z=0:1:100".to_owned(),
             ));
         };
-        let quantity = Quantity::read(name, card).map_err(wrong)?;
+        let quantity = Quantity::read(name, card, motion).map_err(wrong)?;
         let values = read_values(values).map_err(wrong)?;
         Ok(Self { quantity, values })
     }

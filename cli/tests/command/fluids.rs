@@ -45,7 +45,11 @@ fn every_fluid_is_derived_and_runs_its_case() {
             done.out, done.err, sample.out
         );
         let same = clebsch(&["run", &model, "--case", "sample", "--steps", "20"]);
-        assert_eq!((done.out, done.err), (same.out, same.err), "{name}");
+        // The file says where its momenta come from.
+        let of_file = |line: &&str| !line.starts_with("initial momentum_");
+        let out: Vec<&str> = done.out.lines().filter(of_file).collect();
+        let same_out: Vec<&str> = same.out.lines().collect();
+        assert_eq!((out, done.err), (same_out, same.err), "{name}");
     }
 }
 
@@ -211,8 +215,16 @@ fn a_wrong_case_is_told_by_key_and_site() {
             ),
             ("[domain]", "[space]", "missing table [domain]"),
             ("alpha = 0.1", "", "missing key `parameters.alpha`"),
-            ("alpha = 0.1", "alpha = -0.1", "parameters: `alpha`"),
-            ("velocity_X = [0.0, 0.0]", "", "initial.momentum_X: missing"),
+            (
+                "alpha = 0.1",
+                "alpha = -0.1",
+                "parameters.alpha: the assumption `alpha >= 0` does not hold",
+            ),
+            (
+                "velocity_X = [0.0, 0.0]",
+                "speed_X = [0.0, 0.0]",
+                "unknown key `speed_X` in [initial]",
+            ),
             (
                 "lattice = \"brick\"",
                 "lattice = \"bricks\"",

@@ -358,8 +358,8 @@ fn a_wrong_case_is_told_by_line_and_site() {
         ("q = \"log", "q = \"1/(i - 7)\" #", ":22: initial.q_7: inf"),
         (
             "momentum_q =",
-            "# momentum_q =",
-            "missing key `initial.momentum_q`",
+            "momenta_q =",
+            "unknown key `momenta_q` in [initial]; did you mean `momentum_q`?",
         ),
     ];
     for (from, to, expected) in changes {

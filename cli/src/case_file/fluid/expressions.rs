@@ -5,7 +5,7 @@ use super::meshes::Meshes;
 use super::{Reader, Wrong, size};
 use crate::case_file::from_npz::{self, Wanted};
 use crate::case_file::space::Space;
-use crate::case_file::value::number;
+use crate::case_file::value::{number, shape};
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::Quantity;
 use clebsch_core::lattice::value::SiteData;
@@ -33,18 +33,15 @@ impl Reader<'_> {
             "Lx" => lengths.first().copied(),
             "Ly" => lengths.get(1).copied(),
             _ if name == torus && even => lengths.first().copied(),
-            _ => {
-                let known = self.numbers.iter().find(|(own, _)| own == name);
-                known.map(|(_, x)| *x).or_else(|| {
-                    let own = lattice
-                        .quantities
-                        .iter()
-                        .find(|o| ascii(&o.name.text) == name)?;
-                    let column = self.fluid.columns.get(name)?;
-                    let fits = own.label == q.label && column.size == 1;
-                    column.numbers.get(site).copied().filter(|_| fits)
-                })
-            }
+            _ => self.scope.number(name).or_else(|| {
+                let own = lattice
+                    .quantities
+                    .iter()
+                    .find(|o| ascii(&o.name.text) == name)?;
+                let column = self.fluid.columns.get(name)?;
+                let fits = own.label == q.label && column.size == 1;
+                column.numbers.get(site).copied().filter(|_| fits)
+            }),
         }
     }
 
@@ -87,6 +84,13 @@ impl Reader<'_> {
         }
         let list = match value.get_ref() {
             DeValue::Array(list) => list,
+            own @ DeValue::Table(_) => {
+                return Err(format!(
+                    "expected numbers or expressions, found {}",
+                    shape(own).words()
+                )
+                .into());
+            }
             _ if size == 1 => return self.component(q, value),
             _ => {
                 return Err(format!(
@@ -132,7 +136,7 @@ impl Reader<'_> {
     /// One number or expression, at all sites.
     fn component(&self, q: &Quantity, value: &Spanned<DeValue<'_>>) -> Result<Vec<f64>, Wrong> {
         let DeValue::String(text) = value.get_ref() else {
-            return Ok(vec![number(value.get_ref())?; self.count(q)]);
+            return Ok(vec![number(value.get_ref(), &|_| None)?; self.count(q)]);
         };
         let told = |why: String| told(text, value, &why);
         let (data, meshes) = self.expression(q, text).map_err(told)?;
@@ -142,7 +146,7 @@ impl Reader<'_> {
 
     fn at(&self, q: &Quantity, value: &Spanned<DeValue<'_>>, site: usize) -> Result<f64, Wrong> {
         let DeValue::String(text) = value.get_ref() else {
-            return Ok(number(value.get_ref())?);
+            return Ok(number(value.get_ref(), &|_| None)?);
         };
         let own = self.expression(q, text);
         let value_here = own.and_then(|(data, meshes)| self.valued(q, &data, &meshes, site));

@@ -41,10 +41,7 @@ impl Reader<'_> {
         let key = ascii(name);
         let column = self.fluid.columns.get(&key).map(|c| c.numbers.clone());
         let whole = || self.fluid.whole.get(&key).cloned();
-        let number = || {
-            let known = self.numbers.iter().find(|(own, _)| *own == key);
-            known.map(|(_, x)| vec![*x])
-        };
+        let number = || self.scope.number(&key).map(|x| vec![x]);
         column.or_else(whole).or_else(number)
     }
 

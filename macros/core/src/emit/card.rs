@@ -64,6 +64,19 @@ fn of_symbol(d: &Derivation, id: SymbolId, when: &str) -> FieldOf {
     }
 }
 
+/// The field of a symbol whose value a case gives: elements of groups say so, since they may be given in other ways than
+/// by their matrices.
+fn of_given(d: &Derivation, id: SymbolId, when: &str) -> FieldOf {
+    let own = of_symbol(d, id, when);
+    let kind = match d.letters.symbols.get(id).structure {
+        Structure::Orthogonal => "Rotation",
+        Structure::UnitQuaternion => "UnitQuaternion",
+        Structure::RigidMotion => "RigidMotion",
+        _ => own.kind,
+    };
+    FieldOf { kind, ..own }
+}
+
 /// What the model says of a symbol, else what its place says.
 fn said(symbol: &Symbol, else_words: &str) -> String {
     match symbol.doc() {
@@ -131,7 +144,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         .spec
         .parameters
         .iter()
-        .map(|p| of_symbol(d, *p, ""))
+        .map(|p| of_given(d, *p, ""))
         .collect();
     let mut initial = Vec::new();
     let mut observables = Vec::new();
@@ -146,7 +159,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
         }
     }
     for id in kept(d) {
-        initial.push(of_symbol(d, id, "value at node 0"));
+        initial.push(of_given(d, id, "value at node 0"));
     }
     for a in &d.spec.advected {
         observables.push(of_symbol(d, a.quantity, ""));

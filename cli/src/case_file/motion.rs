@@ -1,0 +1,294 @@
+//! The motion with which a case starts, where it is not given by momenta: velocities, or nothing, which is rest. Takes them by the
+//! fields of a card; puts the momenta that the action gives to them into the case.
+
+use super::beside::at_site;
+use super::velocity::{Way, momentum_of, suffix};
+use crate::gallery::Case;
+use clebsch::card::{Card, Field, Kind};
+use clebsch_check::{Legendre, NoMomentum, Setup, Velocities, Velocity};
+use clebsch_core::lattice::Choice;
+use clebsch_core::pipeline;
+use std::collections::{BTreeSet, HashMap};
+
+/// A velocity that the case gives.
+#[derive(Clone, Debug)]
+pub(super) struct Start {
+    /// The field of the momentum, by its place.
+    pub momentum: usize,
+    pub way: Way,
+    /// The key as the case has it.
+    pub key: String,
+    pub line: usize,
+    pub numbers: Vec<f64>,
+}
+
+/// How the configurations of a case start whose momenta it does not give.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Motion {
+    pub(super) given: Vec<Start>,
+    /// The momenta of what rests, by their places.
+    pub(super) resting: Vec<usize>,
+}
+
+/// What is wrong with a velocity.
+pub(crate) struct Wrong {
+    pub key: String,
+    pub line: usize,
+    pub why: String,
+}
+
+impl Motion {
+    /// Whether every momentum is given.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.given.is_empty() && self.resting.is_empty()
+    }
+
+    /// Puts the momenta into a case, for its parameters and configuration.
+    pub(crate) fn put(
+        &self,
+        card: &Card,
+        choice: Option<&Choice>,
+        case: &mut Case,
+    ) -> Result<(), Wrong> {
+        if self.is_empty() {
+            return Ok(());
+        }
+        for at in &self.resting {
+            let count = card.initial.get(*at).map_or(0, Field::count);
+            if let Some(own) = case.initial.get_mut(*at) {
+                *own = vec![0.0; count];
+            }
+        }
+        match self.momenta(card, choice, case) {
+            Ok(found) => {
+                for (at, numbers) in found {
+                    if let Some(own) = case.initial.get_mut(at) {
+                        *own = numbers;
+                    }
+                }
+                Ok(())
+            }
+            // What rests has no momentum, but where the action has terms linear in velocities.
+            Err(_) if self.given.is_empty() => Ok(()),
+            Err(why) => Err(self.wrong(card, why)),
+        }
+    }
+
+    fn momenta(
+        &self,
+        card: &Card,
+        choice: Option<&Choice>,
+        case: &Case,
+    ) -> Result<Vec<(usize, Vec<f64>)>, NoMomentum> {
+        let elements = elements(card.initial);
+        let element = |momentum: usize| {
+            let at = elements.get(&momentum)?;
+            card.initial.get(*at)
+        };
+        let mut velocities = Velocities::new();
+        for start in &self.given {
+            if let Some(own) = element(start.momentum) {
+                let velocity: &mut Velocity = velocities.entry(own.name.to_owned()).or_default();
+                start.way.add(own, &start.numbers, velocity);
+            }
+        }
+        let free: BTreeSet<usize> = self.asked().collect();
+        let known: Vec<String> = elements
+            .keys()
+            .filter(|at| !free.contains(at))
+            .filter_map(|at| Some(element(*at)?.name.to_owned()))
+            .collect();
+        let legendre = legendre(card, choice, case)?;
+        let node: Vec<f64> = case.initial.iter().flatten().copied().collect();
+        let found = legendre.momenta(&node, &velocities, &known)?;
+        let found: HashMap<String, Vec<f64>> =
+            found.into_iter().map(|m| (m.name, m.components)).collect();
+        let each = free.into_iter().filter_map(|at| {
+            let own = element(at)?;
+            let components = found.get(own.name)?;
+            Some((at, momentum_of(own, card.initial.get(at)?, components)))
+        });
+        Ok(each.collect())
+    }
+
+    /// The momenta that are not given.
+    fn asked(&self) -> impl Iterator<Item = usize> {
+        let given = self.given.iter().map(|start| start.momentum);
+        given.chain(self.resting.iter().copied())
+    }
+
+    fn wrong(&self, card: &Card, why: NoMomentum) -> Wrong {
+        let named = |name: &str| {
+            let elements = elements(card.initial);
+            let own = |start: &&Start| {
+                let at = elements.get(&start.momentum);
+                at.and_then(|at| card.initial.get(*at))
+                    .is_some_and(|f| f.name == name)
+            };
+            self.given.iter().find(own)
+        };
+        let first = match &why {
+            NoMomentum::Coupled(name, _) => named(name),
+            _ => None,
+        };
+        let start = first.or_else(|| self.given.first());
+        let momentum = start.and_then(|s| card.initial.get(s.momentum));
+        let momentum = momentum.map_or("the momentum", |f| f.ascii);
+        let why = match why {
+            NoMomentum::Unread(why) => {
+                format!("the action of this model is not evaluated ({why}); give `{momentum}`")
+            }
+            NoMomentum::NoLimit => format!(
+                "the action of a step has no limit of small steps that could give its momentum; give `{momentum}`"
+            ),
+            NoMomentum::Across(hold, site, rate) => {
+                let site = site.map_or_else(String::new, |s| format!(" at site {s}"));
+                format!(
+                    "the velocities leave the constraint `{hold}`{site}: its left side less its right side changes at the rate {rate:.6}. \
+                     Give velocities for which it stays zero"
+                )
+            }
+            NoMomentum::Coupled(_, other) => format!(
+                "the momentum depends on the velocity of `{other}` too, of which the momentum is given; give both by velocities or both by momenta"
+            ),
+        };
+        Wrong {
+            key: start.map_or_else(String::new, |s| s.key.clone()),
+            line: start.map_or(0, |s| s.line),
+            why,
+        }
+    }
+
+    /// The velocities that a case gives by a name, at one site or at all, by their places here; and what stands there.
+    pub(crate) fn named(&self, name: &str, card: &Card) -> Option<(Vec<usize>, Field)> {
+        let of = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
+            let all = self.given.iter().enumerate();
+            all.filter(|(_, start)| is(&start.key))
+                .map(|(at, _)| at)
+                .collect()
+        };
+        let mut own = of(&|key| key == name);
+        if own.is_empty() {
+            own = of(&|key| quantity(key) == name);
+        }
+        let first = self.given.get(*own.first()?)?;
+        let momentum = card.initial.get(first.momentum)?;
+        let elements = elements(card.initial);
+        let element = card.initial.get(*elements.get(&first.momentum)?)?;
+        Some((own, first.way.field(element, momentum)))
+    }
+
+    /// The key of the velocity that gives a momentum.
+    pub(crate) fn key_of(&self, momentum: usize) -> Option<&str> {
+        let own = self.given.iter().find(|start| start.momentum == momentum);
+        own.map(|start| start.key.as_str())
+    }
+
+    /// Sets an entry of a velocity.
+    pub(crate) fn set(&mut self, velocity: usize, entry: usize, value: f64) {
+        let own = self.given.get_mut(velocity);
+        if let Some(x) = own.and_then(|start| start.numbers.get_mut(entry)) {
+            *x = value;
+        }
+    }
+
+    /// Says that a momentum is given after all.
+    pub(crate) fn gives(&mut self, momentum: usize) {
+        self.resting.retain(|at| *at != momentum);
+    }
+
+    /// What a reader is told of the momenta.
+    pub(crate) fn told(&self, card: &Card, case: &Case) -> Vec<String> {
+        let mut out: Vec<(String, String, usize, Vec<f64>)> = Vec::new();
+        for start in &self.given {
+            let Some(field) = card.initial.get(start.momentum) else {
+                continue;
+            };
+            let own = quantity(field.ascii).to_owned();
+            let key = quantity(&start.key).to_owned();
+            let numbers = case
+                .initial
+                .get(start.momentum)
+                .cloned()
+                .unwrap_or_default();
+            match out.iter_mut().find(|(name, ..)| *name == own) {
+                Some((_, keys, count, _)) if *keys == key => *count += 1,
+                Some((_, keys, ..)) if keys.contains(key.as_str()) => {}
+                Some((_, keys, ..)) => *keys = format!("{keys} and {key}"),
+                None => out.push((own, key, 1, numbers)),
+            }
+        }
+        let lines = out.into_iter().map(|(name, keys, count, numbers)| {
+            let value = match count {
+                1 => format!(": {}", list(&numbers)),
+                _ => format!(", at {count} sites"),
+            };
+            format!("initial {name} from {keys}{value}")
+        });
+        lines.collect()
+    }
+}
+
+/// The key of a quantity without its site.
+fn quantity(key: &str) -> &str {
+    at_site(key).map_or(key, |(quantity, _)| quantity)
+}
+
+fn list(numbers: &[f64]) -> String {
+    let short = |x: &f64| {
+        let rounded = format!("{x:.7e}").parse::<f64>().unwrap_or(*x);
+        match rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) {
+            true => format!("{rounded}"),
+            false => format!("{rounded:e}"),
+        }
+    };
+    match numbers {
+        [x] => short(x),
+        all => format!("({})", all.iter().map(short).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// The configuration of each momentum, by their places.
+pub(super) fn elements(fields: &[Field]) -> HashMap<usize, usize> {
+    let places: HashMap<&str, usize> = fields
+        .iter()
+        .enumerate()
+        .map(|(at, field)| (field.ascii, at))
+        .collect();
+    let each = fields.iter().enumerate().filter_map(|(at, field)| {
+        if !is_momentum(field) {
+            return None;
+        }
+        let own = match suffix(field.ascii)? {
+            // There is one configuration, before its momentum.
+            "" => at.checked_sub(1)?,
+            name => *places.get(name.strip_prefix('_')?)?,
+        };
+        Some((at, own))
+    });
+    each.collect()
+}
+
+pub(super) fn is_momentum(field: &Field) -> bool {
+    matches!(
+        field.kind,
+        Kind::BodyMomentum | Kind::SpatialMomentum | Kind::FieldMomentum
+    )
+}
+
+/// What evaluates the action of a case.
+fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendre, String> {
+    let model = pipeline::parse_source(card.source);
+    let model = model.map_err(|_| "its text is not at hand".to_owned())?;
+    let sizes = card.dimensions.iter();
+    let sizes: Vec<_> = sizes.map(|d| (d.name.to_owned(), d.value)).collect();
+    let fields = card.parameters.iter().map(|f| (f.name, f.rows, f.cols));
+    let parameters = fields.zip(case.parameters.iter().map(Vec::as_slice));
+    let initial = card.initial.iter().map(|f| (f.name, f.rows, f.cols));
+    let mut setup = Setup::new(case.h, parameters, initial);
+    if let Some(choice) = choice {
+        setup.counts.clone_from(&choice.counts);
+        (setup.periodic, setup.ends) = (choice.periodic, choice.ends);
+    }
+    Legendre::new(&model, &sizes, setup)
+}

@@ -1,0 +1,160 @@
+//! The numbers that expressions of a case may hold: its step `h`, and its parameters that are one number. Takes the tables of a
+//! case; gives the values of names, whatever order they are given in.
+
+use super::value::{Numbers, number};
+use clebsch_core::lattice::value::SiteData;
+use std::collections::{BTreeMap, HashMap};
+use toml::de::{DeTable, DeValue};
+
+/// Most names that a message lists.
+const LISTED: usize = 12;
+
+/// The numbers of a case by name.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scope {
+    known: HashMap<String, f64>,
+    /// Expressions without a value, by their names: of a site, in a circle, or wrong.
+    open: BTreeMap<String, String>,
+    /// Names in the order of the case.
+    names: Vec<String>,
+}
+
+impl Scope {
+    /// That of a case.
+    pub(super) fn of(top: &DeTable<'_>) -> Self {
+        let step = top.get("h").map(|v| ("h".to_owned(), v.get_ref()));
+        let parameters = top.get("parameters").and_then(|t| t.get_ref().as_table());
+        let stated = parameters.into_iter().flatten();
+        let stated = stated.map(|(k, v)| (k.get_ref().to_string(), v.get_ref()));
+        let mut out = Self::default();
+        let mut rest: Vec<(String, SiteData)> = Vec::new();
+        for (key, value) in step.into_iter().chain(stated) {
+            match value {
+                DeValue::String(text) => {
+                    out.open.insert(key.clone(), text.to_string());
+                    rest.extend(SiteData::read(text).ok().map(|data| (key, data)));
+                }
+                plain => {
+                    if let Ok(x) = number(plain, &|_| None) {
+                        out.names.push(key.clone());
+                        out.known.insert(key, x);
+                    }
+                }
+            }
+        }
+        // Until none is found any more: others are of a site, and are read there.
+        loop {
+            let before = rest.len();
+            rest.retain(|(key, data)| {
+                let value = data.value(&|name| out.number(name)).ok();
+                let Some(x) = value.filter(|x| x.is_finite()) else {
+                    return true;
+                };
+                out.names.push(key.clone());
+                out.known.insert(key.clone(), x);
+                out.open.remove(key);
+                false
+            });
+            if rest.len() == before {
+                return out;
+            }
+        }
+    }
+
+    /// The value of a name.
+    pub(super) fn number(&self, name: &str) -> Option<f64> {
+        self.known.get(name).copied()
+    }
+
+    /// What is wrong with an expression, with what a reader needs to mend it.
+    pub(super) fn explained(&self, why: String) -> String {
+        let Some(name) = missing(&why) else {
+            return why;
+        };
+        if let Some(text) = self.open.get(name) {
+            return format!(
+                "{why}: it is given as \"{text}\", which has no value either; parameters must not refer to one another in a circle"
+            );
+        }
+        let mut names: Vec<&str> = self.names.iter().map(String::as_str).collect();
+        names.truncate(LISTED);
+        match names.is_empty() {
+            true => format!("{why}: an expression may hold numbers, functions and `pi`"),
+            false => format!(
+                "{why}: an expression may hold the step and the parameters that are one number: {}",
+                names.join(", ")
+            ),
+        }
+    }
+
+    /// A number, or an expression that has one.
+    pub(super) fn read(&self, value: &DeValue<'_>) -> Result<f64, String> {
+        number(value, &|name| self.number(name)).map_err(|why| self.explained(why))
+    }
+
+    /// A whole number, or an expression that has one to rounding.
+    pub(super) fn whole(&self, value: &DeValue<'_>) -> Result<Option<u64>, String> {
+        match value {
+            DeValue::Integer(n) => Ok(u64::from_str_radix(n.as_str(), n.radix()).ok()),
+            DeValue::String(_) => self.read(value).map(rounded),
+            _ => Ok(None),
+        }
+    }
+}
+
+/// The name without a value that a message tells of.
+fn missing(why: &str) -> Option<&str> {
+    let before = why.strip_suffix("` has no value here")?;
+    before.rsplit('`').next()
+}
+
+/// The whole number that a number is, but for the rounding of an expression.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+pub(super) fn rounded(x: f64) -> Option<u64> {
+    const ROUNDING: f64 = 1e-9;
+    const MOST: f64 = 9_007_199_254_740_992.0;
+    let whole = x.round();
+    let is_whole = (x - whole).abs() <= ROUNDING * whole.abs();
+    (is_whole && (0.0..MOST).contains(&whole)).then_some(whole as u64)
+}
+
+/// The value of an expression, whatever number it is.
+pub(super) fn value(text: &str, of: &Numbers<'_>) -> Result<f64, String> {
+    let value = SiteData::read(text).and_then(|data| data.value(of));
+    value.map_err(|why| format!("\"{text}\": {why}"))
+}
+
+/// The value of an expression, if it is a finite number.
+pub(super) fn evaluated(text: &str, of: &Numbers<'_>) -> Result<f64, String> {
+    match value(text, of)? {
+        x if x.is_finite() => Ok(x),
+        x => Err(format!("\"{text}\": {x} is not a finite number")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Scope, rounded};
+    use toml::de::DeTable;
+
+    #[test]
+    fn parameters_are_found_in_any_order_and_circles_are_told() {
+        let text = "h = \"T/100\"\n[parameters]\na = \"2*b\"\nb = \"c + h\"\nc = 1\nT = 1.0\nx = \"y\"\ny = \"x\"\nq = [1, 2]\n";
+        let document = DeTable::parse(text).expect("it is TOML");
+        let scope = Scope::of(document.get_ref());
+        assert_eq!(scope.number("h"), Some(0.01));
+        assert_eq!(scope.number("a"), Some(2.02));
+        assert_eq!(scope.number("x"), None);
+        assert_eq!(scope.number("q"), None);
+        let why = scope.explained("\"x + 1\": `x` has no value here".to_owned());
+        assert!(why.contains("in a circle"), "{why}");
+        let why = scope.explained("\"z\": `z` has no value here".to_owned());
+        assert!(why.contains("c, T"), "{why}");
+    }
+
+    #[test]
+    fn what_is_whole_but_for_rounding_is_whole() {
+        assert_eq!(rounded(0.3 / 0.1), Some(3));
+        assert_eq!([rounded(2.5), rounded(-1.0), rounded(1e17)], [None; 3]);
+    }
+}
