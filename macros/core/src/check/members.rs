@@ -95,6 +95,54 @@ pub(super) fn refuse(declared: &Declared, errors: &mut Errors) {
         let name = &s.get(id).name;
         if MEMBERS.contains(&name.as_str()) || momenta.contains(name) {
             errors.push(name_of_function(name, place));
+        } else if is_column(&s.get(id).ascii) {
+            errors.push(name_of_column(name, place));
+        }
+    }
+    components(declared, errors);
+}
+
+/// Whether the files of every run have such a column beside those of the model.
+fn is_column(ascii: &str) -> bool {
+    ascii == "time" || ascii.starts_with("invariant_")
+}
+
+/// The refusal of a name that another column of a run's files bears.
+fn name_of_column(name: &str, place: Place) -> Diagnostic {
+    Diagnostic::new(
+        place,
+        format!(
+            "the files of a run have a column `{name}` already, and this would be a second one"
+        ),
+    )
+    .help(format!("choose another name, for example `{name}1`"))
+}
+
+/// Refuses names that are those of components of others: `x_1` beside a vector `x`.
+fn components(declared: &Declared, errors: &mut Errors) {
+    let s = &declared.symbols;
+    let elements = declared.configurations.iter().map(|c| (c.element, c.place));
+    let advected = declared.advected.iter().map(|a| (a.quantity, a.place));
+    let all: Vec<_> = elements.chain(advected).collect();
+    for (id, place) in &all {
+        let Some((stem, digits)) = s.get(*id).ascii.rsplit_once('_') else {
+            continue;
+        };
+        let is_number = !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit());
+        let whole = all.iter().find(|(other, _)| {
+            let own = s.get(*other);
+            own.ascii == stem && !own.shape.is_scalar()
+        });
+        if let (true, Some((whole, _))) = (is_number, whole) {
+            let name = &s.get(*id).name;
+            let of = &s.get(*whole).name;
+            errors.push(
+                Diagnostic::new(
+                    *place,
+                    format!("the files of a run call component {digits} of `{of}` `{name}`, and this would be a second column of that name"),
+                )
+                .help(format!("choose another name, for example `{stem}{digits}`")),
+            );
         }
     }
 }

@@ -186,12 +186,15 @@ impl Elaborator<'_> {
                 "the time step is `{h}` here; `time k step {n};` at the top calls it `{n}`"
             ));
         } else if unknown::TIMES.contains(&n) {
+            // The files of a run have a column `time` of their own.
+            let clock = if n == "time" { "clock" } else { n };
             d = Diagnostic::new(
                 place,
                 format!("the Lagrangian cannot depend on the time `{n}` unless a clock is declared"),
             )
             .help(format!(
-                "declare one, `advected {n}: Real; constraint next({n}) = {n} + {h};`; the case gives its value at the start"
+                "declare one, `advected {clock}: Real; constraint next({clock}) = {clock} + {h};`, and write `{clock}`; the case gives \
+                 its value at the start"
             ));
         } else if let Some(near) = closest(n, declared.into_iter().chain(bound).map(String::as_str))
         {

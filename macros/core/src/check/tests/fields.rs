@@ -206,6 +206,46 @@ fn names_of_functions_are_refused_where_they_are_declared() {
     }
 }
 
+/// Files have one column of a name: `time` is theirs, and `x_1` is a component of a vector `x`.
+#[test]
+fn names_of_columns_are_refused() {
+    for (declared, message, help) in [
+        ("field time: Vec<3>;", "a column `time` already", "`time1`"),
+        (
+            "field invariant_q: Vec<3>;",
+            "a column `invariant_q` already",
+            "`invariant_q1`",
+        ),
+        (
+            "field q: Vec<3>; field q_1: Real;",
+            "call component 1 of `q` `q_1`",
+            "`q1`",
+        ),
+        (
+            "field q: Mat<2>; field q_12: Real;",
+            "call component 12 of `q` `q_12`",
+            "`q12`",
+        ),
+    ] {
+        let names: Vec<&str> = declared
+            .split("field ")
+            .filter_map(|one| Some(one.split_once(':')?.0))
+            .collect();
+        let terms = |names: &[&str]| {
+            let each = names.iter().map(|n| format!("m*tr(next({n})^T*{n})/h"));
+            each.collect::<Vec<_>>().join(" + ")
+        };
+        let body = format!("param m: Real; {declared} lagrangian = {};", terms(&names));
+        let refusal = refused(&body);
+        assert!(
+            refusal.contains(message) && refusal.contains(help),
+            "{refusal}"
+        );
+    }
+    let apart = "param m: Real; field q: Real; field q_1: Real; lagrangian = m*((next(q) - q)^2 + (next(q_1) - q_1)^2)/(2*h);";
+    assert!(refused(apart).starts_with("derives"), "{}", refused(apart));
+}
+
 /// What nothing moves is multiplied by any number made of parameters and the step, of several terms too.
 #[test]
 fn a_number_goes_on_by_a_sum_of_parameters_and_the_step() {

@@ -203,7 +203,7 @@ fn names_and_shapes_are_told_with_what_is_meant() {
             "",
             "q*cos(c*time)",
             "time",
-            "`advected time: Real; constraint next(time) = time + h;`",
+            "`advected clock: Real; constraint next(clock) = clock + h;`, and write `clock`",
         ),
         ("", "k*v^2", "v", "`let v = (next(q) - q)/h;`"),
         ("param a: R3;", "dot(a, a)*q", "R3", "write `Vec<3>`"),
