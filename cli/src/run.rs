@@ -255,6 +255,12 @@ pub fn run(
         lines.extend(limit.told(plan.case.h));
         if let Some(place) = place {
             lines.push(format!("written to {place}: {}", files.join(", ")));
+            if !files.iter().any(|file| file == output::FILES[0]) {
+                lines.push(format!(
+                    "{} is left out, since it would be long; --csv writes it",
+                    output::FILES[0]
+                ));
+            }
         }
         writeln!(out)?;
         for line in lines {

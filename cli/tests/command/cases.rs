@@ -114,6 +114,7 @@ fn trajectory(name: &str, case: &str, steps: &str, wanted: &str) -> Vec<Vec<f64>
         case,
         "--steps",
         steps,
+        "--csv",
         "--out",
         &out,
     ]);

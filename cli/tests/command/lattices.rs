@@ -94,7 +94,7 @@ fn a_twisted_ring_leaves_its_plane_beyond_the_threshold() {
         let case = folder.write(&format!("{name}.toml"), case);
         let out = folder.path(name);
         let done = clebsch(&[
-            "run", &model, "--case", &case, "--steps", "3000", "--out", &out,
+            "run", &model, "--case", &case, "--steps", "3000", "--csv", "--out", &out,
         ]);
         assert_eq!(done.code, 0, "{}{}", done.out, done.err);
         let csv = std::fs::read_to_string(folder.path(&format!("{name}/trajectory.csv")));
@@ -128,6 +128,7 @@ fn the_periodic_rod_of_the_thesis_is_that_of_the_reference_run() {
         "thesis-figures",
         "--steps",
         "2000",
+        "--csv",
         "--out",
         &out,
     ]);
