@@ -11,7 +11,7 @@ use crate::moved::{Frame, Velocity, along, moved};
 use crate::number::UNIT;
 use crate::refined::{Block, limit};
 use crate::scene::{Scene, Varied};
-use crate::setup::Setup;
+use crate::setup::{Numbers, Setup};
 use crate::sites::{Moving, all_moving, varied};
 use crate::stated::{Role, Stated};
 use clebsch_core::syntax::ast::Model;
@@ -22,6 +22,9 @@ const TOGETHER: usize = 32;
 
 /// The angle by which the first displacement turns.
 const FIRST: f64 = 0.25;
+
+/// How often what is missing of a velocity is put in.
+const STAGES: usize = 4;
 
 /// Part of a velocity over which momenta are linear in it.
 const SMALL: f64 = 1.0 / 4096.0;
@@ -119,7 +122,9 @@ impl Legendre {
             let both = a.components.iter().zip(&b.components);
             let off = both.fold(0.0, |most, (x, y)| f64::max(most, (x - y).abs()));
             if off > APART * size {
-                let other = known.first().map_or_else(String::new, |name| (*name).to_owned());
+                let other = known
+                    .first()
+                    .map_or_else(String::new, |name| (*name).to_owned());
                 return Err(NoMomentum::Coupled(a.name.clone(), other));
             }
         }
@@ -192,7 +197,7 @@ impl Legendre {
     }
 
     /// `-D1 L` for a step of this length, by the components of each configuration. Displacements are rounded, by more than the
-    /// velocity far from the origin: what is missing of the velocity is put in by a difference.
+    /// velocity far from the origin: what is missing of the velocity is put in by differences.
     fn sample(
         &self,
         node: &[f64],
@@ -201,19 +206,70 @@ impl Legendre {
         step: f64,
     ) -> Result<Vec<Block>, NoMomentum> {
         let setup = self.setup.clone().with_step(step);
-        let after = self.after(&setup, node, velocities, moving)?;
-        let mut plain = self.derived(&setup, node, &after, moving)?;
-        let Some((by, others)) = self.missing(&setup, node, &after, velocities, moving) else {
-            return Ok(plain);
+        let first = self.after(&setup, node, velocities, moving)?;
+        let base = self.derived(&setup, node, &first, moving)?;
+        let mut out = base.clone();
+        let shifts = self.shifts(&setup, moving, velocities);
+        let speed = most(shifts.iter().flat_map(|(_, _, v)| v));
+        let size = most(shifts.iter().flat_map(|(own, ..)| own.of(node)));
+        // What displacements between two nodes leave of velocities.
+        let without = |left: &[Vec<f64>], (from, to): (&[f64], &[f64]), by: f64| -> Vec<Vec<f64>> {
+            let each = left.iter().zip(&shifts).map(|(left, (own, ..))| {
+                let ends = own.of(from).iter().zip(own.of(to));
+                let each = left.iter().zip(ends);
+                each.map(|(v, (a, b))| v - (b - a) / (setup.h * by))
+                    .collect()
+            });
+            each.collect()
         };
-        let after = self.after(&setup, node, &others, moving)?;
-        let with = self.derived(&setup, node, &after, moving)?;
-        for (own, with) in plain.iter_mut().zip(with) {
-            for (x, y) in own.values.iter_mut().zip(with.values) {
-                *x += (y - *x) / by;
+        let all: Vec<Vec<f64>> = shifts.iter().map(|(_, _, v)| v.clone()).collect();
+        let mut left = without(&all, (node, &first), 1.0);
+        for _ in 0..STAGES {
+            let largest = most(left.iter().flatten());
+            if largest <= 0.25 * UNIT * speed {
+                break;
             }
+            // So small that momenta are linear over it, so large that it is not lost in rounding.
+            let wanted = f64::max(SMALL * speed, UNIT * size / (SMALL * step.abs()));
+            let by = (wanted / largest).log2().ceil().exp2().max(1.0);
+            if !by.is_finite() {
+                break;
+            }
+            let mut others = velocities.clone();
+            for (missing, (_, name, _)) in left.iter().zip(&shifts) {
+                let own = others.get_mut(name).and_then(|v| v.moving.as_mut());
+                for (v, w) in own.into_iter().flatten().zip(missing) {
+                    *v += by * w;
+                }
+            }
+            let after = self.after(&setup, node, &others, moving)?;
+            let with = self.derived(&setup, node, &after, moving)?;
+            for ((own, base), with) in out.iter_mut().zip(&base).zip(with) {
+                let both = base.values.iter().zip(with.values);
+                for (x, (a, b)) in own.values.iter_mut().zip(both) {
+                    *x += (b - a) / by;
+                }
+            }
+            left = without(&left, (&first, &after), by);
         }
-        Ok(plain)
+        Ok(out)
+    }
+
+    /// The fields that move: where their numbers stand, their names, and their velocities.
+    fn shifts(
+        &self,
+        setup: &Setup,
+        moving: &[Moving<'_>],
+        velocities: &Velocities,
+    ) -> Vec<(Numbers, String, Vec<f64>)> {
+        let each = moving.iter().filter_map(|m| {
+            let role = self.stated.quantities.get(m.name).map(|q| &q.role);
+            let name = copy(m);
+            let velocity = velocities.get(&name)?.moving.clone()?;
+            let own = setup.observed(m.name, m.site)?;
+            matches!(role, Some(Role::Field(_))).then(|| (*own, name, velocity))
+        });
+        each.collect()
     }
 
     /// `-D1 L` between two nodes.
@@ -243,48 +299,6 @@ impl Legendre {
         Ok(out)
     }
 
-    /// Velocities that are larger by a multiple of what the displacements miss of them, and that multiple.
-    fn missing(
-        &self,
-        setup: &Setup,
-        node: &[f64],
-        after: &[f64],
-        velocities: &Velocities,
-        moving: &[Moving<'_>],
-    ) -> Option<(f64, Velocities)> {
-        let (mut size, mut speed) = (0.0, 0.0);
-        let mut left: Vec<(String, Vec<f64>)> = Vec::new();
-        for m in moving {
-            let role = self.stated.quantities.get(m.name).map(|q| &q.role);
-            let velocity = velocities.get(&copy(m)).and_then(|v| v.moving.as_ref());
-            let (Some(Role::Field(_)), Some(velocity)) = (role, velocity) else {
-                continue;
-            };
-            let own = setup.observed(m.name, m.site)?;
-            let (from, to) = (own.of(node), own.of(after));
-            let each = velocity.iter().zip(from.iter().zip(to));
-            let missing: Vec<f64> = each.map(|(v, (a, b))| v - (b - a) / setup.h).collect();
-            size = f64::max(size, most(from));
-            speed = f64::max(speed, most(velocity));
-            left.push((copy(m), missing));
-        }
-        let largest = left.iter().map(|(_, w)| most(w)).fold(0.0, f64::max);
-        if largest == 0.0 {
-            return None;
-        }
-        // So small that momenta are linear over it, so large that it is not lost in rounding.
-        let wanted = f64::max(SMALL * speed, UNIT * size / (SMALL * setup.h.abs()));
-        let by = (wanted / largest).log2().ceil().exp2().max(1.0);
-        let mut others = velocities.clone();
-        for (name, missing) in left {
-            let own = others.get_mut(&name).and_then(|v| v.moving.as_mut());
-            for (v, w) in own.into_iter().flatten().zip(missing) {
-                *v += by * w;
-            }
-        }
-        by.is_finite().then_some((by, others))
-    }
-
     /// The numbers after a step with these velocities, of what is advected too.
     fn after(
         &self,
@@ -309,7 +323,8 @@ impl Legendre {
                 continue;
             };
             let numbers = moved(role, own.of(node), velocity, setup.h);
-            let numbers = numbers.ok_or_else(|| format!("the velocity of `{}` does not fit", m.name))?;
+            let numbers =
+                numbers.ok_or_else(|| format!("the velocity of `{}` does not fit", m.name))?;
             put(&mut after, own.from, &numbers);
         }
         let nothing = Varied::new();
@@ -336,8 +351,17 @@ impl Legendre {
                 let cols = if q.is_quaternion { 4 } else { own.cols };
                 let sized = value.sized(rows, cols);
                 let sized = sized.ok_or_else(|| format!("`{}` changes its shape", q.name))?;
-                let every = if q.is_quaternion && own.cols == 1 { 4 } else { 1 };
-                let numbers: Vec<f64> = sized.entries.iter().step_by(every).map(|x| x.value).collect();
+                let every = if q.is_quaternion && own.cols == 1 {
+                    4
+                } else {
+                    1
+                };
+                let numbers: Vec<f64> = sized
+                    .entries
+                    .iter()
+                    .step_by(every)
+                    .map(|x| x.value)
+                    .collect();
                 put(&mut after, own.from, &numbers);
             }
         }
@@ -390,7 +414,12 @@ impl Legendre {
             };
             let first = usize::try_from(m.first).unwrap_or(usize::MAX);
             let components = along(role, numbers, velocity).unwrap_or_default();
-            out.extend(components.into_iter().enumerate().map(|(i, v)| (first + i, v)));
+            out.extend(
+                components
+                    .into_iter()
+                    .enumerate()
+                    .map(|(i, v)| (first + i, v)),
+            );
         }
         out
     }

@@ -52,7 +52,8 @@ pub fn moved(role: &Role, numbers: &[f64], velocity: &Velocity, time: f64) -> Op
                 return Some(turned);
             };
             let of_place = |i: usize| i * (n + 1) + n;
-            let place: Option<Vec<f64>> = (0..n).map(|i| numbers.get(of_place(i)).copied()).collect();
+            let place: Option<Vec<f64>> =
+                (0..n).map(|i| numbers.get(of_place(i)).copied()).collect();
             let mut out = turned;
             for (i, x) in shifted(&place?)?.into_iter().enumerate() {
                 *out.get_mut(of_place(i))? = x;
@@ -210,8 +211,18 @@ mod tests {
         assert!(off(&found, &quarter) < 1e-15, "{found:?}");
         // A quarter turn about the third axis, then one about the first axis of the body, or of space.
         let first = |frame| about(vec![half_pi, 0.0, 0.0], frame);
-        let body = moved(&role(Group::Rotation(3)), &quarter, &first(Frame::Body), 1.0);
-        let space = moved(&role(Group::Rotation(3)), &quarter, &first(Frame::Space), 1.0);
+        let body = moved(
+            &role(Group::Rotation(3)),
+            &quarter,
+            &first(Frame::Body),
+            1.0,
+        );
+        let space = moved(
+            &role(Group::Rotation(3)),
+            &quarter,
+            &first(Frame::Space),
+            1.0,
+        );
         let of_body = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
         let of_space = [0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0];
         assert!(off(&body.expect("it fits"), &of_body) < 1e-15);

@@ -36,7 +36,8 @@ pub(super) fn expected(field: &Field) -> String {
     let n = field.rows;
     match (field.kind, n) {
         (Kind::UnitQuaternion, _) => {
-            OF_SPACE.replace("a 3x3 matrix [[..], [..], [..]], a", "a") + ", or the 3x3 matrix of the rotation"
+            OF_SPACE.replace("a 3x3 matrix [[..], [..], [..]], a", "a")
+                + ", or the 3x3 matrix of the rotation"
         }
         (Kind::Rotation, 3) => OF_SPACE.to_owned(),
         (Kind::Rotation, 2) => "the angle, or a 2x2 matrix [[..], [..]]".to_owned(),
@@ -83,11 +84,7 @@ pub(super) fn is_left_factor(value: &DeValue<'_>) -> bool {
 }
 
 /// A rotation in space.
-fn rotation(
-    field: &Field,
-    value: &DeValue<'_>,
-    of: &Numbers<'_>,
-) -> Result<Matrix3<f64>, String> {
+fn rotation(field: &Field, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Matrix3<f64>, String> {
     match (shape(value), value) {
         (Shape::Vector(4), _) => unit(&row(value, of)?).map(|r| r.matrix()),
         (_, DeValue::Table(table)) if !table.is_empty() => by_table(table, of),
@@ -135,7 +132,8 @@ fn by_table(table: &DeTable<'_>, of: &Numbers<'_>) -> Result<Matrix3<f64>, Strin
         }
         _ => {
             let field = Kind::Matrix.field("", [3, 3], "");
-            let all = entries(&field, get("matrix")?, of).map_err(|why| format!("matrix: {why}"))?;
+            let all =
+                entries(&field, get("matrix")?, of).map_err(|why| format!("matrix: {why}"))?;
             Ok(Matrix3::from_row_slice(&orthonormal(all, 3)))
         }
     }
@@ -181,10 +179,7 @@ fn euler(
 ) -> Result<Matrix3<f64>, String> {
     let wrong = "euler: expected three axes, no two neighbours alike, such as \"zxz\" or \"zyx\"";
     let letters = axes.as_str().ok_or(wrong)?.to_lowercase();
-    let axes: Option<Vec<usize>> = letters
-        .chars()
-        .map(|c| "xyz".find(c))
-        .collect();
+    let axes: Option<Vec<usize>> = letters.chars().map(|c| "xyz".find(c)).collect();
     let axes = axes.ok_or(wrong)?;
     let alike = axes.windows(2).any(|two| two.first() == two.last());
     if axes.len() != 3 || alike {
@@ -219,7 +214,10 @@ fn between(from: Vector3<f64>, to: Vector3<f64>) -> Result<Matrix3<f64>, String>
 /// The rotation of a quaternion, which is made a unit one.
 fn unit(q: &[f64]) -> Result<Rotation, String> {
     let &[w, x, y, z] = q else {
-        return Err(format!("a quaternion has four numbers [w, x, y, z], found {}", q.len()));
+        return Err(format!(
+            "a quaternion has four numbers [w, x, y, z], found {}",
+            q.len()
+        ));
     };
     let norm = (w * w + x * x + y * y + z * z).sqrt();
     // Written so that NaN is refused.
@@ -265,7 +263,11 @@ fn quaternion(field: &Field, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Ve
             let own = row(value, of)?;
             unit(&own)?;
             let norm = own.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let by = if (norm - 1.0).abs() <= ROUNDING { 1.0 } else { norm };
+            let by = if (norm - 1.0).abs() <= ROUNDING {
+                1.0
+            } else {
+                norm
+            };
             own.into_iter().map(|x| x / by).collect()
         }
         _ => {
@@ -284,9 +286,7 @@ fn quaternion(field: &Field, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Ve
         return Ok(q);
     };
     Ok(match field.cols {
-        4 => vec![
-            w, -x, -y, -z, x, w, -z, y, y, z, w, -x, z, -y, x, w,
-        ],
+        4 => vec![w, -x, -y, -z, x, w, -z, y, y, z, w, -x, z, -y, x, w],
         _ => q,
     })
 }
@@ -316,15 +316,25 @@ fn motion(
             };
             let turn = inner("rotation", Kind::Rotation.field("", [n, n], ""))?;
             let place = inner("position", Kind::Vector.field("", [n, 1], ""))?;
-            let identity = || (0..n * n).map(|k| f64::from(u8::from(k / n == k % n))).collect();
-            (turn.unwrap_or_else(identity), place.unwrap_or_else(|| vec![0.0; n]))
+            let identity = || {
+                (0..n * n)
+                    .map(|k| f64::from(u8::from(k / n == k % n)))
+                    .collect()
+            };
+            (
+                turn.unwrap_or_else(identity),
+                place.unwrap_or_else(|| vec![0.0; n]),
+            )
         }
         _ => {
             let all = entries(field, value, of)?;
             let at = |i: usize, j: usize| all.get(i * (n + 1) + j).copied().unwrap_or_default();
             let block = (0..n * n).map(|k| at(k / n, k % n)).collect();
             let last: Vec<f64> = (0..=n).map(|j| at(n, j)).collect();
-            let own = assembled(&orthonormal(block, n), &(0..n).map(|i| at(i, n)).collect::<Vec<_>>());
+            let own = assembled(
+                &orthonormal(block, n),
+                &(0..n).map(|i| at(i, n)).collect::<Vec<_>>(),
+            );
             // What is wrong with the last row the model says.
             return Ok(own.into_iter().take(n * (n + 1)).chain(last).collect());
         }
@@ -409,7 +419,8 @@ mod tests {
     #[test]
     fn euler_angles_are_turns_about_the_axes_of_the_body_in_their_order() {
         let (a, b, c) = (0.3_f64, 0.5_f64, 0.7_f64);
-        let found = read(&SPACE, "{ euler = \"zxz\", angles = [0.3, 0.5, 0.7] }").expect("it reads");
+        let found =
+            read(&SPACE, "{ euler = \"zxz\", angles = [0.3, 0.5, 0.7] }").expect("it reads");
         // The third column of R3(a) R1(b) R3(c), and the third row.
         assert!((found[2] - a.sin() * b.sin()).abs() < 1e-15);
         assert!((found[5] + a.cos() * b.sin()).abs() < 1e-15);

@@ -85,9 +85,8 @@ impl Fields<'_> {
             let read = match own.given(field) {
                 Some(key) => {
                     if let Some((other, value)) = own.velocities(index).pop() {
-                        let message = format!(
-                            "{name}.{other}: is given beside {key}: give one of them"
-                        );
+                        let message =
+                            format!("{name}.{other}: is given beside {key}: give one of them");
                         return Err(self.file.wrong(Some(&value.span()), &message));
                     }
                     self.value(&own, field, key)?
@@ -136,13 +135,18 @@ impl Fields<'_> {
                 }
             };
             add(field.ascii.to_owned());
-            inertia::key(field, &own.taken).into_iter().for_each(&mut add);
+            inertia::key(field, &own.taken)
+                .into_iter()
+                .for_each(&mut add);
             if let Some(base) = own.of_all_copies(field.ascii) {
                 add(base.to_owned());
                 let of_all = inertia::key_of(field, base, &own.taken);
                 of_all.into_iter().for_each(&mut add);
             }
-            own.ways(index).into_iter().flat_map(|(_, keys)| keys).for_each(add);
+            own.ways(index)
+                .into_iter()
+                .flat_map(|(_, keys)| keys)
+                .for_each(add);
         }
         let names: Vec<&str> = known.iter().map(String::as_str).collect();
         let otherwise = |asked: &str| {
@@ -151,7 +155,9 @@ impl Fields<'_> {
             if let Some(field) = written {
                 return Some(format!("; did you mean `{}`?", field.ascii));
             }
-            velocity::is_meant(asked).then(|| own.how_to_move()).flatten()
+            velocity::is_meant(asked)
+                .then(|| own.how_to_move())
+                .flatten()
         };
         let place = format!("in [{}]", own.name);
         known_keys(self.file, own.table, &names, &place, &otherwise)
@@ -227,7 +233,10 @@ impl Fields<'_> {
             let way = own.way(index, key);
             let Some(way) = way else { continue };
             if let Some(other) = before.filter(|_| turns(way)) {
-                let message = format!("{}.{key}: is given beside {other}: give one of them", own.name);
+                let message = format!(
+                    "{}.{key}: is given beside {other}: give one of them",
+                    own.name
+                );
                 return Err(self.file.wrong(Some(&value.span()), &message));
             }
             before = turns(way).then_some(key.as_str()).or(before);
@@ -238,7 +247,8 @@ impl Fields<'_> {
                 self.file.wrong(Some(&value.span()), &message)
             })?;
             let line = self.file.line(&value.span());
-            self.lines.insert(format!("{}.{}", own.name, momentum.ascii), line);
+            self.lines
+                .insert(format!("{}.{}", own.name, momentum.ascii), line);
             self.motion.given.push(Start {
                 momentum: index,
                 way,
@@ -263,7 +273,8 @@ fn velocity_numbers(
     let all = value::numbers(field, value, of)?;
     let n = field.rows;
     let at = |i: usize, j: usize| all.get(i * n + j).copied().unwrap_or_default();
-    let off = |k: usize| (at(k / n, k % n) + at(k % n, k / n)).abs() > 1e-9 * at(k / n, k % n).abs();
+    let off =
+        |k: usize| (at(k / n, k % n) + at(k % n, k / n)).abs() > 1e-9 * at(k / n, k % n).abs();
     match field.kind == Kind::Skew && (0..n * n).any(off) {
         true => Err("not skew: an angular velocity W of n dimensions is a skew matrix, the rate of change of R being R*W".to_owned()),
         false => Ok(all),
@@ -273,10 +284,17 @@ fn velocity_numbers(
 impl<'t, 'i> Table<'t, 'i> {
     /// The key by which a field is given: its own, or that of all copies.
     fn given(&self, field: &'static Field) -> Option<&'static str> {
-        let is_given =
-            |key: &str| !matches!(inertia::given(self.table, field, key, &self.taken), Given::Missing);
+        let is_given = |key: &str| {
+            !matches!(
+                inertia::given(self.table, field, key, &self.taken),
+                Given::Missing
+            )
+        };
         let all = self.of_all_copies(field.ascii);
-        [Some(field.ascii), all].into_iter().flatten().find(|key| is_given(key))
+        [Some(field.ascii), all]
+            .into_iter()
+            .flatten()
+            .find(|key| is_given(key))
     }
 
     /// The name of all copies of a quantity whose names end in numbers: `x` of `x1`, `x_2`. None where a field has it.
@@ -296,7 +314,8 @@ impl<'t, 'i> Table<'t, 'i> {
 
     /// The velocities that a configuration may have, and the keys of each.
     fn ways(&self, momentum: usize) -> Vec<(Way, Vec<String>)> {
-        let (Some(field), Some(element)) = (self.fields.get(momentum), self.element(momentum)) else {
+        let (Some(field), Some(element)) = (self.fields.get(momentum), self.element(momentum))
+        else {
             return Vec::new();
         };
         let own = Way::ALL.into_iter().filter(|way| way.is_of(element, field));

@@ -351,7 +351,14 @@ impl Writer<'_> {
                 continue;
             }
             if is_momentum(field) {
-                self.velocities(out, (name, index), fields, (&elements, base.as_ref()), values, &mut used)?;
+                self.velocities(
+                    out,
+                    (name, index),
+                    fields,
+                    (&elements, base.as_ref()),
+                    values,
+                    &mut used,
+                )?;
                 continue;
             }
             if let Some(base) = &base {
@@ -409,7 +416,10 @@ impl Writer<'_> {
         let (Some(momentum), Some(element)) = (momentum, element) else {
             return Ok(());
         };
-        for way in Way::ALL.into_iter().filter(|way| way.is_of(element, momentum)) {
+        for way in Way::ALL
+            .into_iter()
+            .filter(|way| way.is_of(element, momentum))
+        {
             let Some(written) = way.key(momentum.ascii) else {
                 continue;
             };
@@ -424,8 +434,14 @@ impl Writer<'_> {
             let named = suffix(momentum.ascii)
                 .is_some_and(str::is_empty)
                 .then(|| format!("{written}_{}", element.ascii));
-            let keys = [(Some(written.clone()), false), (named, false), (of_all, true)];
-            let mut keys = keys.into_iter().filter_map(|(key, site)| Some((key?, site)));
+            let keys = [
+                (Some(written.clone()), false),
+                (named, false),
+                (of_all, true),
+            ];
+            let mut keys = keys
+                .into_iter()
+                .filter_map(|(key, site)| Some((key?, site)));
             let found = keys.find_map(|(key, site)| {
                 let value = values.and_then(|t| t.get(key.as_str()));
                 used.insert(key.clone());

@@ -10,6 +10,9 @@ use clebsch_core::lattice::Choice;
 use clebsch_core::pipeline;
 use std::collections::{BTreeSet, HashMap};
 
+/// Most momenta of rest that a reader is told of.
+const MOST_TOLD: usize = 4;
+
 /// A velocity that the case gives.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
@@ -163,7 +166,9 @@ impl Motion {
     pub(crate) fn named(&self, name: &str, card: &Card) -> Option<(Vec<usize>, Field)> {
         let of = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
             let all = self.given.iter().enumerate();
-            all.filter(|(_, start)| is(&start.key)).map(|(at, _)| at).collect()
+            all.filter(|(_, start)| is(&start.key))
+                .map(|(at, _)| at)
+                .collect()
         };
         let mut own = of(&|key| key == name);
         if own.is_empty() {
@@ -204,7 +209,11 @@ impl Motion {
             };
             let own = quantity(field.ascii).to_owned();
             let key = quantity(&start.key).to_owned();
-            let numbers = case.initial.get(start.momentum).cloned().unwrap_or_default();
+            let numbers = case
+                .initial
+                .get(start.momentum)
+                .cloned()
+                .unwrap_or_default();
             match out.iter_mut().find(|(name, ..)| *name == own) {
                 Some((_, keys, count, _)) if *keys == key => *count += 1,
                 Some((_, keys, ..)) if keys.contains(key.as_str()) => {}
@@ -219,7 +228,18 @@ impl Motion {
             };
             format!("initial {name} from {keys}{value}")
         });
-        lines.collect()
+        let resting = self.resting.iter().filter_map(|at| {
+            let numbers = case.initial.get(*at)?;
+            let moves = numbers.iter().any(|x| *x != 0.0);
+            // Of many sites one tells it.
+            let field = card.initial.get(*at).filter(|_| moves)?;
+            Some(format!(
+                "initial {} of rest: {}",
+                field.ascii,
+                list(numbers)
+            ))
+        });
+        lines.chain(resting.take(MOST_TOLD)).collect()
     }
 }
 

@@ -192,13 +192,11 @@ fn optional_string(
         .transpose()
 }
 
-fn step_size(
-    file: &File<'_>,
-    scope: &Scope,
-    value: &Spanned<DeValue<'_>>,
-) -> Result<f64, Failure> {
+fn step_size(file: &File<'_>, scope: &Scope, value: &Spanned<DeValue<'_>>) -> Result<f64, Failure> {
     let wrong = |message: &str| file.wrong(Some(&value.span()), &format!("h: {message}"));
-    let h = scope.read(value.get_ref()).map_err(|message| wrong(&message))?;
+    let h = scope
+        .read(value.get_ref())
+        .map_err(|message| wrong(&message))?;
     if h > 0.0 {
         Ok(h)
     } else {
@@ -206,11 +204,7 @@ fn step_size(
     }
 }
 
-fn steps(
-    file: &File<'_>,
-    scope: &Scope,
-    value: &Spanned<DeValue<'_>>,
-) -> Result<u64, Failure> {
+fn steps(file: &File<'_>, scope: &Scope, value: &Spanned<DeValue<'_>>) -> Result<u64, Failure> {
     let wrong = |message: &str| file.wrong(Some(&value.span()), &format!("steps: {message}"));
     let (text, steps) = match value.get_ref() {
         DeValue::Integer(text) => {
@@ -282,7 +276,9 @@ fn bounds(
         };
         let wrong =
             |message: &str| file.wrong(Some(&value.span()), &format!("bounds.{name}: {message}"));
-        let bound = scope.read(value.get_ref()).map_err(|message| wrong(&message))?;
+        let bound = scope
+            .read(value.get_ref())
+            .map_err(|message| wrong(&message))?;
         if bound < 0.0 {
             return Err(wrong(&format!("a bound is never negative, found {bound}")));
         }

@@ -48,7 +48,11 @@ pub(super) fn plain(value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, Str
 }
 
 /// The value of a field that belongs to one site or to none, as TOML: an element of a group by its numbers.
-pub(super) fn of_field(field: &Field, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, String> {
+pub(super) fn of_field(
+    field: &Field,
+    value: &DeValue<'_>,
+    of: &Numbers<'_>,
+) -> Result<String, String> {
     match field.kind {
         Kind::Rotation | Kind::UnitQuaternion | Kind::RigidMotion => {
             Ok(by_rows(field, &numbers(field, value, of)?))

@@ -1,8 +1,8 @@
 //! Where the particles of a fluid start: `{ lattice = "brick", jitter = 0.1, seed = 1 }`. Takes the table and the
 //! domain; gives so many places in it.
 
-use super::space::Space;
 use super::scope::Scope;
+use super::space::Space;
 use clebsch::mesh::Domain;
 use clebsch::mesh::placement::{self, Jitter};
 use toml::de::DeTable;

@@ -110,7 +110,9 @@ pub(super) fn momentum_of(element: &Field, momentum: &Field, components: &[f64])
     let mut out = vec![0.0; n * n];
     let pairs: Vec<(usize, usize)> = match n {
         3 => vec![(2, 1), (0, 2), (1, 0)],
-        _ => (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).collect(),
+        _ => (0..n)
+            .flat_map(|i| (i + 1..n).map(move |j| (i, j)))
+            .collect(),
     };
     for ((i, j), p) in pairs.into_iter().zip(components) {
         if let Some(entry) = out.get_mut(i * n + j) {
@@ -126,5 +128,8 @@ pub(super) fn momentum_of(element: &Field, momentum: &Field, components: &[f64])
 /// Whether a key that is not known is meant for a velocity.
 pub(super) fn is_meant(key: &str) -> bool {
     let word = key.to_lowercase();
-    word.contains("veloc") || word.starts_with("omega") || word.starts_with('ω') || word.contains("spin")
+    word.contains("veloc")
+        || word.starts_with("omega")
+        || word.starts_with('ω')
+        || word.contains("spin")
 }

@@ -34,14 +34,14 @@ impl Reader<'_> {
             "Ly" => lengths.get(1).copied(),
             _ if name == torus && even => lengths.first().copied(),
             _ => self.scope.number(name).or_else(|| {
-                    let own = lattice
-                        .quantities
-                        .iter()
-                        .find(|o| ascii(&o.name.text) == name)?;
-                    let column = self.fluid.columns.get(name)?;
-                    let fits = own.label == q.label && column.size == 1;
-                    column.numbers.get(site).copied().filter(|_| fits)
-                }),
+                let own = lattice
+                    .quantities
+                    .iter()
+                    .find(|o| ascii(&o.name.text) == name)?;
+                let column = self.fluid.columns.get(name)?;
+                let fits = own.label == q.label && column.size == 1;
+                column.numbers.get(site).copied().filter(|_| fits)
+            }),
         }
     }
 
@@ -85,7 +85,11 @@ impl Reader<'_> {
         let list = match value.get_ref() {
             DeValue::Array(list) => list,
             own @ DeValue::Table(_) => {
-                return Err(format!("expected numbers or expressions, found {}", shape(own).words()).into());
+                return Err(format!(
+                    "expected numbers or expressions, found {}",
+                    shape(own).words()
+                )
+                .into());
             }
             _ if size == 1 => return self.component(q, value),
             _ => {
