@@ -381,17 +381,15 @@ impl Legendre {
         let rates = self.rates(node, velocities, moving);
         let by = varied(moving);
         let scene = Scene::new(&self.stated, &self.setup, [node, node], &by);
-        for (hold, site, gradient) in
-            crate::holds::gradients(&scene, &self.stated, &self.setup, moving)?
-        {
+        for held in crate::holds::gradients(&scene, &self.stated, &self.setup, moving)? {
             let (mut rate, mut size) = (0.0, 0.0);
-            for (of, slope) in gradient {
+            for (of, slope) in held.slopes {
                 let own = rates.get(&of).copied().unwrap_or(0.0);
                 rate += slope * own;
                 size += (slope * own).abs();
             }
             if rate.abs() > TANGENT * size {
-                return Err(NoMomentum::Across(hold, site, rate));
+                return Err(NoMomentum::Across(held.name, held.site, rate));
             }
         }
         Ok(())
