@@ -4,7 +4,8 @@
 use super::beside::at_site;
 use super::velocity::{Way, momentum_of, suffix};
 use crate::gallery::Case;
-use clebsch::card::{Card, Field, Kind};
+use crate::model_file::is_momentum;
+use clebsch::card::{Card, Field};
 use clebsch_check::{Legendre, NoMomentum, Setup, Velocities, Velocity};
 use clebsch_core::lattice::Choice;
 use clebsch_core::pipeline;
@@ -281,13 +282,6 @@ pub(super) fn elements(fields: &[Field]) -> HashMap<usize, usize> {
         Some((at, own))
     });
     each.collect()
-}
-
-pub(super) fn is_momentum(field: &Field) -> bool {
-    matches!(
-        field.kind,
-        Kind::BodyMomentum | Kind::SpatialMomentum | Kind::FieldMomentum
-    )
 }
 
 /// What evaluates the action of a case.
