@@ -63,7 +63,17 @@ pub fn held(
     Ok((parts, gradients))
 }
 
-/// The gradients of all held numbers at the first node, with the name of the constraint and the index it stands at.
+/// The gradient of a held number by the variables of a node.
+pub struct Rate {
+    /// The name of the constraint.
+    pub name: String,
+    /// The index along a label, of one that is counted.
+    pub site: Option<usize>,
+    /// Variables and derivatives.
+    pub slopes: Vec<(usize, f64)>,
+}
+
+/// The gradients of all held numbers at the first node.
 ///
 /// # Errors
 /// One cannot be evaluated.
@@ -72,7 +82,7 @@ pub fn gradients(
     stated: &Stated,
     setup: &Setup,
     moving: &[Moving<'_>],
-) -> Result<Vec<(String, Option<usize>, Vec<(usize, f64)>)>, String> {
+) -> Result<Vec<Rate>, String> {
     let mut out = Vec::new();
     for hold in &stated.holds {
         for (index, value) in values(scene, stated, setup, (hold, moving), 0)? {
@@ -83,7 +93,11 @@ pub fn gradients(
             for x in m.entries {
                 let slopes = x.slopes.iter();
                 let gradient = slopes.filter_map(|s| Some((usize::try_from(s.of).ok()?, s.value)));
-                out.push((hold.name.clone(), site, gradient.collect()));
+                out.push(Rate {
+                    name: hold.name.clone(),
+                    site,
+                    slopes: gradient.collect(),
+                });
             }
         }
     }

@@ -4,27 +4,20 @@
 //! The limit is the momentum to every order of the method: a step of h from it begins with the velocity that was given, while
 //! `-D1 L` of a displacement of h times the velocity belongs to the mean velocity over that step, which differs by a term of order h.
 
-use crate::evaluate::Here;
+mod step;
+
 use crate::group::Group;
-use crate::lagrangian::derivatives;
-use crate::moved::{Frame, Velocity, along, moved};
-use crate::number::UNIT;
+use crate::moved::{Frame, Velocity, along};
 use crate::refined::{Block, limit};
-use crate::scene::{Scene, Varied};
+use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::sites::{Moving, all_moving, varied};
 use crate::stated::{Role, Stated};
 use clebsch_core::syntax::ast::Model;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Configurations whose derivatives are taken together.
-const TOGETHER: usize = 32;
-
 /// The angle by which the first displacement turns.
 const FIRST: f64 = 0.25;
-
-/// Part of a velocity over which momenta are linear in it.
-const SMALL: f64 = 1.0 / 4096.0;
 
 /// The largest error, beside the momenta, of a limit that exists.
 const CONVERGED: f64 = 1e-7;
@@ -193,169 +186,6 @@ impl Legendre {
         time.log2().floor().exp2()
     }
 
-    /// `-D1 L` for a step of this length, by the components of each configuration. Displacements are rounded, by more than the
-    /// velocity far from the origin: what is missing of the velocity is put in by a difference.
-    fn sample(
-        &self,
-        node: &[f64],
-        velocities: &Velocities,
-        moving: &[Moving<'_>],
-        step: f64,
-    ) -> Result<Vec<Block>, NoMomentum> {
-        let setup = self.setup.clone().with_step(step);
-        let after = self.after(&setup, node, velocities, moving)?;
-        let mut plain = self.derived(&setup, node, &after, moving)?;
-        let Some((by, others)) = self.missing(&setup, node, &after, velocities, moving) else {
-            return Ok(plain);
-        };
-        let after = self.after(&setup, node, &others, moving)?;
-        let with = self.derived(&setup, node, &after, moving)?;
-        for (own, with) in plain.iter_mut().zip(with) {
-            for (x, y) in own.values.iter_mut().zip(with.values) {
-                *x += (y - *x) / by;
-            }
-        }
-        Ok(plain)
-    }
-
-    /// `-D1 L` between two nodes.
-    fn derived(
-        &self,
-        setup: &Setup,
-        node: &[f64],
-        after: &[f64],
-        moving: &[Moving<'_>],
-    ) -> Result<Vec<Block>, NoMomentum> {
-        let mut out = Vec::with_capacity(moving.len());
-        for part in moving.chunks(TOGETHER) {
-            let part = renumbered(part);
-            let by = varied(&part);
-            let slopes = derivatives(&self.stated, setup, [node, after], &part, &by)?;
-            for m in &part {
-                let first = usize::try_from(m.first).unwrap_or(usize::MAX);
-                let own = || slopes.iter().skip(first).take(m.components);
-                let role = self.stated.quantities.get(m.name).map(|q| &q.role);
-                out.push(Block {
-                    values: own().map(|slope| -slope.value).collect(),
-                    rounding: own().map(|slope| slope.error).collect(),
-                    snaps: matches!(role, Some(Role::Element(..))),
-                });
-            }
-        }
-        Ok(out)
-    }
-
-    /// Velocities that are larger by a multiple of what the displacements miss of them, and that multiple.
-    fn missing(
-        &self,
-        setup: &Setup,
-        node: &[f64],
-        after: &[f64],
-        velocities: &Velocities,
-        moving: &[Moving<'_>],
-    ) -> Option<(f64, Velocities)> {
-        let (mut size, mut speed) = (0.0, 0.0);
-        let mut left: Vec<(String, Vec<f64>)> = Vec::new();
-        for m in moving {
-            let role = self.stated.quantities.get(m.name).map(|q| &q.role);
-            let velocity = velocities.get(&copy(m)).and_then(|v| v.moving.as_ref());
-            let (Some(Role::Field(_)), Some(velocity)) = (role, velocity) else {
-                continue;
-            };
-            let own = setup.observed(m.name, m.site)?;
-            let (from, to) = (own.of(node), own.of(after));
-            let each = velocity.iter().zip(from.iter().zip(to));
-            let missing: Vec<f64> = each.map(|(v, (a, b))| v - (b - a) / setup.h).collect();
-            size = f64::max(size, most(from));
-            speed = f64::max(speed, most(velocity));
-            left.push((copy(m), missing));
-        }
-        let largest = left.iter().map(|(_, w)| most(w)).fold(0.0, f64::max);
-        if largest == 0.0 {
-            return None;
-        }
-        // So small that momenta are linear over it, so large that it is not lost in rounding.
-        let wanted = f64::max(SMALL * speed, UNIT * size / (SMALL * setup.h.abs()));
-        let by = (wanted / largest).log2().ceil().exp2().max(1.0);
-        let mut others = velocities.clone();
-        for (name, missing) in left {
-            let own = others.get_mut(&name).and_then(|v| v.moving.as_mut());
-            for (v, w) in own.into_iter().flatten().zip(missing) {
-                *v += by * w;
-            }
-        }
-        by.is_finite().then_some((by, others))
-    }
-
-    /// The numbers after a step with these velocities, of what is advected too.
-    fn after(
-        &self,
-        setup: &Setup,
-        node: &[f64],
-        velocities: &Velocities,
-        moving: &[Moving<'_>],
-    ) -> Result<Vec<f64>, NoMomentum> {
-        let mut after = node.to_vec();
-        let put = |after: &mut Vec<f64>, from: usize, numbers: &[f64]| {
-            if let Some(slots) = after.get_mut(from..from + numbers.len()) {
-                slots.copy_from_slice(numbers);
-            }
-        };
-        for m in moving {
-            let Some(velocity) = velocities.get(&copy(m)) else {
-                continue;
-            };
-            let own = setup.observed(m.name, m.site);
-            let role = self.stated.quantities.get(m.name).map(|q| &q.role);
-            let (Some(own), Some(role)) = (own, role) else {
-                continue;
-            };
-            let numbers = moved(role, own.of(node), velocity, setup.h);
-            let numbers =
-                numbers.ok_or_else(|| format!("the velocity of `{}` does not fit", m.name))?;
-            put(&mut after, own.from, &numbers);
-        }
-        let nothing = Varied::new();
-        let with_configurations = after.clone();
-        let scene = Scene::new(&self.stated, setup, [node, &with_configurations], &nothing);
-        for q in self.stated.quantities.values() {
-            let (Role::Advected, Some(update)) = (&q.role, &q.update) else {
-                continue;
-            };
-            let sites: Vec<Option<usize>> = match q.at {
-                None => vec![None],
-                Some((label, sites)) => {
-                    let count = setup.sites(&self.stated, label, sites);
-                    (0..count).map(Some).collect()
-                }
-            };
-            for site in sites {
-                let Some(own) = setup.observed(&q.name, site) else {
-                    continue;
-                };
-                let index = site.map_or(0, |s| i64::try_from(s).unwrap_or(0));
-                let value = scene.value(update, Here::at(index))?;
-                let rows = if q.is_quaternion { 4 } else { own.rows };
-                let cols = if q.is_quaternion { 4 } else { own.cols };
-                let sized = value.sized(rows, cols);
-                let sized = sized.ok_or_else(|| format!("`{}` changes its shape", q.name))?;
-                let every = if q.is_quaternion && own.cols == 1 {
-                    4
-                } else {
-                    1
-                };
-                let numbers: Vec<f64> = sized
-                    .entries
-                    .iter()
-                    .step_by(every)
-                    .map(|x| x.value)
-                    .collect();
-                put(&mut after, own.from, &numbers);
-            }
-        }
-        Ok(after)
-    }
-
     /// Refuses velocities that leave a constraint.
     fn tangent(
         &self,
@@ -369,17 +199,15 @@ impl Legendre {
         let rates = self.rates(node, velocities, moving);
         let by = varied(moving);
         let scene = Scene::new(&self.stated, &self.setup, [node, node], &by);
-        for (hold, site, gradient) in
-            crate::holds::gradients(&scene, &self.stated, &self.setup, moving)?
-        {
+        for held in crate::holds::gradients(&scene, &self.stated, &self.setup, moving)? {
             let (mut rate, mut size) = (0.0, 0.0);
-            for (of, slope) in gradient {
+            for (of, slope) in held.slopes {
                 let own = rates.get(&of).copied().unwrap_or(0.0);
                 rate += slope * own;
                 size += (slope * own).abs();
             }
             if rate.abs() > TANGENT * size {
-                return Err(NoMomentum::Across(hold, site, rate));
+                return Err(NoMomentum::Across(held.name, held.site, rate));
             }
         }
         Ok(())
@@ -439,15 +267,4 @@ fn copy(m: &Moving<'_>) -> String {
         None => m.name.to_owned(),
         Some(site) => format!("{}_{site}", m.name),
     }
-}
-
-/// The same with variables counted from the first.
-fn renumbered<'a>(part: &[Moving<'a>]) -> Vec<Moving<'a>> {
-    let mut first = 0;
-    let each = part.iter().map(|m| {
-        let own = Moving { first, ..m.clone() };
-        first += u32::try_from(2 * m.components).unwrap_or(u32::MAX);
-        own
-    });
-    each.collect()
 }

@@ -1,12 +1,13 @@
 //! Elements of groups in a case: rotations by a matrix, a unit quaternion, an axis and an angle, Euler angles or two directions; rigid
 //! motions by a rotation and a position. Takes a TOML value and the field it is for; gives the numbers of the field, row by row.
 
+mod tables;
+
 use super::value::{Numbers, Shape, entries, number, row, shape};
-use crate::suggestion::did_you_mean;
 use clebsch::card::{Field, Kind};
 use clebsch::groups::Rotation;
-use clebsch::nalgebra::{DMatrix, Matrix3, Vector3};
-use toml::de::{DeTable, DeValue};
+use clebsch::nalgebra::{DMatrix, Matrix3};
+use toml::de::DeValue;
 
 /// How far the norm of a quaternion may be from 1, and the products of columns of a matrix from those of unit vectors. Six digits
 /// typed by hand pass, and matrices of single precision; a quaternion that was never normalised does not.
@@ -14,18 +15,6 @@ const ALLOWED: f64 = 1e-6;
 
 /// What products of columns differ by from those of unit vectors in a matrix that is printed in full.
 const ROUNDING: f64 = 1e-12;
-
-/// Two directions are opposite if their sum is no longer than this.
-const OPPOSITE: f64 = 1e-9;
-
-/// The tables that state a rotation: the keys of each.
-const TABLES: [&[&str]; 5] = [
-    &["axis", "angle"],
-    &["euler", "angles"],
-    &["from", "to"],
-    &["quaternion"],
-    &["matrix"],
-];
 
 /// What to write for a rotation in space.
 const OF_SPACE: &str = "a 3x3 matrix [[..], [..], [..]], a unit quaternion [w, x, y, z], { axis = [..], angle = .. }, \
@@ -66,9 +55,8 @@ pub(super) fn numbers(
 /// Whether a value stands for an element by a table of its own.
 pub(super) fn is_table(value: &DeValue<'_>) -> bool {
     value.as_table().is_some_and(|table| {
-        let own = TABLES.iter().flat_map(|keys| keys.iter());
-        own.chain(&["rotation", "position"])
-            .any(|key| table.contains_key(*key))
+        let own = tables::keys().chain(["rotation", "position"]);
+        own.into_iter().any(|key| table.contains_key(key))
     })
 }
 
@@ -87,128 +75,12 @@ pub(super) fn is_left_factor(value: &DeValue<'_>) -> bool {
 fn rotation(field: &Field, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Matrix3<f64>, String> {
     match (shape(value), value) {
         (Shape::Vector(4), _) => unit(&row(value, of)?).map(|r| r.matrix()),
-        (_, DeValue::Table(table)) if !table.is_empty() => by_table(table, of),
+        (_, DeValue::Table(table)) if !table.is_empty() => tables::rotation(table, of),
         _ => {
             let all = entries(field, value, of)?;
             Ok(Matrix3::from_row_slice(&orthonormal(all, 3)))
         }
     }
-}
-
-/// The rotation that a table states.
-fn by_table(table: &DeTable<'_>, of: &Numbers<'_>) -> Result<Matrix3<f64>, String> {
-    let found = TABLES.iter().find(|keys| {
-        let mut keys = keys.iter();
-        keys.any(|key| table.contains_key(*key))
-    });
-    let keys = found.copied().unwrap_or_default();
-    for key in table.keys() {
-        let asked = key.get_ref().as_ref();
-        if !keys.contains(&asked) {
-            let known = TABLES.iter().flat_map(|keys| keys.iter().copied());
-            let hint = did_you_mean(asked, known);
-            return Err(format!("unknown key `{asked}`{hint}; expected {OF_SPACE}"));
-        }
-    }
-    let get = |key: &str| {
-        let value = table.get(key).map(|v| v.get_ref());
-        value.ok_or_else(|| format!("missing key `{key}` beside `{}`", other(keys, key)))
-    };
-    match keys {
-        ["axis", _] => {
-            let axis = direction("axis", get("axis")?, of)?;
-            let angle = number(get("angle")?, of).map_err(|why| format!("angle: {why}"))?;
-            Ok(about(axis, angle))
-        }
-        ["euler", _] => euler(get("euler")?, get("angles")?, of),
-        ["from", _] => {
-            let from = direction("from", get("from")?, of)?;
-            between(from, direction("to", get("to")?, of)?)
-        }
-        ["quaternion"] => {
-            let own = get("quaternion")?;
-            let numbers = row(own, of).map_err(|why| format!("quaternion: {why}"))?;
-            unit(&numbers).map(|r| r.matrix())
-        }
-        _ => {
-            let field = Kind::Matrix.field("", [3, 3], "");
-            let all =
-                entries(&field, get("matrix")?, of).map_err(|why| format!("matrix: {why}"))?;
-            Ok(Matrix3::from_row_slice(&orthonormal(all, 3)))
-        }
-    }
-}
-
-fn other<'k>(keys: &[&'k str], key: &str) -> &'k str {
-    let mut others = keys.iter().filter(|k| **k != key);
-    others.next().copied().unwrap_or_default()
-}
-
-/// A vector of three numbers, made a unit one.
-fn direction(key: &str, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Vector3<f64>, String> {
-    let field = Kind::Vector.field("", [3, 1], "");
-    let all = entries(&field, value, of).map_err(|why| format!("{key}: {why}"))?;
-    let vector = Vector3::from_column_slice(&all);
-    let length = vector.norm();
-    match length > 0.0 && length.is_finite() {
-        true => Ok(vector / length),
-        false => Err(format!("{key}: a direction has a length that is not zero")),
-    }
-}
-
-/// The turn by an angle about a unit vector, by the right hand.
-fn about(axis: Vector3<f64>, angle: f64) -> Matrix3<f64> {
-    let (sine, cosine) = sine_and_cosine(angle);
-    let hat = axis.cross_matrix();
-    Matrix3::identity() * cosine + hat * sine + axis * axis.transpose() * (1.0 - cosine)
-}
-
-/// Sine and cosine, zero where they are zero but for the rounding of the angle: a quarter turn has zeros in its matrix.
-fn sine_and_cosine(angle: f64) -> (f64, f64) {
-    let (sine, cosine) = angle.sin_cos();
-    let rounding = f64::EPSILON * angle.abs().max(1.0);
-    let exact = |x: f64| if x.abs() <= rounding { 0.0 } else { x };
-    (exact(sine), exact(cosine))
-}
-
-/// The product of turns about coordinate axes in the order of the letters.
-fn euler(
-    axes: &DeValue<'_>,
-    angles: &DeValue<'_>,
-    of: &Numbers<'_>,
-) -> Result<Matrix3<f64>, String> {
-    let wrong = "euler: expected three axes, no two neighbours alike, such as \"zxz\" or \"zyx\"";
-    let letters = axes.as_str().ok_or(wrong)?.to_lowercase();
-    let axes: Option<Vec<usize>> = letters.chars().map(|c| "xyz".find(c)).collect();
-    let axes = axes.ok_or(wrong)?;
-    let alike = axes.windows(2).any(|two| two.first() == two.last());
-    if axes.len() != 3 || alike {
-        return Err(wrong.to_owned());
-    }
-    let field = Kind::Vector.field("", [3, 1], "");
-    let angles = entries(&field, angles, of).map_err(|why| format!("angles: {why}"))?;
-    let each = axes.iter().zip(angles);
-    Ok(each.fold(Matrix3::identity(), |before, (axis, angle)| {
-        let mut unit = Vector3::zeros();
-        if let Some(entry) = unit.get_mut(*axis) {
-            *entry = 1.0;
-        }
-        before * about(unit, angle)
-    }))
-}
-
-/// The shortest turn from one direction to another.
-fn between(from: Vector3<f64>, to: Vector3<f64>) -> Result<Matrix3<f64>, String> {
-    if (from + to).norm() <= OPPOSITE {
-        return Err(
-            "the directions are opposite, and half a turn about many axes takes one to the other: give { axis = [..], angle = \"pi\" }"
-                .to_owned(),
-        );
-    }
-    // The product of the reflections that take `from` to `-from` and `from + to` to its opposite.
-    let middle = (from + to).normalize();
-    let mirror = |n: Vector3<f64>| Matrix3::identity() - n * n.transpose() * 2.0;
-    Ok(mirror(middle) * mirror(from))
 }
 
 /// The rotation of a quaternion, which is made a unit one.
@@ -245,7 +117,7 @@ fn plane(field: &Field, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Vec<f64
         _ => return entries(field, value, of).map(|all| orthonormal(all, 2)),
     };
     let angle = number(angle, of)?;
-    let (sine, cosine) = sine_and_cosine(angle);
+    let (sine, cosine) = tables::sine_and_cosine(angle);
     Ok(vec![cosine, -sine, sine, cosine])
 }
 
@@ -379,85 +251,4 @@ fn orthonormal(all: Vec<f64>, n: usize) -> Vec<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::numbers;
-    use clebsch::card::{Field, Kind};
-    use toml::de::DeValue;
-
-    const SPACE: Field = Kind::Rotation.field("R", [3, 3], "");
-
-    fn read(field: &Field, text: &str) -> Result<Vec<f64>, String> {
-        let value = DeValue::parse(text).map_err(|e| e.to_string())?;
-        numbers(field, value.get_ref(), &|_| None)
-    }
-
-    fn off(a: &[f64], b: &[f64]) -> f64 {
-        let each = a.iter().zip(b).map(|(x, y)| (x - y).abs());
-        each.fold(f64::from(u8::from(a.len() != b.len())), f64::max)
-    }
-
-    /// A quarter turn about the third axis: e1 goes to e2.
-    const QUARTER: [f64; 9] = [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
-
-    #[test]
-    fn one_rotation_is_stated_in_every_way() {
-        for text in [
-            "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]",
-            "[\"sqrt(1/2)\", 0, 0, \"sqrt(1/2)\"]",
-            "{ axis = [0, 0, 2], angle = \"pi/2\" }",
-            "{ euler = \"zxz\", angles = [\"pi/2\", 0, 0] }",
-            "{ euler = \"zyx\", angles = [\"pi/2\", 0, 0] }",
-            "{ from = [1, 0, 0], to = [0, 3, 0] }",
-            "{ quaternion = [0.70710678, 0, 0, 0.70710678] }",
-            "{ matrix = [[0, -1, 0], [1, 0, 0], [0, 0, 1]] }",
-        ] {
-            let found = read(&SPACE, text).unwrap_or_else(|why| panic!("{text}: {why}"));
-            assert!(off(&found, &QUARTER) < 1e-15, "{text}: {found:?}");
-        }
-    }
-
-    #[test]
-    fn euler_angles_are_turns_about_the_axes_of_the_body_in_their_order() {
-        let (a, b, c) = (0.3_f64, 0.5_f64, 0.7_f64);
-        let found =
-            read(&SPACE, "{ euler = \"zxz\", angles = [0.3, 0.5, 0.7] }").expect("it reads");
-        // The third column of R3(a) R1(b) R3(c), and the third row.
-        assert!((found[2] - a.sin() * b.sin()).abs() < 1e-15);
-        assert!((found[5] + a.cos() * b.sin()).abs() < 1e-15);
-        assert!((found[6] - b.sin() * c.sin()).abs() < 1e-15);
-        assert!((found[8] - b.cos()).abs() < 1e-15);
-    }
-
-    #[test]
-    fn the_turn_between_two_directions_leaves_what_is_across() {
-        let found = read(&SPACE, "{ from = [0, 0, 1], to = [1, 0, 0] }").expect("it reads");
-        let expected = [0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0];
-        assert!(off(&found, &expected) < 1e-15, "{found:?}");
-        let why = read(&SPACE, "{ from = [0, 0, 1], to = [0, 0, -2] }").expect_err("opposite");
-        assert!(why.contains("opposite"), "{why}");
-    }
-
-    #[test]
-    fn what_was_rounded_becomes_a_rotation() {
-        let product = |r: &[f64]| -> f64 { r.chunks(3).map(|row| row[0] * row[1]).sum() };
-        let single = "[[0.36, 0.48, -0.8], [-0.8, 0.6000001, 0.0], [0.48, 0.64, 0.6]]";
-        let found = read(&SPACE, single).expect("it reads");
-        assert!(product(&found).abs() < 1e-15, "{found:?}");
-        let q = Kind::UnitQuaternion.field("q", [4, 1], "");
-        let found = read(&q, "[0.70710678, -0.70710678, 0, 0]").expect("it reads");
-        let norm: f64 = found.iter().map(|x| x * x).sum();
-        assert!((norm - 1.0).abs() < 1e-15 && found[1] < 0.0, "{found:?}");
-        let found = read(&q, "{ axis = [0, 0, 1], angle = \"pi\" }").expect("it reads");
-        assert!(off(&found, &[0.0, 0.0, 0.0, 1.0]) < 1e-15, "{found:?}");
-        assert!(read(&q, "[0.7071, 0.7071, 0, 0]").is_err());
-    }
-
-    #[test]
-    fn motions_have_a_rotation_and_a_position() {
-        let g = Kind::RigidMotion.field("G", [3, 3], "");
-        let found = read(&g, "{ rotation = \"pi/2\", position = [2, \"1/2\"] }").expect("it reads");
-        assert!(off(&found, &[0.0, -1.0, 2.0, 1.0, 0.0, 0.5, 0.0, 0.0, 1.0]) < 1e-15);
-        let why = read(&g, "{ rotation = 0, place = [2, 1] }").expect_err("no such key");
-        assert!(why.contains("unknown key `place`"), "{why}");
-    }
-}
+mod tests;

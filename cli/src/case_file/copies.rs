@@ -2,6 +2,7 @@
 //! Takes a model with labels and a choice; gives the sites of each quantity, in order.
 
 use super::labels::Stated;
+use clebsch::card::Field;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Choice, Kind, Lattice, Unfolded, unfold};
 use clebsch_core::syntax::ast::Statement;
@@ -129,6 +130,66 @@ impl Copies {
             only: None,
         }
     }
+}
+
+/// The key of a quantity whose copies are fields of a card, and the site of one of them.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(crate) struct Base {
+    pub key: String,
+    pub site: usize,
+    pub label: usize,
+    /// Whether it belongs to an end condition.
+    pub end: bool,
+    /// Whether it is a copy that is given at an end.
+    pub given: bool,
+    /// The name in ASCII of the quantity that it is, or whose momentum it is.
+    pub of: String,
+    /// Whether it is a momentum of that.
+    pub is_momentum: bool,
+}
+
+/// What a field of a card is a copy of.
+pub(crate) fn base(copies: &Copies, field: &Field) -> Option<Base> {
+    if let Some((of, site, label)) = &copies.only
+        && ["momentum", "body_momentum", "spatial_momentum"].contains(&field.ascii)
+    {
+        // Of a single configuration the momentum is named without it.
+        return Some(Base {
+            key: format!("{}_{of}", field.ascii),
+            site: *site,
+            label: *label,
+            end: false,
+            given: false,
+            of: of.clone(),
+            is_momentum: true,
+        });
+    }
+    let (key, digits) = field.ascii.rsplit_once('_')?;
+    let site: usize = digits.parse().ok()?;
+    if copies.of_ends.iter().any(|own| own == field.ascii) {
+        return Some(Base {
+            key: key.to_owned(),
+            site,
+            label: copies.line?,
+            end: true,
+            given: false,
+            of: key.to_owned(),
+            is_momentum: false,
+        });
+    }
+    let group = copies.groups.iter().find(|g| {
+        let own = key == g.of || key.strip_suffix(&g.of).is_some_and(|k| k.ends_with('_'));
+        own && g.sites.binary_search(&site).is_ok()
+    })?;
+    Some(Base {
+        key: key.to_owned(),
+        site,
+        label: group.label?,
+        end: false,
+        given: group.moving.binary_search(&site).is_err(),
+        is_momentum: key != group.of,
+        of: group.of.clone(),
+    })
 }
 
 /// The configuration of a lattice on which nothing else moves.

@@ -10,6 +10,7 @@ use super::location::File;
 use super::scope::Scope;
 use super::space::Space;
 use super::start::places;
+use super::value::names_a_file;
 use crate::failure::Failure;
 use clebsch::card::Field;
 use clebsch::mesh::{Domain, Voronoi};
@@ -240,7 +241,7 @@ impl Reader<'_> {
         };
         let read = match given.get_ref() {
             own if from_npz::is_meant(own) => self.read(q, &key, given),
-            DeValue::Table(table) => {
+            DeValue::Table(table) if !names_a_file(given.get_ref()) => {
                 places(table, self.space, self.count(q), &self.scope).map_err(Wrong::from)
             }
             _ => self.read(q, &key, given),

@@ -4,18 +4,19 @@
 
 use super::beside::Beside;
 use super::chosen::choice;
-use super::copies::Copies;
+use super::copies::{Base, Copies, base};
 use super::fluid::Fluid;
 use super::from_npz::{self, Arrays, Fault, Wanted};
 use super::inertia::{self, Taken};
 use super::location::File;
-use super::motion::{elements, is_momentum};
+use super::motion::elements;
 use super::scope::Scope;
 use super::sites::{self, Site};
 use super::space::Space;
 use super::value::expected;
 use super::velocity::{Way, suffix};
 use crate::failure::Failure;
+use crate::model_file::is_momentum;
 use crate::plain::shown;
 use crate::suggestion::did_you_mean;
 use clebsch::card::{Card, Field, Kind as FieldKind};
@@ -213,66 +214,6 @@ fn key_text(key: &str) -> String {
         true => key.to_owned(),
         false => format!("{key:?}"),
     }
-}
-
-/// The key of a quantity whose copies are fields of a card, and the site of one of them.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub(crate) struct Base {
-    pub key: String,
-    pub site: usize,
-    pub label: usize,
-    /// Whether it belongs to an end condition.
-    pub end: bool,
-    /// Whether it is a copy that is given at an end.
-    pub given: bool,
-    /// The name in ASCII of the quantity that it is, or whose momentum it is.
-    pub of: String,
-    /// Whether it is a momentum of that.
-    pub is_momentum: bool,
-}
-
-/// What a field of a card is a copy of.
-pub(crate) fn base(copies: &Copies, field: &Field) -> Option<Base> {
-    if let Some((of, site, label)) = &copies.only
-        && ["momentum", "body_momentum", "spatial_momentum"].contains(&field.ascii)
-    {
-        // Of a single configuration the momentum is named without it.
-        return Some(Base {
-            key: format!("{}_{of}", field.ascii),
-            site: *site,
-            label: *label,
-            end: false,
-            given: false,
-            of: of.clone(),
-            is_momentum: true,
-        });
-    }
-    let (key, digits) = field.ascii.rsplit_once('_')?;
-    let site: usize = digits.parse().ok()?;
-    if copies.of_ends.iter().any(|own| own == field.ascii) {
-        return Some(Base {
-            key: key.to_owned(),
-            site,
-            label: copies.line?,
-            end: true,
-            given: false,
-            of: key.to_owned(),
-            is_momentum: false,
-        });
-    }
-    let group = copies.groups.iter().find(|g| {
-        let own = key == g.of || key.strip_suffix(&g.of).is_some_and(|k| k.ends_with('_'));
-        own && g.sites.binary_search(&site).is_ok()
-    })?;
-    Some(Base {
-        key: key.to_owned(),
-        site,
-        label: group.label?,
-        end: false,
-        given: group.moving.binary_search(&site).is_err(),
-        is_momentum: key != group.of,
-        of: group.of.clone(),
-    })
 }
 
 struct Writer<'a> {

@@ -1,7 +1,8 @@
 //! The sample case of a model with labels: a key for each quantity as stated, expressions in the label.
 //! Takes a card and the choice it was made for; gives the text of a case file.
 
-use super::labels::{Base, Stated, base};
+use super::copies::{Base, base};
+use super::labels::Stated;
 use super::sample as fluid;
 use super::space::Space;
 use crate::model_file::{OF_HELD, has_holds, is_momentum, sample_entry, turns};

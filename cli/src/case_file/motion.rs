@@ -4,11 +4,15 @@
 use super::beside::at_site;
 use super::velocity::{Way, momentum_of, suffix};
 use crate::gallery::Case;
-use clebsch::card::{Card, Field, Kind};
+use crate::model_file::is_momentum;
+use clebsch::card::{Card, Field};
 use clebsch_check::{Legendre, NoMomentum, Setup, Velocities, Velocity};
 use clebsch_core::lattice::Choice;
 use clebsch_core::pipeline;
 use std::collections::{BTreeSet, HashMap};
+
+/// Most momenta of rest that a reader is told of.
+const MOST_TOLD: usize = 4;
 
 /// A velocity that the case gives.
 #[derive(Clone, Debug)]
@@ -225,7 +229,18 @@ impl Motion {
             };
             format!("initial {name} from {keys}{value}")
         });
-        lines.collect()
+        let resting = self.resting.iter().filter_map(|at| {
+            let numbers = case.initial.get(*at)?;
+            let moves = numbers.iter().any(|x| *x != 0.0);
+            // Of many sites one tells it.
+            let field = card.initial.get(*at).filter(|_| moves)?;
+            Some(format!(
+                "initial {} of rest: {}",
+                field.ascii,
+                list(numbers)
+            ))
+        });
+        lines.chain(resting.take(MOST_TOLD)).collect()
     }
 }
 
@@ -267,13 +282,6 @@ pub(super) fn elements(fields: &[Field]) -> HashMap<usize, usize> {
         Some((at, own))
     });
     each.collect()
-}
-
-pub(super) fn is_momentum(field: &Field) -> bool {
-    matches!(
-        field.kind,
-        Kind::BodyMomentum | Kind::SpatialMomentum | Kind::FieldMomentum
-    )
 }
 
 /// What evaluates the action of a case.

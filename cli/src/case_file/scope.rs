@@ -15,7 +15,7 @@ pub(super) struct Scope {
     known: HashMap<String, f64>,
     /// Expressions without a value, by their names: of a site, in a circle, or wrong.
     open: BTreeMap<String, String>,
-    /// Names in the order of the case.
+    /// Names with a value.
     names: Vec<String>,
 }
 
@@ -71,17 +71,39 @@ impl Scope {
         let Some(name) = missing(&why) else {
             return why;
         };
-        if let Some(text) = self.open.get(name) {
-            return format!(
-                "{why}: it is given as \"{text}\", which has no value either; parameters must not refer to one another in a circle"
-            );
+        let (mut chain, mut at) = (Vec::new(), name.to_owned());
+        while let Some(text) = self.open.get(&at) {
+            chain.push(format!("{at} = \"{text}\""));
+            let names = SiteData::read(text).map(|data| data.names());
+            let next = names
+                .into_iter()
+                .flatten()
+                .find(|n| self.number(n).is_none());
+            let Some(next) = next else {
+                return format!("{why}: {} is no finite number", chain.join(", "));
+            };
+            if chain
+                .iter()
+                .any(|link| link.starts_with(&format!("{next} = ")))
+            {
+                return format!(
+                    "{why}: {} refer to one another in a circle",
+                    chain.join(", ")
+                );
+            }
+            at = next;
         }
+        let why = match chain.is_empty() {
+            true => why,
+            false => format!("{why}: {}, and `{at}` has no value", chain.join(", ")),
+        };
         let mut names: Vec<&str> = self.names.iter().map(String::as_str).collect();
+        names.sort_unstable();
         names.truncate(LISTED);
         match names.is_empty() {
-            true => format!("{why}: an expression may hold numbers, functions and `pi`"),
+            true => format!("{why}; an expression may hold numbers, functions and `pi`"),
             false => format!(
-                "{why}: an expression may hold the step and the parameters that are one number: {}",
+                "{why}; an expression may hold the step and the parameters that are one number: {}",
                 names.join(", ")
             ),
         }
@@ -149,7 +171,18 @@ mod tests {
         let why = scope.explained("\"x + 1\": `x` has no value here".to_owned());
         assert!(why.contains("in a circle"), "{why}");
         let why = scope.explained("\"z\": `z` has no value here".to_owned());
-        assert!(why.contains("c, T"), "{why}");
+        assert!(why.contains("T, a, b, c, h"), "{why}");
+        let text = "[parameters]\na = \"b\"\nb = \"n\"\nc = \"1/0\"\n";
+        let document = DeTable::parse(text).expect("it is TOML");
+        let scope = Scope::of(document.get_ref());
+        let told = |name: &str| scope.explained(format!("\"{name}\": `{name}` has no value here"));
+        let why = told("a");
+        assert!(
+            why.contains("a = \"b\", b = \"n\", and `n` has no value"),
+            "{why}"
+        );
+        let why = told("c");
+        assert!(why.contains("c = \"1/0\" is no finite number"), "{why}");
     }
 
     #[test]

@@ -104,7 +104,20 @@ pub(super) enum Shape {
     Vector(usize),
     Matrix(usize, usize),
     Ragged,
+    /// A table that is meant for a file.
+    File,
     Other(&'static str),
+}
+
+/// How an array of a file is given.
+pub(super) const OF_FILES: &str =
+    "an array of a file is { npz = \"out/trajectory.npz\", key = \"q\" }, as numpy.savez writes it";
+
+/// Whether a table names a file.
+pub(super) fn names_a_file(value: &DeValue<'_>) -> bool {
+    const KEYS: [&str; 8] = ["csv", "npy", "file", "path", "txt", "dat", "h5", "json"];
+    let table = value.as_table();
+    table.is_some_and(|table| KEYS.iter().any(|key| table.contains_key(*key)))
 }
 
 impl Shape {
@@ -115,10 +128,7 @@ impl Shape {
             Self::Vector(n) => format!("a vector of {n} numbers"),
             Self::Matrix(rows, cols) => format!("a {rows}x{cols} matrix"),
             Self::Ragged => "an array that is neither a vector nor a matrix of numbers".to_owned(),
-            Self::Other("table") => {
-                "a table; of an array in a file write { npz = \"out/trajectory.npz\", key = \"q\" }"
-                    .to_owned()
-            }
+            Self::File => format!("a table that is none of them; {OF_FILES}"),
             Self::Other(kind) => format!("a value of type {kind}"),
         }
     }
@@ -131,6 +141,9 @@ pub(super) fn shape(value: &DeValue<'_>) -> Shape {
     }
     if is_number(value) {
         return Shape::Number;
+    }
+    if names_a_file(value) {
+        return Shape::File;
     }
     if !value.is_array() {
         return Shape::Other(value.type_str());

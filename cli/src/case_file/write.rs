@@ -1,6 +1,8 @@
 //! Prints a case as a complete TOML file that reads back to the same numbers, bit by bit.
 //! Takes a card and a case; gives the text, with comments on shape, frame and units.
 
+use super::motion::elements;
+use super::velocity::Way;
 use crate::gallery::Case;
 use crate::model_file::{OF_HELD, has_holds};
 use crate::plain::shown;
@@ -61,8 +63,11 @@ fn on_a_line(named: &str) -> String {
 
 fn table(text: &mut String, name: &str, fields: &[Field], values: &[Vec<f64>]) {
     let _ = writeln!(text, "\n[{name}]");
-    for (field, numbers) in fields.iter().zip(values) {
-        comment(text, &about(field));
+    let elements = elements(fields);
+    for (at, (field, numbers)) in fields.iter().zip(values).enumerate() {
+        let element = elements.get(&at).and_then(|own| fields.get(*own));
+        let or = element.map_or_else(String::new, |element| instead(element, field));
+        comment(text, &format!("{}{or}", about(field)));
         let _ = writeln!(text, "{} = {}", field.ascii, value(field, numbers));
     }
 }
@@ -92,6 +97,18 @@ fn bounds(text: &mut String, card: &Card, case: &Case) {
     }
 }
 
+/// The velocities that may stand in the place of a momentum.
+fn instead(element: &Field, momentum: &Field) -> String {
+    let ways = Way::ALL
+        .into_iter()
+        .filter(|way| way.is_of(element, momentum));
+    let keys: Vec<String> = ways.filter_map(|way| way.key(momentum.ascii)).collect();
+    match keys.is_empty() {
+        true => String::new(),
+        false => format!("; or give {}", keys.join(", ")),
+    }
+}
+
 /// Shape and frame of a field, then the model's own words.
 fn about(field: &Field) -> String {
     let Field { rows, cols, .. } = *field;
@@ -111,11 +128,15 @@ fn about(field: &Field) -> String {
             format!("rotation body -> space: {rows}x{cols} matrix, row by row")
         }
         Kind::Rotation => {
-            "rotation body -> space: 3x3 matrix, or unit quaternion [w, x, y, z]".to_owned()
+            "rotation body -> space: 3x3 matrix, unit quaternion [w, x, y, z], { axis, angle }, { euler, angles } or { from, to }".to_owned()
         }
-        Kind::UnitQuaternion => "unit quaternion body -> space: [w, x, y, z]".to_owned(),
+        Kind::UnitQuaternion => {
+            "unit quaternion body -> space: [w, x, y, z], or a rotation in another form".to_owned()
+        }
         Kind::RigidMotion => {
-            format!("rigid motion body -> space: homogeneous {rows}x{cols} matrix, row by row")
+            format!(
+                "rigid motion body -> space: homogeneous {rows}x{cols} matrix, or {{ rotation, position }}"
+            )
         }
         Kind::BodyMomentum => "momentum at the first node, body frame".to_owned(),
         Kind::SpatialMomentum => "momentum at the first node, space frame".to_owned(),

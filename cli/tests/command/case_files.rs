@@ -102,7 +102,7 @@ fn every_mistake_is_named_with_file_and_line() {
         (
             "h",
             "\"0.1*q\"",
-            "h: \"0.1*q\": `q` has no value here: an expression may hold the step and the parameters that are one number: kappa",
+            "h: \"0.1*q\": `q` has no value here; an expression may hold the step and the parameters that are one number: kappa",
         ),
         (
             "steps",
@@ -147,7 +147,7 @@ fn every_mistake_is_named_with_file_and_line() {
         (
             "z",
             "[1.0, \"a\", 0.0]",
-            "parameters.z: \"a\": `a` has no value here: an expression may hold the step and the parameters that are one number",
+            "parameters.z: \"a\": `a` has no value here; an expression may hold",
         ),
         (
             "J",

@@ -1,9 +1,9 @@
 //! Starts of fluids that are stated by the meshes of the model: values and slopes at the particles. They are in balance with the force
 //! of the model to rounding; equal cases start alike to the last byte; what has no value there is told with what to write.
 
-use crate::common::{Done, Folder, clebsch};
+use crate::common::Folder;
+use crate::ran::{Ran, run};
 use clebsch::scalar::largest;
-use std::collections::BTreeMap;
 
 const MODEL: &str = "model Channel {
     label a in 0..N; grid n;
@@ -26,57 +26,6 @@ fn case(start: &str) -> String {
          alpha = \"0.1*c0\"\nc0 = \"pi/2\"\nf = 1.5\n\
          [initial]\nX = {{ lattice = \"square\", jitter = 0.3, seed = 5 }}\n{start}\n"
     )
-}
-
-fn run(folder: &Folder, model: &str, case: &str, more: &[&str]) -> Done {
-    let model = folder.write("model.clebsch", model);
-    let case = folder.write("case.toml", case);
-    let mut all = vec!["run", &model[..], "--case", &case];
-    all.extend(more);
-    clebsch(&all)
-}
-
-/// The numbers of a run: a column of `trajectory.csv` for each name, and parameters.
-struct Ran {
-    columns: BTreeMap<String, Vec<f64>>,
-    parameters: serde_json::Value,
-}
-
-impl Ran {
-    fn of(model: &str, case: &str, name: &str) -> Self {
-        let folder = Folder::new(&format!("fluid-starts-{name}"));
-        let out = folder.path("out");
-        let done = run(&folder, model, case, &["--out", &out]);
-        assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-        let csv = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
-        let mut lines = csv.lines();
-        let names = lines.next().expect("a head").split(',').map(str::to_owned);
-        let mut columns: BTreeMap<String, Vec<f64>> = names.clone().map(|n| (n, vec![])).collect();
-        let names: Vec<String> = names.collect();
-        for line in lines {
-            for (name, x) in names.iter().zip(line.split(',')) {
-                let own = columns.get_mut(name).expect("a column");
-                own.push(x.parse().expect("a number"));
-            }
-        }
-        let json = std::fs::read_to_string(format!("{out}/run.json")).expect("is written");
-        let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
-        let parameters = json["parameters"].clone();
-        Self {
-            columns,
-            parameters,
-        }
-    }
-
-    fn at(&self, name: &str, node: usize) -> f64 {
-        self.columns
-            .get(name)
-            .unwrap_or_else(|| panic!("no {name}"))[node]
-    }
-
-    fn parameter(&self, name: &str) -> f64 {
-        self.parameters[name].as_f64().expect("a number")
-    }
 }
 
 /// By how much the first step is off the straight line of the velocity, of what the Coriolis force alone would turn it by. The force and

@@ -1,6 +1,7 @@
 //! The commands as a user types them: what they print, write and refuse. One binary, since linking is most of what a
 //! test costs.
 
+mod attitudes;
 mod book;
 mod case_files;
 mod cases;
@@ -9,6 +10,7 @@ mod common;
 mod comparisons;
 mod elastic;
 mod exit_codes;
+mod expressions;
 mod figures;
 mod fluid_starts;
 mod fluids;
@@ -29,6 +31,7 @@ mod page;
 mod pictures;
 mod pictures_of_lines;
 mod plot;
+mod ran;
 mod rest;
 mod results;
 mod resumed;
@@ -40,4 +43,5 @@ mod stated;
 mod stopped;
 mod sweeps;
 mod terminal;
+mod velocities;
 mod vtk;
