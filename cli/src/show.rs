@@ -35,8 +35,7 @@ pub(crate) fn show(
 ) -> Result<(), Failure> {
     let (named, case) = asked(gallery, matches)?;
     let toml = case_text(&named, case.as_deref(), streams)?;
-    let text = statement(&named);
-    write!(streams.out, "{}\n{toml}", text.trim_end().to_owned() + "\n")?;
+    write!(streams.out, "{}\n\n{toml}", statement(&named).trim_end())?;
     Ok(())
 }
 

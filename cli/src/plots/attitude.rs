@@ -181,8 +181,18 @@ pub(crate) fn attitude(run: &Finished<'_>, samples: &Samples) -> Plot {
         .filter(|q| q.moves)
         .flat_map(|q| q.members.iter().map(|(_, columns)| columns))
         .collect();
-    let moving = placed(run.card.observables)
-        .filter(|(field, columns)| moves(field) && !places.contains(&columns));
+    // Nor are positions of bodies, which have a momentum behind them: a picture of an orbit is its own.
+    let all = run.card.observables;
+    let positions = all.windows(2).filter(|pair| {
+        pair.last()
+            .is_some_and(|next| next.kind == Kind::FieldMomentum)
+    });
+    let positions: Vec<&str> = positions
+        .filter_map(|pair| Some(pair.first()?.name))
+        .collect();
+    let moving = placed(all).filter(|(field, columns)| {
+        moves(field) && !places.contains(&columns) && !positions.contains(&field.name)
+    });
     let moving: Vec<Placed> = moving.collect();
     let all = turning.iter().chain(&moving);
     let all: Vec<Range<usize>> = all.map(|(_, columns)| columns.clone()).collect();
