@@ -3,8 +3,10 @@
 
 use super::copies::{Base, base};
 use super::labels::Stated;
+use super::remarks::remark;
 use super::sample as fluid;
 use super::space::Space;
+use super::write::{bounds, comment};
 use crate::model_file::{OF_HELD, has_holds, is_momentum, sample_entry, turns};
 use crate::plain::shown;
 use clebsch::card::{Card, Field, Kind};
@@ -77,10 +79,14 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
                 continue;
             }
             told.push(key.to_owned());
+            if let Some(words) = remark(&stated.model, key) {
+                comment(&mut text, &words);
+            }
             let value = sample(stated, field, base.as_ref(), table, turns(card));
             let _ = writeln!(text, "{key} = {value}");
         }
     }
+    bounds(&mut text, card, &[]);
     text
 }
 

@@ -17,6 +17,7 @@ mod lattice;
 mod location;
 mod motion;
 mod read;
+mod remarks;
 mod sample;
 mod scope;
 mod sites;

@@ -48,7 +48,7 @@ pub fn write(card: &Card, case: &Case, named: &str) -> String {
     }
     table(&mut text, "parameters", card.parameters, &case.parameters);
     table(&mut text, "initial", card.initial, &case.initial);
-    bounds(&mut text, card, case);
+    bounds(&mut text, card, &case.bounds);
     text
 }
 
@@ -72,7 +72,8 @@ fn table(text: &mut String, name: &str, fields: &[Field], values: &[Vec<f64>]) {
     }
 }
 
-fn bounds(text: &mut String, card: &Card, case: &Case) {
+/// The table of bounds: those that are given, and the others as comments.
+pub(super) fn bounds(text: &mut String, card: &Card, given: &[(String, f64)]) {
     let _ = writeln!(text, "\n[bounds]");
     comment(
         text,
@@ -80,7 +81,7 @@ fn bounds(text: &mut String, card: &Card, case: &Case) {
     );
     for invariant in card.invariants {
         comment(text, &format!("{}: {}", invariant.name, invariant.formula));
-        let stated = case.bounds.iter().find(|(name, _)| name == invariant.name);
+        let stated = given.iter().find(|(name, _)| name == invariant.name);
         let _ = match (stated, invariant.conserved) {
             (Some((_, bound)), _) => writeln!(text, "{} = {bound:?}", invariant.name),
             (None, Conserved::Exactly) => writeln!(
@@ -174,7 +175,7 @@ fn list(numbers: &[f64]) -> String {
     format!("[{}]", numbers.join(", "))
 }
 
-fn comment(text: &mut String, words: &str) {
+pub(super) fn comment(text: &mut String, words: &str) {
     let words: Vec<&str> = words.lines().collect();
     let _ = writeln!(text, "# {}", words.join(" "));
 }

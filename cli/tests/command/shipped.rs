@@ -202,3 +202,27 @@ fn an_installed_command_needs_no_folder_of_models() {
         (0, "", "")
     );
 }
+
+#[test]
+fn the_case_of_a_chain_has_the_words_of_the_model_and_its_bounds() {
+    let folder = Folder::new("shipped-chain-case");
+    let model = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../models/lattices/toda-chain.clebsch"
+    );
+    let case = shipped(&["case", model]).out;
+    for line in [
+        "# mass of a point\nm = ",
+        "# momentum of q at the first node\n",
+        "\n[bounds]\n",
+        "\n# energy = 1e-3 ",
+    ] {
+        assert!(case.contains(line), "{line}\n{case}");
+    }
+    let strict = folder.write(
+        "strict.toml",
+        &case.replace("\n# energy = 1e-3 ", "\nenergy = 1e-20 "),
+    );
+    let done = shipped(&["run", model, "--case", &strict, "--steps", "10"]);
+    assert_eq!(done.code, 3, "{}", done.err);
+}
