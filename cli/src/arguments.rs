@@ -220,7 +220,14 @@ fn plot() -> Command {
                 .value_parser(value_parser!(std::path::PathBuf))
                 .help("Folder that `clebsch run --out` wrote"),
         )
-        .arg(option("x", "NAME", "Column along the horizontal axis; time by default"))
+        .arg(
+            option(
+                "x",
+                "NAME",
+                "Column along the horizontal axis; time by default. Give one for all, or one for each --y, as for the orbits of two bodies",
+            )
+            .action(ArgAction::Append),
+        )
         .arg(
             option(
                 "y",
@@ -534,9 +541,9 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 fn positive_number(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
-        _ => Err("give a positive, finite number".to_owned()),
+    match crate::number::value(text, &|_| None) {
+        Ok(number) if number > 0.0 => Ok(number),
+        _ => Err("give a positive, finite number, such as 0.01, 1/100 or 2*pi".to_owned()),
     }
 }
 

@@ -21,12 +21,15 @@ pub(crate) fn check(
 ) -> Result<(), Failure> {
     let resolved = resolved(gallery, matches, streams)?;
     let model = resolved.entry.card;
-    writeln!(streams.out, "model {}: derived and proved", model.kebab)?;
+    writeln!(streams.out, "model {}: derived", model.kebab)?;
     let plan = Plan::new(&resolved, matches)?;
     let card = resolved.entry.card_of(&plan.case);
+    for line in plan.starts(&card) {
+        writeln!(streams.out, "{line}")?;
+    }
+    let mut trajectory = plan.open(&card)?;
     let name = shown(&plan.case.name);
     writeln!(streams.out, "case {name}: {}", count(&card))?;
-    let mut trajectory = plan.open(&card)?;
     if let Some(warning) = trajectory.kinetic_warning() {
         writeln!(streams.err, "clebsch: warning: {warning}")?;
     }

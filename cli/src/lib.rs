@@ -24,6 +24,7 @@ mod list;
 mod model_file;
 mod named_cases;
 mod new;
+mod number;
 mod output;
 mod overrides;
 mod page;

@@ -95,7 +95,8 @@ impl NamedCases {
     /// Those of a shipped model.
     pub fn shipped(model: &ModelFile) -> Self {
         let cases = model.cases.iter().map(|case| {
-            let name = stated(case.text).unwrap_or_else(|| case.stem.to_owned());
+            let own = stated(case.text).filter(|_| case.stem == model.name);
+            let name = own.unwrap_or_else(|| case.stem.to_owned());
             let file = match case.stem == model.name {
                 true => format!("{}.toml", model.name),
                 false => format!("{}/{}.toml", model.name, case.stem),

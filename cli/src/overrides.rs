@@ -4,6 +4,7 @@
 use crate::case_file::Motion;
 use crate::failure::Failure;
 use crate::gallery::Case;
+use crate::number;
 use crate::plain::shown;
 use crate::quantity::Quantity;
 use clap::ArgMatches;
@@ -24,7 +25,14 @@ pub(crate) fn apply(
 ) -> Result<Vec<String>, Failure> {
     let mut names = Vec::new();
     for text in set(matches) {
-        for (quantity, value) in read(text, card, motion)
+        let (name, numbers) = parts(text, case, card)
+            .map_err(|why| Failure::Usage(format!("--set {}: {why}", shown(text))))?;
+        if let Some(given) = motion.give(&name, card, &numbers) {
+            given.map_err(|why| Failure::Usage(format!("--set {}: {why}", shown(text))))?;
+            names.push(name);
+            continue;
+        }
+        for (quantity, value) in read(&name, &numbers, card, motion)
             .map_err(|why| Failure::Usage(format!("--set {}: {why}", shown(text))))?
         {
             quantity.put(value, case, motion);
@@ -66,18 +74,46 @@ pub(crate) fn steps_to(time: f64, h: f64) -> Option<u64> {
     (steps <= MOST_STEPS).then_some(steps as u64)
 }
 
-/// Reads `NAME=VALUE`, of a vector also `NAME=VALUE,VALUE,...`.
-fn read(text: &str, card: &Card, motion: &Motion) -> Result<Vec<(Quantity, f64)>, String> {
+/// The name and the numbers of `NAME=VALUE` or `NAME=VALUE,VALUE,...`. Expressions may hold the step and the parameters of the
+/// case that are one number.
+fn parts(text: &str, case: &Case, card: &Card) -> Result<(String, Vec<f64>), String> {
     let Some((name, values)) = text.split_once('=') else {
         return Err("give NAME=VALUE, such as gU.z=0.5".to_owned());
     };
-    let values = values.trim().trim_start_matches('[').trim_end_matches(']');
-    let numbers: Vec<f64> = values.split(',').map(number).collect::<Result<_, _>>()?;
-    if let [value] = numbers.as_slice() {
+    let known = |name: &str| {
+        if name == "h" {
+            return Some(case.h);
+        }
+        let mut all = card.parameters.iter().zip(&case.parameters);
+        let (_, own) =
+            all.find(|(field, _)| field.count() == 1 && [field.name, field.ascii].contains(&name))?;
+        own.first().copied()
+    };
+    let values = values.trim();
+    let inside = values
+        .strip_prefix('[')
+        .and_then(|rest| rest.strip_suffix(']'));
+    let numbers = inside
+        .unwrap_or(values)
+        .split(',')
+        .map(|one| number::value(one, &known));
+    Ok((name.trim().to_owned(), numbers.collect::<Result<_, _>>()?))
+}
+
+/// The quantities that a name stands for, with their numbers: a number, or the components of a vector.
+fn read(
+    name: &str,
+    numbers: &[f64],
+    card: &Card,
+    motion: &Motion,
+) -> Result<Vec<(Quantity, f64)>, String> {
+    if let [value] = numbers {
         return Ok(vec![(Quantity::read(name, card, motion)?, *value)]);
     }
     match Quantity::components(name, card, motion) {
-        Some(each) if each.len() == numbers.len() => Ok(each.into_iter().zip(numbers).collect()),
+        Some(each) if each.len() == numbers.len() => {
+            Ok(each.into_iter().zip(numbers.iter().copied()).collect())
+        }
         Some(each) => Err(format!(
             "`{}` has {} components, and {} values are given",
             shown(name),
@@ -89,12 +125,5 @@ fn read(text: &str, card: &Card, motion: &Motion) -> Result<Vec<(Quantity, f64)>
             Err(why) => why,
             Ok(_) => format!("`{}` takes one number", shown(name)),
         }),
-    }
-}
-
-fn number(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format!("`{}` is not a finite number", shown(text))),
     }
 }

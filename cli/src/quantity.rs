@@ -1,7 +1,7 @@
 //! A number of a case by its name on the command line: `gU.z`, `q_3`, `h`.
 //! Takes a name and a card; gives the entries of parameters, initial values or the step that the name stands for.
 
-use crate::case_file::{Motion, at_site};
+use crate::case_file::{Motion, at_site, is_velocity};
 use crate::gallery::Case;
 use clebsch::card::{Card, Field, Kind};
 
@@ -128,6 +128,11 @@ fn place(name: &str, card: &Card, motion: &Motion) -> Result<Place, String> {
             return Err(format!("the case gives {key} instead; set that"));
         }
         return Ok(Place::Initial(at, entries(&own, field, component)?));
+    }
+    if is_velocity(field, card) {
+        return Err(format!(
+            "the case gives the momentum instead of `{field}`; give the velocity whole, by --set {field}=..., or in the case"
+        ));
     }
     let mut names: Vec<&str> = Vec::new();
     for fields in [card.parameters, card.initial] {

@@ -31,7 +31,7 @@ pub(crate) use beside::{at_site, line_of, quantity_of};
 pub(crate) use chosen::choice;
 pub(crate) use lattice::write_lattice;
 pub use location::Located;
-pub(crate) use motion::Motion;
+pub(crate) use motion::{Motion, is_velocity};
 pub use read::read;
 pub(crate) use read::read_written_out;
 pub use write::write;

@@ -188,6 +188,39 @@ impl Motion {
         own.map(|start| start.key.as_str())
     }
 
+    /// Gives a velocity in the place of the momentum that the case gives; none if `name` is not the key of a velocity, or if
+    /// the case gives this one already.
+    pub(crate) fn give(
+        &mut self,
+        name: &str,
+        card: &Card,
+        numbers: &[f64],
+    ) -> Option<Result<(), String>> {
+        if self.named(name, card).is_some() {
+            return None;
+        }
+        let found = velocities(name, card);
+        let (.., count) = found.first()?;
+        if *count != numbers.len() {
+            return Some(Err(format!(
+                "the case gives the momentum instead of this velocity, which has {count} numbers; give all of them, separated by commas"
+            )));
+        }
+        for (momentum, way, key, _) in found {
+            self.given
+                .retain(|start| start.momentum != momentum || is_beside(start.way, way));
+            self.gives(momentum);
+            self.given.push(Start {
+                momentum,
+                way,
+                key,
+                line: 0,
+                numbers: numbers.to_vec(),
+            });
+        }
+        Some(Ok(()))
+    }
+
     /// Sets an entry of a velocity.
     pub(crate) fn set(&mut self, velocity: usize, entry: usize, value: f64) {
         let own = self.given.get_mut(velocity);
@@ -222,6 +255,22 @@ impl Motion {
                 None => out.push((own, key, 1, numbers)),
             }
         }
+        let is_zero = |at: &usize| {
+            case.initial
+                .get(*at)
+                .is_some_and(|own| own.iter().all(|x| *x == 0.0))
+        };
+        let mut zero: Vec<&str> = self
+            .resting
+            .iter()
+            .filter(|at| is_zero(at))
+            .filter_map(|at| Some(quantity(card.initial.get(*at)?.ascii)))
+            .collect();
+        zero.dedup();
+        let zero = zero.into_iter().map(|name| {
+            format!("initial {name} is zero: the case gives neither it nor a velocity")
+        });
+        let zero: Vec<String> = zero.collect();
         let lines = out.into_iter().map(|(name, keys, count, numbers)| {
             let value = match count {
                 1 => format!(": {}", list(&numbers)),
@@ -240,8 +289,37 @@ impl Motion {
                 list(numbers)
             ))
         });
-        lines.chain(resting.take(MOST_TOLD)).collect()
+        lines.chain(zero).chain(resting.take(MOST_TOLD)).collect()
     }
+}
+
+/// The velocities that a key stands for: the momentum that each replaces, its key with the site, and how many numbers it has.
+fn velocities(name: &str, card: &Card) -> Vec<(usize, Way, String, usize)> {
+    let mut places: Vec<(usize, usize)> = elements(card.initial).into_iter().collect();
+    places.sort_unstable();
+    let mut found = Vec::new();
+    for (momentum, element) in places {
+        let (Some(own), Some(of)) = (card.initial.get(momentum), card.initial.get(element)) else {
+            continue;
+        };
+        for way in Way::ALL.into_iter().filter(|way| way.is_of(of, own)) {
+            let key = way.key(own.ascii).unwrap_or_default();
+            if key == name || quantity(&key) == name {
+                found.push((momentum, way, key, way.field(of, own).count()));
+            }
+        }
+    }
+    found
+}
+
+/// Whether a key is that of a velocity of the model.
+pub(crate) fn is_velocity(name: &str, card: &Card) -> bool {
+    !velocities(name, card).is_empty()
+}
+
+/// Whether a configuration takes both: a rigid motion has the rate of its position beside an angular velocity.
+fn is_beside(a: Way, b: Way) -> bool {
+    (a == Way::Rate) != (b == Way::Rate)
 }
 
 /// The key of a quantity without its site.

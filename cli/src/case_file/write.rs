@@ -129,7 +129,7 @@ fn about(field: &Field) -> String {
             format!("rotation body -> space: {rows}x{cols} matrix, row by row")
         }
         Kind::Rotation => {
-            "rotation body -> space: 3x3 matrix, unit quaternion [w, x, y, z], { axis, angle }, { euler, angles } or { from, to }".to_owned()
+            "rotation body -> space: 3x3 matrix, unit quaternion [w, x, y, z], { axis, angle }, { euler = \"zxz\", angles } about the body's axes in turn, or { from, to }; angles in radians".to_owned()
         }
         Kind::UnitQuaternion => {
             "unit quaternion body -> space: [w, x, y, z], or a rotation in another form".to_owned()

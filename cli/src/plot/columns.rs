@@ -107,24 +107,24 @@ impl Columns {
         }
     }
 
-    /// All columns that a name stands for: one component, or each of a vector.
+    /// All columns that a name stands for: one component, or each of a vector or a matrix.
     ///
     /// # Errors
     /// Usage: the run has no such column.
     pub fn all(&self, name: &str, range: &Range<usize>) -> Result<Vec<Series>, Failure> {
-        let is_vector = self.archive.has(name)
-            && !self.has_sites(name)
-            && self.archive.array(name).is_ok_and(|a| a.shape.len() == 2);
-        match is_vector {
-            false => Ok(vec![self.series(name, range)?]),
-            true => {
-                let array = self.archive.array(name).map_err(Failure::Usage)?;
-                let count = array.shape.get(1).copied().unwrap_or(0);
-                (1..=count)
-                    .map(|i| self.series(&format!("{name}.{i}"), range))
-                    .collect()
-            }
-        }
+        let array = match self.archive.has(name) && !self.has_sites(name) {
+            true => Some(self.archive.array(name).map_err(Failure::Usage)?),
+            false => None,
+        };
+        let inner = array.as_ref().and_then(|array| array.shape.get(1..));
+        let names: Vec<String> = match inner {
+            Some([n]) => (1..=*n).map(|i| format!("{name}.{i}")).collect(),
+            Some([r, c]) if *r < 10 && *c < 10 => (1..=*r)
+                .flat_map(|i| (1..=*c).map(move |j| format!("{name}.{i}{j}")))
+                .collect(),
+            _ => vec![name.to_owned()],
+        };
+        names.iter().map(|name| self.series(name, range)).collect()
     }
 
     /// One column.
@@ -170,7 +170,9 @@ impl Columns {
                 ))),
             };
         }
-        let near = match nearest(name, self.archive.names()) {
+        let end = format!("_{name}");
+        let longer = self.archive.names().find(|known| known.ends_with(&end));
+        let near = match longer.or_else(|| nearest(name, self.archive.names())) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "`clebsch plot DIR` lists the columns".to_owned(),
         };

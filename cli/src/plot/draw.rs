@@ -46,38 +46,52 @@ pub(super) fn against_time(title: &str, time: &Series, all: &[Series]) -> Result
     figure.svg()
 }
 
-/// Series against another one. Components of one vector are drawn to one scale.
+/// Series against others, each against its own. Components of one vector are drawn to one scale.
 pub(super) fn against(
     title: &str,
     time: &Series,
-    x: &Series,
+    x: &[Series],
     all: &[Series],
 ) -> Result<String, String> {
-    let curves = all.iter().enumerate().map(|(index, series)| {
+    let pairs = || x.iter().zip(all);
+    let several = pairs().any(|(x, _)| pairs().any(|(other, _)| other.name != x.name));
+    let curves = pairs().enumerate().map(|(index, (x, series))| {
         let stride = series.values.len().div_ceil(MOST).max(1);
         let points = x.values.iter().copied().zip(series.values.iter().copied());
-        curve(series, index, points.step_by(stride).collect())
+        let own = curve(series, index, points.step_by(stride).collect());
+        match several {
+            true => Curve {
+                label: format!("{} against {}", series.name, x.name),
+                ..own
+            },
+            false => own,
+        }
     });
     let curves: Vec<Curve> = curves.collect();
-    let mut across = spread(x.values.iter().copied());
-    let mut up = spread(curves.iter().flat_map(|c| c.points.iter().map(|p| p.1)));
-    if all.iter().all(|series| series.of == x.of) {
+    let points = || curves.iter().flat_map(|curve| &curve.points);
+    let mut across = spread(points().map(|point| point.0));
+    let mut up = spread(points().map(|point| point.1));
+    if pairs().all(|(x, series)| series.of == x.of) {
         let unit = ((across.1 - across.0) / SHAPE).max(up.1 - up.0);
         across = widened(across, unit * SHAPE);
         up = widened(up, unit);
     }
-    let names: Vec<&str> = all.iter().map(|series| series.name.as_str()).collect();
+    let joined = |series: &[Series]| {
+        let mut names: Vec<&str> = series.iter().map(|series| series.name.as_str()).collect();
+        names.dedup();
+        names.join(", ")
+    };
     let (from, to) = ends(time);
     let figure = Figure {
         paper: false,
         title: title.to_owned(),
         subtitle: format!("{MARK}{} to {}", plain(from), plain(to)),
         x: Axis::linear(across.0, across.1, 8),
-        x_label: x.name.clone(),
+        x_label: joined(x),
         panels: vec![Panel {
             map: None,
-            caption: format!("{} against {}", names.join(", "), x.name),
-            y_label: names.join(", "),
+            caption: format!("{} against {}", joined(all), joined(x)),
+            y_label: joined(all),
             y: Axis::linear(up.0, up.1, 6),
             height: HEIGHT,
             curves,

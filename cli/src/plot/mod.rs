@@ -22,7 +22,7 @@ pub(crate) fn plot(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result<u8
         .map_or(Path::new("."), PathBuf::as_path);
     let columns = Columns::open(folder)?;
     let y: Vec<&String> = matches.get_many("y").into_iter().flatten().collect();
-    let x = matches.get_one::<String>("x").map(String::as_str);
+    let x: Vec<&String> = matches.get_many("x").into_iter().flatten().collect();
     if y.is_empty() {
         writeln!(
             streams.out,
@@ -37,20 +37,36 @@ pub(crate) fn plot(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result<u8
     let number = |key: &str| matches.get_one::<f64>(key).copied();
     let range = columns.range(number("from"), number("to"))?;
     let time = columns.series("time", &range)?;
-    let across = x.map(|x| columns.series(x, &range)).transpose()?;
     let mut up = Vec::new();
     for name in &y {
         up.extend(columns.all(name, &range)?);
     }
+    let across = x.iter().map(|x| columns.series(x, &range));
+    let across: Vec<Series> = across.collect::<Result<_, _>>()?;
     let title = columns.title();
-    let drawn = match &across {
-        None => draw::against_time(&title, &time, &up),
-        Some(across) => draw::against(&title, &time, across, &up),
+    let drawn = match across.as_slice() {
+        [] => draw::against_time(&title, &time, &up),
+        // Each against its own, or all against one.
+        own if own.len() == up.len() => draw::against(&title, &time, own, &up),
+        [one] => draw::against(&title, &time, &vec![one.clone(); up.len()], &up),
+        own => {
+            return Err(Failure::Usage(format!(
+                "{} columns along x and {} along y; give one --x for all, or one for each --y",
+                own.len(),
+                up.len()
+            )));
+        }
     };
     let drawn = drawn.map_err(|error| Failure::Failed(format!("cannot draw: {error}")))?;
     let name = match matches.get_one::<PathBuf>("out") {
+        Some(name) if name.extension().is_none_or(|ending| ending != "svg") => {
+            return Err(Failure::Usage(format!(
+                "--out {}: pictures are SVG; give a name that ends in .svg, and convert it, for example by rsvg-convert",
+                shown(name)
+            )));
+        }
         Some(name) => name.clone(),
-        None => folder.join(file_name(across.as_ref(), &y)),
+        None => folder.join(file_name(&x, &y)),
     };
     written(&name, &drawn, matches.get_flag("force"))?;
     writeln!(streams.out, "written: {}", shown(&name))?;
@@ -58,9 +74,8 @@ pub(crate) fn plot(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result<u8
 }
 
 /// `plot-q.svg`, or `plot-q-p.svg` for p against q.
-fn file_name(x: Option<&Series>, y: &[&String]) -> String {
-    let names = x.map(|x| x.name.clone()).into_iter();
-    let names: Vec<String> = names.chain(y.iter().map(|name| (*name).clone())).collect();
+fn file_name(x: &[&String], y: &[&String]) -> String {
+    let names: Vec<&str> = x.iter().chain(y).map(|name| name.as_str()).collect();
     let plain = |c: char| {
         if c.is_alphanumeric() || "-_".contains(c) {
             c

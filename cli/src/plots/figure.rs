@@ -177,7 +177,7 @@ impl Panel {
         x_label: Option<&str>,
     ) -> Result<(), Box<dyn std::error::Error>> {
         let y_label = match &self.y.factor {
-            Some(factor) => format!("{}   × {factor}", self.y_label),
+            Some(factor) => format!("{}   / {factor}", self.y_label),
             None => self.y_label.clone(),
         };
         let mut chart = ChartBuilder::on(area)
@@ -194,7 +194,7 @@ impl Panel {
         let y_words =
             |value: &f64| plotters::coord::ranged1d::ValueFormatter::format_ext(&self.y, value);
         let x_described = match (x_label, &x.factor) {
-            (Some(label), Some(factor)) => format!("{label}   × {factor}"),
+            (Some(label), Some(factor)) => format!("{label}   / {factor}"),
             (Some(label), None) => label.to_owned(),
             (None, _) => String::new(),
         };

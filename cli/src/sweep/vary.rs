@@ -40,10 +40,7 @@ impl Axis {
 }
 
 fn read_values(text: &str) -> Result<Vec<f64>, String> {
-    let number = |text: &str| match text.trim().parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format!("`{}` is no finite number", shown(text))),
-    };
+    let number = |text: &str| crate::number::value(text, &|_| None);
     let parts: Vec<&str> = text.split(':').collect();
     match parts.as_slice() {
         [from, to, count] => {

@@ -77,7 +77,7 @@ fn quantities_are_set_by_name_and_component() {
             "q=1",
             "`kepler` has no such parameter or initial value; it has m, k, X, momentum",
         ),
-        ("k=two", "`two` is not a finite number"),
+        ("k=two", "`two` is not a number: `two` has no value here"),
         ("k", "give NAME=VALUE"),
     ] {
         let done = shipped(&["run", "kepler", "--set", set]);

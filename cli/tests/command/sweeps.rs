@@ -213,7 +213,7 @@ fn wrong_axes_are_named() {
         ("gU=1", "name one, such as gU.1"),
         ("mass=1", "no such parameter"),
         ("gU.w=1", "components gU.1 to gU.3"),
-        ("h=a", "no finite number"),
+        ("h=a", "`a` is not a number"),
         ("h=1:2", "three parts"),
         ("h=1:2:0", "from 1 to"),
         ("Lambda.11=1", "no rotation any more"),
