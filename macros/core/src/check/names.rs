@@ -31,7 +31,10 @@ pub(super) fn unusable(name: &Name) -> Option<Diagnostic> {
     let text = name.text.as_str();
     let function = FUNCTIONS.contains(&text) && !HIDEABLE.contains(&text);
     let shown = seen(text, "");
-    let printed = PRINTED.into_iter().find(|sign| seen(sign, "") == shown);
+    // A copy prints with its site in brackets then.
+    let printed = PRINTED
+        .into_iter()
+        .find(|sign| !name.is_copy && seen(sign, "") == shown);
     let message = if RESERVED.contains(&text) || function {
         format!("`{text}` has a fixed meaning in the language")
     } else if let Some(sign) = printed {

@@ -428,6 +428,7 @@ impl Cursor {
                     text: text.clone(),
                     place: self.place(),
                     typeset: None,
+                    is_copy: false,
                 };
                 self.advance();
                 Ok(name)
