@@ -1,7 +1,6 @@
 //! The longest step that small motions about the start allow: printed before a run, sharp, and warned of beyond it.
 
 use crate::common::{Done, Folder, program};
-use std::time::{Duration, Instant};
 
 /// Runs the program with a search that no load of the machine cuts.
 fn searched(arguments: &[&str]) -> Done {
