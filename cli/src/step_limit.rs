@@ -6,7 +6,7 @@ use crate::plan::Plan;
 use crate::plots::axis::plain;
 use clap::ArgMatches;
 use clebsch::card::Card;
-use clebsch::integrate::{LongestStep, Unknown};
+use clebsch::integrate::{Effort, LongestStep, Unknown};
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
@@ -57,9 +57,12 @@ impl StepLimit {
             format!("the state has {numbers} numbers, more than {most}")
         } else {
             let begun = Instant::now();
-            let ended = || begun.elapsed() >= patience;
-            let found =
-                LongestStep::of_until(card, &case.parameters, &case.initial, case.h, &ended);
+            let effort = Effort {
+                ended: &|| begun.elapsed() >= patience,
+                // Of one that is far above the step nothing is told where there are no sites.
+                far: has_sites,
+            };
+            let found = LongestStep::by(effort, card, &case.parameters, &case.initial, case.h);
             let near = |limit: &LongestStep| {
                 case.h.abs() > 0.5 * limit.step || limit.warning(case.h).is_some()
             };

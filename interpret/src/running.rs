@@ -180,7 +180,7 @@ impl Opened {
 /// The searches of a workspace follow roots from rest without a proof.
 fn to_try(work: &mut Value<f64>) {
     match work {
-        Value::Search(held) => held.to_try(),
+        Value::Search(held) => held.begin_trial(),
         Value::Struct(all) => all.values.iter_mut().for_each(to_try),
         Value::List(all) => all.iter_mut().for_each(to_try),
         _ => {}

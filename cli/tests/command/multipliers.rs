@@ -226,3 +226,49 @@ fn the_one_site_that_moves_has_its_momentum() {
     let held = "end i = N { pinned { x = given; } }";
     refused(held, &case(2, joint, [0.1, 0.0]));
 }
+
+/// Action and constraint depend on `C = Q^T Q` alone, which no rotation of space changes: reactions leave the momentum of these
+/// rotations, whatever letters they are written in.
+#[test]
+fn reactions_written_by_advected_quantities_leave_what_they_do_not_change() {
+    let folder = Folder::new("reactions-by-advected");
+    let model = r#"model A4 {
+    param I0: Sym<3>; param a, b, c: Real; param f: Vec<3>;
+    group Q: GL<3> velocity G;
+    advected C: Sym<3> = Q^T*Q;
+    constraint next(Q) = Q*G;
+    constraint next(C) = G^T*C*G;
+    hold p: dot(f, C*f) = dot(f, f);
+    lagrangian = tr(C*(G - Id)*I0*(G - Id)^T)/(2*h) - h*(a*tr(C) + b*I2(C) - c*log(det(C)));
+}"#;
+    let case = r#"model = "a4"
+name = "c"
+doc = "c"
+h = 0.05
+steps = 12
+
+[parameters]
+I0 = [[1.205746537945, 0.13961997097099804, 0.09763248442239597], [0.13961997097099804, 0.6311282645144728, -0.16149718052848774], [0.09763248442239597, -0.16149718052848774, 0.982340732677681]]
+a = 0.46486585824954607
+b = 0.6942143517142021
+c = 0.4515974146458225
+f = [0.2994231063173138, 0.019861053740829495, -0.1462283754825443]
+
+[initial]
+Q = [[0.8774019219310983, -0.028664803074704925, 0.022501246319340647], [-0.028899715573023527, 1.1293175359492715, 0.10132656257123335], [-0.22320132226492997, -0.18572307651610684, 0.959122720497102]]
+body_momentum = [[-0.01110885263621708, 0.04994609090395395, -0.1353340905761882], [1.2397888160578638, -0.18155660460206013, -0.03428467048639613], [0.6222076644092212, 0.15081191467850244, 0.37689370434391967]]"#;
+    let (model, case) = (
+        folder.write("own.clebsch", model),
+        folder.write("own.toml", case),
+    );
+    let done = clebsch(&["run", &model, "--case", &case, "--json"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let object: serde_json::Value = serde_json::from_str(&done.out).expect("one JSON object");
+    let all = object["results"]["invariants"]
+        .as_array()
+        .expect("a list")
+        .iter();
+    let mut drifts = all.filter(|i| i["name"] == "spatial_momentum_skew_identity");
+    let drift = drifts.next().and_then(|i| i["worst_drift"].as_f64());
+    assert!(drift.is_some_and(|x| x < 1e-14), "{}", done.out);
+}

@@ -139,3 +139,53 @@ fn case_files() {
         }
     }
 }
+
+/// The copies of a quantity at sites are not written in a model: where one would print as another name or as a sign of
+/// derivations, its site stands in brackets.
+#[test]
+fn copies_at_sites_take_no_name_of_the_model() {
+    let folder = Folder::new("names-of-copies");
+    let modulus = r#"/// Elastic string with stiff stretching under its own weight.
+model ElasticString {
+    label i in 0..N step s;
+    param m: Real at nodes;
+    param E: Real at segments;
+    param g: Vec<3>;
+    field x: Vec<3> at nodes;
+    let t = (next(x, i) - x)/s;
+    let e = (dot(t, t) - 1)/2;
+    lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) + h*m*dot(g, x) - h*s*E*e^2/2;
+    end i = 0 { pinned { x = given; } free; }
+    end i = N { free; pinned { x = given; } load { param force: Vec<3>; term h*dot(force, x); } }
+}"#;
+    let inertia = r#"model L6 {
+    label i in 0..N step s;
+    param S, B: Real; param m: Real at nodes;
+    field φ: Vec<3> at nodes;
+    group Λ: SO<3> at segments velocity ω;
+    param J0: Sym<3>;
+    advected J: Sym<3> at segments = Λ*J0*Λ^T;
+    advected t: Vec<3> at segments = Λ*E3;
+    constraint next(Λ) = ω*Λ;
+    constraint next(J) = ω*J*ω^T;
+    constraint next(t) = ω*t;
+    let F = (next(φ, i) - φ)/s - t;
+    lagrangian = m*dot(next(φ) - φ, next(φ) - φ)/(2*h) - s*tr(ω*J)/h - (h*s*S/2)*dot(F, F) + (h*B/s)*dot(t, next(t, i));
+}"#;
+    for (name, model, shown) in [
+        ("modulus", modulus, "h E_{(1)} ((("),
+        ("inertia", inertia, "J_{(0),k}"),
+    ] {
+        let file = folder.write(&format!("{name}.clebsch"), model);
+        let derived = clebsch(&["derive", &file]);
+        assert_eq!(derived.code, 0, "{}", derived.err);
+        assert!(derived.out.contains(shown), "{}", derived.out);
+        let case = folder.write(&format!("{name}.toml"), &clebsch(&["case", &file]).out);
+        let done = clebsch(&["run", &file, "--case", &case, "--steps", "20"]);
+        assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    }
+    // What the model writes twice is refused as before.
+    let twice = inertia.replace("J0", "J_0");
+    let file = folder.write("twice.clebsch", &twice);
+    assert_eq!(clebsch(&["derive", &file]).code, 2);
+}

@@ -12,8 +12,9 @@ pub use unknown::Unknown;
 
 use crate::card::Card;
 use crate::solvers::largest_step::search_of;
+use core::cell::Cell;
+use core::fmt;
 use probe::Probe;
-use std::cell::Cell;
 
 /// Steps of the inquiry in parts of the run's own: with ω h at most about 2, ω² h² of them is 4e-6 at most.
 const SHORT: f64 = 1e-3;
@@ -54,6 +55,31 @@ pub struct LongestStep {
     pub alternating: f64,
 }
 
+/// How much is done to find the longest step.
+#[derive(Clone, Copy)]
+pub struct Effort<'a> {
+    /// Whether the inquiry is given up, which is asked before each of its steps.
+    pub ended: &'a dyn Fn() -> bool,
+    /// Whether limits thousands of times above the step are of interest.
+    pub far: bool,
+}
+
+impl fmt::Debug for Effort<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Effort")
+            .field("far", &self.far)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Effort<'_> {
+    /// All that can be done.
+    pub const UNBOUNDED: Self = Self {
+        ended: &|| false,
+        far: true,
+    };
+}
+
 /// Why the longest step is not known, although the fastest motion may be.
 #[derive(Clone, Copy, Debug)]
 struct Missed {
@@ -85,27 +111,31 @@ impl LongestStep {
         initial: &[Vec<f64>],
         h: f64,
     ) -> Result<Self, Unknown> {
-        Self::of_until(card, parameters, initial, h, &|| false)
+        Self::by(Effort::UNBOUNDED, card, parameters, initial, h)
     }
 
-    /// The same, given up as soon as `ended` says so; it is asked before every step of the inquiry.
+    /// The same with an effort that may be bounded.
     ///
     /// # Errors
     /// As [`LongestStep::of`]; [`Unknown::Unfinished`] where the inquiry was given up.
-    pub fn of_until(
+    pub fn by(
+        effort: Effort<'_>,
         card: &Card,
         parameters: &[Vec<f64>],
         initial: &[Vec<f64>],
         h: f64,
-        ended: &dyn Fn() -> bool,
     ) -> Result<Self, Unknown> {
         let cut = Cell::new(false);
         let ended = || {
-            cut.set(cut.get() || ended());
+            cut.set(cut.get() || (effort.ended)());
             cut.get()
         };
+        let effort = Effort {
+            ended: &ended,
+            ..effort
+        };
         // Which step could be made in place of one that is refused is of no use here, and takes a hundred trials.
-        let found = search_of(|| Self::sought([parameters, initial], card, h, &ended));
+        let found = search_of(|| Self::sought(effort, [parameters, initial], card, h));
         match cut.get() {
             true => Err(Unknown::Unfinished),
             false => found.unwrap_or(Err(Unknown::Start)),
@@ -113,13 +143,13 @@ impl LongestStep {
     }
 
     fn sought(
+        effort: Effort<'_>,
         [parameters, initial]: [&[Vec<f64>]; 2],
         card: &Card,
         h: f64,
-        ended: &dyn Fn() -> bool,
     ) -> Result<Self, Unknown> {
         let asked = |part: f64| {
-            let probe = Probe::new(card, parameters, initial, h * part * SHORT, ended)?;
+            let probe = Probe::new(card, parameters, initial, h * part * SHORT, effort.ended)?;
             Self::asked(&probe, h * part)
         };
         let found = asked(1.0);
@@ -133,6 +163,9 @@ impl LongestStep {
         }
         let is_still = |missed: &Missed| missed.why == Unknown::Still;
         if found.as_ref().is_err_and(is_still) {
+            if !effort.far {
+                return Err(Unknown::Still);
+            }
             let longer = LONGER.into_iter().map(asked);
             // Where a step is refused, longer ones are too.
             let longer = longer.take_while(|found| found.as_ref().map_or_else(is_still, |_| true));

@@ -26,7 +26,7 @@ pub use drift::Drift;
 pub use drift::{filled, not_less};
 pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
 pub use halved::{Halved, Halvings};
-pub use longest_step::{LongestStep, Unknown};
+pub use longest_step::{Effort, LongestStep, Unknown};
 pub use model::Model;
 pub use run::{LOOKS, Observer, Summary, Watch, run, run_until_stopped};
 pub use side_by_side::{Moving, SideBySide, advance_side_by_side};

@@ -8,11 +8,12 @@ use super::shapes;
 use super::spec::{Dimension, Group};
 use crate::diagnostic::{Diagnostic, Errors, Place, closest};
 use crate::expr::shape::{Shape, Structure};
-use crate::expr::spelling::{seen, seen_typeset};
+use crate::expr::spelling::{seen, seen_apart, seen_typeset};
 use crate::expr::symbol::{Role, SymbolId, Symbols, ascii};
 use crate::expr::{Expr, Reach};
 use crate::groups::Additive;
 use crate::syntax::ast::{Model, Name, Statement};
+use std::collections::BTreeSet;
 
 /// A declared configuration and its constraint, once stated.
 #[derive(Clone)]
@@ -45,6 +46,8 @@ struct Taken {
     seen: String,
     /// As files spell it.
     ascii: String,
+    /// Whether it is a copy, whose site may print in brackets.
+    is_copy: bool,
 }
 
 /// Everything declared.
@@ -63,6 +66,8 @@ pub struct Declared {
     taken: Vec<Taken>,
     /// What is typeset, as a reader sees it: the name that says so, and where.
     typeset: Vec<(String, Name)>,
+    /// Copies that print with their sites in brackets.
+    apart: BTreeSet<String>,
 }
 
 /// Reads all declarations of a model.
@@ -106,12 +111,16 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
         structured: Vec::new(),
         taken: Vec::new(),
         typeset: Vec::new(),
+        apart: BTreeSet::new(),
     };
     if let Some(place) = step_place {
         d.take(&step_name, place);
     }
     for (statement, docs) in model.statements.iter().zip(&model.remarks) {
         d.statement(statement, docs, errors);
+    }
+    for name in &d.apart {
+        d.symbols.tell_apart(name);
     }
     d.increments();
     d
@@ -327,7 +336,8 @@ impl Declared {
             );
             return false;
         }
-        let shown = seen(text, &self.time_index);
+        self.tell_apart(name);
+        let shown = self.shown(name);
         if let Some(first) = self.taken.iter().find(|t| t.seen == shown) {
             let other = &first.name;
             let d = Diagnostic::new(
@@ -356,8 +366,49 @@ impl Declared {
         errors.extend(self.typeset_as_another(name));
         let latex = self.in_latex(name);
         self.typeset.push((latex, name.clone()));
-        self.take(text, name.place);
+        self.taken.push(Taken {
+            name: text.to_owned(),
+            place: name.place,
+            seen: shown,
+            ascii: spelt,
+            is_copy: name.is_copy,
+        });
         true
+    }
+
+    /// A name as a reader sees it.
+    fn shown(&self, name: &Name) -> String {
+        match self.apart.contains(&name.text) {
+            true => seen_apart(&name.text, &self.time_index),
+            false => seen(&name.text, &self.time_index),
+        }
+    }
+
+    /// Prints the site of a copy in brackets where it would print as another name or as a sign of derivations: the copy
+    /// is not written in the model, and is not to be renamed.
+    fn tell_apart(&mut self, name: &Name) {
+        let shown = seen(&name.text, &self.time_index);
+        let alike = |t: &Taken| t.seen == shown;
+        let sign = || PRINTED.into_iter().any(|sign| seen(sign, "") == shown);
+        if name.is_copy {
+            if self.taken.iter().any(alike) || sign() {
+                self.apart.insert(name.text.clone());
+            }
+            return;
+        }
+        for copy in self
+            .taken
+            .iter_mut()
+            .filter(|t| t.is_copy && t.seen == shown)
+        {
+            copy.seen = seen_apart(&copy.name, &self.time_index);
+            self.apart.insert(copy.name.clone());
+            for (latex, own) in &mut self.typeset {
+                if own.text == copy.name && own.typeset.is_none() {
+                    latex.clone_from(&copy.seen);
+                }
+            }
+        }
     }
 
     /// Keeps the name from being declared again. How it prints is found once: compared with every
@@ -368,6 +419,7 @@ impl Declared {
             place,
             seen: seen(name, &self.time_index),
             ascii: ascii(name),
+            is_copy: false,
         });
     }
 
@@ -375,7 +427,7 @@ impl Declared {
     fn in_latex(&self, name: &Name) -> String {
         match &name.typeset {
             Some((latex, _)) => seen_typeset(latex, &self.time_index),
-            None => seen(&name.text, &self.time_index),
+            None => self.shown(name),
         }
     }
 

@@ -32,7 +32,10 @@ pub(super) fn unusable(name: &Name) -> Option<Diagnostic> {
     let text = name.text.as_str();
     let function = FUNCTIONS.contains(&text) && !HIDEABLE.contains(&text);
     let shown = seen(text, "");
-    let printed = PRINTED.into_iter().find(|sign| seen(sign, "") == shown);
+    // A copy prints with its site in brackets then.
+    let printed = PRINTED
+        .into_iter()
+        .find(|sign| !name.is_copy && seen(sign, "") == shown);
     if RESERVED.contains(&text) || function {
         return Some(messages::reserved(name));
     }

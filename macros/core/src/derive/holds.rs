@@ -14,7 +14,7 @@ use super::recognise::Riccati;
 use super::variation::{Variation, at};
 use super::{Derivation, Letters};
 use crate::algebra::Algebra;
-use crate::check::spec::{Configuration, Hold, Side, Spec};
+use crate::check::spec::{Advected, Configuration, Hold, Side, Spec};
 use crate::diagnostic::Diagnostic;
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
@@ -355,9 +355,17 @@ pub(super) fn kept(
         })
         .collect();
     let solved = Solved::of(spec, letters, algebra);
+    // A reaction may be written by advected quantities where a momentum is written by the configuration.
+    let defined = |a: &Advected| Some((here(a.quantity), a.definition.clone()?));
+    let definitions: Vec<(Letter, Expr)> = spec.advected.iter().filter_map(defined).collect();
+    let vanishes = |change: &Expr| {
+        solved.vanishes(change, algebra)
+            || !definitions.is_empty()
+                && solved.vanishes(&expr::substitute(s, change, &definitions), algebra)
+    };
     let unmoved = |value: &Expr| {
         let mut changes = kicks.iter().map(|kick| expr::directional(s, value, kick));
-        changes.all(|change| solved.vanishes(&change, algebra))
+        changes.all(|change| vanishes(&change))
     };
     let is_left = |v: &Invariant| match (&v.kind, &v.value) {
         (Kind::Energy, _) => true,

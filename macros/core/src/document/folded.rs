@@ -154,6 +154,11 @@ impl<'a> Folded<'a> {
             None => (beside(part, symbol), own.typeset.clone()),
             Some(at) => {
                 let index = self.index(part, at.label, at.site, from);
+                let is_number = index.bytes().all(|c| c.is_ascii_digit());
+                let index = match own.apart && is_number {
+                    true => format!("({index})"),
+                    false => index,
+                };
                 let stated = self.lattice.find(&at.name);
                 let latex = stated.and_then(|q| q.name.latex());
                 let latex = latex.map(|l| format!("{{{l}}}_{{{index}}}"));

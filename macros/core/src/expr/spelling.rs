@@ -68,6 +68,15 @@ pub(crate) fn parse(text: &str) -> Parsed {
     parsed
 }
 
+/// The same of the copy of a quantity at a site, with the site in brackets: where another name prints as the copy does.
+pub(crate) fn parse_apart(text: &str) -> Parsed {
+    let mut parsed = parse(text);
+    if let Some(site) = parsed.subs.last_mut() {
+        *site = format!("({site})");
+    }
+    parsed
+}
+
 /// Greek letters that look Latin, which LaTeX prints as such.
 const LATIN: [(char, char); 15] = [
     ('Α', 'A'),
@@ -130,7 +139,15 @@ fn shown(base: &str, mut below: Vec<String>, above: &str, index: &str) -> String
 
 /// A name as a reader sees it: one text for all spellings that print alike, as `index` counts time.
 pub(crate) fn seen(text: &str, index: &str) -> String {
-    let parsed = parse(&skeleton(text));
+    seen_as(&parse(&skeleton(text)), index)
+}
+
+/// The copy of a quantity at a site, with the site in brackets, as a reader sees it.
+pub(crate) fn seen_apart(text: &str, index: &str) -> String {
+    seen_as(&parse_apart(&skeleton(text)), index)
+}
+
+fn seen_as(parsed: &Parsed, index: &str) -> String {
     let below = parsed.subs.iter().map(|s| script(s)).collect();
     let above = parsed.sup.as_deref().map(script).unwrap_or_default();
     shown(&parsed.base, below, &above, index)

@@ -3,7 +3,7 @@
 
 use super::functional::{Functional, FunctionalId};
 use super::shape::{Dim, Shape, Structure};
-use super::spelling::{seen, seen_typeset};
+use super::spelling::{Parsed, parse, parse_apart, seen, seen_apart, seen_typeset};
 use std::collections::BTreeSet;
 
 /// Index of a symbol in its table.
@@ -46,8 +46,20 @@ pub struct Symbol {
     pub role: Role,
     /// How it is typeset, in LaTeX, where its declaration says so.
     pub typeset: Option<String>,
+    /// Whether it is a copy that prints with its site in brackets, since another name prints as it does without.
+    pub apart: bool,
     /// Lines of the documentation of its declaration.
     pub docs: Vec<String>,
+}
+
+impl Symbol {
+    /// The name as it prints, in its parts.
+    pub(crate) fn parsed(&self) -> Parsed {
+        match self.apart {
+            true => parse_apart(&self.name),
+            false => parse(&self.name),
+        }
+    }
 }
 
 /// All symbols of a model, in order of creation.
@@ -87,6 +99,7 @@ impl Symbols {
             structure,
             role,
             typeset: None,
+            apart: false,
             docs: Vec::new(),
         });
         SymbolId((self.list.len() - 1) as u32)
@@ -115,6 +128,15 @@ impl Symbols {
         if let Some(symbol) = self.list.get_mut(id.0 as usize) {
             symbol.typeset = typeset;
             symbol.docs = docs.to_vec();
+        }
+    }
+
+    /// Prints the copy of a quantity with its site in brackets.
+    pub fn tell_apart(&mut self, name: &str) {
+        let Some(id) = self.find(name) else { return };
+        self.seen.insert(seen_apart(name, &self.time_index));
+        if let Some(symbol) = self.list.get_mut(id.0 as usize) {
+            symbol.apart = true;
         }
     }
 

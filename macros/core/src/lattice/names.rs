@@ -25,5 +25,6 @@ pub(super) fn copy(of: &Name, site: usize) -> Name {
         text: copy_name(&of.text, site),
         place: of.place,
         typeset: typeset.map(|(latex, place)| (format!("{{{latex}}}_{{{site}}}"), *place)),
+        is_copy: true,
     }
 }

@@ -217,6 +217,7 @@ fn still(q: &Quantity, e: &Expression) -> Expression {
             text: "Mat".to_owned(),
             place: e.place,
             typeset: None,
+            is_copy: false,
         },
         sizes: vec![Size::Number(n + 1, e.place)],
         place: e.place,

@@ -14,6 +14,8 @@ pub struct Name {
     pub place: Place,
     /// How it is typeset, in LaTeX, where a declaration says so, and the token that does.
     pub typeset: Option<(String, Place)>,
+    /// Whether it is the name of a copy at a site, which the model does not write.
+    pub is_copy: bool,
 }
 
 impl Name {
@@ -98,6 +100,7 @@ impl Kindred {
                 text: "Real".to_owned(),
                 place,
                 typeset: None,
+                is_copy: false,
             },
             sizes: Vec::new(),
             place,

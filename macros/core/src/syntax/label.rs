@@ -64,6 +64,7 @@ pub(super) fn end(c: &mut Cursor) -> Result<Statement, Diagnostic> {
                 text: text.clone(),
                 place: c.place(),
                 typeset: None,
+                is_copy: false,
             };
             c.advance();
             name

@@ -57,6 +57,7 @@ pub(super) fn with_lengths(mut model: Model) -> Model {
                 text: LENGTH.to_owned(),
                 place: path.place,
                 typeset: None,
+                is_copy: false,
             });
         }
     }
@@ -67,6 +68,7 @@ pub(super) fn with_lengths(mut model: Model) -> Model {
             text: LENGTH.to_owned(),
             place,
             typeset: None,
+            is_copy: false,
         };
         let length = Statement::Param {
             names: vec![name],

@@ -449,6 +449,7 @@ fn given(c: &mut Cursor) -> Result<Statement, Diagnostic> {
             text: crate::expr::BY_CASE.to_owned(),
             place,
             typeset: None,
+            is_copy: false,
         },
         (true, None) => {
             let mut path = c.name("the path of what computes it").map_err(|e| {

@@ -430,6 +430,7 @@ impl Cursor {
                     text: text.clone(),
                     place: self.place(),
                     typeset: None,
+                    is_copy: false,
                 };
                 self.advance();
                 Ok(name)

@@ -25,6 +25,23 @@ const TAKEN: f64 = 1e-9;
 const SCALES: usize = 12;
 const SLOWER: f64 = 1e-4;
 
+/// A momentum that goes less than this part of what is in proportion to a smaller one is too large to be linear, as of a
+/// particle that is no faster than light.
+const STRAIGHT: f64 = 0.5;
+
+/// What such a momentum is made smaller by, and how far it must go in the end, in parts of disturbances.
+const SMALLER: f64 = 1e-2;
+const SEEN: f64 = 1e-6;
+
+/// Whether ways are not in proportion to scales, of which the larger goes too short a way.
+fn is_bent(one: (f64, f64), other: (f64, f64)) -> bool {
+    let ((scale, way), (larger, farther)) = match one.0 < other.0 {
+        true => (one, other),
+        false => (other, one),
+    };
+    farther < STRAIGHT * way * larger / scale
+}
+
 pub(super) struct Probe<'a> {
     card: &'a Card,
     parameters: &'a [Vec<f64>],
@@ -288,6 +305,8 @@ impl<'a> Probe<'a> {
             return None;
         }
         let mut refused = false;
+        // The scale before, with the way that it went, and whether scales are made smaller until ways are in proportion.
+        let (mut before, mut bends) = (None, false);
         for _ in 0..SCALES {
             // What is too fast for the model may be refused: of a mass that is small beside one.
             let thrown = self.thrown(p, scale)?;
@@ -298,10 +317,26 @@ impl<'a> Probe<'a> {
             };
             let change = self.change(&self.rest, &after);
             let most = self.size(&change);
-            if (0.01 * self.part..=100.0 * self.part).contains(&most) {
-                return Some(change.iter().map(|x| x / (scale * self.h)).collect());
+            let found = || change.iter().map(|x| x / (scale * self.h)).collect();
+            let wanted = (0.01 * self.part..=100.0 * self.part).contains(&most);
+            if wanted && !bends {
+                return Some(found());
             }
-            scale *= if most > 0.0 { self.part / most } else { 1e6 };
+            let now = (scale, most);
+            let bent = before.is_some_and(|before| is_bent(before, now));
+            if bends && !bent {
+                return (most > SEEN * self.part).then(found);
+            }
+            bends |= bent;
+            // What goes no farther than rounding says nothing of proportion.
+            before = (most > SEEN * self.part).then_some(now);
+            scale *= if bends {
+                SMALLER
+            } else if most > 0.0 {
+                self.part / most
+            } else {
+                1e6
+            };
         }
         self.refused.set(self.refused.get() || refused);
         None

@@ -168,25 +168,33 @@ where
         found = follow(equations, stage, solution, &mut first, true);
     }
     // That there is no proof does not mean that there is a fold.
-    found.or_else(|_| closely(equations, stage, solution))
+    found.or_else(|reached| {
+        let reached = match care.proved {
+            true => None,
+            false => reached,
+        };
+        closely(equations, stage, reached, solution)
+    })
 }
 
+/// A point of the curve and the part of the way to it.
+type Reached<G, const D: usize> = Option<(Stage<G, D>, f64)>;
+
 /// Follows the curve stage by stage from rest, each stage proved or foreseen from its end. `first` is how long a first
-/// stage is tried, and was in the end.
+/// stage is tried, and was in the end. Where the curve is lost, gives up to where it was followed.
 fn follow<G, E, const D: usize, const K: usize>(
     equations: &Equations<G, E, D, K>,
     rest: Stage<G, D>,
     solution: Option<&G>,
     first: &mut f64,
     proved: bool,
-) -> Result<Traced<G, D>, Fold>
+) -> Result<Traced<G, D>, Reached<G, D>>
 where
     G: Group<f64>,
     E: Region<K, Centre = G>,
 {
     let at_rest = rest.residual;
     let units = rest.units();
-    let fold = |share: f64, way: &SVector<f64, D>| Fold::at(share, fastest::<G, D>(way, &units));
     let mut stage = rest;
     let mut whole = stage.toward(&SVector::zeros());
     let lengths = lengths::<G, D>(&whole);
@@ -209,7 +217,7 @@ where
         while accepted.is_none() {
             length = length.min(left);
             if length < shortest(share) {
-                return Err(fold(share, &whole));
+                return Err(Some((stage, share)));
             }
             let end = if length >= left { 1.0 } else { share + length };
             let goal = at_rest * (1.0 - end);
@@ -240,7 +248,7 @@ where
             }
         }
         let Some((next, end)) = accepted else {
-            return Err(fold(share, &whole));
+            return Err(Some((stage, share)));
         };
         if share == 0.0 {
             *first = end;
@@ -248,14 +256,15 @@ where
         if end >= 1.0 {
             return Ok(verdict(next, &radii, solution));
         }
-        share = end;
-        length = next_length;
         let left = (equations.residual)(&next);
-        stage = Stage::at(equations, next, left).ok_or_else(|| fold(share, &whole))?;
+        let Some(next) = Stage::at(equations, next, left) else {
+            return Err(Some((stage, share)));
+        };
+        (stage, share, length) = (next, end, next_length);
         whole = stage.toward(&SVector::zeros());
         course = self::course(&self::lengths::<G, D>(&whole), &units, 1.0 / (1.0 - share));
     }
-    Err(fold(share, &whole))
+    Err(Some((stage, share)))
 }
 
 /// How much the tangent may change to the middle and to the end of a short stage.
@@ -263,17 +272,20 @@ const SHORT: f64 = 0.5;
 
 /// Follows the curve in short stages where a proof fails: bounds over a region are poor where the
 /// coordinates are ill conditioned, as at nearly singular elements of GL(n). The tangent is looked
-/// at in the middle and at the end of each stage, its root is solved for; not a proof.
+/// at in the middle and at the end of each stage, its root is solved for; not a proof. Begins at what was reached, where
+/// that is given.
 fn closely<G, E, const D: usize, const K: usize>(
     equations: &Equations<G, E, D, K>,
     rest: Stage<G, D>,
+    reached: Reached<G, D>,
     solution: Option<&G>,
 ) -> Result<Traced<G, D>, Fold>
 where
     G: Group<f64>,
 {
     let (at_rest, units) = (rest.residual, rest.units());
-    let (mut stage, mut share, mut length) = (rest, 0.0, 1.0_f64);
+    let (mut stage, mut share) = reached.unwrap_or((rest, 0.0));
+    let mut length = 1.0_f64;
     for _ in 0..MOST_STAGES {
         let left = 1.0 - share;
         length = length.min(left);

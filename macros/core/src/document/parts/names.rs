@@ -149,7 +149,7 @@ impl Names {
 
     fn made(&mut self, kind: Kind, whole: SymbolId) -> [SymbolId; 2] {
         let symbol = self.symbols.get(whole).clone();
-        let parsed = spelling::parse(&symbol.name);
+        let parsed = symbol.parsed();
         let space = expr::within(symbol.shape.rows);
         let vector = Shape::vector(space);
         let (shapes, structure) = match kind {

@@ -140,6 +140,7 @@ impl Writer<'_> {
                     text: copy.to_owned(),
                     place: q.name.place,
                     typeset: None,
+                    is_copy: true,
                 };
                 declare(parameter(name, q.shape.clone()));
             }

@@ -351,6 +351,7 @@ pub(super) fn call<const N: usize>(at: &Expression, of: &str, list: [Expression;
         text: of.to_owned(),
         place: at.place,
         typeset: None,
+        is_copy: false,
     };
     kind(at, Kind::Call(of, list.to_vec()))
 }
@@ -381,6 +382,7 @@ pub(super) fn kindred(place: Place, family: &str, n: Option<usize>) -> Kindred {
             text: family.to_owned(),
             place,
             typeset: None,
+            is_copy: false,
         },
         sizes: n.map(size).into_iter().collect(),
         place,

@@ -153,6 +153,7 @@ fn renamed(name: &Name, text: &str) -> Name {
         text: text.to_owned(),
         place: name.place,
         typeset: name.typeset.clone().filter(|_| name.text == text),
+        is_copy: name.is_copy,
     }
 }
 

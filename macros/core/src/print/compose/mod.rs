@@ -34,7 +34,7 @@ impl Composer<'_> {
             let name = Layout::Typeset(latex.clone(), Box::new(tex::layout(latex)));
             return self.indexed(name, Vec::new(), symbol.role, at);
         }
-        let parsed = name::parse(&symbol.name);
+        let parsed = symbol.parsed();
         let subs: Vec<Layout> = parsed.subs.iter().map(|s| name::script(s)).collect();
         let layout = self.indexed(letters(parsed.base), subs, symbol.role, at);
         match parsed.sup.as_deref() {

@@ -67,8 +67,17 @@ fn traced(curve: &dyn Curve, solution: Option<Point>, care: Care) -> Result<Foun
         found = follow(curve, stage.clone(), solution, &mut first, true);
     }
     // That there is no proof does not mean that there is a fold.
-    found.or_else(|_| closely(curve, stage, solution))
+    found.or_else(|reached| {
+        let reached = match care.proved {
+            true => None,
+            false => reached,
+        };
+        closely(curve, stage, reached, solution)
+    })
 }
+
+/// A point of the curve and the part of the way to it.
+type Reached = Option<(Stage, f64)>;
 
 /// Residuals that vanish.
 fn nowhere(curve: &dyn Curve) -> Vec<f64> {
@@ -80,18 +89,17 @@ fn times(x: &[f64], factor: f64) -> Vec<f64> {
 }
 
 /// Follows the curve stage by stage from rest, each stage proved or foreseen from its end. `first` is how long a first
-/// stage is tried, and was in the end.
+/// stage is tried, and was in the end. Where the curve is lost, gives up to where it was followed.
 fn follow(
     curve: &dyn Curve,
     rest: Stage,
     solution: Option<Point>,
     first: &mut f64,
     proved: bool,
-) -> Result<Found, Fold> {
+) -> Result<Found, Reached> {
     let parts = curve.parts();
     let at_rest = rest.residual.clone();
     let units = rest.units(parts);
-    let fold = |share: f64, way: &[f64]| Fold::at(share, fastest(parts, way, &units));
     let mut stage = rest;
     let mut whole = stage.toward(&nowhere(curve));
     let lengths = parts.lengths(&whole);
@@ -114,7 +122,7 @@ fn follow(
         while accepted.is_none() {
             length = length.min(left);
             if length < shortest(share) {
-                return Err(fold(share, &whole));
+                return Err(Some((stage, share)));
             }
             let end = if length >= left { 1.0 } else { share + length };
             let goal = times(&at_rest, 1.0 - end);
@@ -145,7 +153,7 @@ fn follow(
             }
         }
         let Some((next, end)) = accepted else {
-            return Err(fold(share, &whole));
+            return Err(Some((stage, share)));
         };
         if share == 0.0 {
             *first = end;
@@ -153,14 +161,15 @@ fn follow(
         if end >= 1.0 {
             return Ok(verdict(curve, next, &radii, solution));
         }
-        share = end;
-        length = next_length;
         let left = curve.residual(next);
-        stage = Stage::at(curve, next, left).ok_or_else(|| fold(share, &whole))?;
+        let Some(next) = Stage::at(curve, next, left) else {
+            return Err(Some((stage, share)));
+        };
+        (stage, share, length) = (next, end, next_length);
         whole = stage.toward(&nowhere(curve));
         course = self::course(&parts.lengths(&whole), &units, 1.0 / (1.0 - share));
     }
-    Err(fold(share, &whole))
+    Err(Some((stage, share)))
 }
 
 /// How much the tangent may change to the middle and to the end of a short stage.
@@ -168,11 +177,18 @@ const SHORT: f64 = 0.5;
 
 /// Follows the curve in short stages where a proof fails: bounds over a region are poor where the
 /// coordinates are ill conditioned, as at nearly singular elements of GL(n). The tangent is looked
-/// at in the middle and at the end of each stage, its root is solved for; not a proof.
-fn closely(curve: &dyn Curve, rest: Stage, solution: Option<Point>) -> Result<Found, Fold> {
+/// at in the middle and at the end of each stage, its root is solved for; not a proof. Begins at what was reached, where
+/// that is given.
+fn closely(
+    curve: &dyn Curve,
+    rest: Stage,
+    reached: Reached,
+    solution: Option<Point>,
+) -> Result<Found, Fold> {
     let parts = curve.parts();
     let (at_rest, units) = (rest.residual.clone(), rest.units(parts));
-    let (mut stage, mut share, mut length) = (rest, 0.0, 1.0_f64);
+    let (mut stage, mut share) = reached.unwrap_or((rest, 0.0));
+    let mut length = 1.0_f64;
     for _ in 0..MOST_STAGES {
         let left = 1.0 - share;
         length = length.min(left);
