@@ -203,31 +203,39 @@ impl Motion {
 
     /// What a reader is told of the momenta.
     pub(crate) fn told(&self, card: &Card, case: &Case) -> Vec<String> {
-        let mut out: Vec<(String, String, usize, Vec<f64>)> = Vec::new();
+        let mut out: Vec<Told<'_>> = Vec::new();
         for start in &self.given {
             let Some(field) = card.initial.get(start.momentum) else {
                 continue;
             };
-            let own = quantity(field.ascii).to_owned();
-            let key = quantity(&start.key).to_owned();
-            let numbers = case
-                .initial
-                .get(start.momentum)
-                .cloned()
-                .unwrap_or_default();
-            match out.iter_mut().find(|(name, ..)| *name == own) {
-                Some((_, keys, count, _)) if *keys == key => *count += 1,
-                Some((_, keys, ..)) if keys.contains(key.as_str()) => {}
-                Some((_, keys, ..)) => *keys = format!("{keys} and {key}"),
-                None => out.push((own, key, 1, numbers)),
+            let (name, key) = (quantity(field.ascii), quantity(&start.key));
+            match out.iter_mut().find(|told| told.name == name) {
+                Some(told) => {
+                    told.momenta.insert(start.momentum);
+                    if !told.keys.contains(&key) {
+                        told.keys.push(key);
+                    }
+                }
+                None => out.push(Told {
+                    name,
+                    keys: vec![key],
+                    momenta: BTreeSet::from([start.momentum]),
+                }),
             }
         }
-        let lines = out.into_iter().map(|(name, keys, count, numbers)| {
-            let value = match count {
-                1 => format!(": {}", list(&numbers)),
-                _ => format!(", at {count} sites"),
+        let lines = out.into_iter().map(|told| {
+            let value = match (told.momenta.len(), told.momenta.first()) {
+                (1, Some(at)) => {
+                    let numbers = case.initial.get(*at).map(Vec::as_slice);
+                    format!(": {}", list(numbers.unwrap_or_default()))
+                }
+                (count, _) => format!(" ({count} momenta)"),
             };
-            format!("initial {name} from {keys}{value}")
+            format!(
+                "initial {} from {}{value}",
+                told.name,
+                told.keys.join(" and ")
+            )
         });
         let resting = self.resting.iter().filter_map(|at| {
             let numbers = case.initial.get(*at)?;
@@ -242,6 +250,14 @@ impl Motion {
         });
         lines.chain(resting.take(MOST_TOLD)).collect()
     }
+}
+
+/// The momenta of one quantity.
+struct Told<'a> {
+    name: &'a str,
+    /// The keys that give its velocities.
+    keys: Vec<&'a str>,
+    momenta: BTreeSet<usize>,
 }
 
 /// The key of a quantity without its site.
