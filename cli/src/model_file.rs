@@ -142,9 +142,11 @@ fn of_field(field: &Field, turned: bool) -> Vec<f64> {
     let (rows, cols) = (field.rows, field.cols);
     let square = rows == cols && rows > 1;
     let entry = |i: usize, j: usize| match field.kind {
-        Kind::UnitQuaternion => f64::from(u8::from(i == 0)),
+        Kind::UnitQuaternion if cols == 1 => f64::from(u8::from(i == 0)),
         Kind::SecondMoments | Kind::Diagonal | Kind::Symmetric if i == j => (i + 1) as f64,
-        Kind::Matrix | Kind::Rotation | Kind::RigidMotion if square => f64::from(u8::from(i == j)),
+        Kind::Matrix | Kind::Rotation | Kind::UnitQuaternion | Kind::RigidMotion if square => {
+            f64::from(u8::from(i == j))
+        }
         Kind::SecondMoments | Kind::Diagonal | Kind::Symmetric => 0.0,
         Kind::Skew => skew(i, j),
         Kind::BodyMomentum | Kind::SpatialMomentum if square && turned => 0.1 * skew(i, j),

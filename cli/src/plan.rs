@@ -266,11 +266,16 @@ impl Plan {
             return place;
         }
         let key = key.unwrap_or_else(|| wrong.field.to_owned());
+        // A momentum that was made of a velocity is named by that.
+        let momentum = key.strip_prefix("initial.");
+        let at = momentum.and_then(|own| card.initial.iter().position(|f| f.ascii == own));
+        let velocity = at.and_then(|at| self.motion.key_of(at));
+        let named = velocity.map_or_else(|| key.clone(), |own| format!("initial.{own}"));
         match &self.origin {
-            None => format!("case `{}`: {key}", shown(&self.case.name)),
+            None => format!("case `{}`: {named}", shown(&self.case.name)),
             Some((file, lines)) => match case_file::line_of(lines, &key) {
-                Some(line) => format!("{}:{line}: {key}", shown(file)),
-                None => format!("{}: {key}", shown(file)),
+                Some(line) => format!("{}:{line}: {named}", shown(file)),
+                None => format!("{}: {named}", shown(file)),
             },
         }
     }

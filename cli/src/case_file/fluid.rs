@@ -278,11 +278,11 @@ impl Reader<'_> {
         };
         let which = match (d, at % d) {
             (1, _) => "",
-            (_, 0) => " of x",
-            _ => " of y",
+            (_, 0) => " in x",
+            _ => " in y",
         };
         Some(format!(
-            "particle {particle} at {place} lies outside the walls{which}, 0 to {length}; place it between them"
+            "particle {particle} at {place} lies outside the walls 0 to {length}{which}"
         ))
     }
 

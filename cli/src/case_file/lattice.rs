@@ -3,9 +3,11 @@
 
 use super::copies::{Base, base};
 use super::labels::Stated;
+use super::motion::elements;
 use super::remarks::remark;
 use super::sample as fluid;
 use super::space::Space;
+use super::velocity::Way;
 use super::write::{bounds, comment};
 use crate::model_file::{OF_HELD, has_holds, is_momentum, sample_entry, turns};
 use crate::plain::shown;
@@ -68,10 +70,11 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
     let Some(copies) = stated.copies(choice) else {
         return text;
     };
+    let elements = elements(card.initial);
     for (table, fields) in [("parameters", card.parameters), ("initial", card.initial)] {
         let _ = writeln!(text, "\n[{table}]");
         let mut told: Vec<String> = Vec::new();
-        for field in fields {
+        for (at, field) in fields.iter().enumerate() {
             let base = base(&copies, field);
             let key = base.as_ref().map_or(field.ascii, |b| b.key.as_str());
             // What is given at an end has its value among those of all sites.
@@ -83,11 +86,25 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
                 comment(&mut text, &words);
             }
             let value = sample(stated, field, base.as_ref(), table, turns(card));
-            let _ = writeln!(text, "{key} = {value}");
+            let or = elements
+                .get(&at)
+                .filter(|_| table == "initial")
+                .and_then(|own| fields.get(*own))
+                .map_or_else(String::new, |element| instead(element, field, key));
+            let _ = writeln!(text, "{key} = {value}{or}");
         }
     }
     bounds(&mut text, card, &[]);
     text
+}
+
+/// The velocities that may stand in the place of the momenta under a key.
+fn instead(element: &Field, momentum: &Field, key: &str) -> String {
+    let ways = Way::ALL
+        .into_iter()
+        .filter(|way| way.is_of(element, momentum));
+    let keys: Vec<String> = ways.filter_map(|way| way.key(key)).collect();
+    format!("     # or {}", keys.join(", "))
 }
 
 /// How the line may end.

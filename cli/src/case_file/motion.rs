@@ -236,23 +236,24 @@ impl Motion {
 
     /// What a reader is told of the momenta.
     pub(crate) fn told(&self, card: &Card, case: &Case) -> Vec<String> {
-        let mut out: Vec<(String, String, usize, Vec<f64>)> = Vec::new();
+        let mut out: Vec<Told<'_>> = Vec::new();
         for start in &self.given {
             let Some(field) = card.initial.get(start.momentum) else {
                 continue;
             };
-            let own = quantity(field.ascii).to_owned();
-            let key = quantity(&start.key).to_owned();
-            let numbers = case
-                .initial
-                .get(start.momentum)
-                .cloned()
-                .unwrap_or_default();
-            match out.iter_mut().find(|(name, ..)| *name == own) {
-                Some((_, keys, count, _)) if *keys == key => *count += 1,
-                Some((_, keys, ..)) if keys.contains(key.as_str()) => {}
-                Some((_, keys, ..)) => *keys = format!("{keys} and {key}"),
-                None => out.push((own, key, 1, numbers)),
+            let (name, key) = (quantity(field.ascii), quantity(&start.key));
+            match out.iter_mut().find(|told| told.name == name) {
+                Some(told) => {
+                    told.momenta.insert(start.momentum);
+                    if !told.keys.contains(&key) {
+                        told.keys.push(key);
+                    }
+                }
+                None => out.push(Told {
+                    name,
+                    keys: vec![key],
+                    momenta: BTreeSet::from([start.momentum]),
+                }),
             }
         }
         let is_zero = |at: &usize| {
@@ -271,12 +272,19 @@ impl Motion {
             format!("initial {name} is zero: the case gives neither it nor a velocity")
         });
         let zero: Vec<String> = zero.collect();
-        let lines = out.into_iter().map(|(name, keys, count, numbers)| {
-            let value = match count {
-                1 => format!(": {}", list(&numbers)),
-                _ => format!(", at {count} sites"),
+        let lines = out.into_iter().map(|told| {
+            let value = match (told.momenta.len(), told.momenta.first()) {
+                (1, Some(at)) => {
+                    let numbers = case.initial.get(*at).map(Vec::as_slice);
+                    format!(": {}", list(numbers.unwrap_or_default()))
+                }
+                (count, _) => format!(" ({count} momenta)"),
             };
-            format!("initial {name} from {keys}{value}")
+            format!(
+                "initial {} from {}{value}",
+                told.name,
+                told.keys.join(" and ")
+            )
         });
         let resting = self.resting.iter().filter_map(|at| {
             let numbers = case.initial.get(*at)?;
@@ -320,6 +328,14 @@ pub(crate) fn is_velocity(name: &str, card: &Card) -> bool {
 /// Whether a configuration takes both: a rigid motion has the rate of its position beside an angular velocity.
 fn is_beside(a: Way, b: Way) -> bool {
     (a == Way::Rate) != (b == Way::Rate)
+}
+
+/// The momenta of one quantity.
+struct Told<'a> {
+    name: &'a str,
+    /// The keys that give its velocities.
+    keys: Vec<&'a str>,
+    momenta: BTreeSet<usize>,
 }
 
 /// The key of a quantity without its site.

@@ -1,6 +1,6 @@
 //! Rotations are read in every way wherever a case has one: initial values, parameters, values at sites and at ends.
 
-use crate::common::{Folder, shipped};
+use crate::common::{Folder, clebsch, shipped};
 use crate::ran::{Ran, run};
 
 const MODEL: &str = "model Drawn {
@@ -89,6 +89,25 @@ fn wrong_rotations_are_told_with_what_to_write() {
             done.err
         );
     }
+}
+
+/// The sample of such a model is the identity, and its case names the other forms.
+#[test]
+fn a_printed_case_of_rotations_runs() {
+    let folder = Folder::new("attitudes-sample");
+    let model = folder.write("drawn.clebsch", MODEL);
+    let sample = clebsch(&["case", &model]);
+    assert_eq!(sample.code, 0, "{}", sample.err);
+    for said in [
+        "q0 = [\n    [1.0, 0.0, 0.0, 0.0],\n    [0.0, 1.0, 0.0, 0.0],",
+        "{ axis, angle }",
+        "or give angular_velocity, spatial_angular_velocity",
+    ] {
+        assert!(sample.out.contains(said), "{said}: {}", sample.out);
+    }
+    let case = folder.write("drawn.toml", &sample.out);
+    let done = clebsch(&["run", &model, "--case", &case, "--steps", "2"]);
+    assert_eq!(done.code, 0, "{}", done.err);
 }
 
 /// The clamped end of a rod and its sections, in every way.

@@ -142,7 +142,7 @@ fn particles_start_between_the_walls() {
             &[],
         );
         assert_eq!(done.code, 2, "{}", done.out);
-        let said = format!("initial.X: particle 0 at {said} lies outside the walls, 0 to 1");
+        let said = format!("initial.X: particle 0 at {said} lies outside the walls 0 to 1");
         assert!(done.err.contains(&said), "{}", done.err);
     }
     let done = run(&folder, model, &case("[0, 0.4, 0.6, 1]"), &[]);

@@ -237,6 +237,20 @@ fn along_a_line_velocities_are_values_expressions_or_lists() {
     }
 }
 
+/// The printed case of a chain names the velocity that may stand in the place of a momentum.
+#[test]
+fn printed_cases_of_chains_name_velocities() {
+    let folder = Folder::new("velocities-printed");
+    let model = folder.write(
+        "chain.clebsch",
+        "model Chain { label i in 0..N; param m, k: Real; field q: Real at nodes;
+         lagrangian = m*(next(q) - q)^2/(2*h) - (h*k/2)*(next(q, i) - q)^2; }",
+    );
+    let printed = clebsch(&["case", &model]);
+    let said = "momentum_q = 0.0     # or velocity_q\n";
+    assert!(printed.out.contains(said), "{}", printed.out);
+}
+
 #[test]
 fn velocities_that_leave_a_constraint_are_refused() {
     let model = "model Pendulum {

@@ -1,7 +1,7 @@
 //! Rotations that tables state: `{ axis = [..], angle = .. }`, `{ euler = "zxz", angles = [..] }`, `{ from = [..], to = [..] }`. Takes the
 //! table; gives the matrix.
 
-use super::{OF_SPACE, orthonormal, unit};
+use super::{orthonormal, unit};
 use crate::case_file::value::{Numbers, entries, number, row};
 use crate::suggestion::did_you_mean;
 use clebsch::card::Kind;
@@ -34,11 +34,16 @@ pub(super) fn rotation(table: &DeTable<'_>, of: &Numbers<'_>) -> Result<Matrix3<
     let keys = found.copied().unwrap_or_default();
     for key in table.keys() {
         let asked = key.get_ref().as_ref();
-        if !keys.contains(&asked) {
-            let known = TABLES.iter().flat_map(|keys| keys.iter().copied());
-            let hint = did_you_mean(asked, known);
-            return Err(format!("unknown key `{asked}`{hint}; expected {OF_SPACE}"));
+        if keys.contains(&asked) {
+            continue;
         }
+        return Err(match self::keys().any(|key| key == asked) {
+            true => format!(
+                "`{asked}` and `{}` state two rotations: give one of them",
+                keys.first().copied().unwrap_or_default()
+            ),
+            false => format!("unknown key `{asked}`{}", did_you_mean(asked, self::keys())),
+        });
     }
     let get = |key: &str| {
         let value = table.get(key).map(|v| v.get_ref());
