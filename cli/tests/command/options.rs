@@ -94,6 +94,64 @@ fn quantities_are_set_by_name_and_component() {
     );
 }
 
+/// The circular case of mass 1 gives a momentum; a velocity takes its place, whole.
+#[test]
+fn a_velocity_takes_the_place_of_a_momentum() {
+    let folder = Folder::new("options-velocity");
+    let out = folder.path("out");
+    let done = shipped(&[
+        "run",
+        "kepler",
+        "--steps",
+        "1",
+        "--set",
+        "m=2",
+        "--set",
+        "velocity=0,1/2,-0.25*m",
+        "--out",
+        &out,
+    ]);
+    assert!(
+        done.out
+            .contains("initial momentum from velocity: (0, 1, -1)"),
+        "{}{}",
+        done.out,
+        done.err
+    );
+    let start = rows(&format!("{out}/trajectory.csv")).remove(0);
+    for (found, wanted) in start[5..8].iter().zip([0.0, 1.0, -1.0]) {
+        // The limit of small steps is taken of differences, to some roundings.
+        assert!((found - wanted).abs() < 1e-12, "{found} {wanted}");
+    }
+    for (arguments, words) in [
+        (
+            &["run", "kepler", "--set", "velocity.y=1"][..],
+            "give the velocity whole, by --set velocity=...",
+        ),
+        (&["run", "kepler", "--set", "velocity=1,2"], "has 3 numbers"),
+        (
+            &["run", "kepler", "--set", "angular_velocity=1"],
+            "no such parameter or initial value",
+        ),
+    ] {
+        let done = shipped(arguments);
+        assert_eq!(done.code, 2, "{arguments:?}");
+        assert!(done.err.contains(words), "{}", done.err);
+    }
+}
+
+#[test]
+fn options_take_expressions() {
+    let run = |more: &[&str]| shipped(&[&["run", "kepler", "--check", "none"], more].concat()).out;
+    assert!(
+        run(&["--until", "2*pi", "--h", "pi/50"]).contains(", 100 steps, to time 6.28318530718;")
+    );
+    assert_eq!(
+        run(&["--steps", "3", "--set", "k=m/4"]),
+        run(&["--steps", "3", "--set", "k=0.25"])
+    );
+}
+
 #[test]
 fn a_sweep_over_the_step_keeps_the_time() {
     let folder = Folder::new("options-sweep");

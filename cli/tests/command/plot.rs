@@ -38,6 +38,21 @@ fn columns_are_drawn_against_time_and_each_other() {
     let refused = shipped(&["plot", &out, "--y", "X", "--out", &other]);
     assert_eq!(refused.code, 2);
     assert_eq!(fs::read_to_string(&other).expect("it"), "<svg>mine</svg>");
+    // Several orbits, each against its own column; all against one otherwise.
+    let two = [
+        "plot", &out, "--x", "X.1", "--y", "X.2", "--x", "X.2", "--y", "X.3", "--out", &orbit,
+    ];
+    assert_eq!(shipped(&two).code, 0);
+    let picture = fs::read_to_string(&orbit).expect("a picture");
+    assert!(picture.contains("X.2 against X.1") && picture.contains("X.3 against X.2"));
+    let odd = shipped(&["plot", &out, "--x", "X.1", "--x", "X.2", "--y", "X"]);
+    assert!(
+        odd.err.contains("2 columns along x and 3 along y"),
+        "{}",
+        odd.err
+    );
+    let png = shipped(&["plot", &out, "--y", "X", "--out", &folder.path("a.png")]);
+    assert!(png.err.contains("ends in .svg"), "{}", png.err);
     // In the folder of the run, which may still be replaced.
     let done = shipped(&[
         "plot",

@@ -26,7 +26,9 @@ const OF_FIELDS: &str = "the Lagrangian states kinetic minus potential energy, t
 pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
     let kinetic = x.kinetic.filter(|k| !k.first_order)?;
     let (rank, n) = kinetic.degenerate()?;
-    let refused = match x.solve.needs_second_moments() {
+    // With other configurations a step may be solved, to velocities that the momenta do not determine.
+    let is_alone = x.spec.configurations.len() == 1;
+    let refused = match is_alone && x.solve.needs_second_moments() {
         true => {
             ". The Moser-Veselov equation does not determine the velocity: no step can be made, and \
              every choice of the parameters is refused at the start"
@@ -50,8 +52,10 @@ pub(super) fn degenerate(x: &Inputs) -> Option<Warning> {
             "did you forget `/h`, or the factor `h` before the square of a velocity that is divided by \
              the step? Kinetic terms are divided by it once, as in `{kinetic}`"
         ),
-        _ if fields => {
-            "give every velocity a kinetic energy; did you forget `/h` in one of the terms?"
+        _ if fields => "give every velocity a kinetic energy; did you forget `/h` in one of the terms, or write `/2*h` for `/(2*h)`?".to_owned(),
+        _ if !is_alone => {
+            "give every velocity a kinetic energy; did you forget `/h` in one of the terms, or write `/2*h` for `/(2*h)`? A body needs \
+             second moments J with tr(J) Id - J > 0"
                 .to_owned()
         }
         _ => {
