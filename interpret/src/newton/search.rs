@@ -50,8 +50,8 @@ impl Held {
     }
 
     /// From here on steps are only tried: see [`Purpose::Trial`].
-    pub fn to_try(&mut self) {
-        self.search.to_try();
+    pub fn only_try(&mut self) {
+        self.search.only_try();
     }
 
     /// A search for what another is for, with the purpose of this one.
