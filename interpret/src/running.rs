@@ -163,7 +163,7 @@ impl Opened {
         let state = places.get(at::STATE).cloned().unwrap_or(Value::Unit);
         let mut work = run(&self.functions.prepared, places).map_err(Failure::start)?;
         if settings.inquiry {
-            to_try(&mut work);
+            only_try(&mut work);
             put(places, at::STATE, state);
             put(places, at::WORK, work);
             return Ok(());
@@ -178,11 +178,11 @@ impl Opened {
 }
 
 /// The searches of a workspace follow roots from rest without a proof.
-fn to_try(work: &mut Value<f64>) {
+fn only_try(work: &mut Value<f64>) {
     match work {
-        Value::Search(held) => held.begin_trial(),
-        Value::Struct(all) => all.values.iter_mut().for_each(to_try),
-        Value::List(all) => all.iter_mut().for_each(to_try),
+        Value::Search(held) => held.only_try(),
+        Value::Struct(all) => all.values.iter_mut().for_each(only_try),
+        Value::List(all) => all.iter_mut().for_each(only_try),
         _ => {}
     }
 }

@@ -74,6 +74,8 @@ pub(super) fn tables(text: &mut String, card: &Card, stated: &Stated, space: &Sp
     for q in quantities.iter().filter(|q| q.kind == Kind::Configuration) {
         let name = ascii(&q.name.text);
         let (start, velocity) = match space.lengths.len() {
+            // What particles carry beside their places.
+            _ if q.domain.is_none() && q.shape.name.text == "Real" => ("0.0", "0.0"),
             1 => ("{ lattice = \"square\" }", "\"0.1*sin(2*pi*x/Lx)\""),
             _ => (
                 "{ lattice = \"brick\", jitter = 0.1, seed = 1 }     # or square, hex, random; or expressions of the index",

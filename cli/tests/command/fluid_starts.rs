@@ -257,3 +257,33 @@ fn what_has_no_value_is_told_with_what_to_write() {
         assert!(done.err.contains(&said), "{}", done.err);
     }
 }
+
+/// Beside particles another field may be given, and each is started by velocities where no other stands in its momenta.
+#[test]
+fn particles_beside_another_field_start_by_velocities() {
+    let model = MODEL.replace("param m: Real at a;", "param m, b: Real at a;");
+    let model = model
+        .replace("mesh H", "field s: Real at a; mesh H")
+        .replace(
+            "lagrangian = ",
+            "lagrangian = b*(next(s) - s)^2/(2*h) - h*b*s^2*exp(dot(X, X)/8)/2 + ",
+        );
+    let start = "velocity_X = [\"0.1*sin(2*pi*y/1.5)\", \"0.05*x\"]\ns = \"0.2*x\"\nvelocity_s = \"0.3 - 0.1*y\"";
+    let case = case(start).replace("[parameters]\nm = ", "[parameters]\nb = 0.02\nm = 0.03 # ");
+    let ran = Ran::of(&model, &case, "beside-another-field");
+    for a in 0..64 {
+        let m = 0.03;
+        let [x, y, p, q] = ["X_{}_1", "X_{}_2", "momentum_X_{}_1", "momentum_X_{}_2"]
+            .map(|name| ran.at(&name.replace("{}", &a.to_string()), 0));
+        // A vector potential adds to the momenta of velocities.
+        let [p, q] = [
+            p - m * 0.1 * (std::f64::consts::TAU * y / 1.5).sin(),
+            q - m * 0.05 * x,
+        ];
+        let off = (p.abs() - 0.75 * m * y.abs()).abs() + (q.abs() - 0.75 * m * x.abs()).abs();
+        assert!(off < 1e-14, "{a}: {off}");
+        assert!((p * x + q * y).abs() < 1e-14, "{a}");
+        let s = ran.at(&format!("momentum_s_{a}"), 0);
+        assert!((s - 0.02 * (0.3 - 0.1 * y)).abs() < 1e-15, "{a}: {s}");
+    }
+}

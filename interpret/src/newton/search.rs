@@ -50,8 +50,8 @@ impl Held {
     }
 
     /// From here on steps are only tried: see [`Purpose::Trial`].
-    pub fn begin_trial(&mut self) {
-        self.search.begin_trial();
+    pub fn only_try(&mut self) {
+        self.search.only_try();
     }
 
     /// A search for what another is for, with the purpose of this one.

@@ -130,7 +130,7 @@ impl<C: Chart> AnySearch<C> {
     }
 
     /// From here on steps are only tried: their roots are followed from rest without a proof.
-    pub fn begin_trial(&mut self) {
+    pub fn only_try(&mut self) {
         self.certificate.purpose = Purpose::Trial;
     }
 

@@ -19,9 +19,12 @@ use quote::{format_ident, quote};
 pub(super) fn energy(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
     let name = l.item("");
     let energies = energies(l, of_meshes).unwrap_or_default();
-    let momenta = momenta_of_velocities(l);
+    let momenta: Vec<TokenStream> = l
+        .moving()
+        .filter_map(|m| momenta_of_velocities(l, &m))
+        .collect();
     let totals = super::conserved::totals(l);
-    quote!(impl<T: Real> #name<T> { #energies #momenta #totals })
+    quote!(impl<T: Real> #name<T> { #energies #(#momenta)* #totals })
 }
 
 /// `energies` and `energy`, where every part has a limit of small steps.
@@ -173,13 +176,11 @@ fn kinetic_of_site(l: &Lines, lone: &Lone, limit: &Limit) -> Option<TokenStream>
     })
 }
 
-/// The momenta that belong to velocities, where one field of places moves: those of the limit of small steps, what
-/// a vector potential adds included.
-fn momenta_of_velocities(l: &Lines) -> Option<TokenStream> {
+/// The momenta that belong to velocities of a field of a fluid, where no other field stands in them: those of the limit of
+/// small steps, what a vector potential adds included.
+fn momenta_of_velocities(l: &Lines, m: &Moving) -> Option<TokenStream> {
     l.extent()?;
-    let mut all = l.moving();
-    let (m, none) = (all.next()?, all.next());
-    if none.is_some() {
+    if l.moving().any(|other| other.is_rotation()) {
         return None;
     }
     let (d, outline) = (&m.lone.d, &m.lone.outline);
@@ -190,6 +191,19 @@ fn momenta_of_velocities(l: &Lines) -> Option<TokenStream> {
     };
     let action = expr::add(limit.linear.clone(), limit.kinetic.clone());
     let values = [expr::gradient(s, &outline.defined(&action), xi)];
+    let others = |(i, _): &(usize, _)| *i != m.mover.index;
+    let mut others = d.spec.configurations.iter().enumerate().filter(others);
+    let is_alone = others.all(|(i, c)| {
+        let met = |symbol| {
+            values
+                .iter()
+                .any(|e| expr::letters(e).iter().any(|l| l.symbol == symbol))
+        };
+        !met(c.element) && !met(d.letters.variation[i])
+    });
+    if !is_alone {
+        return None;
+    }
     let mut letters = l.of_site(outline, &values);
     letters.retain(|k| k.letter != xi);
     let (locals, mut bindings) = l.locals(s, &letters, &Places::of_node(), &quote!(site));
@@ -204,6 +218,8 @@ fn momenta_of_velocities(l: &Lines) -> Option<TokenStream> {
     let function = format_ident!("momenta_of_{}", m.mover.name);
     let covector = m.covector();
     let (text, given) = (&m.mover.name, format!("velocity_{}", m.mover.name));
+    let unused = l.moving().filter(|other| other.mover.name != m.mover.name);
+    let unused: Vec<_> = unused.map(|other| other.name()).collect();
     let doc = format!(
         " The momenta of `{text}` at places and velocities: those of the limit of small steps."
     );
@@ -215,7 +231,7 @@ fn momenta_of_velocities(l: &Lines) -> Option<TokenStream> {
         pub fn #function(&self, #name: &[#covector], velocities: &[#covector]) -> Result<Vec<#covector>, LineError> {
             line::length_of(#text, #name, #count, "sites")?;
             line::length_of(#given, velocities, #count, "sites")?;
-            let at = #places { #name: #name.to_vec() };
+            let at = #places { #name: #name.to_vec() #(, #unused: ::std::vec![SMatrix::zeros(); 0])* };
             let _ = &at;
             let mut momenta = ::std::vec![SMatrix::zeros(); #count];
             line::fill(self.threads, &mut momenta[..], |site| {
