@@ -3,6 +3,7 @@
 
 use clap::builder::PossibleValue;
 use clap::{Arg, ArgAction, Command, value_parser};
+use clebsch::validate::positive_step;
 
 /// Help is made no wider than this: longer lines are hard to read.
 const WIDEST: usize = 100;
@@ -392,7 +393,7 @@ fn of_a_case(command: Command) -> Command {
                 "H",
                 "Step size instead of the case's, in its unit of time",
             )
-            .value_parser(positive_number),
+            .value_parser(step_size),
         )
         .arg(
             option(
@@ -544,6 +545,16 @@ fn positive_number(text: &str) -> Result<f64, String> {
     match crate::number::value(text, &|_| None) {
         Ok(number) if number > 0.0 => Ok(number),
         _ => Err("give a positive, finite number, such as 0.01, 1/100 or 2*pi".to_owned()),
+    }
+}
+
+/// A step size, as a case has it.
+fn step_size(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>();
+    let number = number.map_err(|_| "give a positive, finite number".to_owned())?;
+    match positive_step(number) {
+        Ok(()) => Ok(number),
+        Err(error) => Err(error.remedy.to_owned()),
     }
 }
 

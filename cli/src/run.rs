@@ -350,14 +350,31 @@ fn already(
         .to_string()
         .parse::<serde_json::Value>();
     let own = own.unwrap_or_default();
+    let mut different = Vec::new();
     for (key, value) in own.as_object().into_iter().flatten() {
         if there.get(key) != Some(value) {
-            return Err(wrong(&format!("it holds another run: its {key} differs")));
+            different.push(key.as_str());
         }
     }
     for key in ["order", "solver", "compensated", "halve"] {
         if there["arguments"][key] != plan.arguments[key] {
-            return Err(wrong(&format!("it holds another run: its {key} differs")));
+            different.push(key);
+        }
+    }
+    match different.as_slice() {
+        [] => {}
+        keys if keys.contains(&"steps") && keys.iter().all(|k| ["steps", "every"].contains(k)) => {
+            return Err(wrong(&format!(
+                "this run is complete, with steps = {}; to go on from its end, start a new run whose values in [initial] are taken from it, \
+                 such as x = {{ npz = \"{}\", sample = -1 }}",
+                there["steps"],
+                shown(target.join("trajectory.npz").as_path())
+            )));
+        }
+        [key, ..] => {
+            return Err(wrong(&format!(
+                "it holds another run, with another `{key}`; choose another folder by --out"
+            )));
         }
     }
     let there_files = there["results"]["files"].as_array();

@@ -98,8 +98,8 @@ impl fmt::Display for Refused {
                 most,
             } => write!(
                 f,
-                "`{label} = {asked}` is more than a model without loops over sites is run with, which is written out body by body: at most \
-                 `{label} = {most}`; loops over sites, which run any number of them, do not take this model: {why}"
+                "`{label} = {asked}` is too many: loops over sites, which run any number of them, do not take this model, because {why}; \
+                 state the model without that, or take at most `{label} = {most}`, which is written out body by body"
             ),
             Self::TooManySites {
                 asked: (label, asked),

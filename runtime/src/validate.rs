@@ -333,7 +333,11 @@ pub fn positive_step<T: Real>(h: T) -> Result<(), ParameterError> {
     Err(ParameterError {
         field: "h",
         problem,
-        remedy: "give a positive, finite step size, at least 1e-307",
+        remedy: if value < 0.0 {
+            "give a positive step size; to run backwards in time, reverse all initial momenta, and the field of a magnetic term"
+        } else {
+            "give a positive, finite step size, at least 1e-307"
+        },
     })
 }
 

@@ -13,6 +13,7 @@ use crate::gallery::Case;
 use crate::plain::shown;
 use crate::suggestion::did_you_mean;
 use clebsch::card::Card;
+use clebsch::validate::positive_step;
 use clebsch_core::lattice::Choice;
 use clebsch_core::pipeline;
 use std::collections::HashSet;
@@ -197,10 +198,9 @@ fn step_size(file: &File<'_>, scope: &Scope, value: &Spanned<DeValue<'_>>) -> Re
     let h = scope
         .read(value.get_ref())
         .map_err(|message| wrong(&message))?;
-    if h > 0.0 {
-        Ok(h)
-    } else {
-        Err(wrong(&format!("the step size must be positive, found {h}")))
+    match positive_step(h) {
+        Ok(()) => Ok(h),
+        Err(error) => Err(wrong(&format!("{}; {}", error.problem, error.remedy))),
     }
 }
 

@@ -10,6 +10,9 @@ use toml::de::DeTable;
 /// Times that places at random are moved to the centres of their cells, where no number is given.
 const SWEEPS: u64 = 20;
 
+/// The longest side of a cell of a lattice whose columns are chosen here, in units of the other side.
+const LONGEST: f64 = 2.0;
+
 /// The places of `count` particles, one after the other.
 pub(super) fn places(
     table: &DeTable<'_>,
@@ -72,7 +75,10 @@ pub(super) fn places(
                 .filter(|n| *n > 0);
             let places = match kind {
                 "brick" | "square" => {
-                    let columns = columns.unwrap_or_else(|| even(count, width / height));
+                    let columns = match columns {
+                        Some(columns) => columns,
+                        None => even(count, width / height, kind)?,
+                    };
                     if !count.is_multiple_of(columns) {
                         return Err(format!("{columns} columns do not divide {count} particles"));
                     }
@@ -123,17 +129,68 @@ fn centred(width: f64, columns: usize) -> f64 {
     0.25 * width / columns.max(1) as f64
 }
 
-/// The divisor of `count` whose lattice has cells that are most nearly squares.
+/// How far the cells of a lattice are from squares: the logarithm of their longer side by the shorter one.
 #[allow(clippy::cast_precision_loss)]
-fn even(count: usize, aspect: f64) -> usize {
-    let off = |columns: usize| {
-        let rows = count / columns;
-        (columns as f64 / rows as f64 / aspect).ln().abs()
-    };
+fn off([columns, rows]: [usize; 2], aspect: f64) -> f64 {
+    (columns as f64 / rows as f64 / aspect).ln().abs()
+}
+
+/// The divisor of `count` whose lattice has cells that are most nearly squares, if none of their sides is more than [`LONGEST`]
+/// times the other.
+fn even(count: usize, aspect: f64, kind: &str) -> Result<usize, String> {
     let divisors = (1..=count).filter(|n| count.is_multiple_of(*n));
-    divisors
-        .min_by(|a, b| off(*a).total_cmp(&off(*b)))
-        .unwrap_or(1)
+    let shapes = divisors.map(|columns| [columns, count / columns]);
+    let best = shapes.min_by(|a, b| off(*a, aspect).total_cmp(&off(*b, aspect)));
+    match best {
+        Some(shape) if !is_even(shape, aspect) => Err(uneven(count, kind, filling(count, aspect))),
+        best => Ok(best.map_or(1, |[columns, _]| columns)),
+    }
+}
+
+fn is_even(shape: [usize; 2], aspect: f64) -> bool {
+    const ROUNDING: f64 = 1e-12;
+    off(shape, aspect) <= LONGEST.ln() + ROUNDING
+}
+
+/// Numbers of particles near `count` that fill a domain of this aspect evenly.
+#[allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss
+)]
+fn filling(count: usize, aspect: f64) -> Vec<usize> {
+    let whole = |x: f64| x.round().max(1.0) as usize;
+    let around = |n: usize| n.saturating_sub(3).max(1)..=n.saturating_add(3);
+    let rows = whole((count as f64 / aspect).sqrt());
+    let columns = whole((count as f64 * aspect).sqrt());
+    let by_rows = around(rows).flat_map(|rows| {
+        let columns = [count as f64 / rows as f64, rows as f64 * aspect].map(whole);
+        columns.map(|columns| [columns, rows])
+    });
+    let by_columns = around(columns).map(|columns| [columns, whole(columns as f64 / aspect)]);
+    let even = by_rows
+        .chain(by_columns)
+        .filter(|shape| is_even(*shape, aspect));
+    even.map(|[columns, rows]| columns.saturating_mul(rows))
+        .collect()
+}
+
+/// The message of a number of particles that does not fill the domain, with the nearest of the numbers that do.
+fn uneven(count: usize, kind: &str, mut filling: Vec<usize>) -> String {
+    const LISTED: usize = 4;
+    filling.sort_by_key(|n| (n.abs_diff(count), *n));
+    filling.dedup();
+    filling.truncate(LISTED);
+    filling.sort_unstable();
+    let known: Vec<String> = filling.iter().map(usize::to_string).collect();
+    let take = match known.split_last() {
+        None => String::new(),
+        Some((last, [])) => format!("take {last} particles, or "),
+        Some((last, others)) => format!("take {} or {last} particles, or ", others.join(", ")),
+    };
+    format!(
+        "{count} particles do not fill the domain evenly with lattice = \"{kind}\"; {take}lattice = \"random\", which takes any number"
+    )
 }
 
 /// Hexagons: only some numbers of them fill a domain.
@@ -159,12 +216,7 @@ fn hexagons(
     let all: Vec<_> = range
         .map(|n| placement::hexagonal(domain, n, jitter))
         .collect();
-    let numbers: Vec<String> = all.iter().map(|x| x.len().to_string()).collect();
+    let numbers: Vec<usize> = all.iter().map(Vec::len).collect();
     let found = all.into_iter().find(|places| places.len() == count);
-    found.ok_or_else(|| {
-        format!(
-            "{count} hexagons do not fill the domain; numbers near it that do: {}",
-            numbers.join(", ")
-        )
-    })
+    found.ok_or_else(|| uneven(count, "hex", numbers))
 }

@@ -4,6 +4,7 @@
 use super::sites::at_sites;
 use clebsch::card::Card;
 use clebsch::record::npz::{self, Array};
+use clebsch_core::expr::symbol::ascii;
 use std::collections::HashSet;
 
 /// Where the observables begin in a row, after node and time.
@@ -13,11 +14,15 @@ const OFFSET: usize = 2;
 /// copies.
 pub(super) fn arrays(card: &Card, samples: u64) -> Vec<Array> {
     let at_sites = at_sites(card);
-    let copies = at_sites.iter().flat_map(|q| {
-        let sites = q.members.iter().map(|(site, _)| site);
-        sites.map(|site| format!("{}_{site}", q.key))
+    let members = at_sites.iter().flat_map(|q| &q.members);
+    let starts: HashSet<usize> = members.map(|(_, columns)| columns.start).collect();
+    let mut from = 0;
+    let copies = card.observables.iter().filter_map(|field| {
+        let start = from;
+        from += field.count();
+        starts.contains(&start).then_some(field.ascii)
     });
-    let copies: HashSet<String> = copies.collect();
+    let copies: HashSet<&str> = copies.collect();
     let mut arrays = npz::arrays(card, samples);
     arrays.retain(|array| !copies.contains(array.name()));
     for q in at_sites {
@@ -26,7 +31,10 @@ pub(super) fn arrays(card: &Card, samples: u64) -> Vec<Array> {
         shape.extend((rows * cols > 1).then_some(rows));
         shape.extend((cols > 1).then_some(cols));
         let mut members = q.members.iter().enumerate();
-        let whole = members.all(|(i, (site, _))| i == *site);
+        // What the last end holds is a parameter.
+        let behind = format!("{}_{}", ascii(&q.name), q.members.len());
+        let whole = members.all(|(i, (site, _))| i == *site)
+            && card.parameters.iter().all(|f| f.ascii != behind);
         if !whole {
             // Some site has its value given.
             let numbers = q.members.iter().map(|(site, _)| *site as u64);

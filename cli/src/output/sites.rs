@@ -4,7 +4,7 @@
 use crate::case_file::labels::Stated;
 use clebsch::card::{Card, Field};
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::Sites;
+use clebsch_core::lattice::{Kind, Quantity, Sites};
 use std::ops::Range;
 
 /// A quantity with a value at each of its sites.
@@ -39,31 +39,22 @@ pub(crate) fn at_sites(card: &Card) -> Vec<AtSites<'_>> {
     };
     let quantities = &stated.lattice.quantities;
     let mut out: Vec<AtSites<'_>> = Vec::new();
+    let only = the_only_one(card, quantities);
     let mut from = 0;
     for (number, field) in card.observables.iter().enumerate() {
         let columns = from..from + field.count();
         from = columns.end;
-        let Some((key, digits)) = field.ascii.rsplit_once('_') else {
+        let copy = copy_of(field, quantities).or_else(|| of_the_only_one(field, only.as_ref()?));
+        let Some((key, site, own)) = copy else {
             continue;
         };
-        let Ok(site) = digits.parse::<usize>() else {
-            continue;
-        };
-        let own = quantities.iter().find(|q| {
-            let of = ascii(&q.name.text);
-            key == of
-                || key
-                    .strip_suffix(&of)
-                    .is_some_and(|rest| rest.ends_with('_'))
-        });
-        let Some(own) = own else { continue };
         match out.iter_mut().find(|q| q.key == key) {
             Some(q) => q.members.push((site, columns)),
             None => {
                 let label = stated.lattice.labels.get(own.label);
                 let behind = card.observables.get(number + 1);
                 out.push(AtSites {
-                    key: key.to_owned(),
+                    key,
                     name: own.name.text.clone(),
                     index: label.map_or_else(String::new, |l| l.index.text.clone()),
                     field,
@@ -78,4 +69,36 @@ pub(crate) fn at_sites(card: &Card) -> Vec<AtSites<'_>> {
         }
     }
     out
+}
+
+/// The key of a field with the number of a site in its name, its site, and the quantity that it is or whose momentum it is.
+fn copy_of<'a>(field: &Field, quantities: &'a [Quantity]) -> Option<(String, usize, &'a Quantity)> {
+    let (key, digits) = field.ascii.rsplit_once('_')?;
+    let site = digits.parse().ok()?;
+    let own = quantities.iter().find(|q| {
+        let of = ascii(&q.name.text);
+        let before = key.strip_suffix(&of);
+        key == of || before.is_some_and(|rest| rest.ends_with('_'))
+    })?;
+    Some((key.to_owned(), site, own))
+}
+
+/// The single configuration that moves, and its site: a ring of one site has one, and a chain whose ends prescribe all sites but one.
+fn the_only_one<'a>(card: &Card, quantities: &'a [Quantity]) -> Option<(usize, &'a Quantity)> {
+    let mut copies = card.observables.iter().filter_map(|field| {
+        let (key, site, own) = copy_of(field, quantities)?;
+        let moves = own.kind == Kind::Configuration && key == ascii(&own.name.text);
+        moves.then_some((site, own))
+    });
+    copies.next().filter(|_| copies.next().is_none())
+}
+
+/// The same of a momentum that is named without the configuration, because nothing else moves.
+fn of_the_only_one<'a>(
+    field: &Field,
+    (site, own): &(usize, &'a Quantity),
+) -> Option<(String, usize, &'a Quantity)> {
+    let is_momentum = ["momentum", "body_momentum", "spatial_momentum"].contains(&field.ascii);
+    let key = format!("{}_{}", field.ascii, ascii(&own.name.text));
+    is_momentum.then_some((key, *site, *own))
 }

@@ -94,8 +94,16 @@ fn every_mistake_is_named_with_file_and_line() {
             "[]",
             "name: expected a string, found a value of type array",
         ),
-        ("h", "-0.1", "h: the step size must be positive, found -0.1"),
-        ("h", "0", "h: the step size must be positive, found 0"),
+        (
+            "h",
+            "-0.1",
+            "h: -0.1 is not positive; give a positive step size; to run backwards in time, reverse all initial momenta",
+        ),
+        (
+            "h",
+            "0",
+            "h: 0 is not positive; give a positive, finite step size",
+        ),
         ("h", "nan", "h: NaN is not a finite number"),
         ("h", "inf", "h: inf is not a finite number"),
         ("h", "1e999", "h: inf is not a finite number"),

@@ -228,7 +228,7 @@ fn wrong_requests_are_usage_errors() {
         ),
         (
             &["compare", "heavy-top", "--h", "-1"],
-            "positive, finite number",
+            "give a positive step size; to run backwards in time, reverse all initial momenta",
         ),
         (&["compare", "heavy-top", "--force"], "--out"),
     ] {

@@ -130,6 +130,44 @@ fn a_mesh_by_its_name_is_its_value_at_the_particle() {
 }
 
 #[test]
+fn a_lattice_that_cannot_fill_its_domain_evenly_is_refused_with_numbers_that_can() {
+    let folder = Folder::new("fluid-starts-uneven");
+    for kind in ["square", "brick"] {
+        let of = |count: usize, more: &str| {
+            let text = case("").replace("a = 64", &format!("a = {count}"));
+            let text = text.replace("\"square\"", &format!("\"{kind}\"{more}"));
+            run(&folder, MODEL, &text, &["--steps", "1"])
+        };
+        let done = of(257, "");
+        assert_eq!(done.code, 2, "{}{}", done.out, done.err);
+        let said = format!(
+            "initial.X: 257 particles do not fill the domain evenly with lattice = \"{kind}\"; take "
+        );
+        let (_, rest) = done
+            .err
+            .split_once(&said)
+            .unwrap_or_else(|| panic!("{}", done.err));
+        let (numbers, rest) = rest.split_once(" particles").expect("numbers");
+        assert!(
+            rest.contains("lattice = \"random\", which takes any number"),
+            "{rest}"
+        );
+        let numbers = numbers.replace(" or ", ", ");
+        let numbers: Vec<usize> = numbers
+            .split(", ")
+            .map(|n| n.parse().expect("a number"))
+            .collect();
+        assert_eq!(numbers.len(), 4, "{numbers:?}");
+        for n in numbers {
+            assert!(n.abs_diff(257) < 10, "{n}");
+            assert_eq!(of(n, "").code, 0, "{n}");
+        }
+        // Columns that a case states are its own.
+        assert_eq!(of(257, ", columns = 257").code, 0);
+    }
+}
+
+#[test]
 fn equal_cases_start_alike_to_the_last_byte_and_go_on_from_a_checkpoint() {
     let folder = Folder::new("fluid-starts-bytes");
     let text = case(&format!("velocity_X = {VELOCITY}"));

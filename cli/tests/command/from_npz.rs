@@ -171,6 +171,51 @@ fn rods_go_on_from_what_a_run_has_written() {
     }
 }
 
+/// Where one site moves alone, its momentum has the name of its quantity too: around a ring of one, and beside ends that are given.
+#[test]
+fn a_single_site_goes_on_from_what_a_run_has_written() {
+    let folder = Folder::new("from-npz-single-models");
+    let fields =
+        "model Fields { label i in 0..N; periodic; param m, k: Real; field q: Real at nodes;
+        lagrangian = m*(next(q) - q)^2/(2*h) - h*k*(1 - cos(next(q, i) - q)) - h*k*q^2/2;
+        end i = 0 { free; held { q = given; } } end i = N { free; held { q = given; } } }";
+    let turns = "model Turns { label i in 0..N; periodic; param J, C: Sym<3>; param b: Vec<3>;
+        group Λ: SO<3> at nodes velocity Ω; constraint next(Λ) = Λ*Ω;
+        lagrangian = -tr(J*Ω)/h - h*dot(b, Λ*E3) + h*tr(C*Λ^T*next(Λ, i));
+        end i = 0 { free; held { Λ = given; } } end i = N { free; held { Λ = given; } } }";
+    let identity = "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
+    let moments = "[[1, 0, 0], [0, 2, 0], [0, 0, 1.5]]";
+    let of_fields = ("m = 1.0\nk = 1.0", "q", "0.1", "momentum_q", "0.2");
+    let numbers = format!("J = {moments}\nC = {moments}\nb = [0.3, 0, 1]");
+    let of_turns = (
+        &numbers[..],
+        "Lambda",
+        identity,
+        "body_momentum_Lambda",
+        "[0.1, 0.2, 0.3]",
+    );
+    for (model, text, (parameters, element, at, momentum, p)) in
+        [("Fields", fields, of_fields), ("Turns", turns, of_turns)]
+    {
+        let file = folder.write(&format!("{model}.clebsch"), text);
+        for (name, ends, given) in [
+            ("ring", "\"periodic\"", None),
+            ("first", "[\"held\", \"free\"]", Some(0)),
+            ("last", "[\"free\", \"held\"]", Some(1)),
+        ] {
+            let case = format!(
+                "model = \"{model}\"\nh = 0.01\nsteps = 10\n[labels]\ni = 1\n[ends]\ni = {ends}\n[parameters]\n{parameters}\n\
+                 [initial]\n{element} = {at}\n{momentum} = {p}\n"
+            );
+            let own = given.map_or(String::new(), |site| format!("{element}_{site} = {at}\n"));
+            let initial = format!("{element} = NPZ\n{momentum} = NPZ\n{own}");
+            let [start, end] = restarted(&format!("{model}-{name}"), &file, &case, &initial);
+            assert!(start < 4.0 * f64::EPSILON, "{model} {name}: {start}");
+            assert!(end < 1e-14, "{model} {name}: {end}");
+        }
+    }
+}
+
 #[test]
 fn bodies_and_particles_go_on_too() {
     let top = clebsch(&["case", "heavy-top"]).out;

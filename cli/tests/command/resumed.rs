@@ -346,7 +346,26 @@ fn a_killed_run_is_not_begun_anew_by_mistake() {
     let other = run(&["heavy-top", "--steps", "11"], &out, &["--resume"]);
     let message = String::from_utf8_lossy(&other.stderr).into_owned();
     assert_eq!(other.status.code(), Some(2), "{message}");
-    assert!(message.contains("its steps differs"), "{message}");
+    assert!(
+        message.contains(
+            "this run is complete, with steps = 10; to go on from its end, start a new run"
+        ),
+        "{message}"
+    );
+    assert!(
+        message.contains("trajectory.npz\", sample = -1 }"),
+        "{message}"
+    );
+    let other = run(
+        &["heavy-top", "--steps", "11", "--h", "0.003"],
+        &out,
+        &["--resume"],
+    );
+    let message = String::from_utf8_lossy(&other.stderr).into_owned();
+    assert!(
+        message.contains("it holds another run, with another `h`"),
+        "{message}"
+    );
     assert!(before == contents(&out));
 }
 

@@ -3,6 +3,7 @@
 //! by Newton's method on equations typed by hand.
 
 use crate::common::{Done, Folder, clebsch, gallery, on, program};
+use crate::ran::run;
 use clebsch::card::{OpenError, Settings, Trajectory};
 use std::collections::HashMap;
 use std::sync::Mutex;
@@ -404,4 +405,28 @@ momentum_x = 0.1"#
             );
         }
     }
+}
+
+/// A pulley without mass moves with its rope alone, so that its energy is 0/0; a little mass is enough.
+#[test]
+fn a_mass_of_zero_and_a_step_backwards_are_answered_with_what_to_do() {
+    let folder = Folder::new("starts-massless");
+    let model = "model Pulley { param m1, m2, g, l: Real; field x1, x2: Real; hold λ: x1 + 2*x2 = l;
+        lagrangian = m1*(next(x1) - x1)^2/(2*h) + m2*(next(x2) - x2)^2/(2*h) + h*m1*g*x1 + h*m2*g*x2; }";
+    let case = |m2: &str| {
+        format!(
+            "model = \"Pulley\"\nh = 0.01\nsteps = 10\n[parameters]\nm1 = 1.0\nm2 = {m2}\ng = 1.0\nl = 1.0\n\
+             [initial]\nx1 = 0.6\nx2 = 0.2\n"
+        )
+    };
+    let done = run(&folder, model, &case("0.0"), &[]);
+    assert_eq!(done.code, 1, "{}{}", done.out, done.err);
+    let said = "if a mass or an inertia is zero, give it a small positive value";
+    assert!(done.err.contains(said), "{}", done.err);
+    let done = run(&folder, model, &case("1e-3"), &[]);
+    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    let done = run(&folder, model, &case("1.0"), &["--h=-0.01"]);
+    assert_eq!(done.code, 2, "{}{}", done.out, done.err);
+    let said = "to run backwards in time, reverse all initial momenta";
+    assert!(done.err.contains(said), "{}", done.err);
 }

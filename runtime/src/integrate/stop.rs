@@ -73,7 +73,7 @@ impl fmt::Display for NotFinite {
         })?;
         // A shorter step changes nothing at the start.
         f.write_str(match node {
-            0 => "check the parameters and initial values, and that no mass or inertia is zero",
+            0 => "check the parameters and initial values; if a mass or an inertia is zero, give it a small positive value",
             _ => "reduce the step size, or check the parameters and initial values",
         })
     }

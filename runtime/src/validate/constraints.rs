@@ -52,7 +52,7 @@ pub fn along_constraint<T: Real>(
             field,
             problem: Problem::DependentConstraints { equation },
             remedy: "leave out constraints that follow from others, or start elsewhere; where none does, masses differ by so much that \
-                     what one constraint does is rounding beside another: take some nearer to one another",
+                     what one constraint does is rounding beside another: take some nearer to one another, and give a mass that is zero a small positive value",
         });
     }
     let (taken, whole) = (taken.magnitude(), whole.magnitude());

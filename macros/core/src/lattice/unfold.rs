@@ -24,7 +24,7 @@ use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::expr::symbol::ascii;
 use crate::syntax::ast::{Alternative, Expression, Extent, Kind, Kindred, Model, Name, Statement};
 pub(crate) use definitions::{definitions, inlined};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 pub use totals::{StatedTotal, Summed};
 use warned::without_a_ring;
 
@@ -85,8 +85,8 @@ pub struct Unfolded {
     pub totals: Vec<StatedTotal>,
     /// Terms that are hardly meant.
     pub warnings: Vec<Warning>,
-    /// Parameters that nothing in the statement names.
-    unnamed: BTreeSet<String>,
+    /// What the whole statement names, whatever the choice.
+    named: warned::Named,
 }
 
 /// Writes a model out.
@@ -128,7 +128,7 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfol
             holds: Vec::new(),
             totals: Vec::new(),
             warnings: warned::without_use(model),
-            unnamed: warned::unnamed(model),
+            named: warned::Named::of(model),
         },
     };
     writer.pin(model);

@@ -5,6 +5,7 @@ use crate::derive::warnings::{Topic, Warning, unused_let};
 use crate::diagnostic::Diagnostic;
 use crate::lattice::{Choice, any_name};
 use crate::syntax::ast::{Expression, Extent, Model, Name, Statement};
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 
 /// The sum of such a term starts or ends a site later than that of the same term at the site itself.
@@ -52,8 +53,13 @@ impl Unfolded {
             let known = |o: &Warning| o.topic == w.topic && place(o) == place(w);
             let stated = self.warnings.iter().any(known);
             // What no statement names is unused on every line.
-            let of_every_line = w.topic == Topic::UnusedParameter && self.is_unnamed(w);
+            let of_every_line =
+                w.topic == Topic::UnusedParameter && self.stands_in(&self.named.not_at_all, w);
             let of_this_choice = of_this_choice && !of_every_line;
+            // An end that this choice leaves out uses it.
+            if w.topic == Topic::UnusedParameter && self.stands_in(&self.named.by_ends, w) {
+                continue;
+            }
             if partial && of_this_choice && !stated || out.iter().any(known) {
                 continue;
             }
@@ -68,12 +74,12 @@ impl Unfolded {
         out
     }
 
-    /// Whether nothing in the statement names the parameter that a warning speaks of.
-    fn is_unnamed(&self, w: &Warning) -> bool {
+    /// Whether the parameter that a warning speaks of is one of these.
+    fn stands_in(&self, names: &BTreeSet<String>, w: &Warning) -> bool {
         let name = w.diagnostic.message.split('`').nth(1);
         name.is_some_and(|name| {
             let of = self.copy(name).map_or(name, |c| c.of.as_str());
-            self.unnamed.contains(of)
+            names.contains(of)
         })
     }
 
@@ -107,14 +113,61 @@ impl Unfolded {
     }
 }
 
+/// What a statement names, whatever the choice.
+#[derive(Clone, Debug)]
+pub(super) struct Named {
+    /// Parameters that nothing names.
+    not_at_all: BTreeSet<String>,
+    /// Names that the terms of end conditions use, chosen or not.
+    by_ends: BTreeSet<String>,
+}
+
+impl Named {
+    /// That of a model.
+    pub(super) fn of(model: &Model) -> Self {
+        Named {
+            not_at_all: unnamed(model),
+            by_ends: of_ends(model),
+        }
+    }
+}
+
 /// Parameters of the model that nothing states by name, at whatever ends.
-pub(super) fn unnamed(model: &Model) -> BTreeSet<String> {
+fn unnamed(model: &Model) -> BTreeSet<String> {
     let declared = model.statements.iter().flat_map(|s| match s {
         Statement::Label { step, .. } => step.iter().map(|n| n.text.clone()).collect(),
         Statement::Param { names, .. } => names.iter().map(|n| n.text.clone()).collect(),
         _ => Vec::new(),
     });
     declared.filter(|name| !is_named(model, name)).collect()
+}
+
+/// Names in the terms of end conditions, chosen or not, and in the abbreviations that these terms use.
+fn of_ends(model: &Model) -> BTreeSet<String> {
+    let statements = || model.statements.iter();
+    let terms = statements().flat_map(|s| match s {
+        Statement::End { alternatives, .. } => alternatives.iter().flat_map(|a| &a.terms).collect(),
+        _ => Vec::new(),
+    });
+    let mut pending: Vec<&Expression> = terms.collect();
+    let mut found = BTreeSet::new();
+    while let Some(e) = pending.pop() {
+        let collected = RefCell::new(Vec::new());
+        any_name(e, &|name| {
+            collected.borrow_mut().push(name.to_owned());
+            false
+        });
+        for own in collected.into_inner() {
+            if !found.insert(own.clone()) {
+                continue;
+            }
+            pending.extend(statements().filter_map(|s| match s {
+                Statement::Let { name, value } if name.text == own => Some(value),
+                _ => None,
+            }));
+        }
+    }
+    found
 }
 
 /// Whether a name stands in an expression of the model, or is what a field grows by or lies in.

@@ -125,6 +125,27 @@ fn what_nothing_names_is_told_of_every_line() {
 }
 
 #[test]
+fn a_parameter_that_another_end_uses_is_not_unused() {
+    let source = |term: &str| {
+        format!(
+            "model Line {{ label i in 0..N; periodic; param m, k, F, b: Real; param g: Real at nodes; field q: Real at nodes; let f = F*q + g*q;
+             lagrangian = m*(next(q) - q)^2/(2*h) - h*k*(next(q, i) - q)^2/2;
+             end i = 0 {{ free; load {{ term {term}; }} }}
+             end i = N {{ free; load {{ term {term}; }} }} }}"
+        )
+    };
+    for term in ["h*F*q + h*g*q", "h*f"] {
+        for ends in [None, Some(["free", "free"]), Some(["free", "load"])] {
+            let all = told(&source(term), Some(12), ends).into_iter();
+            let own = all.filter(|w| w.topic == Topic::UnusedParameter);
+            let messages: Vec<String> = own.map(|w| w.diagnostic.message).collect();
+            let expected = ["the parameter `b` is never used"];
+            assert_eq!(messages, expected, "{term} {ends:?}");
+        }
+    }
+}
+
+#[test]
 fn a_definition_that_nothing_uses_is_said_once() {
     let source = "model Beads { label i in 0..N; param m, k: Real; field q: Real at nodes; let d = next(q, i) - q; let f = k*d;
          lagrangian = m*(next(q) - q)^2/(2*h) - h*k*d^2/2; end i = 0 { free; pulled { param F: Real; term h*F*q; } } }";
