@@ -550,7 +550,7 @@ fn positive_number(text: &str) -> Result<f64, String> {
 
 /// A step size, as a case has it.
 fn step_size(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>();
+    let number = crate::number::value(text, &|_| None);
     let number = number.map_err(|_| "give a positive, finite number".to_owned())?;
     match positive_step(number) {
         Ok(()) => Ok(number),
