@@ -71,7 +71,7 @@ fn point_vortices_run_without_a_warning() {
     assert!(!done.err.contains("warning"), "{}", done.err);
     let mut lines = table.lines().map(|l| l.split(',').collect::<Vec<_>>());
     let names = lines.next().expect("names");
-    let last = lines.last().expect("rows");
+    let last = lines.next_back().expect("rows");
     let value = |name: &str| -> f64 {
         let at = names.iter().position(|n| *n == name).expect("is a column");
         last[at].parse().expect("a number")
