@@ -4,6 +4,8 @@
 
 use super::declare::Declared;
 use crate::diagnostic::{Diagnostic, Errors, Place};
+use crate::expr::shape::Shape;
+use crate::expr::symbol::Symbols;
 
 /// Methods and constants that every model has.
 const MEMBERS: [&str; 46] = [
@@ -128,12 +130,15 @@ fn components(declared: &Declared, errors: &mut Errors) {
         let Some((stem, digits)) = s.get(*id).ascii.rsplit_once('_') else {
             continue;
         };
-        let is_number = !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit());
+        // What has components itself has columns of longer names.
+        if !s.get(*id).shape.is_scalar() {
+            continue;
+        }
         let whole = all.iter().find(|(other, _)| {
             let own = s.get(*other);
-            own.ascii == stem && !own.shape.is_scalar()
+            own.ascii == stem && is_component(digits, own.shape, s)
         });
-        if let (true, Some((whole, _))) = (is_number, whole) {
+        if let Some((whole, _)) = whole {
             let name = &s.get(*id).name;
             let of = &s.get(*whole).name;
             errors.push(
@@ -144,5 +149,20 @@ fn components(declared: &Declared, errors: &mut Errors) {
                 .help(format!("choose another name, for example `{stem}{digits}`")),
             );
         }
+    }
+}
+
+/// Whether these digits count a component of a vector, or an entry of a matrix by its row and its column.
+fn is_component(digits: &str, shape: Shape, s: &Symbols) -> bool {
+    let [rows, cols] = [shape.rows, shape.cols].map(|dim| s.sizes(dim).1);
+    let number = |text: &str, most: usize| {
+        let number = text.parse::<usize>();
+        number.is_ok_and(|number| (1..=most).contains(&number))
+    };
+    match (shape.is_scalar(), cols, digits.split_at_checked(1)) {
+        (true, ..) => false,
+        (_, 1, _) => number(digits, rows),
+        (_, _, Some((row, column))) => number(row, rows) && number(column, cols),
+        _ => false,
     }
 }

@@ -242,8 +242,24 @@ fn names_of_columns_are_refused() {
             "{refusal}"
         );
     }
-    let apart = "param m: Real; field q: Real; field q_1: Real; lagrangian = m*((next(q) - q)^2 + (next(q_1) - q_1)^2)/(2*h);";
-    assert!(refused(apart).starts_with("derives"), "{}", refused(apart));
+    for (a, b) in [("Real", "Real"), ("Vec<2>", "Vec<2>")] {
+        let apart = format!(
+            "param m: Real; field q: {a}; field q_1: {b}; let u = next(q) - q; let v = next(q_1) - q_1; \
+             lagrangian = m*tr(u^T*u)/(2*h) + m*tr(v^T*v)/(2*h);"
+        );
+        assert!(
+            refused(&apart).starts_with("derives"),
+            "{}",
+            refused(&apart)
+        );
+    }
+    let beyond = "param m: Real; field q: Vec<2>; field q_3: Real; let u = next(q) - q; let v = next(q_3) - q_3; \
+        lagrangian = m*(dot(u, u) + v^2)/(2*h);";
+    assert!(
+        refused(beyond).starts_with("derives"),
+        "{}",
+        refused(beyond)
+    );
 }
 
 /// What nothing moves is multiplied by any number made of parameters and the step, of several terms too.
