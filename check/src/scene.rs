@@ -2,6 +2,7 @@
 //! elements, velocities, fields, and what is carried by its own constraint from the stored to the varied configuration.
 
 use crate::evaluate::{Evaluated, Here};
+use crate::expression::Expression;
 use crate::group::{Group, LEFT};
 use crate::matrix::Matrix;
 use crate::number::{Number, UNIT};
@@ -201,6 +202,10 @@ impl<'a> Scene<'a> {
                 (Some(_), 0, _) | (None, _, None) => {
                     Ok(stored(own, own.of(self.nodes[node]), q.is_quaternion))
                 }
+                // What no velocity takes along is not varied: its update at once need not leave it, as `t + 1` does not.
+                (None, _, Some(update)) if !self.is_taken_along(update) => {
+                    Ok(stored(own, own.of(self.nodes[node]), q.is_quaternion))
+                }
                 (None, _, Some(update)) => self.value(
                     update,
                     Here {
@@ -224,6 +229,12 @@ impl<'a> Scene<'a> {
                 None => self.parameter(&q.name, site, q.is_quaternion),
             },
         }
+    }
+
+    /// Whether a velocity stands in an update.
+    fn is_taken_along(&self, update: &Expression) -> bool {
+        let mut velocities = self.stated.velocities.keys();
+        velocities.any(|velocity| update.has(velocity))
     }
 
     /// The velocity of the edge, by the stated constraint, or that from the stored to the varied configuration.

@@ -40,6 +40,7 @@ mod sample;
 mod show;
 mod stated;
 mod step_limit;
+mod substitute;
 mod suggestion;
 mod summary;
 mod sweep;

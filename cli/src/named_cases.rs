@@ -4,6 +4,7 @@
 use crate::failure::Failure;
 use crate::gallery::ModelFile;
 use crate::plain::shown;
+use crate::substitute::substituted;
 use std::fs;
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
@@ -29,6 +30,18 @@ pub(crate) enum WhichCase {
 }
 
 impl WhichCase {
+    /// The same with values of the step and of parameters in the text of the case, so that its expressions follow.
+    #[must_use]
+    pub fn with(self, values: &[(String, String)]) -> Self {
+        match self {
+            Self::Text(case) => Self::Text(CaseText {
+                text: substituted(&case.text, values),
+                ..case
+            }),
+            other => other,
+        }
+    }
+
     /// The text of a case that has one.
     pub fn text(&self) -> Option<&CaseText> {
         match self {

@@ -61,6 +61,15 @@ pub(crate) fn set(matches: &ArgMatches) -> impl Iterator<Item = &String> {
     all.into_iter().flatten()
 }
 
+/// The values of `--set` and `--h` by name, as written.
+pub(crate) fn by_name(matches: &ArgMatches) -> Vec<(String, String)> {
+    let sets = set(matches).filter_map(|text| text.split_once('='));
+    let sets = sets.map(|(name, value)| (name.trim().to_owned(), value.trim().to_owned()));
+    let h = matches.try_get_one::<f64>("h").ok().flatten();
+    sets.chain(h.map(|h| ("h".to_owned(), format!("{h:?}"))))
+        .collect()
+}
+
 /// The time that `--until` gives.
 pub(crate) fn until(matches: &ArgMatches) -> Option<f64> {
     matches.try_get_one::<f64>("until").ok().flatten().copied()

@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::gallery::{self, Entry, Gallery, Known};
 use crate::model_file;
 use crate::named_cases::{self, NamedCases, WhichCase, is_file};
+use crate::overrides;
 use crate::plain::shown;
 use crate::waiting::Waiting;
 use clap::ArgMatches;
@@ -56,12 +57,15 @@ pub(crate) fn resolved<'a>(
 ) -> Result<Resolved<'a>, Failure> {
     let argument = |key: &str| matches.get_one::<String>(key).map(String::as_str);
     let (name, case) = parts(argument("model").unwrap_or_default(), argument("case"))?;
+    let by_name = overrides::by_name(matches);
     match named(gallery, name, "here a model is named")? {
         Named::Compiled(entry) => Ok(Resolved {
             entry: Cow::Borrowed(entry),
             case: match case {
                 None => WhichCase::First,
-                Some(file) if is_file(file) => WhichCase::Text(named_cases::read(Path::new(file))?),
+                Some(file) if is_file(file) => {
+                    WhichCase::Text(named_cases::read(Path::new(file))?).with(&by_name)
+                }
                 Some(name) => WhichCase::Named(name.to_owned()),
             },
             compiled: true,
@@ -75,6 +79,7 @@ pub(crate) fn resolved<'a>(
                     return Err(no_case);
                 }
             };
+            let case = case.with(&by_name);
             let entry = entry(&text, &case, streams)?;
             Ok(Resolved {
                 entry: Cow::Owned(entry),

@@ -2,6 +2,7 @@
 //! Takes the folder of a run; gives the numbers of a column within a range of time.
 
 use crate::case_file::archive::{Archive, Array};
+use crate::case_file::quantity_of;
 use crate::failure::Failure;
 use crate::plain::shown;
 use crate::suggestion::nearest;
@@ -69,11 +70,17 @@ impl Columns {
             let inner = array.shape.get(1..)?;
             Some(match inner {
                 [] => name.to_owned(),
-                [n] if self.has_sites(name) => {
-                    format!("{name}_0 to {name}_{}", n.saturating_sub(1))
-                }
-                [n, r] if self.has_sites(name) => {
-                    format!("{name}_0.1 to {name}_{}.{r}", n.saturating_sub(1))
+                [_, rest @ ..] if self.has_sites(name) => {
+                    let sites = self.sites(name, inner);
+                    let ends = [sites.first(), sites.last()];
+                    let [first, last] = ends.map(|site| site.copied().unwrap_or(0));
+                    let [a, b] = match rest {
+                        [] => [String::new(), String::new()],
+                        [r] => [".1".to_owned(), format!(".{r}")],
+                        [r, c] => [".11".to_owned(), format!(".{r}{c}")],
+                        _ => return None,
+                    };
+                    format!("{name}_{first}{a} to {name}_{last}{b}")
                 }
                 [n] => format!("{name}.1 to {name}.{n}"),
                 [r, c] => format!("{name}.11 to {name}.{r}{c}"),
@@ -161,12 +168,13 @@ impl Columns {
                 continue;
             }
             let inner = array.shape.get(1..).unwrap_or_default();
-            return match entry(component, inner, self.has_sites(head)) {
+            let sites = self.has_sites(head).then(|| self.sites(head, inner));
+            return match entry(component, inner, sites.as_deref()) {
                 Some(entry) => Ok((head.to_owned(), array, entry)),
                 None => Err(Failure::Usage(format!(
                     "`{}` names no single column of `{head}`; give {}",
                     shown(name),
-                    example(head, inner, self.has_sites(head))
+                    example(head, inner, sites.as_deref())
                 ))),
             };
         }
@@ -182,23 +190,47 @@ impl Columns {
         )))
     }
 
-    /// Whether the first index behind the sample is a site, counted from 0.
+    /// Whether the first index behind the sample is a site: the array is that of a quantity with copies at sites, or what is
+    /// observed of one.
     fn has_sites(&self, array: &str) -> bool {
-        let initial = &self.run["initial"];
-        let copy = |site: usize| initial.get(format!("{array}_{site}")).is_some();
-        // A chain's values are written site by site; an end may hold those of the first one.
-        (copy(0) || copy(1)) && initial.get(array).is_none()
+        let initial = self.run["initial"].as_object();
+        let keys = || initial.into_iter().flat_map(|all| all.keys());
+        let quantities = keys().filter_map(|key| quantity_of(key));
+        let mut at_sites = quantities.filter(|of| !keys().any(|key| key == of));
+        at_sites.any(|of| {
+            array == of
+                || array
+                    .strip_suffix(of)
+                    .is_some_and(|rest| rest.ends_with('_'))
+        })
+    }
+
+    /// The sites of an array, in its order. Those that an end gives are left out of it.
+    fn sites(&self, array: &str, inner: &[usize]) -> Vec<usize> {
+        let count = inner.first().copied().unwrap_or(0);
+        let stated = self.archive.array(&format!("sites_of_{array}")).ok();
+        let stated = stated.filter(|stated| stated.shape.as_slice() == [count]);
+        match stated {
+            // Whole numbers, small and exact.
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            Some(stated) => stated
+                .numbers(0, count)
+                .into_iter()
+                .map(|x| x as usize)
+                .collect(),
+            None => (0..count).collect(),
+        }
     }
 }
 
-/// The entry that a component names: none for a single number.
-fn entry(component: &str, inner: &[usize], has_sites: bool) -> Option<usize> {
-    let parts: Vec<&str> = component
-        .split(['.', '_'])
-        .filter(|part| !part.is_empty())
-        .collect();
-    let number = |text: &str| text.parse::<usize>().ok();
-    let counted = |text: &str, most: usize| number(text)?.checked_sub(1).filter(|i| *i < most);
+/// The entry that a component names: none for a single number. Sites are named as they are counted along the chain.
+fn entry(component: &str, inner: &[usize], sites: Option<&[usize]>) -> Option<usize> {
+    let parts = component.split(['.', '_']);
+    let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
+    let counted = |text: &str, most: usize| {
+        let number = text.parse::<usize>().ok()?;
+        number.checked_sub(1).filter(|i| *i < most)
+    };
     let lettered = |text: &str, most: usize| {
         let letter = ["x", "y", "z"].iter().position(|letter| *letter == text);
         letter.filter(|_| most == 3).or_else(|| counted(text, most))
@@ -210,31 +242,35 @@ fn entry(component: &str, inner: &[usize], has_sites: bool) -> Option<usize> {
             .flatten()?;
         Some(counted(row, r)? * c + counted(column, c)?)
     };
-    match (inner, parts.as_slice(), has_sites) {
-        ([], [], _) => Some(0),
-        ([n], [site], true) => number(site).filter(|site| site < n),
-        ([n, r], [site, row], true) => {
-            Some(number(site).filter(|site| site < n)? * r + lettered(row, *r)?)
+    let (before, inner, parts) = match (sites, inner.split_first(), parts.split_first()) {
+        (None, ..) => (0, inner, parts.as_slice()),
+        (Some(sites), Some((_, inner)), Some((site, parts))) => {
+            let site = site.parse::<usize>().ok()?;
+            let place = sites.iter().position(|own| *own == site)?;
+            (place * inner.iter().product::<usize>(), inner, parts)
         }
-        ([n, r, c], [site, both], true) => {
-            Some(number(site).filter(|site| site < n)? * r * c + pair(both, *r, *c)?)
-        }
-        ([n], [row], false) => lettered(row, *n),
-        ([r, c], [both], false) => pair(both, *r, *c),
-        ([r, c], [row, column], false) => Some(counted(row, *r)? * c + counted(column, *c)?),
-        _ => None,
-    }
+        _ => return None,
+    };
+    let own = match (inner, parts) {
+        ([], []) => 0,
+        ([n], [row]) => lettered(row, *n)?,
+        ([r, c], [both]) => pair(both, *r, *c)?,
+        ([r, c], [row, column]) => counted(row, *r)? * c + counted(column, *c)?,
+        _ => return None,
+    };
+    Some(before + own)
 }
 
 /// A column of an array, as it is written.
-fn example(name: &str, inner: &[usize], has_sites: bool) -> String {
-    match (inner, has_sites) {
-        ([_], true) => format!("a site, {name}_0"),
-        ([_, _], true) => format!("a site and a component, {name}_0.1"),
-        (_, true) => format!("a site and an entry, {name}_0.11"),
-        ([], _) => format!("`{name}` itself"),
-        ([n], _) => format!("a component, {name}.1 to {name}.{n}"),
-        (_, false) => format!("an entry, {name}.11"),
+fn example(name: &str, inner: &[usize], sites: Option<&[usize]>) -> String {
+    let site = sites.and_then(|sites| sites.first());
+    match (inner, site) {
+        ([_], Some(site)) => format!("a site, {name}_{site}"),
+        ([_, _], Some(site)) => format!("a site and a component, {name}_{site}.1"),
+        (_, Some(site)) => format!("a site and an entry, {name}_{site}.11"),
+        ([], None) => format!("`{name}` itself"),
+        ([n], None) => format!("a component, {name}.1 to {name}.{n}"),
+        (_, None) => format!("an entry, {name}.11"),
     }
 }
 
@@ -244,21 +280,27 @@ mod tests {
 
     #[test]
     fn components_are_counted_from_one_and_sites_from_zero() {
+        let (none, whole, later) = (None, Some(&[0, 1, 2, 3, 4][..]), Some(&[1, 2, 3, 4, 5][..]));
         for (component, inner, sites, at) in [
-            ("", &[][..], false, Some(0)),
-            (".1", &[3], false, Some(0)),
-            ("_3", &[3], false, Some(2)),
-            (".z", &[3], false, Some(2)),
-            (".4", &[3], false, None),
-            (".0", &[3], false, None),
-            (".23", &[3, 3], false, Some(5)),
-            (".2_3", &[3, 3], false, Some(5)),
-            ("_0", &[5], true, Some(0)),
-            ("_5", &[5], true, None),
-            ("_2.y", &[5, 3], true, Some(7)),
-            ("_1.12", &[5, 2, 2], true, Some(5)),
-            ("", &[3], false, None),
-            (".é", &[3, 3], false, None),
+            ("", &[][..], none, Some(0)),
+            (".1", &[3], none, Some(0)),
+            ("_3", &[3], none, Some(2)),
+            (".z", &[3], none, Some(2)),
+            (".4", &[3], none, None),
+            (".0", &[3], none, None),
+            (".23", &[3, 3], none, Some(5)),
+            (".2_3", &[3, 3], none, Some(5)),
+            ("_0", &[5], whole, Some(0)),
+            ("_5", &[5], whole, None),
+            ("_2.y", &[5, 3], whole, Some(7)),
+            ("_2_2", &[5, 3], whole, Some(7)),
+            ("_1.12", &[5, 2, 2], whole, Some(5)),
+            // The first site is given by an end.
+            ("_0", &[5], later, None),
+            ("_5", &[5], later, Some(4)),
+            ("_2.y", &[5, 3], later, Some(4)),
+            ("", &[3], none, None),
+            (".é", &[3, 3], none, None),
         ] {
             assert_eq!(entry(component, inner, sites), at, "{component}");
         }

@@ -17,7 +17,8 @@ use crate::output::{self, Found, Listening, Staging, run_json};
 use crate::plain::shown;
 use crate::plan::Plan;
 use crate::record::progress_bar;
-use crate::resolve_model::resolved;
+use crate::resolve_model::{Resolved, resolved};
+use crate::substitute::follow;
 use crate::verdict::{Verdict, judge};
 use crate::width::paragraph;
 use clap::ArgMatches;
@@ -25,6 +26,7 @@ use clebsch::card::Card;
 use clebsch::integrate::{Observer, RunError, Watch};
 use points::Points;
 use serde_json::{Value, json};
+use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -72,6 +74,8 @@ struct Sweep<'a> {
     plan: &'a Plan,
     axes: &'a [Axis],
     columns: &'a Columns,
+    /// What a point is read from again, where expressions of the case hold what is varied.
+    again: Option<(&'a Resolved<'a>, &'a ArgMatches)>,
 }
 
 /// Runs the command; 0 when every point has its row, however it ended, if any could be started.
@@ -147,11 +151,20 @@ pub(crate) fn sweep(
         Found::Nothing => Staging::new(target, matches.get_flag("force"), &table::FILES)?,
     };
     let columns = Columns::of(card, &axes);
+    let names: Vec<&str> = axes
+        .iter()
+        .map(|axis| axis.quantity.name.as_str())
+        .collect();
+    let follows = resolved
+        .case
+        .text()
+        .is_some_and(|case| follow(&case.text, &names));
     let sweep = Sweep {
         card,
         plan: &plan,
         axes: &axes,
         columns: &columns,
+        again: follows.then_some((&resolved, matches)),
     };
     let failed = |error: std::io::Error| {
         Failure::io(&format!("cannot write into {}", shown(target)), &error)
@@ -358,7 +371,10 @@ impl Sweep<'_> {
     /// What is run at a point, and the values that are varied there. Velocities have the momenta of that point.
     fn at(&self, point: u64) -> (Result<Plan, Failure>, Vec<f64>) {
         let values = vary::at(self.axes, point);
-        let mut plan = self.plan.clone();
+        let mut plan = match self.read_again(&values) {
+            Ok(plan) => plan,
+            Err(failure) => return (Err(failure), values),
+        };
         for (axis, value) in self.axes.iter().zip(&values) {
             match axis.quantity.is_step() {
                 true => plan = plan.with_step(*value),
@@ -367,6 +383,25 @@ impl Sweep<'_> {
         }
         let started = plan.start_anew(self.card);
         (started.map(|()| plan), values)
+    }
+
+    /// The plan of a point before its values are put in: read again where expressions of the case follow them.
+    fn read_again(&self, values: &[f64]) -> Result<Plan, Failure> {
+        let Some((resolved, matches)) = self.again else {
+            return Ok(self.plan.clone());
+        };
+        let names = self.axes.iter().map(|axis| axis.quantity.name.clone());
+        let values: Vec<(String, String)> =
+            names.zip(values.iter().map(|x| format!("{x:?}"))).collect();
+        let there = Resolved {
+            entry: Cow::Borrowed(&*resolved.entry),
+            case: resolved.case.clone().with(&values),
+            compiled: resolved.compiled,
+        };
+        let mut plan = Plan::new(&there, matches)?;
+        // How long a point runs is that of the case.
+        (plan.case.h, plan.case.steps) = (self.plan.case.h, self.plan.case.steps);
+        Ok(plan)
     }
 
     /// Why a point is refused, in words.

@@ -1,6 +1,36 @@
 //! Clocks of models that are driven in time: they tell the time after many steps as well.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Folder, clebsch, program};
+
+/// What is carried by another rule than a motion's is judged by that rule: each of these steps is right, and the check says so.
+#[test]
+fn numbers_carried_by_any_rule_are_judged_by_it() {
+    let folder = Folder::new("clocks-rules");
+    let case = "model = \"carried\"\nh = 0.05\nsteps = 5\n[parameters]\nm = 1.3\nk = 2.0\n[initial]\nt = 1.0\nx = -0.12\nmomentum = -0.55\n";
+    let case = folder.write("case.toml", case);
+    for rule in [
+        "t + h",
+        "t + 1",
+        "2*t",
+        "-t",
+        "h - t",
+        "sin(t) + h",
+        "h",
+        "3",
+        "m",
+        "t^2/2",
+        "t*(1 - h)",
+    ] {
+        let text = format!(
+            "model Carried {{ param m, k: Real; field x: Real; advected t: Real; constraint next(t) = {rule};
+             lagrangian = m*(next(x) - x)^2/(2*h) - h*k*cos(t)*x^2; }}"
+        );
+        let file = folder.write("carried.clebsch", &text);
+        let done = program(&["run", &file, "--case", &case, "--check", "all"]);
+        assert_eq!(done.code, 0, "{rule}: {}", done.err);
+        assert!(done.out.contains("5 steps judged"), "{rule}: {}", done.out);
+    }
+}
 
 /// Kept in one number a clock loses a part of its own rounding at every step, which adds up: 1e-10 here.
 #[test]

@@ -262,7 +262,7 @@ pub fn clebsch(arguments: &[&str]) -> Done {
 
 /// Runs `clebsch` on the models that it ships with.
 pub fn shipped(arguments: &[&str]) -> Done {
-    on(&Gallery::shipped(), arguments)
+    program(arguments)
 }
 
 /// Runs the program itself: a process opens so many model files and no more, and tests share one.

@@ -140,6 +140,50 @@ fn a_velocity_takes_the_place_of_a_momentum() {
     }
 }
 
+/// A run with an option is the run of the case with that value typed in, expressions that hold it included.
+#[test]
+fn expressions_follow_what_options_set() {
+    let folder = Folder::new("options-follow");
+    let text =
+        "model Osc { param m, k, c: Real; param g: Vec<2>; field x: Vec<2>; let d = next(x) - x;
+        lagrangian = m*dot(d, d)/(2*h) - h*(k*dot(x, x)/2 + c*dot(x, x)^2 - dot(g, x)); }";
+    let file = folder.write("osc.clebsch", text);
+    let case = |h: &str, k: &str| {
+        format!(
+            "model = \"osc\"\nh = {h}\nsteps = 40\n[parameters]\nm = 1.5\nk = {k}\nc = \"k/10\"\ng = [\"0.1*m\", \"-m*h\"]\n\
+             [initial]\nx = [\"k/2\", 0.5]\nvelocity_x = [0, \"k\"]\n"
+        )
+    };
+    let last = |name: &str, case: &str, more: &[&str]| {
+        let case = folder.write(&format!("{name}.toml"), case);
+        let out = folder.path(name);
+        let done = shipped(&[&["run", &file, "--case", &case, "--out", &out], more].concat());
+        assert_eq!(done.code, 0, "{}", done.err);
+        rows(&format!("{out}/trajectory.csv")).pop().expect("a row")
+    };
+    let plain = case("\"k/40\"", "2");
+    let set = last("set", &plain, &["--set", "k=1"]);
+    assert_eq!(set, last("typed", &case("\"k/40\"", "1"), &[]));
+    let step = last("step", &plain, &["--h", "0.02", "--steps", "10"]);
+    assert_eq!(
+        step,
+        last("step-typed", &case("0.02", "2"), &["--steps", "10"])
+    );
+    // And so is a point of a sweep.
+    let out = folder.path("sweep");
+    let from = folder.write("from.toml", &case("0.025", "2"));
+    let done = shipped(&[
+        "sweep", &file, "--case", &from, "--vary", "k=1,3", "--out", &out,
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let points = rows(&format!("{out}/sweep.csv"));
+    for (k, row) in [("1", 0), ("3", 1)] {
+        let typed = last(&format!("k{k}"), &case("0.025", k), &[]);
+        let at = points[row].len() - 4;
+        assert_eq!(points[row][at..], typed[2..6], "{k}");
+    }
+}
+
 #[test]
 fn options_take_expressions() {
     let run = |more: &[&str]| shipped(&[&["run", "kepler", "--check", "none"], more].concat()).out;

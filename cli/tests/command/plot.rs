@@ -108,6 +108,29 @@ fn sites_are_counted_from_zero() {
     assert!(listed.out.contains("  q_0 to q_31\n"), "{}", listed.out);
     let done = shipped(&["plot", &out, "--x", "momentum_q_31", "--y", "q_0"]);
     assert_eq!(done.code, 0, "{}", done.err);
+    // A first site that an end holds is no column, and the others keep their numbers.
+    let held = folder.path("held");
+    assert_eq!(
+        shipped(&[
+            "run",
+            "hanging-chain:swing",
+            "--steps",
+            "5",
+            "--quiet",
+            "--out",
+            &held
+        ])
+        .code,
+        0
+    );
+    let listed = shipped(&["plot", &held]);
+    assert!(listed.out.contains("  x_1.1 to x_"), "{}", listed.out);
+    let done = shipped(&["plot", &held, "--y", "x_0.1"]);
+    assert!(
+        done.err.contains("give a site and a component, x_1.1"),
+        "{}",
+        done.err
+    );
     let done = shipped(&["plot", &out, "--y", "q_32"]);
     assert!(done.err.contains("give a site, q_0"), "{}", done.err);
 }

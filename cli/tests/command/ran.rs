@@ -1,7 +1,7 @@
 //! Runs of models and cases that a test states as texts, and the numbers of the trajectory that they write.
 #![allow(missing_docs)]
 
-use crate::common::{Done, Folder, clebsch};
+use crate::common::{Done, Folder, program};
 use std::collections::BTreeMap;
 
 /// Runs a model on a case, both given as texts.
@@ -10,7 +10,7 @@ pub fn run(folder: &Folder, model: &str, case: &str, more: &[&str]) -> Done {
     let case = folder.write("case.toml", case);
     let mut all = vec!["run", &model[..], "--case", &case];
     all.extend(more);
-    clebsch(&all)
+    program(&all)
 }
 
 /// The numbers of a run: a column of `trajectory.csv` for each name, and parameters.

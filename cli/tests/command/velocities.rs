@@ -363,6 +363,6 @@ fn a_sweep_keeps_velocities_and_varies_them() {
     }
     let done = vary("momentum.2=1,3");
     assert_eq!(done.code, 2, "{}", done.out);
-    let said = "the case gives velocity_x instead; vary that";
+    let said = "the case gives velocity_x instead; set that";
     assert!(done.err.contains(said), "{}", done.err);
 }
