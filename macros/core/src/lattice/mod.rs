@@ -20,6 +20,7 @@ pub use choice::{Choice, Refusal};
 pub use declared::{Kind, Label, Lattice, Quantity, Sites};
 pub use mesh::{Known, Mesh, Source};
 pub use names::{Copied, copy_name};
+pub(crate) use parts::holds_sums;
 pub(crate) use put::any_name;
 pub use range::Range;
 pub(crate) use unfold::{LARGEST, definitions, inlined};

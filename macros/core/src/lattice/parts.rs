@@ -1,6 +1,6 @@
 //! The parts of an expression as it was typed, and the sums over sites among them.
 
-use crate::syntax::ast::{Expression, Kind};
+use crate::syntax::ast::{Expression, Kind, Model, Statement};
 
 /// Functions that are linear in each of their arguments.
 pub(super) const LINEAR: [&str; 12] = [
@@ -18,6 +18,17 @@ pub(super) fn summand(e: &Expression) -> Option<&Expression> {
 /// Whether an expression holds a sum over sites.
 pub(super) fn has_sum(e: &Expression) -> bool {
     summand(e).is_some() || parts(e).into_iter().any(has_sum)
+}
+
+/// Whether a model holds constraints and has sums over sites in them, or in abbreviations that may be written there.
+pub(crate) fn holds_sums(model: &Model) -> bool {
+    let holds = |s: &Statement| matches!(s, Statement::Hold { .. });
+    let sums = |s: &Statement| match s {
+        Statement::Hold { left, right, .. } => has_sum(left) || has_sum(right),
+        Statement::Let { value, .. } => has_sum(value),
+        _ => false,
+    };
+    model.statements.iter().any(holds) && model.statements.iter().any(sums)
 }
 
 /// The expressions that one is made of.

@@ -10,7 +10,7 @@ use crate::document::default_choice;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
-use crate::lattice::{Choice, Known, Lattice, Mesh, Sites, Source, Unfolded};
+use crate::lattice::{Choice, Known, Lattice, Mesh, Sites, Source, Unfolded, holds_sums};
 use crate::pipeline;
 use crate::print::{Format, Style, expression};
 use crate::syntax::ast::{Extent, Model};
@@ -99,7 +99,7 @@ pub(super) fn totals(
     lattice: &Lattice,
     part: &Written,
 ) -> Result<Vec<Total>, Refused> {
-    let on = |choice: Choice| -> Result<Vec<Total>, Refused> {
+    let written = |choice: Choice| -> Result<Vec<Total>, Refused> {
         let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
         let whole = Written {
             choice,
@@ -107,6 +107,25 @@ pub(super) fn totals(
             d: d.outline(),
         };
         Ok(of_part(lattice, &whole, &d.invariants, part))
+    };
+    let on = |choice: Choice| -> Result<Vec<Total>, Refused> {
+        let own = written(choice.clone())?;
+        // A held sum over all sites may bring their number into a total: what a longer lattice does not repeat is not known
+        // for every number of sites.
+        match lattice
+            .line
+            .filter(|_| holds_sums(model) && !own.is_empty())
+        {
+            None => Ok(own),
+            Some(line) => {
+                let there = written(longer(choice, line))?;
+                let texts: BTreeSet<String> = there.iter().map(|t| t.text(part)).collect();
+                Ok(own
+                    .into_iter()
+                    .filter(|t| texts.contains(&t.text(part)))
+                    .collect())
+            }
+        }
     };
     let choice = default_choice(lattice, part.choice.clone());
     let mut all = on(choice.clone())?;
@@ -122,6 +141,14 @@ pub(super) fn totals(
         }
     }
     Ok(all)
+}
+
+/// The same ends with more sites; a ring keeps an odd number of them.
+fn longer(mut choice: Choice, line: usize) -> Choice {
+    if let Some(count) = choice.counts.get_mut(line) {
+        *count += if choice.periodic { 2 } else { 1 };
+    }
+    choice
 }
 
 /// Choices of ends that hold other configurations than this one, one for all that hold the same: that which adds fewest
