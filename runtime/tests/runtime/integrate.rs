@@ -120,10 +120,14 @@ fn samples_start_stride_and_end_and_drift_between_samples() {
     assert_eq!(notes.progress.last(), Some(&(10, 10)));
     assert_eq!((summary.steps, summary.node, summary.time), (10, 10, 5.0));
     assert_eq!(summary.samples, 4);
-    // The dip at node 5 was never sampled.
-    assert_eq!(summary.drifts[0].worst, 0.5);
+    // The dip at node 5 lies between the nodes that were looked at.
+    assert_eq!(summary.drifts[0].worst, 0.0);
     assert_eq!(summary.drifts[0].last, 0.0);
     assert_eq!(summary.drifts[0].scale, 4.0);
+    // A short run without samples looks at every node.
+    let mut other = (CARD.open)(&[], &[], Settings::step(0.5)).expect("opens");
+    let all = run(other.as_mut(), 10, 0, &mut Notes::default()).expect("runs");
+    assert_eq!((all.samples, all.drifts[0].worst), (2, 0.5));
     // Going on from there.
     let again = run(counter.as_mut(), 3, 0, &mut notes).expect("runs");
     assert_eq!((again.node, again.samples), (13, 2));
@@ -158,7 +162,7 @@ fn what_was_done_before_a_run_stopped_is_told() {
     assert_eq!(notes.last, [7.0, 49.0]);
     assert_eq!((summary.steps, summary.node, summary.time), (7, 7, 3.5));
     assert_eq!(summary.samples, 3);
-    assert_eq!(summary.drifts[0].worst, 0.5);
+    assert_eq!(summary.drifts[0].worst, 0.0);
     // One that was to be a sample is so once.
     let mut counter = Counter { node: 0, stop: 8 };
     let mut notes = Notes::default();
@@ -173,16 +177,16 @@ fn what_was_done_before_a_run_stopped_is_told() {
     for watched in [Watched::Invariant, Watched::Scale] {
         let mut failing = Failing {
             node: 0,
-            at: 6,
+            at: 8,
             watched,
             value: f64::NAN,
         };
         let mut notes = Notes::default();
         let (summary, stopped) = run_until_stopped(&mut failing, 10, 4, &mut NoShape(&mut notes));
-        assert!(matches!(stopped, Some(RunError::NotFinite(e)) if e.node == 6));
+        assert!(matches!(stopped, Some(RunError::NotFinite(e)) if (e.node, e.since) == (8, 4)));
         assert_eq!(
             (summary.steps, summary.node, notes.nodes),
-            (5, 5, vec![0, 4])
+            (4, 4, vec![0, 4])
         );
         assert!(summary.drifts.iter().all(|d| d.worst.is_finite()));
     }
@@ -431,7 +435,7 @@ fn an_invariant_is_measured_by_its_largest_terms_or_absolutely() {
             off: -5e-15,
             growth,
         };
-        let summary = run(&mut resting, 10, 4, &mut Notes::default()).expect("runs");
+        let summary = run(&mut resting, 10, 5, &mut Notes::default()).expect("runs");
         summary.drifts[0]
     };
     let none = drift(0.0);
