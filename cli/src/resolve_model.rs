@@ -55,10 +55,9 @@ pub(crate) fn resolved<'a>(
     matches: &ArgMatches,
     streams: &mut Streams<'_>,
 ) -> Result<Resolved<'a>, Failure> {
-    let argument = |key: &str| matches.get_one::<String>(key).map(String::as_str);
-    let (name, case) = parts(argument("model").unwrap_or_default(), argument("case"))?;
+    let (named, case) = asked(gallery, matches)?;
     let by_name = overrides::by_name(matches);
-    match named(gallery, name, "here a model is named")? {
+    match named {
         Named::Compiled(entry) => Ok(Resolved {
             entry: Cow::Borrowed(entry),
             case: match case {
@@ -88,6 +87,19 @@ pub(crate) fn resolved<'a>(
             })
         }
     }
+}
+
+/// What a command's arguments `model` and `case` name: MODEL and `--case`, or MODEL:CASE.
+///
+/// # Errors
+/// Usage: no such model, an unreadable file, or two cases.
+pub(crate) fn asked<'a, 'm>(
+    gallery: &'a Gallery,
+    matches: &'m ArgMatches,
+) -> Result<(Named<'a>, Option<&'m str>), Failure> {
+    let argument = |key: &str| matches.get_one::<String>(key).map(String::as_str);
+    let (name, case) = parts(argument("model").unwrap_or_default(), argument("case"))?;
+    Ok((named(gallery, name, "here a model is named")?, case))
 }
 
 /// The model of a text, derived, with the placeholder case if that is the one to run.

@@ -6,7 +6,7 @@ use crate::case_file::{self, labels::Stated};
 use crate::failure::Failure;
 use crate::gallery::{self, Gallery};
 use crate::named_cases::WhichCase;
-use crate::resolve_model::{ModelText, Named, case_of, entry, named, parts};
+use crate::resolve_model::{ModelText, Named, asked, case_of, entry};
 use clap::ArgMatches;
 
 /// Prints a case.
@@ -19,7 +19,7 @@ pub(crate) fn case(
     streams: &mut Streams<'_>,
 ) -> Result<(), Failure> {
     let (named, case) = asked(gallery, matches)?;
-    let toml = case_text(&named, case.as_deref(), streams)?;
+    let toml = case_text(&named, case, streams)?;
     streams.out.write_all(toml.as_bytes())?;
     Ok(())
 }
@@ -34,7 +34,7 @@ pub(crate) fn show(
     streams: &mut Streams<'_>,
 ) -> Result<(), Failure> {
     let (named, case) = asked(gallery, matches)?;
-    let toml = case_text(&named, case.as_deref(), streams)?;
+    let toml = case_text(&named, case, streams)?;
     write!(streams.out, "{}\n\n{toml}", statement(&named).trim_end())?;
     Ok(())
 }
@@ -45,16 +45,6 @@ pub(crate) fn statement<'n>(named: &'n Named<'_>) -> &'n str {
         Named::Compiled(entry) => entry.card.source,
         Named::Text(text) => &text.text,
     }
-}
-
-fn asked<'a>(
-    gallery: &'a Gallery,
-    matches: &ArgMatches,
-) -> Result<(Named<'a>, Option<String>), Failure> {
-    let argument = |key: &str| matches.get_one::<String>(key).map(String::as_str);
-    let (name, case) = parts(argument("model").unwrap_or_default(), argument("case"))?;
-    let named = named(gallery, name, "here a model is named")?;
-    Ok((named, case.map(str::to_owned)))
 }
 
 /// A case of a model as TOML. Without a name it is the first case of the gallery's model, and placeholder values for a file.

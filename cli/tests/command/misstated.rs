@@ -1,17 +1,17 @@
 //! What a run says of a start or of numbers that a model does not have, and of Lagrangians that look like a mistake and are none.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Done, Folder};
+use crate::ran;
 
 /// What a run of a model with a case says, and what it wrote.
-fn run(folder: &Folder, model: &str, case: &str) -> (crate::common::Done, String) {
-    let (model, case) = (
-        folder.write("own.clebsch", model),
-        folder.write("own.toml", case),
-    );
+fn run(folder: &Folder, model: &str, case: &str) -> (Done, String) {
     let out = folder.path("out");
-    let done = clebsch(&[
-        "run", &model, "--case", &case, "--every", "1", "--out", &out, "--force",
-    ]);
+    let done = ran::run(
+        folder,
+        model,
+        case,
+        &["--every", "1", "--out", &out, "--force"],
+    );
     let table = std::fs::read_to_string(format!("{out}/trajectory.csv"));
     (done, table.unwrap_or_default())
 }

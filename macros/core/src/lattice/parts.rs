@@ -23,10 +23,9 @@ pub(super) fn has_sum(e: &Expression) -> bool {
 /// Whether a model holds constraints and has sums over sites in them, or in abbreviations that may be written there.
 pub(crate) fn holds_sums(model: &Model) -> bool {
     let holds = |s: &Statement| matches!(s, Statement::Hold { .. });
-    let sums = |s: &Statement| match s {
-        Statement::Hold { left, right, .. } => has_sum(left) || has_sum(right),
-        Statement::Let { value, .. } => has_sum(value),
-        _ => false,
+    let sums = |s: &Statement| {
+        matches!(s, Statement::Hold { .. } | Statement::Let { .. })
+            && s.expressions().into_iter().any(has_sum)
     };
     model.statements.iter().any(holds) && model.statements.iter().any(sums)
 }

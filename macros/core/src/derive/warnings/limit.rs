@@ -3,7 +3,9 @@
 
 use super::terms::{action_of, place, typed};
 use super::{Inputs, Topic, Warning};
-use crate::derive::limit;
+use crate::algebra::Algebra;
+use crate::derive::action::Action;
+use crate::derive::limit::{self, Limit};
 use crate::diagnostic::Diagnostic;
 use crate::expr::{self, Expr};
 
@@ -16,14 +18,7 @@ pub(super) fn limit(x: &Inputs) -> Option<Warning> {
     // Of a model for all matrices those that are symmetric may have one.
     if let Some(action) = x.for_symmetric_matrices(x.action) {
         let algebra = x.engine();
-        let special = limit::limit(
-            x.spec,
-            x.letters,
-            &action,
-            x.variations,
-            x.assumed,
-            &algebra,
-        );
+        let special = limit_of(x, &action, &algebra);
         if special.is_ok() || algebra.exhausted() {
             return None;
         }
@@ -62,14 +57,7 @@ pub(super) fn per_unit_time(x: &Inputs) -> Option<Warning> {
     let algebra = x.engine();
     let of_step = |e: &Expr| {
         let action = action_of(x, &expr::mul(expr::here(s, x.spec.step), e.clone()));
-        limit::limit(
-            x.spec,
-            x.letters,
-            &action,
-            x.variations,
-            x.assumed,
-            &algebra,
-        )
+        limit_of(x, &action, &algebra)
     };
     let whole = of_step(&x.spec.typed).ok()?;
     // A potential that has the step already would vanish.
@@ -89,19 +77,17 @@ pub(super) fn per_unit_time(x: &Inputs) -> Option<Warning> {
     Some(Warning::new(Topic::NoLimit, d.help(help)))
 }
 
+/// The limit of small steps of an action of this model.
+fn limit_of(x: &Inputs, action: &Action, algebra: &Algebra<'_>) -> Result<Limit, String> {
+    limit::limit(x.spec, x.letters, action, x.variations, x.assumed, algebra)
+}
+
 /// The first of the terms that has no limit by itself, for the same reason; none where no term has one.
 fn blamed(x: &Inputs, terms: &[Expr], why: &str) -> Option<Expr> {
     let without = |term: &&Expr| {
         let algebra = x.engine();
         let action = action_of(x, term);
-        let found = limit::limit(
-            x.spec,
-            x.letters,
-            &action,
-            x.variations,
-            x.assumed,
-            &algebra,
-        );
+        let found = limit_of(x, &action, &algebra);
         !algebra.exhausted() && found.is_err_and(|own| own == why)
     };
     let own: Vec<&Expr> = terms.iter().filter(without).collect();

@@ -174,16 +174,7 @@ fn of_ends(model: &Model) -> BTreeSet<String> {
 fn is_named(model: &Model, name: &str) -> bool {
     let used = |e: &Expression| any_name(e, &|n| n == name);
     model.statements.iter().any(|s| match s {
-        Statement::Assume { left, right, .. } | Statement::Hold { left, right, .. } => {
-            used(left) || used(right)
-        }
-        Statement::Lagrangian(value)
-        | Statement::Scale(value)
-        | Statement::Let { value, .. }
-        | Statement::Constraint { value, .. } => used(value),
-        Statement::Advected { definition, .. } => definition.iter().any(used),
         Statement::Mesh { arguments, .. } => arguments.iter().any(|n| n.text == name),
-        Statement::End { alternatives, .. } => alternatives.iter().flat_map(|a| &a.terms).any(used),
         Statement::Field { offset, domain, .. } => {
             let lengths = match domain {
                 Some(Extent::Torus(lengths)) => Some(lengths),
@@ -191,14 +182,8 @@ fn is_named(model: &Model, name: &str) -> bool {
             };
             offset.iter().chain(lengths).any(|n| n.text == name)
         }
-        Statement::Label { .. }
-        | Statement::Periodic(_)
-        | Statement::Dim { .. }
-        | Statement::Time { .. }
-        | Statement::Param { .. }
-        | Statement::Group { .. }
-        | Statement::Given { .. }
-        | Statement::Grid(_)
-        | Statement::Node(..) => false,
+        // What a function is written out by stands where it is called.
+        Statement::Given { .. } => false,
+        _ => s.expressions().into_iter().any(used),
     })
 }
