@@ -93,6 +93,7 @@ impl Corrections {
         moved: f64,
         decrement: impl FnOnce() -> f64,
     ) -> Next {
+        let fall = moved / self.last;
         self.last = moved;
         let unit = T::EPSILON;
         let is_rounding = r.size <= CONVERGED_ROUNDINGS * unit
@@ -106,8 +107,9 @@ impl Corrections {
         if may_end && r.size <= POLISHED_ROUNDINGS * unit && judged == Judged::Last {
             return Next::End;
         }
-        // What is left after this correction, if it does as well as the last.
-        let factor = FORESIGHT * (r.size / r.previous);
+        // What is left after this correction, if it does as well as the last. The residual alone may fall too far: where
+        // one equation was large at the first trial, it tells nothing of the others.
+        let factor = FORESIGHT * (r.size / r.previous).max(fall);
         let is_foreseen = may_end && r.size * factor <= POLISHED_ROUNDINGS * unit;
         match judged != Judged::More || (is_foreseen && self.leave_rounding::<T>(factor)) {
             true => Next::CorrectAndEnd,
@@ -146,7 +148,7 @@ impl Corrections {
 
 #[cfg(test)]
 mod tests {
-    use super::{Corrections, Judged, ROUNDINGS};
+    use super::{Corrections, Judged, Next, ROUNDINGS, Residual};
     use crate::groups::{Additive, Group};
     use crate::solvers::newton::{Solved, solve};
     use nalgebra::SMatrix;
@@ -174,6 +176,28 @@ mod tests {
         assert_eq!(ends(1e-17, &[1e-17, 9e-18, 1e-17, 8e-18]), Some(4));
         assert_eq!(ends(1.0, &[f64::NAN; 9]), None);
         assert_eq!(ends(1.0, &[f64::INFINITY; 9]), None);
+    }
+
+    #[test]
+    fn a_residual_that_falls_further_than_corrections_ends_no_iteration() {
+        let next = |moved: [f64; 2]| {
+            let mut corrections = Corrections::none();
+            let sizes = [7e8, 2.5e-4];
+            let mut found = Next::Correct;
+            for (iteration, moved) in moved.into_iter().enumerate() {
+                let r = Residual {
+                    size: sizes[iteration],
+                    previous: [f64::INFINITY, sizes[0]][iteration],
+                    iteration,
+                };
+                found = corrections.next::<f64>(r, moved, || 1.0);
+            }
+            found
+        };
+        // An equation that had no terms at rest is large beside its scale; the other corrections fall as their squares.
+        assert_eq!(next([2.9e-2, 8.4e-7]), Next::Correct);
+        // Those that fall as far as the residual leave rounding.
+        assert_eq!(next([2.9e-2, 1e-14]), Next::CorrectAndEnd);
     }
 
     /// The root of `v + 4 b v^3 = p` from rest, judged by terms so many times as large as they are, and the one that
