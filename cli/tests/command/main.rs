@@ -8,6 +8,7 @@ mod cases;
 mod clocks;
 mod common;
 mod comparisons;
+mod consistent_mass;
 mod elastic;
 mod exit_codes;
 mod expressions;

@@ -32,20 +32,36 @@ use spec::{Advected, Assumption, Configuration, Hold, Side, Spec, Subject};
 /// Largest expression tree the derivation takes on.
 const LARGEST: u32 = 1_000;
 
+/// What a model is: it decides what is required of it.
+#[derive(Clone, Copy, PartialEq)]
+enum Extent {
+    /// As the user states it.
+    Stated,
+    /// A lattice that is written out, which was bounded when it was.
+    WrittenOut,
+    /// One site of a lattice without its neighbours: terms of neighbours may hold all its velocities.
+    Site,
+}
+
 /// Checks a model. Work is counted: a model that takes more than any is given is refused.
 pub fn check(model: &Model) -> Result<Spec, Errors> {
-    counted(model, LARGEST)
+    counted(model, Extent::Stated)
 }
 
 /// Checks a lattice that is written out, which was bounded when it was. Of the same mistake in
 /// several copies the first is told.
 pub fn check_written_out(model: &Model) -> Result<Spec, Errors> {
-    counted(model, u32::MAX).map_err(Errors::first_at_each_place)
+    counted(model, Extent::WrittenOut).map_err(Errors::first_at_each_place)
 }
 
-fn counted(model: &Model, largest: u32) -> Result<Spec, Errors> {
+/// Checks the model of one site of a lattice. Its configurations need no velocity in its own Lagrangian.
+pub fn check_site(model: &Model) -> Result<Spec, Errors> {
+    counted(model, Extent::Site).map_err(Errors::first_at_each_place)
+}
+
+fn counted(model: &Model, extent: Extent) -> Result<Spec, Errors> {
     let _count = work::Count::begin();
-    let checked = checked(model, largest);
+    let checked = checked(model, extent);
     match work::exhausted() {
         true => Err(messages::too_much_work(model.name.place, work::excess()).into()),
         false => checked,
@@ -88,7 +104,11 @@ pub fn parameter_shape(symbols: &Symbols, declared: &Kindred) -> Option<(Shape, 
     shapes::shape(symbols, declared, &mut Errors::new())
 }
 
-fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
+fn checked(model: &Model, extent: Extent) -> Result<Spec, Errors> {
+    let largest = match extent {
+        Extent::Stated => LARGEST,
+        Extent::WrittenOut | Extent::Site => u32::MAX,
+    };
     let mut errors = Errors::new();
     let mut declared = declare::declare(model, &mut errors);
     members::refuse(&declared, &mut errors);
@@ -256,6 +276,7 @@ fn checked(model: &Model, largest: u32) -> Result<Spec, Errors> {
     )?;
     spec.lets = elaborator.bound().to_vec();
     spec.unused_lets = unused_definitions(model);
+    spec.of_site = extent == Extent::Site;
     usage(&spec)?;
     hold::without_clocks(&spec)?;
     Ok(spec)
@@ -360,6 +381,7 @@ fn finish(
         lagrangian,
         lagrangian_place,
         terms,
+        of_site: false,
         node_rule,
         reduction: None,
     })
@@ -421,7 +443,7 @@ fn usage(spec: &Spec) -> Result<(), Errors> {
             shift: Shift::NEXT,
         };
         // Stated by the elements at both ends of the step: the reduction brings the velocity in.
-        if !used.contains(&velocity) && !used.contains(&next) {
+        if !spec.of_site && !used.contains(&velocity) && !used.contains(&next) {
             errors.push(messages::unused_velocity(spec, c));
         }
     }

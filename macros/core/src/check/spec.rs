@@ -242,6 +242,8 @@ pub struct Spec {
     pub lagrangian_place: Place,
     /// Its terms as they were typed, with their places.
     pub terms: Vec<(Expr, Place)>,
+    /// Whether it is one site of a lattice, whose velocities may stand in terms of neighbours alone.
+    pub of_site: bool,
     /// The rule for nodal terms.
     pub node_rule: NodeRule,
     /// The reduction, for a model that was stated unreduced.

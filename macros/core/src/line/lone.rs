@@ -4,7 +4,7 @@
 use super::pull::lone_at;
 use super::tie::Tie;
 use super::{Refused, Written, velocity};
-use crate::algebra::Algebra;
+use crate::algebra::{Algebra, Rational};
 use crate::check::{self, spec::Side};
 use crate::derive::carry::Carry;
 use crate::derive::explicit::Explicit;
@@ -129,7 +129,7 @@ fn one(
         lone_at(t) == Some(sites) && range == Some(label) && !t.of_functionals
     });
     let terms: Vec<Expression> = terms.map(|t| t.stated.clone()).collect();
-    let spec = check::check_written_out(&alone(model, lattice, (label, sites), terms)?)?;
+    let spec = check::check_site(&alone(model, lattice, (label, sites), terms)?)?;
     let d = derive::derive(spec).map_err(Errors::first_at_each_place)?;
     without_carried(&d)?;
     let blocks: Vec<Vec<usize>> = match d.solve.blocks.as_slice() {
@@ -295,11 +295,11 @@ fn alone(
         }
     }
     let lagrangian = match terms.len() {
-        0 => {
-            return Err(Refused::Form(
-                "no term of the Lagrangian belongs to one site alone".to_owned(),
-            ));
-        }
+        // Its velocities stand in terms of neighbours alone.
+        0 => Some(Expression {
+            kind: Kind::Number(Rational::integer(0)),
+            place,
+        }),
         1 => terms.into_iter().next(),
         _ => Some(Expression {
             kind: Kind::Sum(terms.into_iter().map(|t| (false, t)).collect()),

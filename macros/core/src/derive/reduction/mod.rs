@@ -147,7 +147,7 @@ fn velocities_remain(spec: &Spec) -> Result<(), Errors> {
     let used = expr::letters(&spec.lagrangian);
     let mut errors = Errors::new();
     for c in &spec.configurations {
-        if !used.contains(&at(c.velocity, Shift::HERE)) {
+        if !spec.of_site && !used.contains(&at(c.velocity, Shift::HERE)) {
             let name = &spec.symbols.get(c.element).name;
             let example = c.group.kinetic_example(name);
             errors.push(
