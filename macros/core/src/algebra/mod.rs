@@ -33,7 +33,7 @@ use std::collections::HashMap;
 
 /// Work allowed for one model, in products of terms. A model of the gallery needs a few
 /// thousand; the bound keeps any input of 10 kB below two seconds.
-const WORK_LIMIT: u64 = 450_000;
+const WORK_LIMIT: u64 = 1_000_000;
 
 /// The same of the model at hand: a lattice that is written out is given more.
 fn work_limit() -> u64 {
