@@ -50,7 +50,7 @@ pub fn derive(
 }
 
 /// The second prover is left out of an ordinary build, which would take longer by a sixth.
-const WITHOUT_PROVER: &str = "this command was built without the second prover; build it with `cargo run --release \
+const WITHOUT_PROVER: &str = "this command was built without the second prover; build it with `cargo run --profile quick \
      -p clebsch-cli --features second-proof -- derive MODEL --second-proof`; `--explain` shows the first proof";
 
 /// The text of a model: of the gallery when there is one of that name, else of the file; `-` is standard

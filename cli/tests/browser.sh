@@ -10,7 +10,7 @@ if [ -z "$browser" ]; then
 fi
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-clebsch() { cargo run --release --quiet -- "$@" >/dev/null; }
+clebsch() { cargo clebsch "$@" >/dev/null; }
 clebsch run heavy-top --case general --steps 500 --out "$out/top"
 clebsch run kepler --steps 500 --out "$out/kepler"
 clebsch run kirchhoff-body --steps 200 --out "$out/fluid-body"

@@ -10,7 +10,7 @@ fi
 out=${1:-$(mktemp -d)}
 mkdir -p "$out"
 [ $# -gt 0 ] || trap 'rm -rf "$out"' EXIT
-clebsch() { cargo run --release --quiet -- "$@"; }
+clebsch() { cargo clebsch "$@"; }
 models=()
 for folder in generated/*/; do
   models+=("$(basename "$folder")")

@@ -172,7 +172,7 @@ fn particles() -> usize {
 }
 
 /// A channel with four particles in each cell of its grid. A million of them, optimised:
-/// `CLEBSCH_PARTICLES=1000000 cargo test --release -p clebsch-cli --test command of_particles -- --nocapture`
+/// `CLEBSCH_PARTICLES=1000000 cargo test --profile quick -p clebsch-cli --test command of_particles -- --nocapture`
 #[test]
 fn a_fluid_of_particles_that_is_killed_or_interrupted_ends_bit_equal() {
     let folder = Folder::new("resumed-fluid");

@@ -1,7 +1,7 @@
 //! Implicit steps return the principal root, the end of the curve that leads from rest to the
 //! momenta, or refuse: judged on random problems against a continuation in independent code.
 //!
-//! 1000 problems of each model; `PRINCIPAL_PROBLEMS=5000 cargo test --release -p clebsch --test
+//! 1000 problems of each model; `PRINCIPAL_PROBLEMS=5000 cargo test --profile quick -p clebsch --test
 //! runtime principal` judges 100000 in all.
 
 // The fields of the models are Greek letters, as in the papers.

@@ -1,6 +1,6 @@
 //! Wrong models and what the compiler says of them: one fault a file of `tests/ui/`, whose `.stderr` holds the messages. A few
 //! are judged here, all by the engine alone in `refusals` of `derivation`. To write messages anew:
-//! `TRYBUILD=overwrite cargo test --release -p clebsch-refusals --test compiler`.
+//! `TRYBUILD=overwrite cargo test --profile quick -p clebsch-refusals --test compiler`.
 
 /// Where the faults are.
 const FOLDER: &str = "tests/ui";

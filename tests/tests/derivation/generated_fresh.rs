@@ -35,7 +35,7 @@ fn committed_files_are_fresh() {
             let committed = fs::read_to_string(folder.join(name)).unwrap_or_default();
             assert!(
                 committed == *contents,
-                "generated/{}/{name} is stale: run `cargo run --release -- derive --write`",
+                "generated/{}/{name} is stale: run `cargo clebsch derive --write`",
                 entry.card.kebab
             );
         }

@@ -1,7 +1,7 @@
 //! What the engine prints, as files that a reader can judge: the derivation of every model of the gallery and of
 //! models without a stepper. Takes statements; fails when a character differs from `snapshots/`. The emitted Rust
 //! is compared with `generated/` by `generated_fresh`. To accept new output after reading it:
-//! `INSTA_UPDATE=always cargo test --release --test derivation snapshots`.
+//! `INSTA_UPDATE=always cargo test --profile quick --test derivation snapshots`.
 
 use clebsch_core::print::Format;
 use clebsch_core::{Derivation, derive_source, document};
