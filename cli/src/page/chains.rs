@@ -4,6 +4,7 @@
 use super::places::Point;
 use super::tints::Tints;
 use super::value::Stated;
+use crate::case_file::space::Space;
 use crate::output::points::Diagonals;
 use crate::output::sites::AtSites;
 use crate::plots::attitude::placed;
@@ -67,7 +68,9 @@ fn of_sites_of<'a>(
 ) -> Option<Chain<'a>> {
     let dim = q.field.count();
     // Numbers of sites without neighbours are no profile.
-    let known = q.moves && q.field.cols == 1 && (1..=3).contains(&dim) && (dim > 1 || q.on_line);
+    let tints = tints.filter(|t| t.have(q));
+    let seen = dim > 1 || q.on_line || tints.is_some();
+    let known = q.moves && q.field.cols == 1 && (1..=3).contains(&dim) && seen;
     let points = match q.on_line {
         true => along,
         false => {
@@ -80,14 +83,14 @@ fn of_sites_of<'a>(
         dim,
         points,
         line: q.on_line,
-        tints: tints.filter(|t| t.have(q)),
+        tints,
     })
 }
 
 impl Chain<'_> {
-    /// Whether it is a profile of numbers.
+    /// Whether it is a profile of numbers. Particles on a line are none: they are shown at the height of their depth.
     pub(super) fn is_profile(&self) -> bool {
-        self.dim == 1
+        self.dim == 1 && self.line
     }
 
     /// How many components a point has.
@@ -122,21 +125,25 @@ impl Chain<'_> {
             .collect()
     }
 
-    /// The numbers of all points in a sample; particles on a torus are put back into it.
-    pub(super) fn numbers(&self, row: &[f64], lengths: Option<&[f64]>) -> Vec<f64> {
+    /// The numbers of all points in a sample; particles that have left a domain that closes on itself are put back into it.
+    pub(super) fn numbers(&self, row: &[f64], space: Option<&Space>) -> Vec<f64> {
         let all = self.points.iter().flat_map(|p| p.at(row));
         let all = all.map(|x| if x.is_finite() { x } else { 0.0 });
-        match lengths.filter(|l| l.len() == self.dim) {
-            Some(l) => {
-                let each = all.zip(l.iter().cycle());
-                each.map(|(x, l)| x.rem_euclid(*l)).collect()
+        match space.filter(|space| space.lengths.len() == self.dim) {
+            Some(space) => {
+                let sides = space.lengths.iter().zip(&space.walls).cycle();
+                let put = |(x, (length, solid)): (f64, (&f64, &bool))| match solid {
+                    true => x,
+                    false => x.rem_euclid(*length),
+                };
+                all.zip(sides).map(put).collect()
             }
             None => all.collect(),
         }
     }
 
     /// It as data.
-    pub(super) fn data(&self, frames: &[&[f64]], lengths: Option<&[f64]>) -> Value {
+    pub(super) fn data(&self, frames: &[&[f64]], space: Option<&Space>) -> Value {
         let tints = self.tints.map(|tints| {
             let values: Vec<Vec<f64>> = frames.iter().map(|row| tints.values(row)).collect();
             let finite = || values.iter().flatten().copied().filter(|x| x.is_finite());
@@ -145,10 +152,7 @@ impl Chain<'_> {
             (low <= high)
                 .then(|| json!({"name": tints.name(), "low": low, "high": high, "frames": values}))
         });
-        let frames: Vec<Vec<f64>> = frames
-            .iter()
-            .map(|row| self.numbers(row, lengths))
-            .collect();
+        let frames: Vec<Vec<f64>> = frames.iter().map(|row| self.numbers(row, space)).collect();
         let top = clebsch::scalar::largest(frames.iter().flatten().map(|x| x.abs()));
         json!({
             "name": self.name,

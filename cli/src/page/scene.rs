@@ -8,6 +8,7 @@ use super::links::{Link, Shown, links};
 use super::ties::Ties;
 use super::tints::Tints;
 use super::value::Stated;
+use crate::case_file::space::Space;
 use crate::output::Finished;
 use crate::output::points::Diagonals;
 use crate::plots::attitude::placed;
@@ -28,6 +29,9 @@ const NUMBERS: usize = 200_000;
 
 /// Bodies that are no more are drawn large.
 const FEW: usize = 3;
+
+/// Most bodies without a place in a single row.
+const ROW: usize = 12;
 
 /// From one body without a place to the next, in lengths of their axes.
 const APART: f64 = 2.6;
@@ -72,8 +76,8 @@ pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Scene> {
     let frames: Vec<&[f64]> = rows.map(|(_, row)| row).collect();
     let times = shown.record.times.iter().take(shown.count).enumerate();
     let times = times.filter(|(i, _)| is_shown(*i)).map(|(_, t)| *t);
-    let lengths = space(run.card, run.plan).map(|(space, _)| space.lengths);
-    let lengths = lengths.as_deref();
+    let space = space(run.card, run.plan).map(|(space, _)| space);
+    let space = space.as_ref();
     let joined = Shown {
         frames: &frames,
         places: &[places, others(run, stated)].concat(),
@@ -81,7 +85,7 @@ pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Scene> {
     };
     let mut links = stated.map_or_else(Vec::new, |s| links(s, joined));
     links.truncate(NUMBERS / (9 * frames.len().max(1)));
-    let size = Size::of(&bodies, &chains, &links, (&frames, lengths));
+    let size = Size::of(&bodies, &chains, &links, (&frames, space));
     let flat = bodies.iter().all(Body::is_flat) && chains.iter().all(Chain::is_flat);
     let supports = links.iter().filter_map(|l| l.support);
     let mut supports: Vec<[f64; 3]> = supports
@@ -92,10 +96,10 @@ pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Scene> {
     let data = json!({
         "times": times.collect::<Vec<f64>>(),
         "flat": flat,
-        "box": lengths,
+        "box": space.map(|space| &space.lengths),
         "arm": if bodies.is_empty() { 0.0 } else { size.arm },
         "bodies": bodies.iter().map(|b| body(b, &frames, &size)).collect::<Vec<_>>(),
-        "chains": chains.iter().map(|c| c.data(&frames, lengths)).collect::<Vec<_>>(),
+        "chains": chains.iter().map(|c| c.data(&frames, space)).collect::<Vec<_>>(),
         "links": links.iter().map(|l| &l.frames).collect::<Vec<_>>(),
         "supports": supports,
     });
@@ -148,6 +152,8 @@ fn others<'a>(run: &Finished<'_>, stated: Option<&'a Stated<'_>>) -> Vec<&'a str
 struct Size {
     arm: f64,
     row: [f64; 3],
+    /// How many stand in a row.
+    beside: usize,
 }
 
 impl Size {
@@ -155,7 +161,7 @@ impl Size {
         bodies: &[Body],
         chains: &[Chain<'_>],
         links: &[Link],
-        (frames, lengths): (&[&[f64]], Option<&[f64]>),
+        (frames, space): (&[&[f64]], Option<&Space>),
     ) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         let mut put = |point: &[f64]| {
@@ -171,7 +177,7 @@ impl Size {
             }
             for chain in chains.iter().filter(|c| !c.is_profile()) {
                 chain
-                    .numbers(row, lengths)
+                    .numbers(row, space)
                     .chunks(chain.dim())
                     .for_each(&mut put);
             }
@@ -188,12 +194,21 @@ impl Size {
         if bodies.iter().any(|b| matches!(b.place, Place::Origin)) {
             put(&[0.0; 3]);
         }
+        let rows = bodies.iter().filter(|b| matches!(b.place, Place::Row(_)));
+        let beside = match rows.count() {
+            few @ ..=ROW => few,
+            many => (2 * many).isqrt(),
+        };
         let known = low.iter().zip(&high).all(|(a, b)| a <= b);
         let sides = low.iter().zip(&high).map(|(a, b)| b - a);
         let reach = 0.5 * sides.map(|s| s * s).sum::<f64>().sqrt();
         if !known || reach <= 0.0 {
             let row = [if known { APART } else { 0.0 }, 0.0, 0.0];
-            return Size { arm: 1.0, row };
+            return Size {
+                arm: 1.0,
+                row,
+                beside,
+            };
         }
         let arm = reach / if bodies.len() <= FEW { 5.0 } else { 12.0 };
         let [_, y, z] = [0, 1, 2].map(|d: usize| 0.5 * (low[d] + high[d]));
@@ -201,6 +216,7 @@ impl Size {
         Size {
             arm,
             row: [x + APART * arm, y, z],
+            beside,
         }
     }
 }
@@ -213,7 +229,11 @@ fn body(body: &Body, frames: &[&[f64]], size: &Size) -> Value {
     });
     let [x, y, z] = size.row;
     let places = frames.iter().map(|row| match body.place {
-        Place::Row(i) => [x + APART * size.arm * i as f64, y, z],
+        Place::Row(i) => {
+            let (down, along) = (i / size.beside.max(1), i % size.beside.max(1));
+            let by = |count: usize| APART * size.arm * count as f64;
+            [x + by(along), y, z - by(down)]
+        }
         _ => body.at(row).map(finite),
     });
     json!({

@@ -192,7 +192,7 @@ impl<'a> Stated<'a> {
                 let base = of(a)?;
                 match (scalar(&base), power.as_integer()) {
                     (Some(x), _) => Some(number(x.powf(power.value()))),
-                    (None, Some(-1)) => base.try_inverse(),
+                    (None, Some(-1)) if base.is_square() => base.try_inverse(),
                     _ => None,
                 }
             }

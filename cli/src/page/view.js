@@ -22,6 +22,10 @@ let frame = 0, running = false;
 // Largest distance of anything from the middle, so that all of the motion fits.
 const middle = [0, 0, 0];
 let reach = 1e-300;
+// A part of the range of what colours particles.
+function depth(tints, f, k) {
+  return (tints.frames[f][k] - tints.low) / (tints.high - tints.low || 1);
+}
 function points(chain, f) {
   const flat = chain.frames[f], out = [];
   if (chain.profile) {
@@ -29,6 +33,8 @@ function points(chain, f) {
     flat.forEach((v, i) => out.push([n > 1 ? 2 * i / (n - 1) - 1 : 0, 0.6 * v / top, 0]));
     return out;
   }
+  // Particles on a line are at the height of their depth.
+  if (chain.dim === 1) return flat.map((x, i) => [x, chain.tints ? 0.5 * scene.box[0] * depth(chain.tints, f, i) : 0, 0]);
   for (let i = 0; i < flat.length; i += chain.dim)
     out.push([flat[i], flat[i + 1], chain.dim > 2 ? flat[i + 2] : 0]);
   return out;
@@ -219,10 +225,9 @@ function draw() {
       for (let f = from; f <= frame; f++) trail.push(points(chain, f)[k]);
       curve(trail, trace, 1.5);
     });
-    const radius = now.length > 200 ? 1.6 : now.length > 20 ? 2.5 : 5;
+    const radius = now.length > 200 ? 1.6 : chain.line || now.length > 20 ? 2.5 : 5;
     const tints = chain.tints;
-    const part = k => (tints.frames[frame][k] - tints.low) / (tints.high - tints.low || 1);
-    now.forEach((p, k) => dot(p, tints ? tint(part(k)) : blue, tints ? 1.4 * radius : radius));
+    now.forEach((p, k) => dot(p, tints ? tint(depth(tints, frame, k)) : blue, tints ? 1.4 * radius : radius));
     if (!tints && !chain.profile && scene.chains.length <= named && now.length) label(now[0], chain.name, true);
   }
   scene.supports.forEach(ground);

@@ -275,6 +275,68 @@ fn particles_have_colours_with_a_scale() {
     }
 }
 
+#[test]
+fn particles_on_a_line_are_at_the_height_of_their_depth() {
+    let folder = Folder::new("scene-line-of-particles");
+    let out = folder.path("out");
+    let done = shipped(&[
+        "run",
+        "particle-mesh-1d",
+        "--steps",
+        "4",
+        "--out",
+        &out,
+        "--stability-limit",
+        "0",
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let scene = data(&read(&folder));
+    let chain = &scene["chains"][0];
+    assert_eq!(
+        (&chain["dim"], &chain["profile"]),
+        (&1.into(), &false.into())
+    );
+    let counts = [&chain["frames"][2], &chain["tints"]["frames"][2]].map(|v| numbers(v).len());
+    assert!(counts[0] > 1 && counts[0] == counts[1], "{counts:?}");
+    if let Some(svg) = drawn(&folder, "2") {
+        let dots = svg.matches("a2.").count().max(svg.matches("a3.").count());
+        assert!(
+            dots >= counts[0] && svg.contains(">S</text>") && !svg.contains("NaN"),
+            "{svg:.3000}"
+        );
+    }
+}
+
+#[test]
+fn many_bodies_without_places_stand_in_rows() {
+    let folder = Folder::new("scene-rows");
+    let out = folder.path("out");
+    let done = shipped(&[
+        "run",
+        "uniform-tension-rod:closed",
+        "--steps",
+        "2",
+        "--out",
+        &out,
+        "--stability-limit",
+        "0",
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let scene = data(&read(&folder));
+    let all = scene["bodies"].as_array().expect("bodies").iter();
+    let mut places: Vec<Vec<f64>> = all.map(|b| numbers(&b["places"][0])).collect();
+    let lowest = places.iter().map(|p| p[2]).fold(0.0, f64::min);
+    let last = places.iter().map(|p| p[0]).fold(0.0, f64::max);
+    assert!(
+        places.len() > 20 && lowest < 0.0 && last < 40.0,
+        "{places:?}"
+    );
+    let count = places.len();
+    places.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+    places.dedup();
+    assert_eq!(places.len(), count);
+}
+
 /// A frame of a page as its script draws it; nothing where there is no Node.
 fn drawn(folder: &Folder, frame: &str) -> Option<String> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/command/canvas.js");
