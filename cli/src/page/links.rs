@@ -104,7 +104,7 @@ fn differences(
     }
     let mut found = Vec::new();
     for side in [left, right] {
-        lengths(stated, side, at, shown, &mut found, 0);
+        lengths(stated, side, site, shown, &mut found, 0);
     }
     if found.is_empty() {
         found.extend(by_components(stated, [left, right], site, shown));
@@ -125,35 +125,19 @@ fn joint(
         own.cloned().collect::<Vec<Term>>()
     };
     let moves = |side: &[Term]| side.iter().any(|(_, e)| stated.moves(e));
+    let difference = |sides: [Vec<Term>; 2], own: &Term, other: Option<&Term>| {
+        let [first, second] = sides.map(|side| signed(side, own.0));
+        Difference {
+            first,
+            second,
+            places: [Some(positive(own)), other.map(positive)],
+        }
+    };
     match (of(&left).as_slice(), of(&right).as_slice()) {
         // Each side is a point, or one of them stays.
-        ([a], [b]) if a.0 == b.0 => {
-            let [first, second] = [left, right].map(|side| signed(side, a.0));
-            let places = [positive(a), positive(b)];
-            Some(Difference {
-                first,
-                second,
-                places,
-            })
-        }
-        ([a], []) if !moves(&right) => {
-            let [first, second] = [left, right].map(|side| signed(side, a.0));
-            let places = [positive(a), None];
-            Some(Difference {
-                first,
-                second,
-                places,
-            })
-        }
-        ([], [b]) if !moves(&left) => {
-            let [first, second] = [right, left].map(|side| signed(side, b.0));
-            let places = [positive(b), None];
-            Some(Difference {
-                first,
-                second,
-                places,
-            })
-        }
+        ([a], [b]) if a.0 == b.0 => Some(difference([left, right], a, Some(b))),
+        ([a], []) if !moves(&right) => Some(difference([left, right], a, None)),
+        ([], [b]) if !moves(&left) => Some(difference([right, left], b, None)),
         _ => {
             let opposite = right.into_iter().map(|(minus, e)| (!minus, e));
             let all: Vec<Term> = left.into_iter().chain(opposite).collect();
@@ -162,8 +146,8 @@ fn joint(
     }
 }
 
-fn positive(term: &Term) -> Option<Term> {
-    Some((false, term.1.clone()))
+fn positive(term: &Term) -> Term {
+    (false, term.1.clone())
 }
 
 fn signed(terms: Vec<Term>, turned: bool) -> Vec<Term> {
@@ -197,7 +181,7 @@ fn parted(stated: &Stated<'_>, all: Vec<Term>, shown: Shown<'_>) -> Option<Diffe
     Some(Difference {
         first: mine,
         second: signed(rest, true),
-        places: [positive(&first), second.as_ref().and_then(positive)],
+        places: [Some(positive(&first)), second.as_ref().map(positive)],
     })
 }
 
@@ -205,7 +189,7 @@ fn parted(stated: &Stated<'_>, all: Vec<Term>, shown: Shown<'_>) -> Option<Diffe
 fn lengths(
     stated: &Stated<'_>,
     e: &Expression,
-    at: At<'_>,
+    site: Option<isize>,
     shown: Shown<'_>,
     found: &mut Vec<Difference>,
     deep: usize,
@@ -219,20 +203,26 @@ fn lengths(
             let [u, v] = arguments.as_slice() else {
                 return;
             };
-            let same =
-                matches!((stated.value(u, at), stated.value(v, at)), (Some(a), Some(b)) if a == b);
-            if same {
+            let both = |row: Option<&&[f64]>| {
+                let at = At { row: row?, site };
+                stated.value(u, at).zip(stated.value(v, at))
+            };
+            let ends = [shown.frames.first(), shown.frames.last()];
+            if ends
+                .iter()
+                .all(|row| both(*row).is_some_and(|(a, b)| a == b))
+            {
                 found.extend(parted(stated, stated.terms(u), shown));
             }
         }
         Kind::Name(n) => {
             if let Some(value) = stated.abbreviated(n) {
-                lengths(stated, value, at, shown, found, deep + 1);
+                lengths(stated, value, site, shown, found, deep + 1);
             }
         }
         _ => {
             for part in e.parts() {
-                lengths(stated, part, at, shown, found, deep + 1);
+                lengths(stated, part, site, shown, found, deep + 1);
             }
         }
     }
@@ -254,12 +244,18 @@ fn by_components(
         return None;
     };
     let mut names: Vec<String> = Vec::new();
+    let mut squares = false;
     for side in sides {
-        side.each(&mut |e| {
-            if let Kind::Name(n) = &e.kind {
-                names.push(n.clone());
+        side.each(&mut |e| match &e.kind {
+            Kind::Name(n) => names.push(n.clone()),
+            Kind::Power(e, power) if power.as_integer() == Some(2) => {
+                squares |= stated.names(e, &|n| n == *place);
             }
+            _ => {}
         });
+    }
+    if !squares {
+        return None;
     }
     let term = |name: &str| {
         let place = sides.first().map(|side| side.place)?;
@@ -289,11 +285,7 @@ fn by_components(
             });
         high > 0.0 && high - low <= HELD * high
     };
-    let moves = here
-        .first()
-        .zip(here.last())
-        .is_some_and(|(a, b)| (a - b).norm() > 0.0)
-        || here.len() > 2;
+    let moves = here.windows(2).any(|pair| pair.first() != pair.last());
     let mut fixed = names.iter().filter(|n| !shown.places.contains(&n.as_str()));
     let about = fixed.find_map(|name| {
         let term = term(name)?;

@@ -219,6 +219,19 @@ fn a_joint_is_linked_over_its_point() {
 }
 
 #[test]
+fn a_plane_that_holds_a_point_is_no_link() {
+    let folder = Folder::new("scene-on-a-plane");
+    let model = "model Orbit { param m, k: Real; field x: Vec<3>; hold p: x[3] = 0;
+         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*k*dot(x, x)/2; }";
+    // Once around in a circle.
+    let case = "model = \"orbit\"\nname = \"circle\"\ndoc = \"\"\nh = 0.02\nsteps = 300\n[parameters]\nm = 1.0\nk = 1.0\n\
+         [initial]\nx = [1.0, 0.0, 0.0]\nmomentum = [0.0, 1.0, 0.0]\n";
+    let scene = data(&page(&folder, model, case));
+    assert_eq!(scene["links"].as_array().map(Vec::len), Some(0));
+    assert_eq!(scene["supports"].as_array().map(Vec::len), Some(0));
+}
+
+#[test]
 fn ends_that_are_held_are_shown_on_the_ground() {
     let folder = Folder::new("scene-ends");
     let out = folder.path("out");
