@@ -68,6 +68,9 @@ pub(crate) fn at_sites(card: &Card) -> Vec<AtSites<'_>> {
             }
         }
     }
+    for q in &mut out {
+        q.members.sort_by_key(|(site, _)| *site);
+    }
     out
 }
 

@@ -1,8 +1,14 @@
 //! One page per run, in a single file that needs no other: a view in space that can be turned and played, the table of
 //! invariants, all pictures. Takes a run and its pictures; gives HTML.
 
+mod bodies;
+mod chains;
+mod links;
 pub(crate) mod places;
 mod scene;
+mod ties;
+mod tints;
+mod value;
 
 use crate::output::Finished;
 use crate::plain::steps;
@@ -36,12 +42,14 @@ pub(crate) fn page(run: &Finished<'_>, samples: &Samples, pictures: &[(&str, Str
         );
     }
     let scene = scene::scene(run, samples);
-    if scene.is_some() {
+    if let Some(scene) = &scene {
         out.push_str(
             "<canvas id=\"view\"></canvas>\n<div class=\"controls\"><button id=\"play\">play</button>\
              <input id=\"time\" type=\"range\" min=\"0\" value=\"0\"><span id=\"clock\"></span></div>\n\
-             <p class=\"about\">Drag to turn, scroll to enlarge.</p>\n",
+             ",
         );
+        let said = format!("{} Drag to turn, scroll to enlarge.", scene.said);
+        let _ = writeln!(out, "<p class=\"about\">{}</p>", escaped(said.trim()));
     }
     invariants(run, &mut out);
     if !pictures.is_empty() {
@@ -54,7 +62,7 @@ pub(crate) fn page(run: &Finished<'_>, samples: &Samples, pictures: &[(&str, Str
     }
     if let Some(scene) = scene {
         // `</` would end the element.
-        let data = scene.to_string().replace("</", "<\\/");
+        let data = scene.data.to_string().replace("</", "<\\/");
         let _ = writeln!(
             out,
             "<script type=\"application/json\" id=\"scene\">{data}</script>\n<script>\n{}</script>",

@@ -18,6 +18,14 @@ pub(crate) enum Point {
 }
 
 impl Point {
+    /// The columns that it is read from; of one that is held none.
+    pub(super) fn columns(&self) -> Option<Range<usize>> {
+        match self {
+            Point::Held(_) => None,
+            Point::Moving(columns, _) => Some(columns.clone()),
+        }
+    }
+
     /// Its place in a sample.
     pub(crate) fn at(&self, row: &[f64]) -> Vec<f64> {
         match self {
@@ -97,8 +105,10 @@ impl<'a> Places<'a> {
     /// The point of a site, of a ring also beyond the last one.
     pub(crate) fn point(&self, wanted: isize) -> Option<Point> {
         let found = |site: usize| {
-            let mut members = self.points.members.iter();
-            members.find(|(s, _)| *s == site).map(|(_, c)| c.clone())
+            // They stand in the order of their sites, a hundred thousand of them.
+            let members = &self.points.members;
+            let at = members.binary_search_by_key(&site, |(s, _)| *s).ok()?;
+            members.get(at).map(|(_, c)| c.clone())
         };
         let site = usize::try_from(wanted).ok();
         if let Some(columns) = site.and_then(found) {

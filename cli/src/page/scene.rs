@@ -1,15 +1,22 @@
 //! What of a run is seen in space: bodies by their attitude and place, points and chains, profiles of numbers along a
-//! line. Takes the samples of a run; gives data for the view, at most [`FRAMES`] frames.
+//! line, what constraints join and where the ground is. Takes the samples of a run; gives data for the view, at most
+//! [`FRAMES`] frames.
 
-use super::places::{Places, Point};
+use super::bodies::{Body, Place, bodies, carried, is_placed, said, turns};
+use super::chains::{Chain, chains};
+use super::links::{Link, Shown, links};
+use super::ties::Ties;
+use super::tints::Tints;
+use super::value::Stated;
+use crate::case_file::space::Space;
 use crate::output::Finished;
 use crate::output::points::Diagonals;
-use crate::output::sites::{AtSites, at_sites};
-use crate::plots::attitude::{matrix, placed};
-use crate::plots::particles::space;
+use crate::plots::attitude::placed;
+use crate::plots::axis::plain;
+use crate::plots::particles::{Coloured, space};
 use crate::plots::window::window;
 use crate::record::Samples;
-use clebsch::card::{Field, Kind};
+use clebsch::card::Field;
 use serde_json::{Value, json};
 use std::collections::HashSet;
 use std::ops::Range;
@@ -20,40 +27,45 @@ pub(super) const FRAMES: usize = 600;
 /// Most numbers of all frames together: about two megabytes.
 const NUMBERS: usize = 200_000;
 
-/// One thing that is seen, with the columns it is read from.
-enum Seen {
-    Body {
-        name: String,
-        turn: Range<usize>,
-        place: Place,
-    },
-    Chain {
-        name: String,
-        dim: usize,
-        columns: Vec<Range<usize>>,
-        line: bool,
-    },
+/// Bodies that are no more are drawn large.
+const FEW: usize = 3;
+
+/// Most bodies without a place in a single row.
+const ROW: usize = 12;
+
+/// From one body without a place to the next, in lengths of their axes.
+const APART: f64 = 2.6;
+
+/// The scene as data, and what is said below it.
+pub(super) struct Scene {
+    pub(super) data: Value,
+    pub(super) said: String,
 }
 
-/// Where a body is drawn.
-enum Place {
-    /// Where no place is known: in a row, by its number.
-    Row(usize),
-    /// In a homogeneous matrix.
-    Within,
-    /// At a point, or midway between two.
-    At(Point, Point),
-}
-
-/// The scene as data; nothing where a model has nothing in space.
-pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Value> {
-    let seen = seen(run);
-    if seen.is_empty() {
+/// The scene; nothing where a model has nothing in space.
+pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Scene> {
+    let stated = Stated::of(run.card, run.plan);
+    let stated = stated.as_ref();
+    let sites = stated.map_or(&[][..], |s| &s.sites);
+    let coloured = Coloured::of(run.card, run.plan, sites);
+    let tints = coloured.as_ref().map(Tints::of);
+    let (attitudes, places) = names(run, stated);
+    let ties = match stated {
+        Some(stated) => Ties::of(stated, &attitudes, &places),
+        None => Ties::default(),
+    };
+    let bodies = bodies(run, stated, &ties);
+    let chains = chains(run.card, stated, tints.as_ref());
+    if bodies.is_empty() && chains.is_empty() {
         return None;
     }
-    let columns: Vec<Range<usize>> = seen.iter().flat_map(read).collect();
+    let columns: Vec<Range<usize>> = bodies
+        .iter()
+        .flat_map(Body::columns)
+        .chain(chains.iter().flat_map(Chain::columns))
+        .collect();
     let shown = window(samples, &columns);
-    let width: usize = columns.iter().map(Range::len).sum();
+    let width = 12 * bodies.len() + chains.iter().map(Chain::width).sum::<usize>();
     let most = (NUMBERS / width.max(1)).clamp(2, FRAMES);
     let stride = shown.count.div_ceil(most).max(1);
     // The end of the run is seen, whatever the stride.
@@ -64,200 +76,170 @@ pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Value> {
     let frames: Vec<&[f64]> = rows.map(|(_, row)| row).collect();
     let times = shown.record.times.iter().take(shown.count).enumerate();
     let times = times.filter(|(i, _)| is_shown(*i)).map(|(_, t)| *t);
-    let finite = |x: &f64| if x.is_finite() { *x } else { 0.0 };
-    let lengths = space(run.card, run.plan).map(|(space, _)| space.lengths);
-    let flat = seen
-        .iter()
-        .all(|s| matches!(s, Seen::Chain { dim, .. } if *dim < 3));
-    Some(json!({
+    let space = space(run.card, run.plan).map(|(space, _)| space);
+    let space = space.as_ref();
+    let joined = Shown {
+        frames: &frames,
+        places: &[places, others(run, stated)].concat(),
+        ties: &ties,
+    };
+    let mut links = stated.map_or_else(Vec::new, |s| links(s, joined));
+    links.truncate(NUMBERS / (9 * frames.len().max(1)));
+    let size = Size::of(&bodies, &chains, &links, (&frames, space));
+    let flat = bodies.iter().all(Body::is_flat) && chains.iter().all(Chain::is_flat);
+    let supports = links.iter().filter_map(|l| l.support);
+    let mut supports: Vec<[f64; 3]> = supports
+        .chain(chains.iter().flat_map(Chain::held))
+        .collect();
+    supports.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    supports.dedup();
+    let data = json!({
         "times": times.collect::<Vec<f64>>(),
         "flat": flat,
-        "box": lengths,
-        "bodies": seen.iter().filter_map(|s| body(s, &frames, &finite)).collect::<Vec<_>>(),
-        "chains": seen.iter().filter_map(|s| chain(s, &frames, lengths.as_deref(), &finite)).collect::<Vec<_>>(),
-    }))
-}
-
-/// The columns that a thing is read from.
-fn read(seen: &Seen) -> Vec<Range<usize>> {
-    match seen {
-        Seen::Body { turn, place, .. } => match place {
-            Place::At(a, b) => {
-                let moving = [a, b].into_iter().filter_map(|p| match p {
-                    Point::Moving(columns, _) => Some(columns.clone()),
-                    Point::Held(_) => None,
-                });
-                std::iter::once(turn.clone()).chain(moving).collect()
-            }
-            _ => vec![turn.clone()],
-        },
-        Seen::Chain { columns, .. } => columns.clone(),
+        "box": space.map(|space| &space.lengths),
+        "arm": if bodies.is_empty() { 0.0 } else { size.arm },
+        "bodies": bodies.iter().map(|b| body(b, &frames, &size)).collect::<Vec<_>>(),
+        "chains": chains.iter().map(|c| c.data(&frames, space)).collect::<Vec<_>>(),
+        "links": links.iter().map(|l| &l.frames).collect::<Vec<_>>(),
+        "supports": supports,
+    });
+    let mut said = said(&bodies, &ties);
+    if shown.cut {
+        let end = shown.record.times.get(last).copied().unwrap_or(0.0);
+        let part = format!("The view shows the run up to time {}.", plain(end));
+        said = format!("{said} {part}");
     }
+    Some(Scene { data, said })
 }
 
-/// Everything in space, in the order of the card.
-fn seen(run: &Finished<'_>) -> Vec<Seen> {
-    let sites = at_sites(run.card);
+/// The attitudes without a place of their own and the places, none of them at sites.
+fn names(
+    run: &Finished<'_>,
+    stated: Option<&Stated<'_>>,
+) -> (Vec<&'static str>, Vec<&'static str>) {
+    let diagonals = Diagonals::of(run.card);
+    let carried = carried(stated);
+    let sites = stated.into_iter().flat_map(|s| &s.sites);
     let of_sites: HashSet<usize> = sites
-        .iter()
         .flat_map(|q| q.members.iter().map(|(_, c)| c.start))
         .collect();
-    let mut out: Vec<Seen> = sites.iter().filter_map(|q| chain_of(q)).collect();
-    let diagonals = Diagonals::of(run.card);
-    let mut number = 0;
-    for q in sites
+    let alone: Vec<&'static Field> = placed(run.card.observables)
+        .filter(|(_, columns)| !of_sites.contains(&columns.start))
+        .map(|(field, _)| field)
+        .collect();
+    let attitudes = alone
         .iter()
-        .filter(|q| turns(q.field) || is_placed(q.field))
-    {
-        let places = Places::of((run.card, run.plan), &sites, q);
-        for (site, turn) in &q.members {
-            let place = match places.as_ref().and_then(|p| p.at(*site)) {
-                _ if is_placed(q.field) => Place::Within,
-                Some((a, b)) => Place::At(a, b),
-                None => {
-                    number += 1;
-                    Place::Row(number - 1)
+        .filter(|f| turns(f) && !carried.contains(f.name));
+    let behind = |i: usize| alone.get(i + 1).map(|f| f.kind);
+    let places = alone.iter().enumerate();
+    let places = places.filter(|(i, f)| diagonals.leave(f, behind(*i)));
+    (
+        attitudes.map(|f| f.name).collect(),
+        places.map(|(_, f)| f.name).collect(),
+    )
+}
+
+/// What else has a place: rigid motions, and points at sites.
+fn others<'a>(run: &Finished<'_>, stated: Option<&'a Stated<'_>>) -> Vec<&'a str> {
+    let rigid = placed(run.card.observables).filter(|(f, _)| is_placed(f));
+    let sites = stated.into_iter().flat_map(|s| &s.sites);
+    let points = sites.filter(|q| q.moves && (2..=3).contains(&q.field.count()));
+    let points = points.map(|q| q.name.as_str());
+    rigid.map(|(f, _)| f.name).chain(points).collect()
+}
+
+/// How large the axes of bodies are drawn, and where those stand that have no place.
+struct Size {
+    arm: f64,
+    row: [f64; 3],
+    /// How many stand in a row.
+    beside: usize,
+}
+
+impl Size {
+    fn of(
+        bodies: &[Body],
+        chains: &[Chain<'_>],
+        links: &[Link],
+        (frames, space): (&[&[f64]], Option<&Space>),
+    ) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        let mut put = |point: &[f64]| {
+            for (d, x) in point.iter().enumerate().filter(|(_, x)| x.is_finite()) {
+                if let (Some(a), Some(b)) = (low.get_mut(d), high.get_mut(d)) {
+                    (*a, *b) = (a.min(*x), b.max(*x));
                 }
+            }
+        };
+        for row in frames {
+            for body in bodies.iter().filter(|b| b.has_place()) {
+                put(&body.at(row));
+            }
+            for chain in chains.iter().filter(|c| !c.is_profile()) {
+                chain
+                    .numbers(row, space)
+                    .chunks(chain.dim())
+                    .for_each(&mut put);
+            }
+        }
+        for numbers in links.iter().flat_map(|l| &l.frames) {
+            numbers.chunks(3).for_each(&mut put);
+        }
+        // A profile is drawn between -1 and 1.
+        if chains.iter().any(Chain::is_profile) {
+            [[-1.0, -0.6, 0.0], [1.0, 0.6, 0.0]]
+                .iter()
+                .for_each(|p| put(p));
+        }
+        if bodies.iter().any(|b| matches!(b.place, Place::Origin)) {
+            put(&[0.0; 3]);
+        }
+        let rows = bodies.iter().filter(|b| matches!(b.place, Place::Row(_)));
+        let beside = match rows.count() {
+            few @ ..=ROW => few,
+            many => (2 * many).isqrt(),
+        };
+        let known = low.iter().zip(&high).all(|(a, b)| a <= b);
+        let sides = low.iter().zip(&high).map(|(a, b)| b - a);
+        let reach = 0.5 * sides.map(|s| s * s).sum::<f64>().sqrt();
+        if !known || reach <= 0.0 {
+            let row = [if known { APART } else { 0.0 }, 0.0, 0.0];
+            return Size {
+                arm: 1.0,
+                row,
+                beside,
             };
-            out.push(Seen::Body {
-                name: format!("{}_{site}", q.name),
-                turn: turn.clone(),
-                place,
-            });
+        }
+        let arm = reach / if bodies.len() <= FEW { 5.0 } else { 12.0 };
+        let [_, y, z] = [0, 1, 2].map(|d: usize| 0.5 * (low[d] + high[d]));
+        let [x, ..] = high;
+        Size {
+            arm,
+            row: [x + APART * arm, y, z],
+            beside,
         }
     }
-    let alone = placed(run.card.observables).filter(|(_, c)| !of_sites.contains(&c.start));
-    let alone: Vec<(&Field, Range<usize>)> = alone.collect();
-    for (i, (field, columns)) in alone.iter().enumerate() {
-        let behind = alone.get(i + 1).map(|(f, _)| f.kind);
-        let within = is_placed(field);
-        if turns(field) || within {
-            out.push(Seen::Body {
-                name: field.name.to_owned(),
-                turn: columns.clone(),
-                place: if within {
-                    Place::Within
-                } else {
-                    Place::Row(number)
-                },
-            });
-            number += 1;
-        } else if diagonals.leave(field, behind) {
-            out.push(Seen::Chain {
-                name: field.name.to_owned(),
-                dim: field.rows,
-                columns: vec![columns.clone()],
-                line: false,
-            });
-        }
-    }
-    out
 }
 
-/// Whether it is an attitude with its place.
-fn is_placed(field: &Field) -> bool {
-    field.kind == Kind::RigidMotion && field.count() == 16
-}
-
-/// Whether it is an attitude in space.
-fn turns(field: &Field) -> bool {
-    field.kind == Kind::UnitQuaternion || (field.kind == Kind::Rotation && field.count() == 9)
-}
-
-/// The points or numbers of a field at sites.
-fn chain_of(q: &AtSites<'_>) -> Option<Seen> {
-    let dim = q.field.count();
-    // Numbers of sites without neighbours are no profile.
-    let known = q.moves && q.field.cols == 1 && (1..=3).contains(&dim) && (dim > 1 || q.on_line);
-    (known && q.members.len() > 1).then(|| Seen::Chain {
-        name: q.name.clone(),
-        dim,
-        columns: q.members.iter().map(|(_, c)| c.clone()).collect(),
-        line: q.on_line,
-    })
-}
-
-fn body(seen: &Seen, frames: &[&[f64]], finite: &dyn Fn(&f64) -> f64) -> Option<Value> {
-    let Seen::Body { name, turn, place } = seen else {
-        return None;
-    };
-    let numbers = |frame: &[f64], columns: &Range<usize>| -> Vec<f64> {
-        let part = frame.get(columns.clone()).unwrap_or_default();
-        part.iter().map(finite).collect()
-    };
-    let entry = |m: &[f64], i: usize| m.get(i).copied().unwrap_or(0.0);
-    let turns = frames.iter().map(|frame| {
-        let m = numbers(frame, turn);
-        match place {
-            // The upper rows of a homogeneous matrix, without their last entries.
-            Place::Within => [0, 1, 2, 4, 5, 6, 8, 9, 10].map(|i| entry(&m, i)).to_vec(),
-            _ => matrix(&m).map_or_else(Vec::new, |a| a.transpose().as_slice().to_vec()),
-        }
+fn body(body: &Body, frames: &[&[f64]], size: &Size) -> Value {
+    let finite = |x: f64| if x.is_finite() { x } else { 0.0 };
+    let turns = frames.iter().map(|row| {
+        let axes = body.axes(row).into_iter();
+        axes.map(finite).collect::<Vec<f64>>()
     });
-    let places = frames.iter().map(|frame| match place {
-        Place::Row(i) => vec![2.6 * *i as f64, 0.0, 0.0],
-        Place::Within => {
-            let m = numbers(frame, turn);
-            [3, 7, 11].map(|i| entry(&m, i)).to_vec()
+    let [x, y, z] = size.row;
+    let places = frames.iter().map(|row| match body.place {
+        Place::Row(i) => {
+            let (down, along) = (i / size.beside.max(1), i % size.beside.max(1));
+            let by = |count: usize| APART * size.arm * count as f64;
+            [x + by(along), y, z - by(down)]
         }
-        Place::At(a, b) => {
-            let point = |p: &Point| match p {
-                Point::Held(place) => place.clone(),
-                Point::Moving(columns, around) => {
-                    let around = around.iter().copied().chain(std::iter::repeat(0.0));
-                    let here = numbers(frame, columns).into_iter();
-                    here.zip(around).map(|(x, by)| x + by).collect()
-                }
-            };
-            let (a, b): (Vec<f64>, Vec<f64>) = (point(a), point(b));
-            a.iter().zip(&b).map(|(x, y)| (x + y) / 2.0).collect()
-        }
+        _ => body.at(row).map(finite),
     });
-    Some(json!({
-        "name": name,
-        "small": !matches!(place, Place::Row(_)),
+    json!({
+        "name": body.name,
+        "still": !body.has_place(),
         "turns": turns.collect::<Vec<_>>(),
         "places": places.collect::<Vec<_>>(),
-    }))
-}
-
-/// Particles on a torus are put back into it.
-fn chain(
-    seen: &Seen,
-    frames: &[&[f64]],
-    lengths: Option<&[f64]>,
-    finite: &dyn Fn(&f64) -> f64,
-) -> Option<Value> {
-    let Seen::Chain {
-        name,
-        dim,
-        columns,
-        line,
-    } = seen
-    else {
-        return None;
-    };
-    let frame = |frame: &&[f64]| -> Vec<f64> {
-        let cells = columns
-            .iter()
-            .flat_map(|c| frame.get(c.clone()).unwrap_or_default());
-        let cells = cells.map(finite);
-        match lengths.filter(|l| l.len() == *dim) {
-            Some(l) => cells
-                .zip(l.iter().cycle())
-                .map(|(x, l)| x.rem_euclid(*l))
-                .collect(),
-            None => cells.collect(),
-        }
-    };
-    let frames: Vec<Vec<f64>> = frames.iter().map(frame).collect();
-    let top = clebsch::scalar::largest(frames.iter().flatten().map(|x| x.abs()));
-    Some(json!({
-        "name": name,
-        "dim": dim,
-        "line": line,
-        "profile": *dim == 1,
-        "top": top,
-        "frames": frames,
-    }))
+    })
 }

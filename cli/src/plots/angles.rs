@@ -18,6 +18,14 @@ const FEW: usize = 3;
 /// Sine of the nutation below which rounding shows in precession and spin.
 const UPRIGHT: f64 = 1e-6;
 
+/// Sine of the nutation below which a body is near the vertical: there precession and spin turn far for small motions.
+const NEAR: f64 = 0.05;
+
+/// Most times that a body comes near the vertical, and the largest part of the samples that it is near, while its precession
+/// and spin still tell how it moves.
+const PASSAGES: usize = 2;
+const STAY: f64 = 0.1;
+
 /// Part of a turn within which half a turn one way is as near as the other.
 const HALF: f64 = 1e-3;
 
@@ -31,23 +39,105 @@ pub(crate) fn angles(run: &Finished<'_>, samples: &Samples) -> Plot {
     let shown = window(samples, &all);
     let mut panels = Vec::new();
     for kin in grouped(run, turning) {
+        let meaning = |own: &Placed| Meaning::of(rows(shown, &own.1).filter_map(matrix));
         match kin.members.len() {
-            ..=FEW => panels.extend(kin.members.iter().flat_map(|(_, own)| curves(own, shown))),
-            _ => panels.extend(maps(&kin, shown)),
+            ..=FEW => {
+                for (_, own) in &kin.members {
+                    panels.extend(curves(own, shown, meaning(own)));
+                }
+            }
+            // One site where they mean nothing spoils the map of all.
+            _ => {
+                let all = kin.members.iter().map(|(_, own)| meaning(own));
+                panels.extend(maps(&kin, shown, all.fold(Meaning::All, Meaning::least)));
+            }
         }
+    }
+    if panels.is_empty() {
+        return Ok(None);
     }
     figure(run, shown, "Euler angles", panels)
 }
 
+/// Which of the angles tell how a body moves. Where its third axis passes the vertical, precession and spin jump by half a turn
+/// in a motion without a jump, so that curves of them show the chart and not the body. Upwards their sum is still known.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+enum Meaning {
+    /// None: it passes the downward vertical again and again, where no sum of them is known.
+    Nothing,
+    /// Nutation and the sum: it passes the upward vertical again and again, or stays near.
+    Sum,
+    /// All three.
+    All,
+}
+
+impl Meaning {
+    fn least(self, other: Self) -> Self {
+        self.min(other)
+    }
+
+    /// Of the attitudes at the samples.
+    fn of(turns: impl Iterator<Item = Matrix3<f64>>) -> Self {
+        let mut up = Passages::default();
+        let mut down = Passages::default();
+        let mut count = 0;
+        let mut before: Option<Matrix3<f64>> = None;
+        for turn in turns {
+            count += 1;
+            // The vertical is passed between samples where the horizontal part of the axis turns round while the body turns little.
+            let across = |r: &Matrix3<f64>| [r[(0, 2)], r[(1, 2)]];
+            let round = before.is_some_and(|b| {
+                let ([x, y], [u, v]) = (across(&b), across(&turn));
+                x * u + y * v < 0.0 && (b.transpose() * turn).trace() > 2.4
+            });
+            let near = across(&turn).iter().map(|x| x * x).sum::<f64>() < NEAR * NEAR;
+            let upward = turn[(2, 2)] > 0.0;
+            up.sample(near && upward, round && upward);
+            down.sample(near && !upward, round && !upward);
+            before = Some(turn);
+        }
+        match (up.often(count), down.often(count)) {
+            (_, true) => Meaning::Nothing,
+            (true, false) => Meaning::Sum,
+            (false, false) => Meaning::All,
+        }
+    }
+}
+
+/// How often a body comes near the vertical.
+#[derive(Default)]
+struct Passages {
+    number: usize,
+    samples: usize,
+    is_near: bool,
+}
+
+impl Passages {
+    fn sample(&mut self, near: bool, round: bool) {
+        if (near || round) && !self.is_near {
+            self.number += 1;
+        }
+        self.samples += usize::from(near);
+        self.is_near = near || round;
+    }
+
+    fn often(&self, count: usize) -> bool {
+        self.number > PASSAGES || self.samples as f64 > STAY * count as f64
+    }
+}
+
 /// Of one rotation against time.
-fn curves((field, columns): &Placed, shown: Window<'_>) -> [Panel; 2] {
+fn curves((field, columns): &Placed, shown: Window<'_>, meaning: Meaning) -> Vec<Panel> {
     let times = shown.record.times.get(..shown.count).unwrap_or_default();
     let (mut precession, mut nutation, mut spin) = (Vec::new(), Vec::new(), Vec::new());
+    let mut sum = Vec::new();
     for turn in rows(shown, columns).filter_map(matrix) {
         let [phi, theta, psi] = euler(&turn);
         precession.push(followed(precession.last().copied(), phi));
         nutation.push(theta);
         spin.push(followed(spin.last().copied(), psi));
+        let [.., whole] = determined(&turn);
+        sum.push(followed(sum.last().copied(), whole));
     }
     let curve = |label: &str, number: usize, values: Vec<f64>| Curve {
         label: label.to_owned(),
@@ -64,24 +154,27 @@ fn curves((field, columns): &Placed, shown: Window<'_>) -> [Panel; 2] {
         height: 200,
     };
     let name = field.name;
-    let both = vec![
-        curve("φ precession", 0, precession),
-        curve("ψ spin", 1, spin),
-    ];
-    [
-        panel(
-            format!("{}; {name} = R₃(φ) R₁(θ) R₃(ψ)", caption(field)),
-            both,
+    let turning = format!("{}; {name} = R₃(φ) R₁(θ) R₃(ψ)", caption(field));
+    let first = match meaning {
+        Meaning::Nothing => return Vec::new(),
+        Meaning::Sum => panel(
+            format!("{turning}; upright φ and ψ alone are not determined"),
+            vec![curve("φ + ψ", 0, sum)],
         ),
-        panel(
-            format!("{name}: nutation"),
-            vec![curve("θ nutation", 2, nutation)],
-        ),
-    ]
+        Meaning::All => {
+            let both = vec![
+                curve("φ precession", 0, precession),
+                curve("ψ spin", 1, spin),
+            ];
+            panel(turning, both)
+        }
+    };
+    let nutation = vec![curve("θ nutation", 2, nutation)];
+    vec![first, panel(format!("{name}: nutation"), nutation)]
 }
 
 /// Of the rotations at many sites over sites and time, with the turn φ + ψ, which alone is known where a body is upright.
-fn maps(kin: &Kin, shown: Window<'_>) -> [Panel; 4] {
+fn maps(kin: &Kin, shown: Window<'_>, meaning: Meaning) -> Vec<Panel> {
     let times = shown.record.times.get(..shown.count).unwrap_or_default();
     let mut all = [const { Rows::new() }; 4];
     for (site, (_, columns)) in sites::shown(&kin.members) {
@@ -110,15 +203,21 @@ fn maps(kin: &Kin, shown: Window<'_>) -> [Panel; 4] {
             None => map(format!("{what} of {name}, in rad modulo 2π{white}"), rows),
         }
     };
-    [
-        map(
-            format!("nutation θ of {name} = R₃(φ) R₁(θ) R₃(ψ), in rad"),
-            theta,
-        ),
-        turning("precession φ", "; white where θ = 0, π", phi),
-        turning("spin ψ", "; white where θ = 0, π", psi),
-        turning("φ + ψ", "; white where θ = π", turn),
-    ]
+    let tilt = map(
+        format!("nutation θ of {name} = R₃(φ) R₁(θ) R₃(ψ), in rad"),
+        theta,
+    );
+    let sum = turning("φ + ψ", "; white where θ = π", turn);
+    match meaning {
+        Meaning::Nothing => Vec::new(),
+        Meaning::Sum => vec![tilt, sum],
+        Meaning::All => vec![
+            tilt,
+            turning("precession φ", "; white where θ = 0, π", phi),
+            turning("spin ψ", "; white where θ = 0, π", psi),
+            sum,
+        ],
+    }
 }
 
 /// Sites with an angle at each sample.
@@ -189,7 +288,7 @@ fn followed(before: Option<f64>, angle: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{determined, euler, followed, matrix};
+    use super::{Meaning, determined, euler, followed, matrix};
     use clebsch::nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
     #[test]
@@ -222,6 +321,30 @@ mod tests {
             angle = followed(Some(angle), turned * (1.0 + 1e-15));
             assert!((angle.abs() - quarter).abs() < 1e-12, "{angle}");
         }
+    }
+
+    #[test]
+    fn angles_mean_nothing_where_the_vertical_is_passed_again_and_again() {
+        let turn =
+            |axis: Vector3<f64>, angle: f64| Rotation3::from_scaled_axis(axis * angle).into_inner();
+        let all = |of: &dyn Fn(f64) -> Matrix3<f64>| {
+            Meaning::of((0..400).map(|k| of(0.05 * f64::from(k))))
+        };
+        // A top that precesses, a sleeping one, a pendulum through the upward vertical, and one through both.
+        let tilted =
+            |t: f64| turn(Vector3::z(), t) * turn(Vector3::x(), 0.6 + 0.1 * (3.0 * t).sin());
+        assert_eq!(
+            all(&|t| tilted(t) * turn(Vector3::z(), 5.0 * t)),
+            Meaning::All
+        );
+        assert_eq!(all(&|t| turn(Vector3::z(), t)), Meaning::Sum);
+        assert_eq!(all(&|t| turn(Vector3::x(), t.sin())), Meaning::Sum);
+        assert_eq!(all(&|t| turn(Vector3::x(), 2.0 * t)), Meaning::Nothing);
+        // Between samples that are far from it.
+        assert_eq!(
+            all(&|t| turn(Vector3::x(), (13.0 * t).sin() * 0.3)),
+            Meaning::Sum
+        );
     }
 
     #[test]

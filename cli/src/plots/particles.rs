@@ -6,7 +6,7 @@ use super::figure::{Area, fine, text};
 use super::map::{Map, color};
 use super::sphere::printed_size;
 use super::window::Window;
-use super::{Plot, axis, titles};
+use super::{Plot, axis, subscript, titles};
 use crate::case_file::labels::Stated;
 use crate::case_file::space::Space;
 use crate::output::Finished;
@@ -16,6 +16,7 @@ use clebsch::card::Card;
 use clebsch::record::Record;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::Source;
+use clebsch_core::syntax::ast::Statement;
 use plotters::prelude::{
     Circle, Color, IntoDrawingArea, PathElement, Polygon, RGBColor, Rectangle, SVGBackend, WHITE,
 };
@@ -57,23 +58,63 @@ pub(super) fn in_plane(run: &Finished<'_>) -> bool {
     space(run.card, run.plan).is_some_and(|(space, _)| space.lengths.len() > 1)
 }
 
+/// What colours a fluid.
+pub(crate) struct Coloured<'a> {
+    pub(crate) space: Space,
+    /// The places of its particles.
+    pub(crate) places: &'a AtSites<'a>,
+    /// Its functional, at the particles or at the nodes of a grid.
+    pub(crate) shown: &'a AtSites<'a>,
+    /// What it is: `S = smooth(H, α)`.
+    pub(crate) what: String,
+}
+
+impl<'a> Coloured<'a> {
+    /// The functional of a fluid that no other one is made of, or its depth; nothing for models that are no fluids.
+    pub(crate) fn of(card: &Card, plan: &Plan, all: &'a [AtSites<'a>]) -> Option<Self> {
+        let (space, stated) = space(card, plan)?;
+        let own = ascii(&stated.lattice.places()?.name.text);
+        let places = all.iter().find(|s| s.key == own)?;
+        // A depth that is smoothed moves the fluid, not the one that it is made of.
+        let meshes = &stated.lattice.meshes;
+        let taken = |at: usize| meshes.iter().any(|m| m.of == Source::Functional(at));
+        let last = meshes.iter().enumerate().filter(|(at, _)| !taken(*at));
+        let mut last = last.map(|(_, m)| m.name.text.as_str());
+        let (name, shown) = last.find_map(|name| {
+            let key = ascii(name);
+            Some((name, all.iter().find(|s| s.key == key)?))
+        })?;
+        let made = stated.model.statements.iter().find_map(|s| match s {
+            Statement::Mesh {
+                name: own,
+                path,
+                arguments,
+                ..
+            } if own.text == name => {
+                let arguments: Vec<&str> = arguments.iter().map(|a| a.text.as_str()).collect();
+                Some(format!("{name} = {}({})", path.text, arguments.join(", ")))
+            }
+            _ => None,
+        });
+        Some(Coloured {
+            space,
+            places,
+            shown,
+            what: made.unwrap_or_else(|| name.to_owned()),
+        })
+    }
+}
+
 /// The picture; nothing for models that are no fluids.
 pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
-    let Some((space, stated)) = space(run.card, run.plan) else {
-        return Ok(None);
-    };
     let all = at_sites(run.card);
-    let domain = stated.lattice.places();
-    let Some(places) = domain.and_then(|q| all.iter().find(|s| s.key == ascii(&q.name.text)))
+    let Some(Coloured {
+        space,
+        places,
+        shown,
+        what,
+    }) = Coloured::of(run.card, run.plan, &all)
     else {
-        return Ok(None);
-    };
-    // A depth that is smoothed moves the fluid, not the one that it is made of.
-    let meshes = &stated.lattice.meshes;
-    let taken = |at: usize| meshes.iter().any(|m| m.of == Source::Functional(at));
-    let last = meshes.iter().enumerate().filter(|(at, _)| !taken(*at));
-    let mut last = last.map(|(_, m)| ascii(&m.name.text));
-    let Some(shown) = last.find_map(|key| all.iter().find(|s| s.key == key)) else {
         return Ok(None);
     };
     let count = record.times.len();
@@ -83,12 +124,13 @@ pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
         Some(shots) => shots,
         None => picked.map(|sample| snapshot(record, sample, &space, (places, shown), side)),
     };
-    titled(run, record, &shown.name, (&space, &shots, side))
+    let names = [&what, &shown.name, &places.name].map(String::as_str);
+    titled(run, record, names, (&space, &shots, side))
 }
 
 /// The vorticity of a fluid of cells; nothing for other models.
 pub(crate) fn vorticity(run: &Finished<'_>, record: &Record) -> Plot {
-    let Some((space, _)) = space(run.card, run.plan) else {
+    let Some((space, stated)) = space(run.card, run.plan) else {
         return Ok(None);
     };
     let side = if run.plan.paper { PRINTED } else { SIDE };
@@ -101,16 +143,18 @@ pub(crate) fn vorticity(run: &Finished<'_>, record: &Record) -> Plot {
             let each = shots.iter_mut().flat_map(|s| &mut s.cells);
             each.for_each(|(_, v)| *v = v.clamp(low, high));
             let what = "vorticity (colours of 99 cells in 100)";
-            titled(run, record, what, (&space, &shots, side))
+            let places = stated.lattice.places().map(|q| q.name.text.as_str());
+            let names = [what, "vorticity", places.unwrap_or_default()];
+            titled(run, record, names, (&space, &shots, side))
         }
     }
 }
 
-/// Two samples below the titles of a run.
+/// Two samples below the titles of a run: what they show, its name above the colours, and that of places beside the axes.
 fn titled(
     run: &Finished<'_>,
     record: &Record,
-    what: &str,
+    [what, colours, places]: [&str; 3],
     (space, shots, side): (&Space, &[Snapshot; 2], f64),
 ) -> Plot {
     let count = record.times.len();
@@ -121,7 +165,7 @@ fn titled(
     };
     let titles = titles(run, window, what);
     let titles = (!run.plan.paper).then_some(titles);
-    draw(titles, space, shots, side).map(Some)
+    draw(titles, [colours, places], space, shots, side).map(Some)
 }
 
 /// Where the particles of a run live.
@@ -281,6 +325,7 @@ impl Frame {
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn draw(
     titles: Option<(String, String)>,
+    [colours, places]: [&str; 2],
     space: &Space,
     shots: &[Snapshot; 2],
     longest_side: f64,
@@ -333,10 +378,12 @@ fn draw(
                     high: [length, top],
                 };
                 panel(&root, &frame, shot, [low, high])?;
+                axes(&root, &frame, [colours, places], space.lengths.len())?;
             }
             let (_, right) = root.split_horizontally(fine(wide - 90));
             let (_, right) = right.split_vertically(fine(above as u32 - 26));
             map.legend(&right)?;
+            text(&right, colours, 12, INK, (6, 6))?;
             root.present()?;
             Ok(())
         };
@@ -348,6 +395,25 @@ fn draw(
         None => printed_size(f64::from(wide), f64::from(tall)),
     };
     Ok(svg.replacen(&large, &printed, 1))
+}
+
+/// What stands at the axes of a panel: components of the place, or the only one and the value.
+#[allow(clippy::cast_possible_truncation)]
+fn axes(
+    root: &Area<'_>,
+    frame: &Frame,
+    [value, places]: [&str; 2],
+    dimensions: usize,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let middle = |d: usize| (frame.corner[d] + 0.5 * frame.side[d]) as i32;
+    let [across, up] = match dimensions {
+        1 => [places.to_owned(), value.to_owned()],
+        _ => [1, 2].map(|d| format!("{places}{}", subscript(d))),
+    };
+    let below = (frame.corner[1] + frame.side[1]) as i32 + 4;
+    text(root, &across, 12, INK, (middle(0), below))?;
+    let left = frame.corner[0] as i32 - 24;
+    text(root, &up, 12, INK, (left, middle(1) - 7))
 }
 
 #[allow(clippy::cast_possible_truncation)]

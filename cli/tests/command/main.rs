@@ -37,6 +37,7 @@ mod rest;
 mod results;
 mod resumed;
 mod scales;
+mod scenes;
 mod shipped;
 mod staging;
 mod starts;

@@ -32,6 +32,11 @@ fn a_body_is_shown_by_its_axes() {
     let square: f64 = (0..3).map(|i| entry(i) * entry(i)).sum();
     assert!((square - 1.0).abs() < 1e-12, "{square}");
     assert!((entry(0) * entry(3) + entry(1) * entry(4) + entry(2) * entry(5)).abs() < 1e-12);
+    // Of quick motions a part is shown, and the page says which.
+    assert!(
+        page.contains("The view shows the run up to time "),
+        "{page:.3000}"
+    );
     // Nothing is fetched: addresses are names of formats only.
     let fetched =
         page.matches("src=").count() + page.matches("href=").count() + page.matches("url(").count();
@@ -105,7 +110,7 @@ fn a_body_of_a_segment_is_midway_between_its_nodes() {
         let folder = Folder::new(&format!("page-rod-{name}"));
         let model = folder.write("rod.clebsch", &rod(statements, "segments"));
         let page = page(&folder, &[&model, "--case", "sample", "--steps", "5"]);
-        let (bodies, mut points) = first(&data(&page));
+        let (bodies, points) = first(&data(&page));
         let run = std::fs::read_to_string(folder.path("out/run.json")).expect("results");
         let run: serde_json::Value = serde_json::from_str(&run).expect("JSON");
         let given = |name: String| -> Vec<f64> {
@@ -113,10 +118,12 @@ fn a_body_of_a_segment_is_midway_between_its_nodes() {
             let value = value.unwrap_or_else(|| panic!("{name}: {run}")).iter();
             value.map(|x| x.as_f64().expect("a number")).collect()
         };
+        // A line is drawn to what its ends hold, and a ring around.
+        let last = points.len() - 1;
         match held {
-            1 => points.insert(0, given("x_0".to_owned())),
-            2 => points.push(given(format!("x_{}", points.len()))),
-            3 => points.push(points[0].clone()),
+            1 => assert_eq!(points[0], given("x_0".to_owned())),
+            2 => assert_eq!(points[last], given(format!("x_{last}"))),
+            3 => assert_eq!(points[last], points[0]),
             _ => {}
         }
         assert_eq!(points.len(), bodies.len() + 1, "{name}");
@@ -135,7 +142,7 @@ fn a_body_of_a_node_is_at_its_point_and_others_stand_in_one_row() {
         &folder,
         &[&model, "--case", "sample", "--steps", "5"],
     )));
-    assert_eq!(bodies[1..], points[..bodies.len() - 1]);
+    assert_eq!(bodies, points);
     let folder = Folder::new("page-two-groups");
     let model = folder.write(
         "tops.clebsch",

@@ -134,3 +134,22 @@ fn elements_of_the_linear_group_have_their_determinant() {
     let body = picture(&folder, "body", &["body-n", "--dim", "4", "--steps", "100"]);
     assert!(body("fields.svg").is_empty());
 }
+
+/// Precession and spin are drawn where they tell the motion: not of a body that comes through the vertical again and again.
+#[test]
+fn euler_angles_are_drawn_where_they_mean_something() {
+    let folder = Folder::new("angles");
+    let run = |name: &str, arguments: &[&str]| picture(&folder, name, arguments)("angles.svg");
+    let free = run(
+        "upright",
+        &["free-body", "--case", "figure-2-5", "--steps", "2000"],
+    );
+    assert!(free.contains("φ + ψ") && free.contains("θ nutation") && !free.contains("precession"));
+    let tumbling = run("tumbling", &["body-in-two-fields", "--steps", "2000"]);
+    assert!(tumbling.is_empty());
+    let top = run(
+        "top",
+        &["heavy-top", "--case", "lagrange", "--steps", "2000"],
+    );
+    assert!(top.contains("φ precession") && top.contains("ψ spin"));
+}

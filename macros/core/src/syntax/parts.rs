@@ -4,7 +4,7 @@ use super::ast::{Expression, Extent, Kind, Name, Statement};
 
 impl Expression {
     /// What it is made of directly, in order.
-    pub(crate) fn parts(&self) -> Vec<&Expression> {
+    pub fn parts(&self) -> Vec<&Expression> {
         match &self.kind {
             Kind::Number(_) | Kind::Constant(_) | Kind::Name(_) => Vec::new(),
             Kind::Sum(terms) => terms.iter().map(|(_, t)| t).collect(),
@@ -59,7 +59,7 @@ impl Expression {
     }
 
     /// Visits it and everything in it.
-    pub(crate) fn each(&self, visit: &mut dyn FnMut(&Expression)) {
+    pub fn each(&self, visit: &mut dyn FnMut(&Expression)) {
         visit(self);
         for part in self.parts() {
             part.each(visit);

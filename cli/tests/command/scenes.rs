@@ -1,0 +1,415 @@
+//! What the page of a run shows: bodies where they are, what constraints join, the ground, the colours of particles; and how
+//! its script draws them, on a canvas that writes SVG, where Node is there to run it.
+
+use super::common::{Folder, program, shipped};
+use serde_json::Value;
+use std::process::Command;
+
+/// The page of a run of a model and a case, without a name for the sample.
+fn page(folder: &Folder, model: &str, case: &str) -> String {
+    let model = folder.write("own.clebsch", model);
+    let out = folder.path("out");
+    let mut all = vec!["run", &model, "--out", &out, "--stability-limit", "0"];
+    let path;
+    match case {
+        "" => all.extend(["--case", "sample", "--steps", "40"]),
+        case => {
+            path = folder.write("case.toml", case);
+            all.extend(["--case", &path]);
+        }
+    }
+    let done = program(&all);
+    assert_eq!(done.code, 0, "{}", done.err);
+    read(folder)
+}
+
+fn read(folder: &Folder) -> String {
+    std::fs::read_to_string(folder.path("out/run.html")).expect("a page")
+}
+
+/// The data of its view.
+fn data(page: &str) -> Value {
+    let from = page.split_once("id=\"scene\">").expect("a scene").1;
+    let text = from.split_once("</script>").expect("its end").0;
+    serde_json::from_str(text).expect("JSON")
+}
+
+fn numbers(v: &Value) -> Vec<f64> {
+    let list = v.as_array().expect("a list").iter();
+    list.map(|x| x.as_f64().expect("a number")).collect()
+}
+
+/// The places in every frame of the body, or of the point, with this name.
+fn places(scene: &Value, kind: &str, name: &str) -> Vec<Vec<f64>> {
+    let all = scene[kind].as_array().expect("a list").iter();
+    let mut own = all.filter(|b| b["name"] == name);
+    let own = own.next().unwrap_or_else(|| panic!("{name}"));
+    let frames = if kind == "bodies" { "places" } else { "frames" };
+    own[frames]
+        .as_array()
+        .expect("frames")
+        .iter()
+        .map(numbers)
+        .collect()
+}
+
+/// A model of free bodies with a potential.
+fn bodies(fields: &str, attitudes: &[&str], potential: &str) -> String {
+    let group =
+        |a: &&str| format!("group {a}: SO<3> velocity V{a}; constraint next({a}) = {a}*V{a};");
+    let groups: String = attitudes.iter().map(group).collect();
+    let turning: String = attitudes
+        .iter()
+        .map(|a| format!(" - tr(J*V{a})/h"))
+        .collect();
+    let moving = fields
+        .split(", ")
+        .map(|x| format!(" + dot(next({x}) - {x}, next({x}) - {x})/(2*h)"));
+    let moving: String = moving.collect();
+    format!(
+        "model Own {{ param J: Sym<3>; param k: Real; param p, s: Vec<3>; field {fields}: Vec<3>; {groups}
+         lagrangian = 0{turning}{moving} - h*k*({potential}); }}"
+    )
+}
+
+#[test]
+fn a_body_is_shown_at_its_place() {
+    for (name, model, pairs) in [
+        // One place and one attitude.
+        (
+            "satellite",
+            bodies("x", &["A"], "dot(x, A*J*A^T*x) + dot(x, x)"),
+            vec![("A", "x")],
+        ),
+        // By the sums in which they stand, whatever the order of the declarations.
+        (
+            "arms",
+            bodies(
+                "y, x",
+                &["A", "B"],
+                "dot(x + A*p - y - B*s, x + A*p - y - B*s)",
+            ),
+            vec![("A", "x"), ("B", "y")],
+        ),
+        // By the numbers in their names.
+        (
+            "numbers",
+            bodies(
+                "x2, x1",
+                &["A1", "A2"],
+                "dot(x1 - x2, x1 - x2) + tr(A1^T*A2)",
+            ),
+            vec![("A1", "x1"), ("A2", "x2")],
+        ),
+    ] {
+        let folder = Folder::new(&format!("scene-{name}"));
+        let page = page(&folder, &model, "");
+        let scene = data(&page);
+        for (body, place) in pairs {
+            let (own, point) = (
+                places(&scene, "bodies", body),
+                places(&scene, "chains", place),
+            );
+            assert!(own.len() > 10, "{name}");
+            assert_eq!(own, point, "{name}: {body}");
+            assert!(page.contains(&format!("{body} at {place}")), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_body_without_a_place_is_beside_the_others() {
+    // `x - A*p` compares a point with one of a body about the origin; nothing is said of B.
+    let folder = Folder::new("scene-beside");
+    let model = bodies("x", &["A", "B"], "dot(x - A*p, x - A*p) + dot(A*p, B*s)");
+    let page = page(&folder, &model, "");
+    let scene = data(&page);
+    assert!(places(&scene, "bodies", "A").iter().all(|p| *p == [0.0; 3]));
+    assert!(page.contains("A about the origin"));
+    assert!(page.contains("B has no place in the model and is drawn beside the others."));
+    let arm = scene["arm"].as_f64().expect("a length");
+    let [b, x] = [("bodies", "B"), ("chains", "x")].map(|(kind, name)| places(&scene, kind, name));
+    let apart = |p: &[f64], q: &[f64]| {
+        let sum: f64 = p.iter().zip(q).map(|(a, b)| (a - b).powi(2)).sum();
+        sum.sqrt()
+    };
+    for (b, x) in b.iter().zip(&x) {
+        assert!(
+            apart(b, x) > 2.0 * arm && apart(b, &[0.0; 3]) > 2.0 * arm,
+            "{b:?} {x:?}"
+        );
+    }
+    // One body seen from another is none.
+    let folder = Folder::new("scene-seen-from");
+    let out = folder.path("out");
+    let done = shipped(&["run", "coupled-bodies", "--steps", "40", "--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let scene = data(&read(&folder));
+    assert_eq!(scene["bodies"].as_array().map(Vec::len), Some(2));
+}
+
+#[test]
+fn bodies_in_the_plane_are_shown() {
+    let folder = Folder::new("scene-plane");
+    let model = "model Flat { param J: Sym<2>; param m, k: Real; field x: Vec<2>; group A: SO<2> velocity W;
+         constraint next(A) = A*W;
+         lagrangian = -tr(J*W)/h + m*dot(next(x) - x, next(x) - x)/(2*h) - h*k*dot(x + A*E1, x + A*E1)/2; }";
+    let scene = data(&page(&folder, model, ""));
+    assert_eq!(scene["flat"], true);
+    let turn = numbers(&scene["bodies"][0]["turns"][3]);
+    assert!((turn[0] * turn[0] + turn[3] * turn[3] - 1.0).abs() < 1e-12 && turn[8] == 1.0);
+    let point = places(&scene, "chains", "x").remove(3);
+    assert_eq!(places(&scene, "bodies", "A").remove(3)[..2], point[..]);
+}
+
+const DOUBLE: &str = "model Double { param m, l, g: Real; field x, y: Vec<2>;
+     hold p: dot(x, x) = l^2; hold q: dot(y - x, y - x) = l^2;
+     lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) + m*dot(next(y) - y, next(y) - y)/(2*h) - h*g*m*(x[2] + y[2]); }";
+
+const SWUNG: &str = "model = \"double\"\nname = \"swung\"\ndoc = \"\"\nh = 0.02\nsteps = 60\n[parameters]\nm = 1.0\nl = 1.0\ng = 9.81\n\
+     [initial]\nx = [1.0, 0.0]\ny = [2.0, 0.0]\nmomentum_x = [0.0, 0.0]\nmomentum_y = [0.0, 0.0]\n";
+
+#[test]
+fn what_a_constraint_joins_is_linked() {
+    let folder = Folder::new("scene-double");
+    let scene = data(&page(&folder, DOUBLE, SWUNG));
+    let links = scene["links"].as_array().expect("links");
+    assert_eq!(links.len(), 2);
+    let (x, y) = (places(&scene, "chains", "x"), places(&scene, "chains", "y"));
+    for (f, (x, y)) in x.iter().zip(&y).enumerate() {
+        assert_eq!(numbers(&links[0][f]), [x[0], x[1], 0.0, 0.0, 0.0, 0.0]);
+        let ends = numbers(&links[1][f]);
+        assert!(ends == [y[0], y[1], 0.0, x[0], x[1], 0.0], "{ends:?}");
+    }
+    // The point that stays is ground.
+    assert_eq!(scene["supports"].to_string(), "[[0.0,0.0,0.0]]");
+}
+
+#[test]
+fn a_joint_is_linked_over_its_point() {
+    // Two bars, the first one hung up at P, and held by components.
+    let folder = Folder::new("scene-bars");
+    let model =
+        "model Bars { param m, K, g: Real; param P: Vec<2>; field x, y: Vec<2>; field a, b: Real;
+         let u = cos(a)*E1 + sin(a)*E2; let v = cos(b)*E1 + sin(b)*E2;
+         hold A: x - u = P; hold B: x + u = y - v;
+         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) + m*dot(next(y) - y, next(y) - y)/(2*h)
+         + K*(next(a) - a)^2/(2*h) + K*(next(b) - b)^2/(2*h) - h*g*m*(x[2] + y[2]); }";
+    let case = "model = \"bars\"\nname = \"hung\"\ndoc = \"\"\nh = 0.02\nsteps = 30\n[parameters]\nm = 1.0\nK = 0.3\ng = 9.81\n\
+         P = [0.5, 2.0]\n[initial]\nx = [1.5, 2.0]\ny = [3.5, 2.0]\na = 0.0\nb = 0.0\nmomentum_x = [0.0, 0.0]\n\
+         momentum_y = [0.0, 0.0]\nmomentum_a = 0.0\nmomentum_b = 0.0\n";
+    let scene = data(&page(&folder, model, case));
+    let links = scene["links"].as_array().expect("links");
+    assert_eq!(links.len(), 2);
+    assert_eq!(scene["supports"].to_string(), "[[0.5,2.0,0.0]]");
+    let path = numbers(&links[1][7]);
+    assert_eq!(path.len(), 9, "x, the joint, y: {path:?}");
+    let length = |i: usize| (path[i] - path[i + 3]).hypot(path[i + 1] - path[i + 4]);
+    assert!(
+        (length(0) - 1.0).abs() < 1e-9 && (length(3) - 1.0).abs() < 1e-9,
+        "{path:?}"
+    );
+    let folder = Folder::new("scene-components");
+    let model = "model Ring { param m, l, g: Real; field x: Vec<2>; hold p: x[1]^2 + x[2]^2 = l^2;
+         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*g*m*x[2]; }";
+    let case = "model = \"ring\"\nname = \"swung\"\ndoc = \"\"\nh = 0.02\nsteps = 30\n[parameters]\nm = 1.0\nl = 1.0\ng = 9.81\n\
+         [initial]\nx = [1.0, 0.0]\nmomentum = [0.0, 0.0]\n";
+    let scene = data(&page(&folder, model, case));
+    assert_eq!(scene["supports"].to_string(), "[[0.0,0.0,0.0]]");
+}
+
+#[test]
+fn a_plane_that_holds_a_point_is_no_link() {
+    let folder = Folder::new("scene-on-a-plane");
+    let model = "model Orbit { param m, k: Real; field x: Vec<3>; hold p: x[3] = 0;
+         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*k*dot(x, x)/2; }";
+    // Once around in a circle.
+    let case = "model = \"orbit\"\nname = \"circle\"\ndoc = \"\"\nh = 0.02\nsteps = 300\n[parameters]\nm = 1.0\nk = 1.0\n\
+         [initial]\nx = [1.0, 0.0, 0.0]\nmomentum = [0.0, 1.0, 0.0]\n";
+    let scene = data(&page(&folder, model, case));
+    assert_eq!(scene["links"].as_array().map(Vec::len), Some(0));
+    assert_eq!(scene["supports"].as_array().map(Vec::len), Some(0));
+}
+
+#[test]
+fn ends_that_are_held_are_shown_on_the_ground() {
+    let folder = Folder::new("scene-ends");
+    let out = folder.path("out");
+    let done = shipped(&["run", "hanging-chain", "--steps", "20", "--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let scene = data(&read(&folder));
+    let supports = scene["supports"].as_array().expect("a list");
+    assert_eq!(supports.len(), 1);
+    let chain = numbers(&scene["chains"][0]["frames"][5]);
+    assert_eq!(
+        chain[..3],
+        numbers(&supports[0])[..],
+        "the line begins where it is held"
+    );
+}
+
+#[test]
+fn particles_have_colours_with_a_scale() {
+    for (name, model) in [
+        ("grid", "particle-mesh-2d:bump"),
+        ("cells", "shallow-water-2d-regularised:geostrophic-vortex"),
+    ] {
+        let folder = Folder::new(&format!("scene-particles-{name}"));
+        let out = folder.path("out");
+        let done = shipped(&[
+            "run",
+            model,
+            "--steps",
+            "4",
+            "--out",
+            &out,
+            "--stability-limit",
+            "0",
+        ]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        let scene = data(&read(&folder));
+        let tints = &scene["chains"][0]["tints"];
+        let values = numbers(&tints["frames"][2]);
+        let count = numbers(&scene["chains"][0]["frames"][2]).len() / 2;
+        assert_eq!(values.len(), count, "{name}");
+        let [low, high] = ["low", "high"].map(|k| tints[k].as_f64().expect("a number"));
+        assert!(
+            low < high && values.iter().all(|v| (low..=high).contains(v)),
+            "{name}"
+        );
+        // The picture names what is coloured, above the scale and in its title.
+        let svg = std::fs::read_to_string(folder.path("out/particles.svg")).expect("a picture");
+        let (title, above) = match name {
+            "grid" => ("S = smooth(H, alpha)", "\nS\n"),
+            _ => ("phi = helmholtz_depth(X, m, alpha)", "\nphi\n"),
+        };
+        assert!(svg.contains(title) && svg.contains(above), "{name}");
+        assert!(svg.contains("X₁") && svg.contains("X₂"), "{name}");
+    }
+}
+
+#[test]
+fn particles_on_a_line_are_at_the_height_of_their_depth() {
+    let folder = Folder::new("scene-line-of-particles");
+    let out = folder.path("out");
+    let done = shipped(&[
+        "run",
+        "particle-mesh-1d",
+        "--steps",
+        "4",
+        "--out",
+        &out,
+        "--stability-limit",
+        "0",
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let scene = data(&read(&folder));
+    let chain = &scene["chains"][0];
+    assert_eq!(
+        (&chain["dim"], &chain["profile"]),
+        (&1.into(), &false.into())
+    );
+    let counts = [&chain["frames"][2], &chain["tints"]["frames"][2]].map(|v| numbers(v).len());
+    assert!(counts[0] > 1 && counts[0] == counts[1], "{counts:?}");
+    if let Some(svg) = drawn(&folder, "2") {
+        let dots = svg.matches("a2.").count().max(svg.matches("a3.").count());
+        assert!(
+            dots >= counts[0] && svg.contains(">S</text>") && !svg.contains("NaN"),
+            "{svg:.3000}"
+        );
+    }
+}
+
+#[test]
+fn many_bodies_without_places_stand_in_rows() {
+    let folder = Folder::new("scene-rows");
+    let out = folder.path("out");
+    let done = shipped(&[
+        "run",
+        "uniform-tension-rod:closed",
+        "--steps",
+        "2",
+        "--out",
+        &out,
+        "--stability-limit",
+        "0",
+    ]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let scene = data(&read(&folder));
+    let all = scene["bodies"].as_array().expect("bodies").iter();
+    let mut places: Vec<Vec<f64>> = all.map(|b| numbers(&b["places"][0])).collect();
+    let lowest = places.iter().map(|p| p[2]).fold(0.0, f64::min);
+    let last = places.iter().map(|p| p[0]).fold(0.0, f64::max);
+    assert!(
+        places.len() > 20 && lowest < 0.0 && last < 40.0,
+        "{places:?}"
+    );
+    let count = places.len();
+    places.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+    places.dedup();
+    assert_eq!(places.len(), count);
+}
+
+/// A frame of a page as its script draws it; nothing where there is no Node.
+fn drawn(folder: &Folder, frame: &str) -> Option<String> {
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/command/canvas.js");
+    let page = folder.path("out/run.html");
+    let done = Command::new("node")
+        .args([script, &page, frame])
+        .output()
+        .ok()?;
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert!(done.status.success(), "{said}");
+    Some(String::from_utf8_lossy(&done.stdout).into_owned())
+}
+
+#[test]
+fn the_view_has_names_ground_and_smooth_trails() {
+    let folder = Folder::new("scene-drawn");
+    page(&folder, DOUBLE, SWUNG);
+    let Some(svg) = drawn(&folder, "40") else {
+        return;
+    };
+    assert!(
+        svg.contains(">x</text>") && svg.contains(">y</text>"),
+        "{svg}"
+    );
+    // The ground is one path of five lines.
+    let paths: Vec<&str> = svg.split("<path d=\"").skip(1).collect();
+    let lines = |p: &&str| p.split('"').next().unwrap_or_default().matches('L').count();
+    assert!(
+        paths
+            .iter()
+            .any(|p| lines(p) == 5 && p.matches('M').count() == 5),
+        "{svg}"
+    );
+    // Where a point goes far between two frames the trail has points of its own.
+    assert!(
+        paths
+            .iter()
+            .any(|p| lines(p) > 1 && p.matches('M').count() == 1),
+        "{svg}"
+    );
+    assert!(!svg.contains("NaN"), "{svg}");
+}
+
+#[test]
+fn what_is_farther_is_paler() {
+    let folder = Folder::new("scene-depth");
+    page(
+        &folder,
+        &bodies("x", &["A"], "dot(x, A*J*A^T*x) + dot(x, x)"),
+        "",
+    );
+    let Some(svg) = drawn(&folder, "20") else {
+        return;
+    };
+    // Three axes, each in a shade of its own colour.
+    let inks: std::collections::HashSet<&str> = svg
+        .split("stroke=\"")
+        .skip(1)
+        .filter_map(|s| s.split('"').next())
+        .collect();
+    assert!(!inks.contains("rgb(213,94,0)"), "{inks:?}");
+    assert!(inks.len() > 5, "{inks:?}");
+}
