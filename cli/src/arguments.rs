@@ -383,7 +383,7 @@ fn of_a_case(command: Command) -> Command {
             option(
                 "set",
                 "NAME=VALUE",
-                "Parameter or initial value instead of the case's, with its component, such as gU.z=0.5 or gU=0,0,1; may be repeated",
+                "Parameter or initial value instead of the case's: a number, a component, or what a case file takes, such as gU.z=0.5, gU=[0,0,1], R.angle=1 or 'R={axis=[0,0,1], angle=1}'; may be repeated",
             )
             .action(ArgAction::Append),
         )

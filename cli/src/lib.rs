@@ -44,6 +44,7 @@ mod substitute;
 mod suggestion;
 mod summary;
 mod sweep;
+mod toml_value;
 mod verdict;
 mod waiting;
 mod width;

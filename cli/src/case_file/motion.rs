@@ -5,10 +5,11 @@ use super::beside::at_site;
 use super::velocity::{Way, momentum_of, suffix};
 use crate::gallery::Case;
 use crate::model_file::is_momentum;
-use clebsch::card::{Card, Field};
-use clebsch_check::{Legendre, NoMomentum, Setup, Velocities, Velocity};
+use clebsch::card::{Card, Field, Kind};
+use clebsch_check::{Legendre, NoMomentum, Setup, Undefined, Velocities, Velocity};
 use clebsch_core::lattice::Choice;
 use clebsch_core::pipeline;
+use clebsch_core::syntax::ast::Model;
 use std::collections::{BTreeSet, HashMap};
 
 /// Most momenta of rest that a reader is told of.
@@ -132,7 +133,7 @@ impl Motion {
             self.given.iter().find(own)
         };
         let first = match &why {
-            NoMomentum::Coupled(name, _) => named(name),
+            NoMomentum::Coupled(name, _) | NoMomentum::Lost(name) => named(name),
             _ => None,
         };
         let start = first.or_else(|| self.given.first());
@@ -152,6 +153,7 @@ impl Motion {
                      Give velocities for which it stays zero"
                 )
             }
+            NoMomentum::Lost(name) => lost(card, &name, momentum),
             NoMomentum::Coupled(_, other) => format!(
                 "the momentum depends on the velocity of `{other}` too, of which the momentum is given; give both by velocities or both by momenta"
             ),
@@ -301,6 +303,26 @@ impl Motion {
     }
 }
 
+/// What is said of a velocity that no momentum knows.
+fn lost(card: &Card, name: &str, momentum: &str) -> String {
+    let own = card.initial.iter().find(|f| f.name == name);
+    let quantity = quantity(own.map_or(name, |f| f.ascii));
+    let example = own
+        .filter(|f| matches!(f.kind, Kind::Scalar | Kind::Vector))
+        .map(|f| {
+            let square = match f.count() {
+                1 => format!("(next({quantity}) - {quantity})^2"),
+                _ => format!("dot(next({quantity}) - {quantity}, next({quantity}) - {quantity})"),
+            };
+            format!(", as in `m*{square}/(2*h)`")
+        });
+    format!(
+        "no momentum depends on this velocity, so it would be lost: for these parameters the Lagrangian has no kinetic energy of \
+         `{quantity}`. Divide its kinetic energy by the step once{}, or give `{momentum}`",
+        example.unwrap_or_default()
+    )
+}
+
 /// The velocities that a key stands for: the momentum that each replaces, its key with the site, and how many numbers it has.
 fn velocities(name: &str, card: &Card) -> Vec<(usize, Way, String, usize)> {
     let mut places: Vec<(usize, usize)> = elements(card.initial).into_iter().collect();
@@ -378,10 +400,13 @@ pub(super) fn elements(fields: &[Field]) -> HashMap<usize, usize> {
     each.collect()
 }
 
-/// What evaluates the action of a case.
-fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendre, String> {
-    let model = pipeline::parse_source(card.source);
-    let model = model.map_err(|_| "its text is not at hand".to_owned())?;
+/// The statement of a case, its sizes, and what the case adds to it; none if its text is not at hand.
+fn stated(
+    card: &Card,
+    choice: Option<&Choice>,
+    case: &Case,
+) -> Option<(Model, Vec<(String, usize)>, Setup)> {
+    let model = pipeline::parse_source(card.source).ok()?;
     let sizes = card.dimensions.iter();
     let sizes: Vec<_> = sizes.map(|d| (d.name.to_owned(), d.value)).collect();
     let fields = card.parameters.iter().map(|f| (f.name, f.rows, f.cols));
@@ -392,5 +417,19 @@ fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendr
         setup.counts.clone_from(&choice.counts);
         (setup.periodic, setup.ends) = (choice.periodic, choice.ends);
     }
+    Some((model, sizes, setup))
+}
+
+/// What evaluates the action of a case.
+fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendre, String> {
+    let found = stated(card, choice, case);
+    let (model, sizes, setup) = found.ok_or_else(|| "its text is not at hand".to_owned())?;
     Legendre::new(&model, &sizes, setup)
+}
+
+/// Where the action of a start is not a number, if that is found.
+pub(crate) fn undefined(card: &Card, choice: Option<&Choice>, case: &Case) -> Option<Undefined> {
+    let (model, sizes, setup) = stated(card, choice, case)?;
+    let node: Vec<f64> = case.initial.iter().flatten().copied().collect();
+    Undefined::find(&model, &sizes, &setup, &node).ok()?
 }

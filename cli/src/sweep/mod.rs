@@ -93,7 +93,10 @@ pub(crate) fn sweep(
     let card = &entry.card_of(&plan.case);
     let axes = matches.get_many::<String>("vary").into_iter().flatten();
     let axes: Vec<Axis> = axes
-        .map(|axis| Axis::read(axis, card, &plan.motion))
+        .map(|axis| {
+            let text = resolved.case.text().map(|case| case.text.as_str());
+            Axis::read(axis, card, &plan.motion, text)
+        })
         .collect::<Result<_, _>>()?;
     let mut pairs = axes
         .iter()
@@ -158,7 +161,8 @@ pub(crate) fn sweep(
     let follows = resolved
         .case
         .text()
-        .is_some_and(|case| follow(&case.text, &names));
+        .is_some_and(|case| follow(&case.text, &names))
+        || axes.iter().any(|axis| axis.quantity.is_of_text());
     let sweep = Sweep {
         card,
         plan: &plan,
