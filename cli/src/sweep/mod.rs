@@ -11,7 +11,7 @@ pub(crate) use collect::collect;
 
 use crate::Streams;
 use crate::checkpoint::{Checkpoint, Identity};
-use crate::failure::{BY_SIGNAL, DONE, Failure};
+use crate::failure::{BY_SIGNAL, Failure};
 use crate::gallery::Gallery;
 use crate::output::{self, Found, Listening, Staging, run_json};
 use crate::plain::shown;
@@ -78,7 +78,7 @@ struct Sweep<'a> {
     again: Option<(&'a Resolved<'a>, &'a ArgMatches)>,
 }
 
-/// Runs the command; 0 when every point has its row, however it ended, if any could be started.
+/// Runs the command. The exit code is that of a run: 0 if every point came to its end within its bounds.
 ///
 /// # Errors
 /// Usage for a wrong request; failed when the file system gives up.
@@ -243,7 +243,7 @@ pub(crate) fn sweep(
     }
 }
 
-/// What came out.
+/// What came out; the exit code says it too.
 fn tell(
     object: &Value,
     tally: &table::Tally,
@@ -253,7 +253,7 @@ fn tell(
 ) -> Result<u8, Failure> {
     if as_json {
         writeln!(streams.out, "{object}")?;
-        return Ok(DONE);
+        return Ok(tally.code());
     }
     let [csv, npz, json, ..] = table::FILES;
     let lines = [
@@ -265,7 +265,7 @@ fn tell(
             .out
             .write_all(paragraph(&line, streams.width, 2).as_bytes())?;
     }
-    Ok(DONE)
+    Ok(tally.code())
 }
 
 /// Asked to go on with a sweep that has come to its end.
@@ -287,7 +287,7 @@ fn already(
         true => writeln!(streams.out, "{there}")?,
         false => writeln!(streams.out, "complete already: {}", shown(target))?,
     }
-    Ok(DONE)
+    Ok(table::Tally::read(&there["results"]["points"]).code())
 }
 
 impl Sweep<'_> {
