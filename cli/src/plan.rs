@@ -108,7 +108,7 @@ impl Plan {
             ));
         }
         if !set.is_empty() || h.to_bits() != case.h.to_bits() {
-            start(&motion, &card, choice.as_ref(), &mut case)?;
+            start(&mut motion, &card, choice.as_ref(), &mut case)?;
         }
         let steps = matches.get_one::<u64>("steps").copied();
         Ok(Self {
@@ -179,7 +179,7 @@ impl Plan {
     /// # Errors
     /// Usage: the velocities have no momenta there.
     pub(crate) fn start_anew(&mut self, card: &Card) -> Result<(), Failure> {
-        start(&self.motion, card, self.choice.as_ref(), &mut self.case)
+        start(&mut self.motion, card, self.choice.as_ref(), &mut self.case)
     }
 
     /// What a reader is told of momenta that were made of velocities.
@@ -297,7 +297,7 @@ impl Plan {
 
 /// Puts the momenta of velocities into a case.
 fn start(
-    motion: &Motion,
+    motion: &mut Motion,
     card: &Card,
     choice: Option<&Choice>,
     case: &mut Case,

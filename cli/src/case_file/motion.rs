@@ -6,7 +6,9 @@ use super::velocity::{Way, momentum_of, suffix};
 use crate::gallery::Case;
 use crate::model_file::is_momentum;
 use clebsch::card::{Card, Field, Kind};
-use clebsch_check::{Legendre, NoMomentum, Setup, Undefined, Velocities, Velocity};
+use clebsch_check::{
+    Legendre, NoMomentum, Setup, Undefined, Velocities, Velocity, onto_constraints,
+};
 use clebsch_core::lattice::Choice;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::Model;
@@ -33,6 +35,8 @@ pub(crate) struct Motion {
     pub(super) given: Vec<Start>,
     /// The momenta of what rests, by their places.
     pub(super) resting: Vec<usize>,
+    /// What is told of a configuration that was moved onto its constraints.
+    onto: Option<String>,
 }
 
 /// What is wrong with a velocity.
@@ -48,13 +52,17 @@ impl Motion {
         self.given.is_empty() && self.resting.is_empty()
     }
 
-    /// Puts the momenta into a case, for its parameters and configuration.
+    /// Moves the configuration of a case onto its constraints, if it is as near to them as ten digits are, and puts the momenta
+    /// into the case, for its parameters and configuration.
     pub(crate) fn put(
-        &self,
+        &mut self,
         card: &Card,
         choice: Option<&Choice>,
         case: &mut Case,
     ) -> Result<(), Wrong> {
+        if let Some(told) = onto(card, choice, case) {
+            self.onto = Some(told);
+        }
         if self.is_empty() {
             return Ok(());
         }
@@ -299,7 +307,11 @@ impl Motion {
                 list(numbers)
             ))
         });
-        lines.chain(zero).chain(resting.take(MOST_TOLD)).collect()
+        let onto = self.onto.iter().cloned();
+        onto.chain(lines)
+            .chain(zero)
+            .chain(resting.take(MOST_TOLD))
+            .collect()
     }
 }
 
@@ -425,6 +437,27 @@ fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendr
     let found = stated(card, choice, case);
     let (model, sizes, setup) = found.ok_or_else(|| "its text is not at hand".to_owned())?;
     Legendre::new(&model, &sizes, setup)
+}
+
+/// Moves a configuration onto its constraints where digits that were left out take it off them; what is told of it.
+fn onto(card: &Card, choice: Option<&Choice>, case: &mut Case) -> Option<String> {
+    // Cases of models without constraints are not evaluated.
+    if !card.source.contains("hold") {
+        return None;
+    }
+    let (model, sizes, setup) = stated(card, choice, case)?;
+    let node: Vec<f64> = case.initial.iter().flatten().copied().collect();
+    let moved = onto_constraints(&model, &sizes, &setup, &node).ok()??;
+    let mut numbers = moved.node.into_iter();
+    for own in &mut case.initial {
+        for (x, found) in own.iter_mut().zip(numbers.by_ref()) {
+            *x = found;
+        }
+    }
+    Some(format!(
+        "initial configuration moved onto its constraints, by {:.1e} at most: `{}` was off by {:.1e}",
+        moved.by, moved.name, moved.off
+    ))
 }
 
 /// Where the action of a start is not a number, if that is found.

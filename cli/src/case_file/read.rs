@@ -127,7 +127,7 @@ fn located(
     };
     let parameters = fields.read(top, "parameters", card.parameters)?;
     let initial = fields.read(top, "initial", card.initial)?;
-    let motion = fields.motion;
+    let mut motion = fields.motion;
     let mut case = Case {
         name: optional_string(file, top, "name")?.unwrap_or_else(|| stem(name)),
         doc: optional_string(file, top, "doc")?.unwrap_or_default(),

@@ -310,7 +310,11 @@ mod tests {
         let axis = Axis::linear(-1_234_567.4, -1_234_566.1, 5);
         assert_eq!(labels(&axis), ["−4", "−2", "0", "2", "4", "6", "8"]);
         assert_eq!(axis.described("x"), "x   = −1234567 + … × 10⁻¹");
-        for (low, high) in [(1.0, 1.0 + 3e-7), (-5e9, -5e9 + 3.0), (7e-20, 7.000_001e-20)] {
+        for (low, high) in [
+            (1.0, 1.0 + 3e-7),
+            (-5e9, -5e9 + 3.0),
+            (7e-20, 7.000_001e-20),
+        ] {
             let axis = Axis::linear(low, high, 5);
             let mut all = labels(&axis);
             let count = all.len();

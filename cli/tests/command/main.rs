@@ -25,6 +25,7 @@ mod model_files;
 mod multipliers;
 mod names;
 mod npz;
+mod onto_constraints;
 mod options;
 mod own_models;
 mod page;
