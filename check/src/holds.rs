@@ -64,11 +64,16 @@ pub fn held(
 }
 
 /// The gradient of a held number by the variables of a node.
+#[derive(Clone, Debug)]
 pub struct Rate {
     /// The name of the constraint.
     pub name: String,
     /// The index along a label, of one that is counted.
     pub site: Option<usize>,
+    /// What is left of the constraint.
+    pub value: f64,
+    /// A bound on the error of that.
+    pub error: f64,
     /// Variables and derivatives.
     pub slopes: Vec<(usize, f64)>,
 }
@@ -96,6 +101,8 @@ pub fn gradients(
                 out.push(Rate {
                     name: hold.name.clone(),
                     site,
+                    value: x.value,
+                    error: x.error,
                     slopes: gradient.collect(),
                 });
             }
@@ -104,7 +111,8 @@ pub fn gradients(
     Ok(out)
 }
 
-fn is_long(stated: &Stated, setup: &Setup, hold: &Hold) -> bool {
+/// Whether a constraint sums over more sites than are summed.
+pub fn is_long(stated: &Stated, setup: &Setup, hold: &Hold) -> bool {
     let count = hold
         .value
         .label

@@ -16,7 +16,7 @@ use std::borrow::Cow;
 const LEFT_BY_SOLVERS: f64 = 8.0;
 
 /// The same of what is held: searches for multipliers end when corrections are no more than 32 double roundings of its terms.
-const LEFT_OF_WHAT_IS_HELD: f64 = 128.0;
+pub const LEFT_OF_WHAT_IS_HELD: f64 = 128.0;
 
 /// Significant bits of terms whose sums and products are exact: a zero of such terms proves nothing.
 const EXACT_BITS: u32 = 26;

@@ -4,6 +4,7 @@
 //! The limit is the momentum to every order of the method: a step of h from it begins with the velocity that was given, while
 //! `-D1 L` of a displacement of h times the velocity belongs to the mean velocity over that step, which differs by a term of order h.
 
+mod determined;
 mod step;
 
 use crate::group::Group;
@@ -45,6 +46,8 @@ pub enum NoMomentum {
     Across(String, Option<usize>, f64),
     /// The momentum of the first configuration depends on the velocity of the second one.
     Coupled(String, String),
+    /// No momentum depends on the velocity of this configuration.
+    Lost(String),
 }
 
 impl From<String> for NoMomentum {
@@ -91,6 +94,7 @@ impl Legendre {
     ) -> Result<Vec<Momentum>, NoMomentum> {
         let moving = all_moving(&self.stated, &self.setup);
         let plain = self.limit(node, velocities, &moving)?;
+        self.determined(node, velocities, &moving, &plain)?;
         if known.is_empty() {
             self.tangent(node, velocities, &moving)?;
             return Ok(plain);

@@ -20,7 +20,8 @@ pub fn command(width: Option<usize>) -> Command {
         .after_help(
             "Examples:\n  clebsch list\n  clebsch run heavy-top\n  clebsch derive heavy-top\n  clebsch new my-model\n\n\
              Exit codes: 0 done, 1 failed, 2 usage, 3 an invariant exceeded the bound of its case \
-             (results are written).",
+             (results are written). A sweep ends with 1 if a point was refused or stopped before its end, else with 3 if an \
+             invariant of a point exceeded its bound; its table is written.",
         )
         .subcommand_required(true)
         .arg_required_else_help(true)
@@ -383,7 +384,7 @@ fn of_a_case(command: Command) -> Command {
             option(
                 "set",
                 "NAME=VALUE",
-                "Parameter or initial value instead of the case's, with its component, such as gU.z=0.5 or gU=0,0,1; may be repeated",
+                "Parameter or initial value instead of the case's: a number, a component, or what a case file takes, such as gU.z=0.5, gU=[0,0,1], R.angle=1 or 'R={axis=[0,0,1], angle=1}'; may be repeated",
             )
             .action(ArgAction::Append),
         )

@@ -44,6 +44,7 @@ mod substitute;
 mod suggestion;
 mod summary;
 mod sweep;
+mod toml_value;
 mod verdict;
 mod waiting;
 mod width;
@@ -123,7 +124,12 @@ pub fn execute(
     done.unwrap_or_else(|failure| {
         if failure != Failure::ReaderGone {
             // When even this cannot be written, the exit code is all there is left.
-            let _ = writeln!(streams.err, "clebsch: {failure}");
+            let text = failure.to_string();
+            // What is wrong with a model stands on lines of its own.
+            let _ = match text.strip_prefix('\n') {
+                Some(of_model) => writeln!(streams.err, "{of_model}"),
+                None => writeln!(streams.err, "clebsch: {text}"),
+            };
             if as_json {
                 let _ = writeln!(streams.out, "{}", run::failure_json(&failure));
             }

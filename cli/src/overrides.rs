@@ -7,13 +7,14 @@ use crate::gallery::Case;
 use crate::number;
 use crate::plain::shown;
 use crate::quantity::Quantity;
+use crate::substitute::replaces;
 use clap::ArgMatches;
 use clebsch::card::Card;
 
 /// Most steps of a run, up to which a number of steps is exact as f64.
 const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
 
-/// Puts the options into a case. Gives the names that `--set` set.
+/// Puts the options into a case, which was read from this text if it has one. Gives the names that `--set` set.
 ///
 /// # Errors
 /// Usage: a quantity that the model does not have, a value that is not a number, or more steps than can be counted.
@@ -21,10 +22,21 @@ pub(crate) fn apply(
     case: &mut Case,
     motion: &mut Motion,
     card: &Card,
+    text: Option<&str>,
     matches: &ArgMatches,
 ) -> Result<Vec<String>, Failure> {
     let mut names = Vec::new();
+    // Lists, tables and their entries were put into the text of the case.
+    let is_read = |set: &&String| match (text, set.split_once('=')) {
+        (Some(text), Some((name, value))) => replaces(text, name.trim(), value),
+        _ => false,
+    };
     for text in set(matches) {
+        if is_read(&text) {
+            let name = text.split_once('=').map_or("", |(name, _)| name);
+            names.push(name.trim().to_owned());
+            continue;
+        }
         let (name, numbers) = parts(text, case, card)
             .map_err(|why| Failure::Usage(format!("--set {}: {why}", shown(text))))?;
         if let Some(given) = motion.give(&name, card, &numbers) {
@@ -68,6 +80,20 @@ pub(crate) fn by_name(matches: &ArgMatches) -> Vec<(String, String)> {
     let h = matches.try_get_one::<f64>("h").ok().flatten();
     sets.chain(h.map(|h| ("h".to_owned(), format!("{h:?}"))))
         .collect()
+}
+
+/// Whether a value of `--set` is a list or a table, or the inertia of a body: it is read as that of a case file is.
+pub(crate) fn needs_a_text(matches: &ArgMatches, card: &Card) -> bool {
+    let is_own = |name: &str| {
+        let mut all = card.parameters.iter().chain(card.initial);
+        all.any(|field| field.ascii == name)
+    };
+    set(matches)
+        .filter_map(|text| text.split_once('='))
+        .any(|(name, value)| {
+            let is_inertia = name.trim().starts_with('I') && !is_own(name.trim());
+            is_inertia || value.trim_start().starts_with(['[', '{'])
+        })
 }
 
 /// The time that `--until` gives.

@@ -3,7 +3,7 @@
 
 use crate::blamed::{Origin, blamed};
 use crate::case_file::labels::{self, Stated};
-use crate::case_file::{self, Located, Motion};
+use crate::case_file::{self, Located, Motion, undefined};
 use crate::failure::Failure;
 use crate::gallery::{self, Case, Entry};
 use crate::named_cases::{CaseText, WhichCase};
@@ -100,9 +100,15 @@ impl Plan {
         };
         let card = entry.card_of(&case);
         let h = case.h;
-        let set = overrides::apply(&mut case, &mut motion, &card, matches)?;
+        let text = resolved.case.text().map(|case| case.text.as_str());
+        let set = overrides::apply(&mut case, &mut motion, &card, text, matches)?;
+        if case.steps == 0 {
+            return Err(case_file::no_steps(
+                origin.as_ref().map_or("", |(file, _)| file.as_str()),
+            ));
+        }
         if !set.is_empty() || h.to_bits() != case.h.to_bits() {
-            start(&motion, &card, choice.as_ref(), &mut case)?;
+            start(&mut motion, &card, choice.as_ref(), &mut case)?;
         }
         let steps = matches.get_one::<u64>("steps").copied();
         Ok(Self {
@@ -173,7 +179,7 @@ impl Plan {
     /// # Errors
     /// Usage: the velocities have no momenta there.
     pub(crate) fn start_anew(&mut self, card: &Card) -> Result<(), Failure> {
-        start(&self.motion, card, self.choice.as_ref(), &mut self.case)
+        start(&mut self.motion, card, self.choice.as_ref(), &mut self.case)
     }
 
     /// What a reader is told of momenta that were made of velocities.
@@ -214,7 +220,15 @@ impl Plan {
                 ))
             }
             OpenError::Start(StartError::Refused(cause)) => {
-                Failure::Failed(format!("cannot take the first step: {cause}"))
+                let undefined = cause
+                    .is_not_finite()
+                    .then(|| undefined(card, self.choice.as_ref(), &self.case));
+                Failure::Failed(match undefined.flatten() {
+                    Some(found) => format!(
+                        "cannot take the first step: {found}; change the initial values or parameters there"
+                    ),
+                    None => format!("cannot take the first step: {cause}"),
+                })
             }
             OpenError::Kinetic { .. } => Failure::Failed(error.to_string()),
             OpenError::Solver { .. } => {
@@ -283,7 +297,7 @@ impl Plan {
 
 /// Puts the momenta of velocities into a case.
 fn start(
-    motion: &Motion,
+    motion: &mut Motion,
     card: &Card,
     choice: Option<&Choice>,
     case: &mut Case,
@@ -298,7 +312,7 @@ fn read(case: &CaseText, cards: &[Card]) -> Result<(Located, Option<Choice>), Fa
     let mut first = None;
     for card in cards {
         let located = match Stated::read(card.source) {
-            None => case_file::read(file, text, card).map(|located| (located, None)),
+            None => case_file::read_without_steps(file, text, card).map(|located| (located, None)),
             Some(stated) => {
                 let out = labels::written_out(file, text, &stated, card)?;
                 case_file::read_written_out(file, &out, card)

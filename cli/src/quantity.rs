@@ -3,6 +3,7 @@
 
 use crate::case_file::{Motion, at_site, is_velocity};
 use crate::gallery::Case;
+use crate::substitute::is_within_a_table;
 use clebsch::card::{Card, Field, Kind};
 
 /// A quantity that can be set.
@@ -20,6 +21,8 @@ enum Place {
     /// Entries of a parameter, each with the sign that its kind asks for; along a line those of several sites.
     Parameter(Vec<usize>, Vec<(usize, f64)>),
     Initial(Vec<usize>, Vec<(usize, f64)>),
+    /// An entry of a table of the case, which is read again with the value in its text.
+    Text,
     /// Entries of velocities that the case gives.
     Velocity(Vec<usize>, Vec<(usize, f64)>),
 }
@@ -36,6 +39,30 @@ impl Quantity {
             name: name.to_owned(),
             place,
         })
+    }
+
+    /// The same of a case that is read from a text, or an entry of a table in it, such as the angle of a rotation.
+    ///
+    /// # Errors
+    /// As [`Quantity::read`].
+    pub fn of_case(
+        name: &str,
+        card: &Card,
+        motion: &Motion,
+        text: Option<&str>,
+    ) -> Result<Self, String> {
+        match text.is_some_and(|text| is_within_a_table(text, name.trim())) {
+            true => Ok(Self {
+                name: name.trim().to_owned(),
+                place: Place::Text,
+            }),
+            false => Self::read(name, card, motion),
+        }
+    }
+
+    /// Whether the case is read again with its value.
+    pub fn is_of_text(&self) -> bool {
+        self.place == Place::Text
     }
 
     /// The components of a vector, if `name` is one.
@@ -67,6 +94,7 @@ impl Quantity {
     pub fn meets(&self, other: &Self) -> bool {
         match (&self.place, &other.place) {
             (Place::Step, Place::Step) => true,
+            (Place::Text, Place::Text) => self.name == other.name,
             (Place::Parameter(a, own), Place::Parameter(b, others))
             | (Place::Initial(a, own), Place::Initial(b, others))
             | (Place::Velocity(a, own), Place::Velocity(b, others)) => {
@@ -92,6 +120,7 @@ impl Quantity {
             }
         };
         match &self.place {
+            Place::Text => {}
             Place::Step => case.h = value,
             Place::Parameter(fields, list) => entries(&mut case.parameters, fields, list),
             Place::Initial(fields, list) => {

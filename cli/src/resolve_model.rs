@@ -3,10 +3,11 @@
 
 use crate::Streams;
 use crate::bounded;
+use crate::case_file;
 use crate::failure::Failure;
 use crate::gallery::{self, Entry, Gallery, Known};
 use crate::model_file;
-use crate::named_cases::{self, NamedCases, WhichCase, is_file};
+use crate::named_cases::{self, CaseText, NamedCases, WhichCase, is_file};
 use crate::overrides;
 use crate::plain::shown;
 use crate::waiting::Waiting;
@@ -61,11 +62,15 @@ pub(crate) fn resolved<'a>(
         Named::Compiled(entry) => Ok(Resolved {
             entry: Cow::Borrowed(entry),
             case: match case {
-                None => WhichCase::First,
                 Some(file) if is_file(file) => {
                     WhichCase::Text(named_cases::read(Path::new(file))?).with(&by_name)
                 }
-                Some(name) => WhichCase::Named(name.to_owned()),
+                name => match overrides::needs_a_text(matches, &entry.card) {
+                    true => WhichCase::Text(written(entry, name)?).with(&by_name),
+                    false => {
+                        name.map_or(WhichCase::First, |name| WhichCase::Named(name.to_owned()))
+                    }
+                },
             },
             compiled: true,
         }),
@@ -87,6 +92,15 @@ pub(crate) fn resolved<'a>(
             })
         }
     }
+}
+
+/// A case of a compiled model as a file would have it.
+fn written(entry: &Entry, name: Option<&str>) -> Result<CaseText, Failure> {
+    let case = gallery::case(entry, name)?;
+    Ok(CaseText {
+        file: format!("{}:{}", entry.card.kebab, case.name),
+        text: case_file::write(&entry.card_of(case), case, entry.card.kebab),
+    })
 }
 
 /// What a command's arguments `model` and `case` name: MODEL and `--case`, or MODEL:CASE.

@@ -1,16 +1,19 @@
 //! Values of options in the text of a case, so that expressions that hold them follow.
 //! Takes the text and names with values; gives the text with the values in their places.
 
+mod entry;
+
 use clebsch_core::lattice::value::SiteData;
+pub(crate) use entry::{is_within_a_table, replaces};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The text with these values: of the step `h`, and of parameters that are one number. What it does not give under these names
-/// is left for later, and so is what is not an expression in its parameters.
+/// The text with these values: of the step `h`, of parameters that are one number, lists and tables, and of what stands within a
+/// table. What it does not give under these names is left for later, and so is what is not an expression in its parameters.
 pub(crate) fn substituted(text: &str, values: &[(String, String)]) -> String {
     let mut out = text.to_owned();
     for (name, value) in values {
-        if let Some(next) = one(&out, name, value) {
+        if let Some(next) = entry::put(&out, name, value).or_else(|| one(&out, name, value)) {
             out = next;
         }
     }

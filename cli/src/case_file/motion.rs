@@ -5,10 +5,13 @@ use super::beside::at_site;
 use super::velocity::{Way, momentum_of, suffix};
 use crate::gallery::Case;
 use crate::model_file::is_momentum;
-use clebsch::card::{Card, Field};
-use clebsch_check::{Legendre, NoMomentum, Setup, Velocities, Velocity};
+use clebsch::card::{Card, Field, Kind};
+use clebsch_check::{
+    Legendre, NoMomentum, Setup, Undefined, Velocities, Velocity, onto_constraints,
+};
 use clebsch_core::lattice::Choice;
 use clebsch_core::pipeline;
+use clebsch_core::syntax::ast::Model;
 use std::collections::{BTreeSet, HashMap};
 
 /// Most momenta of rest that a reader is told of.
@@ -32,6 +35,8 @@ pub(crate) struct Motion {
     pub(super) given: Vec<Start>,
     /// The momenta of what rests, by their places.
     pub(super) resting: Vec<usize>,
+    /// What is told of a configuration that was moved onto its constraints.
+    onto: Option<String>,
 }
 
 /// What is wrong with a velocity.
@@ -47,13 +52,17 @@ impl Motion {
         self.given.is_empty() && self.resting.is_empty()
     }
 
-    /// Puts the momenta into a case, for its parameters and configuration.
+    /// Moves the configuration of a case onto its constraints, if it is as near to them as ten digits are, and puts the momenta
+    /// into the case, for its parameters and configuration.
     pub(crate) fn put(
-        &self,
+        &mut self,
         card: &Card,
         choice: Option<&Choice>,
         case: &mut Case,
     ) -> Result<(), Wrong> {
+        if let Some(told) = onto(card, choice, case) {
+            self.onto = Some(told);
+        }
         if self.is_empty() {
             return Ok(());
         }
@@ -132,7 +141,7 @@ impl Motion {
             self.given.iter().find(own)
         };
         let first = match &why {
-            NoMomentum::Coupled(name, _) => named(name),
+            NoMomentum::Coupled(name, _) | NoMomentum::Lost(name) => named(name),
             _ => None,
         };
         let start = first.or_else(|| self.given.first());
@@ -152,6 +161,7 @@ impl Motion {
                      Give velocities for which it stays zero"
                 )
             }
+            NoMomentum::Lost(name) => lost(card, &name, momentum),
             NoMomentum::Coupled(_, other) => format!(
                 "the momentum depends on the velocity of `{other}` too, of which the momentum is given; give both by velocities or both by momenta"
             ),
@@ -297,8 +307,32 @@ impl Motion {
                 list(numbers)
             ))
         });
-        lines.chain(zero).chain(resting.take(MOST_TOLD)).collect()
+        let onto = self.onto.iter().cloned();
+        onto.chain(lines)
+            .chain(zero)
+            .chain(resting.take(MOST_TOLD))
+            .collect()
     }
+}
+
+/// What is said of a velocity that no momentum knows.
+fn lost(card: &Card, name: &str, momentum: &str) -> String {
+    let own = card.initial.iter().find(|f| f.name == name);
+    let quantity = quantity(own.map_or(name, |f| f.ascii));
+    let example = own
+        .filter(|f| matches!(f.kind, Kind::Scalar | Kind::Vector))
+        .map(|f| {
+            let square = match f.count() {
+                1 => format!("(next({quantity}) - {quantity})^2"),
+                _ => format!("dot(next({quantity}) - {quantity}, next({quantity}) - {quantity})"),
+            };
+            format!(", as in `m*{square}/(2*h)`")
+        });
+    format!(
+        "no momentum depends on this velocity, so it would be lost: for these parameters the Lagrangian has no kinetic energy of \
+         `{quantity}`. Divide its kinetic energy by the step once{}, or give `{momentum}`",
+        example.unwrap_or_default()
+    )
 }
 
 /// The velocities that a key stands for: the momentum that each replaces, its key with the site, and how many numbers it has.
@@ -378,10 +412,13 @@ pub(super) fn elements(fields: &[Field]) -> HashMap<usize, usize> {
     each.collect()
 }
 
-/// What evaluates the action of a case.
-fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendre, String> {
-    let model = pipeline::parse_source(card.source);
-    let model = model.map_err(|_| "its text is not at hand".to_owned())?;
+/// The statement of a case, its sizes, and what the case adds to it; none if its text is not at hand.
+fn stated(
+    card: &Card,
+    choice: Option<&Choice>,
+    case: &Case,
+) -> Option<(Model, Vec<(String, usize)>, Setup)> {
+    let model = pipeline::parse_source(card.source).ok()?;
     let sizes = card.dimensions.iter();
     let sizes: Vec<_> = sizes.map(|d| (d.name.to_owned(), d.value)).collect();
     let fields = card.parameters.iter().map(|f| (f.name, f.rows, f.cols));
@@ -392,5 +429,40 @@ fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendr
         setup.counts.clone_from(&choice.counts);
         (setup.periodic, setup.ends) = (choice.periodic, choice.ends);
     }
+    Some((model, sizes, setup))
+}
+
+/// What evaluates the action of a case.
+fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendre, String> {
+    let found = stated(card, choice, case);
+    let (model, sizes, setup) = found.ok_or_else(|| "its text is not at hand".to_owned())?;
     Legendre::new(&model, &sizes, setup)
+}
+
+/// Moves a configuration onto its constraints where digits that were left out take it off them; what is told of it.
+fn onto(card: &Card, choice: Option<&Choice>, case: &mut Case) -> Option<String> {
+    // Cases of models without constraints are not evaluated.
+    if !card.source.contains("hold") {
+        return None;
+    }
+    let (model, sizes, setup) = stated(card, choice, case)?;
+    let node: Vec<f64> = case.initial.iter().flatten().copied().collect();
+    let moved = onto_constraints(&model, &sizes, &setup, &node).ok()??;
+    let mut numbers = moved.node.into_iter();
+    for own in &mut case.initial {
+        for (x, found) in own.iter_mut().zip(numbers.by_ref()) {
+            *x = found;
+        }
+    }
+    Some(format!(
+        "initial configuration moved onto its constraints, by {:.1e} at most: `{}` was off by {:.1e}",
+        moved.by, moved.name, moved.off
+    ))
+}
+
+/// Where the action of a start is not a number, if that is found.
+pub(crate) fn undefined(card: &Card, choice: Option<&Choice>, case: &Case) -> Option<Undefined> {
+    let (model, sizes, setup) = stated(card, choice, case)?;
+    let node: Vec<f64> = case.initial.iter().flatten().copied().collect();
+    Undefined::find(&model, &sizes, &setup, &node).ok()?
 }

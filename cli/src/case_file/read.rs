@@ -38,7 +38,25 @@ const KEYS: [&str; 8] = [
 /// Usage: no TOML, another model, an unknown, missing, mistyped or misshapen value. The message
 /// names file, line and key.
 pub fn read(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
+    let located = read_without_steps(name, text, card)?;
+    match located.case.steps {
+        0 => Err(no_steps(name)),
+        _ => Ok(located),
+    }
+}
+
+/// The same of a case that may leave the number of steps to an option: it is 0 then.
+///
+/// # Errors
+/// As [`read`].
+pub(crate) fn read_without_steps(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
     located(&File::new(name, text), &Beside::default(), card, None)
+}
+
+/// The message for a case without a number of steps.
+pub(crate) fn no_steps(name: &str) -> Failure {
+    let message = "missing key `steps`: the number of steps; or give --until T or --steps N";
+    Failure::Usage(format!("{}: {message}", shown(name)))
 }
 
 /// The same of a case that was written out from a file, whose lines are told.
@@ -96,8 +114,10 @@ fn located(
     }
     let scope = Scope::of(top);
     let h = step_size(file, &scope, required(file, top, "h", "the step size")?)?;
-    let count = required(file, top, "steps", "the number of steps")?;
-    let steps = steps(file, &scope, count)?;
+    let steps = match top.get("steps") {
+        Some(count) => steps(file, &scope, count)?,
+        None => 0,
+    };
     let mut fields = Fields {
         file,
         beside,
@@ -107,7 +127,7 @@ fn located(
     };
     let parameters = fields.read(top, "parameters", card.parameters)?;
     let initial = fields.read(top, "initial", card.initial)?;
-    let motion = fields.motion;
+    let mut motion = fields.motion;
     let mut case = Case {
         name: optional_string(file, top, "name")?.unwrap_or_else(|| stem(name)),
         doc: optional_string(file, top, "doc")?.unwrap_or_default(),

@@ -71,6 +71,9 @@ impl Scope {
         let Some(name) = missing(&why) else {
             return why;
         };
+        if let Some(help) = clebsch_core::lattice::value::instead_of(name) {
+            return format!("{why}; {help}");
+        }
         let (mut chain, mut at) = (Vec::new(), name.to_owned());
         while let Some(text) = self.open.get(&at) {
             chain.push(format!("{at} = \"{text}\""));

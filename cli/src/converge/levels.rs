@@ -31,7 +31,13 @@ pub(super) struct Measured {
     pub names: Vec<&'static str>,
     /// The largest step size first.
     pub levels: Vec<Level>,
+    /// The order of each quantity: the slope of a line fitted to the logarithms of its errors; none of fewer than two errors
+    /// above rounding.
+    pub fitted: Vec<Option<f64>>,
 }
+
+/// Differences between runs that fall slower than this, with the step halved, have odd powers of it too.
+const EVEN: f64 = 1.5;
 
 impl Measured {
     /// Runs a case with `count` step sizes.
@@ -55,17 +61,24 @@ impl Measured {
         }
         // The error of a reversible step has even powers of h alone.
         let power = if card.reversible { 2 } else { 1 };
-        let places: Vec<f64> = (0..count)
-            .map(|level| 2_f64.powi(level.cast_signed()).powi(-power))
-            .collect();
         let records: Vec<&Record> = runs.iter().map(|(_, _, record)| record).collect();
-        let truth = extrapolation(&records, &places)?;
+        let limit = |power: i32| {
+            let places = (0..count).map(|level| 2_f64.powi(level.cast_signed()).powi(-power));
+            extrapolation(&records, &places.collect::<Vec<f64>>())
+        };
+        let (by_step, all_powers) = (limit(power)?, limit(1)?);
+        let is_even = evens(card, &records);
         let mut names = Vec::new();
         let mut levels: Vec<Level> = Vec::new();
         for (h, steps, record) in &runs {
-            let curves = errors(card, record, &truth);
+            let curves = errors(card, record, &by_step);
             names = curves.iter().map(|curve| curve.name).collect();
-            let errors: Vec<f64> = curves.iter().map(|curve| curve.last()).collect();
+            // What is seen at a node may be of lower order than the motion, as a momentum that is not projected.
+            let odd = errors(card, record, &all_powers);
+            let each = curves.iter().zip(&odd).zip(&is_even);
+            let errors: Vec<f64> = each
+                .map(|((even, odd), is_even)| if *is_even { even.last() } else { odd.last() })
+                .collect();
             let orders = match levels.last() {
                 None => vec![None; errors.len()],
                 Some(before) => before.errors.iter().zip(&errors).map(order).collect(),
@@ -77,8 +90,53 @@ impl Measured {
                 orders,
             });
         }
-        Ok(Self { names, levels })
+        let fitted = (0..names.len()).map(|at| fitted(&levels, at)).collect();
+        Ok(Self {
+            names,
+            levels,
+            fitted,
+        })
     }
+}
+
+/// Whether the differences between runs fall as even powers of the step do, for each quantity.
+fn evens(card: &Card, records: &[&Record]) -> Vec<bool> {
+    let pairs = records.windows(2).filter_map(|two| match two {
+        [coarse, fine] => Some(errors(card, coarse, fine)),
+        _ => None,
+    });
+    let apart: Vec<Vec<f64>> = pairs
+        .map(|curves| curves.iter().map(|curve| curve.last()).collect())
+        .collect();
+    let count = apart.first().map_or(0, Vec::len);
+    let falls = |at: usize| {
+        let of = |row: &Vec<f64>| row.get(at).copied().unwrap_or(0.0);
+        let each = apart.windows(2).filter_map(|two| match two {
+            [coarse, fine] => order((&of(coarse), &of(fine))),
+            _ => None,
+        });
+        // The last one that is not rounding: the smaller the steps, the more the lowest power is left alone.
+        each.last()
+    };
+    (0..count)
+        .map(|at| falls(at).is_none_or(|order| order >= EVEN))
+        .collect()
+}
+
+/// The slope of the line through the logarithms of the errors of a quantity that are above rounding.
+fn fitted(levels: &[Level], at: usize) -> Option<f64> {
+    let points = levels.iter().filter_map(|level| {
+        let error = level.errors.get(at).filter(|error| **error > ROUNDING)?;
+        Some((level.h.ln(), error.ln()))
+    });
+    let points: Vec<(f64, f64)> = points.collect();
+    #[allow(clippy::cast_precision_loss)]
+    let count = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    let both: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
+    let square: f64 = points.iter().map(|p| (p.0 - x) * (p.0 - x)).sum();
+    (points.len() > 1).then(|| both / square)
 }
 
 /// A failure of the run with this step size.
@@ -97,7 +155,21 @@ fn order((coarse, fine): (&f64, &f64)) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::order;
+    use super::{Level, fitted, order};
+
+    #[test]
+    fn an_order_is_fitted_to_all_errors_above_rounding() {
+        let level = |h: f64, error: f64| Level {
+            h,
+            steps: 1,
+            errors: vec![error],
+            orders: vec![None],
+        };
+        let levels = [level(0.4, 1.6), level(0.2, 0.4), level(0.1, 0.1), level(0.05, 1e-15)];
+        let found = fitted(&levels, 0).expect("three errors");
+        assert!((found - 2.0).abs() < 1e-12, "{found}");
+        assert_eq!(fitted(&levels[2..], 0), None);
+    }
 
     #[test]
     fn an_order_is_the_logarithm_of_a_ratio_above_rounding() {

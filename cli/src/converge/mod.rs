@@ -77,16 +77,40 @@ pub(crate) fn converge(
     let order = plan.order.unwrap_or(card.order);
     writeln!(out)?;
     for line in [
-        format!("the step is of order {order}; an order is measured between a line and the line above"),
+        format!("the step is of order {order}; an order is measured between a line and the line above, the last line is fitted to all"),
         format!("errors are relative to the largest size of each quantity; \"-\" marks errors near rounding ({:.0e})", levels::ROUNDING),
     ]
     .into_iter()
+    .chain(lower(&done, order))
     .chain(written)
     {
         out.write_all(paragraph(&line, streams.width, 2).as_bytes())?;
     }
     Ok(DONE)
 }
+
+/// What is told of quantities whose errors fall slower than the order of the step says.
+fn lower(done: &Measured, order: u32) -> Option<String> {
+    let all = || done.names.iter().zip(&done.fitted);
+    let is_lower = |fitted: &Option<f64>| fitted.is_some_and(|p| p < f64::from(order) - LOWER);
+    let own = all().filter(|(_, fitted)| is_lower(fitted));
+    let named: Vec<String> = own
+        .filter_map(|(name, fitted)| Some(format!("`{name}` ({:.2})", (*fitted)?)))
+        .collect();
+    // Another quantity that converges as the step does shows that the motion itself does.
+    let as_the_step = all().find(|(_, fitted)| fitted.is_some() && !is_lower(fitted));
+    let cause = match as_the_step {
+        Some((name, _)) => format!(
+            "`{name}` converges with the order of the step, so this is an error of each node by itself, which does not add up: as of a \
+             momentum that is not projected at its node"
+        ),
+        None => "take more levels, or smaller steps, to see whether it stays".to_owned(),
+    };
+    (!named.is_empty()).then(|| format!("measured order below {order}: {}; {cause}", named.join(", ")))
+}
+
+/// By how much a fitted order may be below that of the step.
+const LOWER: f64 = 0.4;
 
 fn table(done: &Measured, width: Option<usize>) -> String {
     let mut head = vec!["h".to_owned(), "steps".to_owned()];
@@ -111,6 +135,12 @@ fn table(done: &Measured, width: Option<usize>) -> String {
             row
         },
     ));
+    let mut fit = vec!["fit".to_owned(), String::new()];
+    for order in &done.fitted {
+        fit.push(String::new());
+        fit.push(order.map_or_else(|| "-".to_owned(), |order| format!("{order:.2}")));
+    }
+    rows.push(fit);
     aligned(&rows, &right, width)
 }
 
@@ -125,6 +155,7 @@ fn object(card: &Card, plan: &Plan, done: &Measured) -> Value {
         "order": plan.order.unwrap_or(card.order),
         "arguments": plan.arguments,
         "quantities": done.names,
+        "fitted_orders": done.fitted,
         "levels": done.levels.iter().map(level).collect::<Vec<_>>(),
     })
 }

@@ -15,9 +15,17 @@ pub struct Axis {
     low: f64,
     high: f64,
     ticks: Vec<(f64, String)>,
-    /// Power of ten taken out of the labels, to be said beside the axis.
-    pub factor: Option<String>,
+    /// Power of ten taken out of the labels.
+    factor: Option<String>,
+    /// What all numbers have in common, taken out of the labels.
+    offset: Option<String>,
 }
+
+/// Decades between the numbers of an axis and its ticks from which on labels say what differs alone.
+const DECADES: f64 = 5.0;
+
+/// Values that agree to so much of their size are drawn as a flat line: the rest is rounding.
+const ROUNDING: f64 = 1e-12;
 
 impl Axis {
     /// From `low` to `high` as they are, with about `count` ticks.
@@ -29,6 +37,9 @@ impl Axis {
         };
         let step = round_step((high - low) / f64::from(count.max(1)));
         let magnitude = low.abs().max(high.abs()).log10().floor();
+        if magnitude - step.log10().floor() >= DECADES && low * high > 0.0 {
+            return Self::beside_an_offset(low, high, step);
+        }
         let exponent = if (-3.0..6.0).contains(&magnitude) {
             0.0
         } else {
@@ -50,6 +61,45 @@ impl Axis {
             high,
             ticks,
             factor: (exponent != 0.0).then(|| power_of_ten(exponent as i32)),
+            offset: None,
+        }
+    }
+
+    /// Of numbers that agree in many digits: their common ones are said beside the axis, the others at its ticks.
+    fn beside_an_offset(low: f64, high: f64, step: f64) -> Self {
+        let decade = step.log10().floor();
+        // Ten or more ticks from one number of these digits to the next.
+        let unit = 10_f64.powf(decade + 1.0);
+        let common = (0.5 * (low + high) / unit).floor();
+        let digits = (-(decade + 1.0)).clamp(0.0, 17.0) as usize;
+        let offset = common * unit;
+        let of_unit = (unit / step).round();
+        let mut ticks = Vec::new();
+        let rounding = step * 1e-9 + 2.0 * f64::EPSILON * high.abs();
+        let mut index = ((low - rounding - offset) / step).ceil();
+        while offset + index * step <= high + rounding {
+            // Steps are 1, 2 or 5 times the power of ten.
+            let label = format!("{:.0}", index * 10.0 / of_unit + 0.0);
+            ticks.push((offset + index * step, label.replace('-', "−")));
+            index += 1.0;
+        }
+        let exponent = decade as i32;
+        Self {
+            low,
+            high,
+            ticks,
+            factor: (exponent != 0).then(|| power_of_ten(exponent)),
+            offset: Some(format!("{offset:.digits$}").replace('-', "−")),
+        }
+    }
+
+    /// What the axis shows, with what was taken out of its labels.
+    pub fn described(&self, label: &str) -> String {
+        match (&self.offset, &self.factor) {
+            (None, None) => label.to_owned(),
+            (None, Some(factor)) => format!("{label}   / {factor}"),
+            (Some(offset), None) => format!("{label}   = {offset} + …"),
+            (Some(offset), Some(factor)) => format!("{label}   = {offset} + … × {factor}"),
         }
     }
 
@@ -60,10 +110,11 @@ impl Axis {
         for (at, label) in &mut axis.ticks {
             *label = format!("{:.0}", at.round() + 0.0);
         }
+        (axis.factor, axis.offset) = (None, None);
         axis
     }
 
-    /// Around the values of `curves`, with a margin. Values that agree to six digits are drawn as a
+    /// Around the values of `curves`, with a margin. Values that agree to twelve digits are drawn as a
     /// flat line, not as rounding noise.
     pub fn around(curves: &[Curve]) -> Self {
         let values = curves
@@ -77,7 +128,7 @@ impl Axis {
             return Self::linear(-1.0, 1.0, 5);
         }
         let largest = low.abs().max(high.abs());
-        let margin = if high - low > 1e-6 * largest {
+        let margin = if high - low > ROUNDING * largest {
             0.06 * (high - low)
         } else if largest > 0.0 {
             0.2 * largest
@@ -109,6 +160,7 @@ impl Axis {
                 .map(|place| (place.log10(), label(*place)))
                 .collect(),
             factor: None,
+            offset: None,
         }
     }
 
@@ -151,6 +203,7 @@ impl Axis {
             high,
             ticks,
             factor: None,
+            offset: None,
         }
     }
 }
@@ -244,6 +297,30 @@ mod tests {
         let large = Axis::linear(0.0, 1e6, 4);
         assert_eq!(labels(&large), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(large.factor.as_deref(), Some("10⁶"));
+    }
+
+    #[test]
+    fn numbers_that_nearly_agree_are_told_from_what_they_have_in_common() {
+        let axis = Axis::linear(1.234_567_890_1, 1.234_567_890_2, 5);
+        assert_eq!(labels(&axis), ["0", "2", "4", "6", "8", "10"]);
+        assert_eq!(
+            axis.described("energy"),
+            "energy   = 1.2345678901 + … × 10⁻¹¹"
+        );
+        let axis = Axis::linear(-1_234_567.4, -1_234_566.1, 5);
+        assert_eq!(labels(&axis), ["−4", "−2", "0", "2", "4", "6", "8"]);
+        assert_eq!(axis.described("x"), "x   = −1234567 + … × 10⁻¹");
+        for (low, high) in [
+            (1.0, 1.0 + 3e-7),
+            (-5e9, -5e9 + 3.0),
+            (7e-20, 7.000_001e-20),
+        ] {
+            let axis = Axis::linear(low, high, 5);
+            let mut all = labels(&axis);
+            let count = all.len();
+            all.dedup();
+            assert!(count > 2 && all.len() == count, "{all:?}");
+        }
     }
 
     #[test]

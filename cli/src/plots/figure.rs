@@ -176,10 +176,7 @@ impl Panel {
         x: &Axis,
         x_label: Option<&str>,
     ) -> Result<(), Box<dyn std::error::Error>> {
-        let y_label = match &self.y.factor {
-            Some(factor) => format!("{}   / {factor}", self.y_label),
-            None => self.y_label.clone(),
-        };
+        let y_label = self.y.described(&self.y_label);
         let mut chart = ChartBuilder::on(area)
             .margin_top(fine(24))
             .margin_right(fine(14))
@@ -193,11 +190,7 @@ impl Panel {
         };
         let y_words =
             |value: &f64| plotters::coord::ranged1d::ValueFormatter::format_ext(&self.y, value);
-        let x_described = match (x_label, &x.factor) {
-            (Some(label), Some(factor)) => format!("{label}   / {factor}"),
-            (Some(label), None) => label.to_owned(),
-            (None, _) => String::new(),
-        };
+        let x_described = x_label.map_or_else(String::new, |label| x.described(label));
         chart
             .configure_mesh()
             .bold_line_style(line(GRID, 3))

@@ -11,7 +11,7 @@ pub(crate) use collect::collect;
 
 use crate::Streams;
 use crate::checkpoint::{Checkpoint, Identity};
-use crate::failure::{BY_SIGNAL, DONE, Failure};
+use crate::failure::{BY_SIGNAL, Failure};
 use crate::gallery::Gallery;
 use crate::output::{self, Found, Listening, Staging, run_json};
 use crate::plain::shown;
@@ -78,7 +78,7 @@ struct Sweep<'a> {
     again: Option<(&'a Resolved<'a>, &'a ArgMatches)>,
 }
 
-/// Runs the command; 0 when every point has its row, however it ended, if any could be started.
+/// Runs the command. The exit code is that of a run: 0 if every point came to its end within its bounds.
 ///
 /// # Errors
 /// Usage for a wrong request; failed when the file system gives up.
@@ -93,7 +93,10 @@ pub(crate) fn sweep(
     let card = &entry.card_of(&plan.case);
     let axes = matches.get_many::<String>("vary").into_iter().flatten();
     let axes: Vec<Axis> = axes
-        .map(|axis| Axis::read(axis, card, &plan.motion))
+        .map(|axis| {
+            let text = resolved.case.text().map(|case| case.text.as_str());
+            Axis::read(axis, card, &plan.motion, text)
+        })
         .collect::<Result<_, _>>()?;
     let mut pairs = axes
         .iter()
@@ -158,7 +161,8 @@ pub(crate) fn sweep(
     let follows = resolved
         .case
         .text()
-        .is_some_and(|case| follow(&case.text, &names));
+        .is_some_and(|case| follow(&case.text, &names))
+        || axes.iter().any(|axis| axis.quantity.is_of_text());
     let sweep = Sweep {
         card,
         plan: &plan,
@@ -239,7 +243,7 @@ pub(crate) fn sweep(
     }
 }
 
-/// What came out.
+/// What came out; the exit code says it too.
 fn tell(
     object: &Value,
     tally: &table::Tally,
@@ -249,7 +253,7 @@ fn tell(
 ) -> Result<u8, Failure> {
     if as_json {
         writeln!(streams.out, "{object}")?;
-        return Ok(DONE);
+        return Ok(tally.code());
     }
     let [csv, npz, json, ..] = table::FILES;
     let lines = [
@@ -261,7 +265,7 @@ fn tell(
             .out
             .write_all(paragraph(&line, streams.width, 2).as_bytes())?;
     }
-    Ok(DONE)
+    Ok(tally.code())
 }
 
 /// Asked to go on with a sweep that has come to its end.
@@ -283,7 +287,7 @@ fn already(
         true => writeln!(streams.out, "{there}")?,
         false => writeln!(streams.out, "complete already: {}", shown(target))?,
     }
-    Ok(DONE)
+    Ok(table::Tally::read(&there["results"]["points"]).code())
 }
 
 impl Sweep<'_> {

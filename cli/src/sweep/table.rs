@@ -84,6 +84,27 @@ impl Tally {
         )
     }
 
+    /// The exit code, as that of a run: failed if a point did not come to its end, else whether a bound was exceeded.
+    pub(super) fn code(&self) -> u8 {
+        match (self.stopped + self.refused, self.beyond_bounds) {
+            (0, 0) => crate::failure::DONE,
+            (0, _) => crate::failure::BOUND_LEFT,
+            _ => crate::failure::FAILED,
+        }
+    }
+
+    /// The numbers that [`Tally::json`] wrote.
+    pub(super) fn read(points: &Value) -> Self {
+        let number = |key: &str| points[key].as_u64().unwrap_or(0);
+        Self {
+            done: number("complete"),
+            stopped: number("stopped"),
+            refused: number("refused"),
+            first_refused: None,
+            beyond_bounds: number("beyond_bounds"),
+        }
+    }
+
     pub(super) fn json(&self) -> Value {
         json!({
             "complete": self.done,

@@ -22,18 +22,23 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// Reads `NAME=FROM:TO:COUNT` or `NAME=VALUE,VALUE,...`.
+    /// Reads `NAME=FROM:TO:COUNT` or `NAME=VALUE,VALUE,...`, for a case that was read from this text if it has one.
     ///
     /// # Errors
     /// Usage: what is wrong with it, and what the model has.
-    pub(super) fn read(text: &str, card: &Card, motion: &Motion) -> Result<Self, Failure> {
+    pub(super) fn read(
+        text: &str,
+        card: &Card,
+        motion: &Motion,
+        case: Option<&str>,
+    ) -> Result<Self, Failure> {
         let wrong = |why: String| Failure::Usage(format!("--vary {}: {why}", shown(text)));
         let Some((name, values)) = text.split_once('=') else {
             return Err(wrong(
                 "give NAME=FROM:TO:COUNT or NAME=VALUE,VALUE,..., such as gU.z=0:1:100".to_owned(),
             ));
         };
-        let quantity = Quantity::read(name, card, motion).map_err(wrong)?;
+        let quantity = Quantity::of_case(name, card, motion, case).map_err(wrong)?;
         let values = read_values(values).map_err(wrong)?;
         Ok(Self { quantity, values })
     }

@@ -87,3 +87,59 @@ fn point_vortices_run_without_a_warning() {
         );
     }
 }
+
+/// Words and signs of other languages in the numbers of a case.
+#[test]
+fn words_of_other_languages_in_a_case_are_answered() {
+    let model = "model Spring {
+        param m, k: Real;
+        field x: Real;
+        lagrangian = m*(next(x)-x)^2/(2*h) - h*k*x^2;
+    }";
+    let radians = "angles are in radians: 30 degrees are `30*pi/180`, or `pi/6`";
+    for (value, said) in [
+        ("sin(30°)", radians),
+        ("sin(30*deg)", radians),
+        ("sind(30)", radians),
+        ("sqrtt(2)", "did you mean `sqrt`?"),
+        ("ln(3)", "write `log(x)`"),
+        ("2*PI", "write `pi`"),
+    ] {
+        let case = format!(
+            "model = \"spring\"\nh = 0.01\nsteps = 1\n[parameters]\nm = 1\nk = \"{value}\"\n[initial]\nx = 1\n"
+        );
+        let folder = Folder::new("misstated-words");
+        let done = ran::run(&folder, model, &case, &[]);
+        assert_eq!(done.code, 2, "{value}");
+        assert!(
+            done.err.contains("case.toml:6: parameters.k: ") && done.err.contains(said),
+            "{value}: {}",
+            done.err
+        );
+    }
+}
+
+/// The message of a model begins with what is wrong, on its first line.
+#[test]
+fn rates_and_degrees_in_a_model_are_answered() {
+    let rate = "writes a rate of change as a difference over the step: `(next(x) - x)/h`";
+    for (lagrangian, said) in [
+        ("m*h*(d/dt x)^2/2", rate),
+        ("m*h*dt(x)^2/2", rate),
+        ("m*h*dot(x)^2/2", rate),
+        ("m*(next(x)-x)^2/(2*h) - h*cos(30°*x)", "`30*pi/180`"),
+        ("m*(next(x)-x)^2/(2*h) - h*cos(30*deg*x)", "`30*pi/180`"),
+        ("m*(next(x)-x)^2/(2*h) - h*sqrtt(x)", "did you mean `sqrt`?"),
+    ] {
+        let folder = Folder::new("misstated-rates");
+        let text = format!(
+            "model Spring {{\n    param m: Real;\n    field x: Real;\n    lagrangian = {lagrangian};\n}}\n"
+        );
+        let model = folder.write("spring.clebsch", &text);
+        for command in ["derive", "run", "check"] {
+            let done = crate::common::program(&[command, &model]);
+            assert!(done.err.starts_with("error: "), "{command}: {}", done.err);
+            assert!(done.err.contains(said), "{command}: {}", done.err);
+        }
+    }
+}

@@ -42,7 +42,7 @@ fn a_row_is_the_run_of_its_point() {
     let folder = Folder::new("sweep-rows");
     let out = folder.path("sweep");
     let done = sweep(&out, &[]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    assert_eq!(done.code, 1, "{}", done.err);
     assert!(done.out.contains("15 points"), "{}", done.out);
     assert!(
         done.out
@@ -163,13 +163,13 @@ fn along_a_line_the_names_are_those_of_the_case_file() {
 fn parts_are_joined_to_the_table_of_the_whole() {
     let folder = Folder::new("sweep-parts");
     let whole = folder.path("whole");
-    assert_eq!(sweep(&whole, &[]).code, 0);
+    assert_eq!(sweep(&whole, &[]).code, 1);
     let parts: Vec<String> = (1..=4)
         .map(|part| folder.path(&format!("part-{part}")))
         .collect();
     for (part, out) in parts.iter().enumerate() {
         let done = sweep(out, &["--shard", &format!("{}/4", part + 1)]);
-        assert_eq!(done.code, 0, "{}", done.err);
+        assert_eq!(done.code, 1, "{}", done.err);
     }
     let collect = |parts: &[&String], out: &str| {
         let mut all = vec!["collect", "--out", out];
@@ -179,7 +179,7 @@ fn parts_are_joined_to_the_table_of_the_whole() {
     let joined = folder.path("joined");
     let [a, b, c, d] = [&parts[0], &parts[1], &parts[2], &parts[3]];
     let done = collect(&[c, a, d, b], &joined);
-    assert_eq!(done.code, 0, "{}", done.err);
+    assert_eq!(done.code, 1, "{}", done.err);
     same(&whole, &joined);
     // What is not the whole, or not of one sweep, is said.
     let refused = |parts: &[&String], says: &str| {
@@ -191,7 +191,7 @@ fn parts_are_joined_to_the_table_of_the_whole() {
     refused(&[a, b, b, c, d], "given twice");
     refused(&[a, &whole], "not of a part");
     let other = folder.path("other");
-    assert_eq!(sweep(&other, &["--shard", "4/4", "--order", "4"]).code, 0);
+    assert_eq!(sweep(&other, &["--shard", "4/4", "--order", "4"]).code, 1);
     // Orders are no part of a case; the columns are the same, and so is what they hold not.
     let text = fs::read_to_string(format!("{other}/sweep.json")).expect("there");
     assert!(text.contains("\"order\": 4"), "{text}");
@@ -311,4 +311,28 @@ fn a_sweep_none_of_whose_points_starts_fails_with_the_reason() {
         done.err
     );
     assert_eq!(column(&out, "status"), [2.0, 2.0]);
+}
+
+/// As a run: a point beyond its bound is told by 3, all within theirs by 0.
+#[test]
+fn a_sweep_ends_with_the_code_of_a_run() {
+    let folder = Folder::new("sweep-codes");
+    let model = "model Spring {
+        param k: Real;
+        field x: Real;
+        lagrangian = (next(x) - x)^2/(2*h) - h*k*x^2/2;
+    }";
+    let model = folder.write("spring.clebsch", model);
+    for (bound, code) in [(1.0, 0), (1e-9, 3)] {
+        let case = format!(
+            "model = \"spring\"\nh = 0.1\nsteps = 20\n[parameters]\nk = 1\n[initial]\nx = 1\n[bounds]\nenergy = {bound}\n"
+        );
+        folder.write("spring.toml", &case);
+        let out = folder.path(&format!("out-{code}"));
+        let arguments = ["sweep", &model, "--vary", "k=1,2", "--out", &out];
+        assert_eq!(clebsch(&arguments).code, code);
+        let again = [&arguments[..], &["--resume"]].concat();
+        assert_eq!(clebsch(&again).code, code);
+        assert_eq!(clebsch(&["run", &model]).code, code);
+    }
 }

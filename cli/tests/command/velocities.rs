@@ -366,3 +366,55 @@ fn a_sweep_keeps_velocities_and_varies_them() {
     let said = "the case gives velocity_x instead; set that";
     assert!(done.err.contains(said), "{}", done.err);
 }
+
+#[test]
+fn a_velocity_that_no_momentum_knows_is_refused() {
+    let typed_as_two_h = "model Two {
+        param m: Real;
+        field x: Real;
+        lagrangian = m*(next(x)-x)^2/2*h - h*x^2/2;
+    }";
+    let vortex = "model Vortex {
+        param m: Real;
+        field x, y: Real;
+        lagrangian = m*(x + next(x))/2*(next(y)-y) - h*(x^2+y^2)/2;
+    }";
+    for (name, model, start, key) in [
+        (
+            "two",
+            typed_as_two_h,
+            "x = 0.5\nvelocity = 0.1",
+            "initial.velocity",
+        ),
+        (
+            "vortex",
+            vortex,
+            "x = 0.5\ny = 0.2\nvelocity_x = 0.1",
+            "initial.velocity_x",
+        ),
+    ] {
+        let folder = Folder::new(&format!("velocities-lost-{name}"));
+        let case = format!(
+            "model = \"{name}\"\nh = 0.01\nsteps = 5\n[parameters]\nm = 2\n[initial]\n{start}\n"
+        );
+        let done = run(&folder, model, &case, &[]);
+        assert_eq!(done.code, 2, "{}", done.out);
+        let said = format!("{key}: no momentum depends on this velocity, so it would be lost");
+        let example = "as in `m*(next(x) - x)^2/(2*h)`";
+        assert!(
+            done.err.contains(&said) && done.err.contains(example),
+            "{}",
+            done.err
+        );
+    }
+    // The velocity of one is known by the momentum of the other.
+    let crossed = "model Crossed {
+        param m: Real;
+        field x, y: Real;
+        lagrangian = m*(next(x)-x)*(next(y)-y)/h - h*x*y;
+    }";
+    let case = "model = \"crossed\"\nh = 0.01\nsteps = 5\n[parameters]\nm = 2\n[initial]\nx = 0.5\ny = 0.2\n\
+                velocity_x = 0.1\nvelocity_y = 0\n";
+    let ran = Ran::of(crossed, case, "crossed");
+    near(ran.at("momentum_y", 0), 0.2, 1.0);
+}

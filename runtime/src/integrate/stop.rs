@@ -1,7 +1,8 @@
 //! Why a run stops before its end: a step that was not made, or a number that is none.
 //! Takes the node and what was found there; gives errors that name it and the way out.
 
-use crate::StepError;
+use crate::solvers::newton::NewtonFailure;
+use crate::{StepCause, StepError};
 use core::fmt;
 
 /// What of a trajectory is watched.
@@ -131,5 +132,18 @@ impl From<NotFinite> for RunError {
     #[cold]
     fn from(found: NotFinite) -> Self {
         Self::NotFinite(found)
+    }
+}
+
+impl StepCause {
+    /// Whether a quantity of the step is NaN or infinite, at a site or not.
+    #[must_use]
+    pub fn is_not_finite(&self) -> bool {
+        match self {
+            Self::NotFinite { .. } => true,
+            Self::Newton(error) => error.failure == NewtonFailure::NotFinite,
+            Self::AtSite { cause, .. } => cause.is_not_finite(),
+            _ => false,
+        }
     }
 }

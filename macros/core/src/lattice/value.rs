@@ -1,7 +1,8 @@
 //! Site data in cases: the value of an expression such as `"0.1*sin(2*pi*i/N)"` at a site.
 
-use crate::syntax;
+use crate::diagnostic::closest;
 use crate::syntax::ast::{Expression, Kind};
+use crate::syntax::{self, unknown};
 use std::collections::BTreeSet;
 
 /// A function of a number, with its name.
@@ -37,8 +38,14 @@ impl SiteData {
     pub fn read(text: &str) -> Result<SiteData, String> {
         let read = syntax::expression(text);
         let expression = read.map_err(|errors| {
-            let first = errors.iter().next().map(|d| d.message.clone());
-            first.unwrap_or_else(|| "it is no expression".to_owned())
+            let first = errors.iter().next();
+            first.map_or_else(
+                || "it is no expression".to_owned(),
+                |d| match d.help.first() {
+                    Some(help) => format!("{}; {help}", d.message),
+                    None => d.message.clone(),
+                },
+            )
         })?;
         Ok(SiteData { expression })
     }
@@ -169,10 +176,17 @@ fn value(e: &Expression, of: &Given<'_>) -> Result<f64, String> {
         Kind::Call(f, arguments) => {
             let own = FUNCTIONS.iter().find(|(name, _)| *name == f.text);
             let Some((_, function)) = own else {
-                let known = FUNCTIONS.map(|(name, _)| name).join(" ");
+                let known = FUNCTIONS.map(|(name, _)| name);
+                let written = unknown::function(&f.text).filter(|help| is_of_sites(help));
+                let help = match (written, closest(&f.text, known)) {
+                    (Some(written), _) => format!("{written}. There"),
+                    (None, Some(near)) => format!("did you mean `{near}`? There"),
+                    (None, None) => "there".to_owned(),
+                };
                 return Err(format!(
-                    "`{}` is no function of site data; there are {known}, and for fluids on a grid slope",
-                    f.text
+                    "`{}` is no function of site data; {help} are {}, and for fluids on a grid slope",
+                    f.text,
+                    known.join(" ")
                 ));
             };
             let [x] = arguments.as_slice() else {
@@ -186,6 +200,30 @@ fn value(e: &Expression, of: &Given<'_>) -> Result<f64, String> {
             );
         }
     })
+}
+
+/// What to write for a name that has no value, if it is one of other languages.
+#[must_use]
+pub fn instead_of(name: &str) -> Option<String> {
+    match unknown::name(name) {
+        Some("pi") => Some("write `pi`".to_owned()),
+        _ if unknown::ANGLES.contains(&name) => Some(unknown::RADIANS.to_owned()),
+        _ => None,
+    }
+}
+
+/// Whether what a help tells to write can be written here.
+fn is_of_sites(help: &str) -> bool {
+    let Some(Ok(data)) = help.split('`').nth(1).map(SiteData::read) else {
+        return false;
+    };
+    let mut known = true;
+    data.expression.each(&mut |e| {
+        if let Kind::Call(f, _) = &e.kind {
+            known &= FUNCTIONS.iter().any(|(name, _)| *name == f.text);
+        }
+    });
+    known
 }
 
 #[cfg(test)]

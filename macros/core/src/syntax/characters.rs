@@ -3,6 +3,7 @@
 
 use super::delimiters::place;
 use super::text;
+use super::unknown::RADIANS;
 use crate::diagnostic::{Diagnostic, Place};
 
 /// What a prime means in papers.
@@ -21,6 +22,7 @@ fn written(c: char) -> Option<&'static str> {
         '²' | '³' | '¹' | '⁰' | '⁴'..='⁹' | '⁻' | 'ᵀ' => {
             "write `a^2` for a power, `A^T` for a transpose, `A^-1` for an inverse"
         }
+        '°' => RADIANS,
         '÷' => "write `a/b`",
         '√' => "write `sqrt(a)`",
         '≤' | '≥' | '≠' => "write `<=`, `>=`; a condition is stated by `assume`",
@@ -77,6 +79,7 @@ mod tests {
             ("model M { param ω₀: Real; }", 18, "`w_0`"),
             ("model M { let a = q' - q; }", 20, "`next(x)`"),
             ("model M { let a = x²; }", 20, "`a^2`"),
+            ("model M { let a = cos(30°); }", 25, "30*pi/180"),
             ("model M { let a = ⟨x, x⟩; }", 19, "`dot(a, b)`"),
             ("model M { let a = \u{1f600}; }", 19, "letters, digits"),
         ] {

@@ -6,8 +6,8 @@ mod names;
 mod signs;
 mod statements;
 
-pub(crate) use functions::{PAIRS, function};
-pub(crate) use names::{MODULES, STEPS, TIMES, VELOCITIES, name, shape};
+pub(crate) use functions::{PAIRS, RADIANS, function};
+pub(crate) use names::{ANGLES, MODULES, STEPS, TIMES, VELOCITIES, name, shape};
 pub(super) use signs::{VECTOR, ends_expression, ends_statement, instead_of_operand};
 pub(crate) use statements::is_force;
 pub(super) use statements::{no_start, statement};

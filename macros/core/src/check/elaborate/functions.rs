@@ -163,7 +163,11 @@ impl Elaborator<'_> {
                 _ => ("two arguments", format!("{f}(a, b)")),
             };
             let message = format!("`{f}` takes {wanted}, {} given", args.len());
-            return fail(Diagnostic::new(place, message).help(format!("write `{example}`")));
+            let d = Diagnostic::new(place, message).help(format!("write `{example}`"));
+            return fail(match (f, unknown::function("derivative")) {
+                ("dot", Some(rate)) if args.len() == 1 => d.help(rate),
+                _ => d,
+            });
         }
         let three = |a: &Expr, at: Place| {
             if a.shape() == Shape::vector(Dim::Fixed(3)) {

@@ -199,6 +199,8 @@ impl Elaborator<'_> {
         } else if let Some(near) = closest(n, declared.into_iter().chain(bound).map(String::as_str))
         {
             d = d.help(format!("did you mean `{near}`?"));
+        } else if unknown::ANGLES.contains(&n) {
+            d = d.help(unknown::RADIANS);
         } else if let Some(written) = unknown::name(n) {
             d = d.help(format!("the language writes `{written}`"));
         } else if let Some(moving) = velocity {

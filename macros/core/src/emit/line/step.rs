@@ -157,6 +157,7 @@ pub(super) fn step(
         quote! {
             {
                 let mut scratch = self.workspace(&state, h)?;
+                self.defined(&state, h, &scratch)?;
                 self.step(&mut state, &mut scratch)?;
                 ::core::mem::swap(&mut state.places, &mut scratch.places);
                 ::core::mem::swap(&mut state.momenta, &mut scratch.momenta);
@@ -167,10 +168,12 @@ pub(super) fn step(
     });
     let first_beside = (!alone).then(|| {
         quote! {
+            self.defined(&state, h, &work)?;
             let (mut trial, mut scratch) = (state.clone(), work.clone());
             self.step(&mut trial, &mut scratch)?;
         }
     });
+    let defined = defined(l, &moving);
     let mutable = l.is_held().then(|| quote!(mut));
     let agreed = super::signs::agreed(l);
     let (domains, inside) = super::domain::domain(l);
@@ -275,6 +278,7 @@ pub(super) fn step(
                 #done
             }
 
+            #defined
             #refused_by
 
             /// Says at which site a step is refused, and which shorter one can be made.
@@ -457,6 +461,33 @@ fn solve(l: &Lines, m: &Moving, edges: &Ident) -> TokenStream {
             let [first, last] = self.#range();
             #fill
             #kept
+        }
+    }
+}
+
+/// The test of the edges that begin at a start. A step would find what is not finite at the neighbours too, and name the first of
+/// them.
+fn defined(l: &Lines, moving: &[Moving]) -> TokenStream {
+    let [state, work] = ["State", "Workspace"].map(|suffix| l.item(suffix));
+    let tests = moving.iter().map(|m| {
+        let (name, text, range) = (m.name(), &m.mover.name, range_name(m));
+        let edge = m.at(&quote!(work.edges.#name), &quote!(i));
+        quote! {{
+            let [first, last] = self.#range();
+            let finite = |i: usize| -> Result<(), StepCause> {
+                if all_finite(&#edge) { Ok(()) } else { Err(StepCause::not_finite("momentum")) }
+            };
+            if let Err((site, cause)) = line::try_each(first, last, finite) {
+                return Err(self.refused(state, h, line::Place { quantity: #text, site }, cause));
+            }
+        }}
+    });
+    quote! {
+        /// Says at which site what acts at a start is not finite.
+        #[cold]
+        fn defined(&self, state: &#state<T>, h: T, work: &#work<T>) -> Result<(), LineError> {
+            #(#tests)*
+            Ok(())
         }
     }
 }

@@ -32,13 +32,18 @@ pub(super) fn after_divisor(c: &Cursor, divisor: &Expression) -> Diagnostic {
         Kind::Number(q) if q.denominator() == 1 => q.numerator().to_string(),
         _ => spelled(divisor).to_owned(),
     };
-    Diagnostic::new(
+    let d = Diagnostic::new(
         divisor.place.to(c.place()),
         "after `/` a product without `*` can be read in two ways",
     )
     .help(format!(
         "write `/({a}*{next})` to divide by both, or `/{a}*{next}` to multiply by what follows"
-    ))
+    ));
+    // `d/dt x`.
+    match unknown::function(&a) {
+        Some(rate) => d.help(rate),
+        None => d,
+    }
 }
 
 /// `2h`: no product, and after `/` read in two ways; `0x10` and `2f64` are numbers of other languages.

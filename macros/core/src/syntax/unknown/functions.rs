@@ -11,6 +11,9 @@ const NO_CASES: &str = "functions in pieces are not supported yet, except by `ab
 /// A rate of change is a difference.
 const RATE: &str = "the discrete Lagrangian writes a rate of change as a difference over the step: `(next(x) - x)/h`";
 
+/// Angles have no unit.
+pub(crate) const RADIANS: &str = "angles are in radians: 30 degrees are `30*pi/180`, or `pi/6`";
+
 /// Derivatives and integrals are taken by the engine.
 const ENGINE: &str = "state the Lagrangian itself: derivatives are taken by the engine";
 
@@ -64,7 +67,9 @@ pub(crate) fn function(name: &str) -> Option<&'static str> {
         "mid" | "midpoint" | "mean" | "average" | "avg" => {
             "the mean over a step is `(x + next(x))/2`"
         }
-        "diff" | "d" | "D" | "ddt" | "derivative" | "dt" => RATE,
+        "diff" | "d" | "D" | "ddt" | "derivative" | "dt" | "der" | "rate" => RATE,
+        "deg" | "degree" | "degrees" | "deg2rad" | "rad" | "radians" | "rad2deg" | "sind"
+        | "cosd" | "tand" => RADIANS,
         "grad" | "gradient" | "nabla" | "div" | "laplacian" | "integrate" | "integral" | "quad" => {
             ENGINE
         }

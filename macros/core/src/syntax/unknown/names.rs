@@ -28,6 +28,9 @@ pub(crate) const TIMES: [&str; 2] = ["t", "time"];
 /// What a velocity is called.
 pub(crate) const VELOCITIES: [&str; 5] = ["v", "vel", "velocity", "xdot", "qdot"];
 
+/// Units of angles.
+pub(crate) const ANGLES: [&str; 6] = ["deg", "degree", "degrees", "rad", "radian", "radians"];
+
 /// Modules of functions in Python.
 pub(crate) const MODULES: [&str; 12] = [
     "np", "numpy", "math", "cmath", "scipy", "sp", "sympy", "sym", "jnp", "jax", "torch", "linalg",

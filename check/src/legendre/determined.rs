@@ -1,0 +1,78 @@
+//! Whether momenta know the velocities that they are made of: the velocity of a configuration without kinetic energy would be lost.
+//! Takes the momenta; compares them with those of rest.
+
+use super::{Legendre, Momentum, NoMomentum, Velocities, copy, mean};
+use crate::moved::Velocity;
+use crate::sites::Moving;
+
+/// What the change of a momentum in the limit is at least, beside that over a step.
+const KNOWN: f64 = 1e-9;
+
+/// Most configurations that are tried alone.
+const MOST: usize = 8;
+
+impl Legendre {
+    /// Refuses a velocity on which no momentum depends.
+    pub(super) fn determined(
+        &self,
+        node: &[f64],
+        velocities: &Velocities,
+        moving: &[Moving<'_>],
+        momenta: &[Momentum],
+    ) -> Result<(), NoMomentum> {
+        let is_moved = |v: Option<&Velocity>| v.is_some_and(|v| !v.is_zero());
+        if !velocities.values().any(|v| is_moved(Some(v))) {
+            return Ok(());
+        }
+        let rest = self.limit(node, &Velocities::new(), moving)?;
+        let step = self.longest(velocities);
+        let over_a_step = self.over_a_step(node, velocities, moving, step)?;
+        let own = moving.iter().zip(momenta.iter().zip(&rest));
+        let doubtful = own
+            .zip(over_a_step)
+            .filter(|((m, (with, without)), steps)| {
+                is_moved(velocities.get(&copy(m))) && !is_changed(with, without, *steps)
+            });
+        // A velocity may be known by the momentum of another configuration.
+        for ((m, _), _) in doubtful.take(MOST) {
+            let name = copy(m);
+            let mut alone = Velocities::new();
+            if let Some(velocity) = velocities.get(&name) {
+                alone.insert(name.clone(), velocity.clone());
+            }
+            let with = self.limit(node, &alone, moving)?;
+            let over_a_step = self.over_a_step(node, &alone, moving, step)?;
+            let mut all = with.iter().zip(&rest).zip(over_a_step);
+            if !all.any(|((with, without), steps)| is_changed(with, without, steps)) {
+                return Err(NoMomentum::Lost(name));
+            }
+        }
+        Ok(())
+    }
+
+    /// By how much the momentum of each configuration differs from that of rest over a step.
+    fn over_a_step(
+        &self,
+        node: &[f64],
+        velocities: &Velocities,
+        moving: &[Moving<'_>],
+        step: f64,
+    ) -> Result<Vec<f64>, NoMomentum> {
+        let of = |velocities: &Velocities| {
+            let ahead = self.sample(node, velocities, moving, step)?;
+            let behind = self.sample(node, velocities, moving, -step)?;
+            Ok::<_, NoMomentum>(ahead.into_iter().zip(behind).map(mean))
+        };
+        let each = of(velocities)?.zip(of(&Velocities::new())?);
+        Ok(each.map(|(a, b)| apart(&a.values, &b.values)).collect())
+    }
+}
+
+fn is_changed(with: &Momentum, without: &Momentum, over_a_step: f64) -> bool {
+    apart(&with.components, &without.components) > KNOWN * over_a_step
+}
+
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let each = a.iter().zip(b).map(|(x, y)| (x - y).abs());
+    each.fold(0.0, f64::max)
+}
