@@ -38,6 +38,7 @@ mod resumed;
 mod scales;
 mod shipped;
 mod staging;
+mod standalone;
 mod starts;
 mod stated;
 mod stopped;
