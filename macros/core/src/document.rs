@@ -110,7 +110,7 @@ pub fn summary(d: &Derivation) -> String {
     let s = &d.letters.symbols;
     let st = style(d);
     let show = |e: &crate::expr::Expr| expression(e, s, &st, Format::Text);
-    let show = |e: &crate::expr::Expr| show(&crate::expr::collect(s, e));
+    let show = |e: &crate::expr::Expr| show(&crate::expr::shown(s, e));
     let mut lines = Vec::new();
     if d.spec.scale.is_some() {
         let terms = crate::derive::action::summands(s, &d.spec.lagrangian);

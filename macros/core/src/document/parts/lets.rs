@@ -169,7 +169,10 @@ impl Pattern {
         }
         let e = expr::rebuild(symbols, e, &mut |x| self.put(symbols, x));
         match self.terms.as_slice() {
-            [(c, only)] => self.alone(symbols, &e, *c, only),
+            [(c, only)] => {
+                let e = self.alone(symbols, &e, *c, only);
+                self.in_trace(symbols, &e, *c, only)
+            }
             _ => match e.node() {
                 Node::Sum(terms) => self.in_sum(symbols, &e, terms),
                 _ => e,
@@ -188,6 +191,40 @@ impl Pattern {
         let times = own.times(q.inverse()?)?;
         times.as_integer()?;
         Some(expr::power(self.name.clone(), times))
+    }
+
+    /// A value of one term in a trace, whose factors may be taken from any one on: `tr(C Q Q^T)` holds `Q^T C Q`.
+    fn in_trace(&self, symbols: &Symbols, e: &Expr, c: Rational, only: &Expr) -> Expr {
+        let mut out = e.clone();
+        // Each replacement leaves fewer factors.
+        while let Some(shorter) = self.turned_in_trace(symbols, &out, c, only) {
+            out = shorter;
+        }
+        out
+    }
+
+    fn turned_in_trace(
+        &self,
+        symbols: &Symbols,
+        e: &Expr,
+        c: Rational,
+        only: &Expr,
+    ) -> Option<Expr> {
+        let Node::Trace(inner) = e.node() else {
+            return None;
+        };
+        let Node::Product(list) = inner.node() else {
+            return None;
+        };
+        let scalar = |f: &Expr| f.shape().is_scalar();
+        let (numbers, word): (Vec<Expr>, Vec<Expr>) = list.iter().cloned().partition(scalar);
+        (0..word.len()).find_map(|from| {
+            let (behind, before) = word.split_at_checked(from)?;
+            let turned = expr::product(before.iter().chain(behind).cloned());
+            let named = self.alone(symbols, &turned, c, only);
+            let own = numbers.iter().cloned().chain([named.clone()]);
+            (named.size() < turned.size()).then(|| expr::trace(expr::product(own)))
+        })
     }
 
     /// `u·w` of `v·(A^T w)` or `(A^T w)·v`, where the name `u` stands for `A v`.

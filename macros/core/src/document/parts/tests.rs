@@ -223,6 +223,23 @@ fn names_of_the_model_stand_in_text_as_on_a_page() {
     assert!(page.contains("2\\,\\lvert x_{k}\\rvert^{3}"), "{page}");
 }
 
+#[test]
+fn a_name_is_found_in_a_trace_from_whichever_factor_on() {
+    let model = "model Body {
+        param A, I: Sym<3>;
+        param a, b: Real;
+        field Q: Mat<3>;
+        let C = Q^T*A*Q;
+        lagrangian = tr((next(Q) - Q)*I*(next(Q) - Q)^T)/(2*h) - h*(a*tr(C)^2 + b*tr(C*C*C));
+    }";
+    let d = derive_source(model).expect("a model");
+    let text = words(&printed(&d, Format::Text));
+    for said in ["- a tr(C)² - b tr(C³)", "tr(C_k) A Q_k"] {
+        assert!(text.contains(said), "{said}\n{text}");
+    }
+    assert!(!text.contains("tr(A Q"), "{text}");
+}
+
 /// Words without the ends of lines.
 fn words(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
