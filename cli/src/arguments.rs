@@ -470,6 +470,10 @@ fn derive() -> Command {
             "Leave out where the equations stand in Dixon's thesis",
         ))
         .arg(flag(
+            "standalone",
+            "Print a LaTeX document that compiles by itself, with its bibliography",
+        ))
+        .arg(flag(
             "write",
             "Write the derivations of all models of the gallery to generated/",
         ))

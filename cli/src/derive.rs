@@ -11,7 +11,8 @@ use crate::plain::shown;
 use crate::resolve_model::{Named, named};
 use crate::show::statement;
 use clap::ArgMatches;
-use clebsch_core::print::Format;
+use clap::parser::ValueSource;
+use clebsch_core::print::{Format, Style, code, standalone};
 use clebsch_core::syntax::ast::Model;
 use clebsch_core::{Derivation, derive_source, document, lattice, pipeline};
 use std::io::Read;
@@ -35,14 +36,16 @@ pub fn derive(
         explain: matches.get_flag("explain"),
         second: matches.get_flag("second-proof"),
         no_thesis: matches.get_flag("no-thesis"),
+        standalone: matches.get_flag("standalone"),
     };
+    let format = format(matches)?;
     if proofs.second && !cfg!(feature = "second-proof") {
         return Err(Failure::Usage(WITHOUT_PROVER.to_owned()));
     }
     let name = shown(&name).to_string();
     let width = streams.width;
     let (derivation, warnings) =
-        derived(&name, &source, text("format"), proofs, width).map_err(Failure::Usage)?;
+        derived(&name, &source, format, proofs, width).map_err(Failure::Usage)?;
     streams.out.write_all(derivation.as_bytes())?;
     // What cannot be written there is in the derivation too.
     let _ = streams.err.write_all(warnings.as_bytes());
@@ -87,6 +90,23 @@ pub struct Proofs {
     pub second: bool,
     /// The places of equations in the thesis are left out.
     pub no_thesis: bool,
+    /// LaTeX is a document that compiles by itself.
+    pub standalone: bool,
+}
+
+/// The form that is asked for: a document by itself is of LaTeX.
+fn format(matches: &ArgMatches) -> Result<&str, Failure> {
+    let format = matches
+        .get_one::<String>("format")
+        .map_or("", String::as_str);
+    let given = matches.value_source("format") == Some(ValueSource::CommandLine);
+    match (matches.get_flag("standalone"), given, format) {
+        (false, ..) | (true, true, "latex" | "tex") => Ok(format),
+        (true, false, _) => Ok("latex"),
+        (true, true, _) => Err(Failure::Usage(format!(
+            "`--standalone` prints LaTeX, not {format}; leave `--format` out"
+        ))),
+    }
 }
 
 /// The derivation of the model text `source` (of the file or model `name`) in the form `format`:
@@ -130,16 +150,16 @@ fn derived(
         _ => Format::Text,
     };
     let columns = width.unwrap_or(PAGE).min(PAGE);
-    let mut printed = document::printed_telling(&derivation, format, columns, !proofs.no_thesis);
+    let sources = !proofs.no_thesis;
+    let mut printed =
+        document::printed_telling(&derivation, format, columns, sources, Some(source));
     let proof = explanation(&derivation, proofs);
-    match format {
-        _ if proof.is_empty() => {}
-        Format::Latex => {
-            printed.push_str(&format!("\\begin{{verbatim}}\n{proof}\\end{{verbatim}}\n"));
-        }
-        Format::Markdown => printed.push_str(&format!("\n```text\n{proof}```\n")),
-        Format::Text | Format::MathMl => printed.push_str(&format!("\n{proof}")),
-        Format::Json => {}
+    if !proof.is_empty() && format != Format::Json {
+        printed.push('\n');
+        printed.push_str(&code(&proof, &Style::default(), format));
+    }
+    if proofs.standalone {
+        printed = standalone(&printed);
     }
     if let (Format::Text, Some(width)) = (format, width) {
         printed = fitted(&printed, width);
@@ -171,6 +191,9 @@ fn on_lattice(
     let columns = width.unwrap_or(PAGE).min(PAGE);
     let printed = document::printed_lattice(model, source, format, columns).map_err(told)?;
     let mut text = printed.text;
+    if proofs.standalone {
+        text = standalone(&text);
+    }
     if format == Format::Text && (proofs.explain || proofs.second) {
         let shortest = pipeline::derive_model(model).map_err(told)?;
         text.push_str(&format!("\n{}", explanation(&shortest, proofs)));

@@ -78,7 +78,7 @@ impl<T: Real> Kepler<T> {
             validate::defined(
                 domain::Domain::NotZero,
                 domain::Function::Quotient,
-                "√(X_k·X_k)",
+                "|X_k|",
                 X.dot(&X).sqrt(),
             )?;
         }
@@ -192,7 +192,7 @@ impl<T: Real> Kepler<T> {
         let p = state.momentum().0;
         X.cross(&p)
     }
-    /// The discrete energy of the edge between two consecutive states, `m ΔX_k·ΔX_k/(2 h²) - m k/(2 √(X_k·X_k)) - m k/(2 √(X_{k+1}·X_{k+1}))`: bounded, since the stepper is symplectic.
+    /// The discrete energy of the edge between two consecutive states, `m ΔX_k·ΔX_k/(2 h²) - m k/(2 |X_k|) - m k/(2 |X_{k+1}|)`: bounded, since the stepper is symplectic.
     pub fn discrete_energy(
         &self,
         h: T,
@@ -245,7 +245,7 @@ impl Kepler<f64> {
         doc: "Planet about a fixed sun.",
         source: Self::SOURCE,
         fingerprint: Self::FINGERPRINT,
-        summary: "discrete Lagrangian  m ΔX_k·ΔX_k/(2 h) + h m k/(2 √(X_k·X_k)) + h m k/(2 √(X_{k+1}·X_{k+1}))\nmomentum of X        m ΔX_k/h\nRiccati form         none; linear, L = m/h, R = 1\ninvariants           energy, momentum_angular\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
+        summary: "discrete Lagrangian  m ΔX_k·ΔX_k/(2 h) + h m k/(2 |X_k|) + h m k/(2 |X_{k+1}|)\nmomentum of X        m ΔX_k/h\nRiccati form         none; linear, L = m/h, R = 1\ninvariants           energy, momentum_angular\ntime reversal        symmetric: second order\ncertificate          13 identities proved by normal form",
         solver: "Explicit: the balance is linear: one division",
         parameters: &[
             Kind::Scalar.field("m", [1, 1], "mass of the planet"),
@@ -269,14 +269,14 @@ impl Kepler<f64> {
         invariants: &[
             Invariant::bounded(
                 "energy",
-                "½ p_k·ζ - m k/√(X_k·X_k), where p_k = m ζ",
+                "½ p_k·ζ - m k/|X_k|, where p_k = m ζ",
                 1usize,
             ),
             Invariant::exact("momentum_angular", "X_k × p_k", 3 * 1),
         ],
         discrete_energy: Invariant::bounded(
             "discrete_energy",
-            "m ΔX_k·ΔX_k/(2 h²) - m k/(2 √(X_k·X_k)) - m k/(2 √(X_{k+1}·X_{k+1}))",
+            "m ΔX_k·ΔX_k/(2 h²) - m k/(2 |X_k|) - m k/(2 |X_{k+1}|)",
             1,
         ),
         ..Card::plain(open::<Self>, only_size::<Self>)

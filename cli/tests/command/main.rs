@@ -42,6 +42,7 @@ mod scenes;
 mod set_values;
 mod shipped;
 mod staging;
+mod standalone;
 mod starts;
 mod stated;
 mod stopped;

@@ -39,12 +39,19 @@ pub fn style(d: &Derivation) -> Style {
 
 /// The derivation in a format.
 pub fn printed(d: &Derivation, format: Format) -> String {
-    printed_telling(d, format, Style::default().columns, true)
+    printed_telling(d, format, Style::default().columns, true, None)
 }
 
 /// The derivation in a format, its plain text in lines of at most so many columns where that can be; with the places of
-/// its equations in the thesis, or without. What becomes part of a paper, LaTeX and Markdown, begins with the scheme.
-pub fn printed_telling(d: &Derivation, format: Format, columns: usize, sources: bool) -> String {
+/// its equations in the thesis, or without; with the model as `stated`, where its text is known. What becomes part of a
+/// paper, LaTeX and Markdown, begins with the scheme.
+pub fn printed_telling(
+    d: &Derivation,
+    format: Format,
+    columns: usize,
+    sources: bool,
+    stated: Option<&str>,
+) -> String {
     let style = Style {
         columns,
         ..style(d)
@@ -52,13 +59,14 @@ pub fn printed_telling(d: &Derivation, format: Format, columns: usize, sources: 
     let told = Telling {
         sources,
         scheme: matches!(format, Format::Latex | Format::Markdown),
+        stated,
     };
     let doc = document_telling(d, told);
     paged(doc, &d.letters.symbols, Some(&d.spec.lets), &style, format)
 }
 
-/// A document in a format: on a page rigid motions and their momenta in parts, and what the model names by its names;
-/// on a terminal as they are. A model with sites has no names here.
+/// A document in a format: what the model names by its names, and on a page rigid motions and their momenta in parts; on
+/// a terminal motions stay whole. A model with sites has no names here.
 fn paged(
     doc: Document,
     symbols: &Symbols,
@@ -66,10 +74,13 @@ fn paged(
     style: &Style,
     format: Format,
 ) -> String {
-    if format == Format::Text {
-        return render(&doc, symbols, style, format);
-    }
-    let (doc, symbols) = parts::in_parts(doc, symbols, lets.unwrap_or_default(), lets.is_none());
+    let motions = match format {
+        Format::Text => parts::Motions::Whole,
+        _ => parts::Motions::InParts,
+    };
+    let sites = lets.is_none();
+    let lets = lets.unwrap_or_default();
+    let (doc, symbols) = parts::in_parts(doc, symbols, lets, motions, sites);
     render(&doc, &symbols, style, format)
 }
 
@@ -99,7 +110,7 @@ pub fn summary(d: &Derivation) -> String {
     let s = &d.letters.symbols;
     let st = style(d);
     let show = |e: &crate::expr::Expr| expression(e, s, &st, Format::Text);
-    let show = |e: &crate::expr::Expr| show(&crate::expr::collect(s, e));
+    let show = |e: &crate::expr::Expr| show(&crate::expr::shown(s, e));
     let mut lines = Vec::new();
     if d.spec.scale.is_some() {
         let terms = crate::derive::action::summands(s, &d.spec.lagrangian);

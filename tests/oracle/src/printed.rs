@@ -434,6 +434,13 @@ impl Reader<'_> {
             let inside = self.atom().fixed();
             return Part::Known(Value::number(inside.data[0].sqrt()));
         }
+        if self.eat("|") {
+            // Where a factor is expected, a bar opens: the length of a vector, or a number without its sign.
+            let inside = self.sum().fixed();
+            assert!(self.eat("|"), "no bar closes before {:?}", self.rest);
+            let square: f64 = inside.data.iter().map(|x| x * x).sum();
+            return Part::Known(Value::number(square.sqrt()));
+        }
         if self.eat("(") {
             let inside = self.sum();
             if self.eat(", ") {

@@ -2,6 +2,7 @@
 //! models of the gallery, for models with terms linear in the velocity, and for a hundred random Lagrangians, whose
 //! energy follows from the Lagrangian itself. A formula that leaves out a term fails, which is shown too.
 
+mod lengths;
 mod random;
 mod reading;
 

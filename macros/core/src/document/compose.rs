@@ -15,7 +15,9 @@ use crate::syntax::ast::NodeRule;
 
 /// What is told of a derivation beside its equations.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Telling {
+pub struct Telling<'a> {
+    /// The text of the model, where it is known.
+    pub stated: Option<&'a str>,
     /// Where its equations stand in the thesis, and what is wrong with them there.
     pub sources: bool,
     /// The variational principle and the algorithm of a step before all else, as in a paper.
@@ -25,6 +27,7 @@ pub struct Telling {
 /// The derivation as a document.
 pub fn document(d: &Derivation) -> Document {
     let told = Telling {
+        stated: None,
         sources: true,
         scheme: false,
     };
@@ -32,10 +35,10 @@ pub fn document(d: &Derivation) -> Document {
 }
 
 /// The derivation as a document with what is asked for.
-pub fn document_telling(d: &Derivation, told: Telling) -> Document {
+pub fn document_telling(d: &Derivation, told: Telling<'_>) -> Document {
     let sheet = Sheet::new(d);
     let mut doc = Document::titled(format!("{}: discrete equations of motion", d.spec.name));
-    model(&sheet, &mut doc, told.sources);
+    model(&sheet, &mut doc, told);
     warnings(&sheet, &mut doc);
     structure::reduction(&sheet, &mut doc);
     constraints(&sheet, &mut doc);
@@ -60,24 +63,20 @@ pub fn document_telling(d: &Derivation, told: Telling) -> Document {
     }
 }
 
-fn model(sheet: &Sheet, doc: &mut Document, sources: bool) {
+fn model(sheet: &Sheet, doc: &mut Document, told: Telling<'_>) {
     let section = doc.section("Model");
     let docs = sheet.d.spec.docs.iter().map(|l| l.trim());
     let words: Vec<&str> = docs.filter(|l| !l.is_empty()).collect();
     if !words.is_empty() {
         section.text(&words.join(" "));
     }
-    let text = source(sheet.d);
-    let statement: Vec<&str> = text
-        .lines()
-        .filter(|l| !l.trim_start().starts_with("///"))
-        .collect();
-    section.code(statement.join("\n"));
+    let own = source(sheet.d);
+    section.code(without_remarks(told.stated.unwrap_or(&own)));
     let meanings = meanings(sheet);
     if !meanings.is_empty() {
         section.list(meanings);
     }
-    if let Some((number, factor)) = sheet.thesis.section().filter(|_| sources) {
+    if let Some((number, factor)) = sheet.thesis.section().filter(|_| told.sources) {
         let factor: Inline = match factor.strip_prefix('-') {
             Some(step) => Formula::neg(Formula::name(step)).into(),
             None => Formula::name(factor).into(),
@@ -88,6 +87,16 @@ fn model(sheet: &Sheet, doc: &mut Document, sources: bool) {
             " times those printed here, and it indexes velocities by the end of the step.".into(),
         ]);
     }
+}
+
+/// The text of a model without its remarks, which are no part of the statement.
+pub fn without_remarks(stated: &str) -> String {
+    let bare = |line: &str| line.split("//").next().unwrap_or("").trim_end().to_owned();
+    let lines = stated
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .map(bare);
+    lines.collect::<Vec<String>>().join("\n").trim().to_owned()
 }
 
 /// What the model says of its symbols and statements.

@@ -84,7 +84,7 @@ impl<'a> Folded<'a> {
     /// A derived expression, a term that is added in front.
     pub(super) fn derived(&mut self, part: &Part, e: &Expr, from: From) -> Formula {
         let e = self.expression(part, e, from);
-        Formula::Expr(expr::positive_first(&expr::collect(&self.symbols, &e)))
+        Formula::Expr(expr::positive_first(&expr::shown(&self.symbols, &e)))
     }
 
     /// The index of a site as text.

@@ -10,6 +10,7 @@ mod invariants;
 mod sites;
 mod sums;
 
+use super::compose::without_remarks;
 use super::folded::{Folded, From, Part};
 use crate::derive::warnings::Warning;
 use crate::diagnostic::Errors;
@@ -133,14 +134,7 @@ fn statement(model: &Model, stated: &str, doc: &mut Document) {
     if !words.trim().is_empty() {
         section.text(words.trim());
     }
-    // Remarks of the file are not part of the statement.
-    let bare = |l: &str| l.split("//").next().unwrap_or("").trim_end().to_owned();
-    let lines = stated
-        .lines()
-        .filter(|l| !l.trim_start().starts_with("//"))
-        .map(bare);
-    let text = lines.collect::<Vec<String>>().join("\n");
-    section.code(text.trim().to_owned());
+    section.code(without_remarks(stated));
 }
 
 fn warnings(parts: &[Part], doc: &mut Document) -> Vec<Warning> {
@@ -267,7 +261,7 @@ fn terms(folded: &mut Folded, part: &Part, doc: &mut Document) {
             without_constants = true;
             continue;
         };
-        let e = expr::collect(&folded.symbols, &e);
+        let e = expr::shown(&folded.symbols, &e);
         shown.push(match e.node() {
             Node::Neg(inner) => {
                 let inner = Formula::Expr(inner.clone());
@@ -432,7 +426,7 @@ pub(super) fn reading(folded: &mut Folded, part: &Part, i: usize, site: usize) -
     let style = Style::new(&part.d.spec.time_index);
     let mut text = |e: &Expr| {
         let e = folded.expression(part, e, From::Site(site));
-        let e = expr::collect(&folded.symbols, &e);
+        let e = expr::shown(&folded.symbols, &e);
         expression(&e, &folded.symbols, &style, Format::Text)
     };
     let (a, b) = (text(&b.outgoing), text(&b.incoming));

@@ -7,7 +7,7 @@ use crate::derive::holds;
 use crate::derive::invariants::{Invariant, Kind, Known};
 use crate::derive::limit::STANDING;
 use crate::derive::reversal::Reversal;
-use crate::expr::{self, Letter, Shift};
+use crate::expr::{self, Letter, Shift, spelling};
 use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::{Formula, Relation};
 
@@ -64,7 +64,8 @@ fn reversal(sheet: &Sheet, section: &mut Section) {
 }
 
 fn invariant(sheet: &Sheet, v: &Invariant) -> Vec<Inline> {
-    let mut line: Vec<Inline> = vec![format!("{}: ", v.name.replace('_', " ")).into()];
+    let mut line: Vec<Inline> =
+        vec![format!("{}: ", spelling::in_words(&v.name).replace('_', " ")).into()];
     match (&v.value, &v.kind) {
         (Some(e), _) => line.push(sheet.derived(e).into()),
         (None, Kind::Spectrum) => {

@@ -21,22 +21,34 @@ use crate::print::formula::Formula;
 use display::Display;
 use names::Names;
 
+/// How rigid motions and their momenta are printed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Motions {
+    /// By their parts, in letters of their own.
+    InParts,
+    /// As they are.
+    Whole,
+}
+
 /// The same document in parts and with the names of the model, `lets`, with the symbols that it is printed by; as it is
 /// where no rigid motion and no name occurs. Letters of many `sites` are introduced at one.
 pub fn in_parts(
     doc: Document,
     symbols: &Symbols,
     lets: &[(String, Expr)],
+    motions: Motions,
     sites: bool,
 ) -> (Document, Symbols) {
     let mut concerned = !lets.is_empty();
-    each_formula(&doc, &mut |f| {
-        f.each_expression(&mut |e| concerned |= has_parts(e));
-    });
+    if motions == Motions::InParts {
+        each_formula(&doc, &mut |f| {
+            f.each_expression(&mut |e| concerned |= has_parts(e));
+        });
+    }
     if !concerned {
         return (doc, symbols.clone());
     }
-    let mut page = Display::new(Names::new(symbols, &doc, lets, sites));
+    let mut page = Display::new(Names::new(symbols, &doc, lets, motions, sites));
     let Document {
         title,
         remarks,

@@ -33,12 +33,12 @@ impl<'a> Sheet<'a> {
 
     /// An expression, like terms collected.
     pub fn math(&self, e: &Expr) -> Formula {
-        Formula::Expr(expr::collect(self.symbols(), e))
+        Formula::Expr(expr::shown(self.symbols(), e))
     }
 
     /// A derived expression: like terms collected, a term that is added in front.
     pub fn derived(&self, e: &Expr) -> Formula {
-        Formula::Expr(expr::positive_first(&expr::collect(self.symbols(), e)))
+        Formula::Expr(expr::positive_first(&expr::shown(self.symbols(), e)))
     }
 
     /// A symbol at an offset.

@@ -11,7 +11,7 @@ pub(super) struct Parts {
     pub coefficient: Rational,
     pub numbers: Vec<(Expr, Rational)>,
     pub matrices: Vec<Expr>,
-    shape: Shape,
+    pub shape: Shape,
 }
 
 /// The same expression with like terms collected at every depth.
@@ -89,7 +89,7 @@ fn turned(a: &Expr) -> Option<Expr> {
 }
 
 /// `c a`, with the number in the numerator.
-fn scaled(c: Rational, a: Expr) -> Expr {
+pub(super) fn scaled(c: Rational, a: Expr) -> Expr {
     if c.is_negative()
         && let Some(a) = turned(&a)
     {
@@ -126,7 +126,7 @@ pub(super) fn parts(e: &Expr) -> Parts {
 }
 
 /// Adds the factors of `e`, raised to a power that is one for matrices.
-fn take(e: &Expr, power: Rational, out: &mut Parts) {
+pub(super) fn take(e: &Expr, power: Rational, out: &mut Parts) {
     let number = |out: &mut Parts, base: &Expr, power: Rational| {
         let known = out.numbers.iter_mut().find(|(other, _)| other == base);
         match known.map(|(_, e)| (e.plus(power), e)) {
@@ -178,7 +178,7 @@ fn take(e: &Expr, power: Rational, out: &mut Parts) {
 }
 
 /// The product of the parts, negative powers below the line.
-fn whole(mut parts: Parts) -> Expr {
+pub(super) fn whole(mut parts: Parts) -> Expr {
     // Letters before scalar products and traces.
     parts
         .numbers

@@ -23,6 +23,7 @@ mod quaternion;
 pub(crate) mod range;
 mod rigid;
 pub mod shape;
+mod shown;
 mod simpler;
 pub(crate) mod spelling;
 mod substitute;
@@ -61,6 +62,7 @@ pub use rigid::{
     block, column, inclusion, is_motion, last_axis, paired_with_twists, part_of_six, quarter_turn,
     rows_in_parts, rows_of, stacked, taken_rows, twist, within,
 };
+pub use shown::{power_of_length, shown};
 pub use simpler::simpler;
 pub use substitute::{
     contains, contains_role, letters, rebuild, shift_time, substitute, with_children,

@@ -20,12 +20,36 @@ pub(crate) struct Parsed {
     pub sup: Option<String>,
 }
 
-/// The Greek letter of a word such as `Lambda`, or the word itself.
+/// The sign of an increment, before the name of what it is one of.
+pub(crate) const INCREMENT: char = 'Δ';
+
+/// The Greek letter of a word such as `Lambda`, or the word itself; of an increment such as `Δphi` that of its name.
 pub(crate) fn letter(word: &str) -> String {
-    match GREEK.iter().find(|(_, name)| *name == word) {
+    let (increment, of) = match word.strip_prefix(INCREMENT) {
+        Some(of) => (true, of),
+        None => (false, word),
+    };
+    match GREEK.iter().find(|(_, name)| *name == of) {
+        Some((greek, _)) if increment => format!("{INCREMENT}{greek}"),
         Some((greek, _)) => greek.to_string(),
         None => word.to_owned(),
     }
+}
+
+/// A name in a sentence, its Greek words as letters: `theta_dot` as `θ_dot`.
+pub(crate) fn in_words(name: &str) -> String {
+    let mut out = String::new();
+    let mut word = String::new();
+    for c in name.chars().map(Some).chain([None]) {
+        match c {
+            Some(c) if c.is_alphabetic() => word.push(c),
+            other => {
+                out.push_str(&letter(&std::mem::take(&mut word)));
+                out.extend(other);
+            }
+        }
+    }
+    out
 }
 
 /// Takes a name apart.

@@ -17,6 +17,7 @@ mod listing;
 mod markdown;
 mod mathml;
 mod name;
+mod read;
 mod statement;
 #[cfg(test)]
 mod tests;
@@ -30,6 +31,7 @@ use compose::Composer;
 use document::Document;
 use formula::Formula;
 
+pub use latex::standalone;
 pub use statement::statement;
 pub use unicode::lowered;
 
@@ -87,7 +89,7 @@ impl Style {
 /// A whole document, ending in a newline. Equations are numbered from 1 through all sections.
 pub fn render(document: &Document, symbols: &Symbols, style: &Style, format: Format) -> String {
     let page = Page { symbols, style };
-    let document = &document.numbered();
+    let document = &read::for_readers(&page, document.clone()).numbered();
     match format {
         Format::Text => unicode::document(&page, document),
         Format::Latex => latex::document(&page, document),
@@ -115,6 +117,20 @@ pub fn formula(f: &Formula, symbols: &Symbols, style: &Style, format: Format) ->
     }
 }
 
+/// Plain text as it stands, in the typewriter face of a format; as it is on a terminal.
+pub fn code(text: &str, style: &Style, format: Format) -> String {
+    let symbols = Symbols::default();
+    let page = Page {
+        symbols: &symbols,
+        style,
+    };
+    match format {
+        Format::Latex => latex::listing(&page, text),
+        Format::Markdown | Format::MathMl => format!("```text\n{text}```\n"),
+        Format::Text | Format::Json => text.to_owned(),
+    }
+}
+
 /// What every renderer needs: the symbols and the style.
 struct Page<'a> {
     symbols: &'a Symbols,
@@ -122,13 +138,21 @@ struct Page<'a> {
 }
 
 impl Page<'_> {
-    fn compose(&self, f: &Formula, stacked: bool) -> layout::Layout {
-        let composer = Composer {
+    fn composer(&self, stacked: bool) -> Composer<'_> {
+        Composer {
             symbols: self.symbols,
             style: self.style,
             stacked,
-        };
-        composer.formula(f).layout
+        }
+    }
+
+    fn compose(&self, f: &Formula, stacked: bool) -> layout::Layout {
+        self.composer(stacked).formula(f).layout
+    }
+
+    /// Whether an equation says nothing, as `0 = 0` does.
+    fn says_nothing(&self, f: &Formula) -> bool {
+        self.composer(false).says_nothing(f)
     }
 
     /// The layout with fractions on the line, `a/b`.

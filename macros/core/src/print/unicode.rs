@@ -173,8 +173,9 @@ pub(super) fn display(page: &Page, f: &Formula, limit: usize) -> Vec<String> {
         return lines.collect();
     }
     if let Some(parts) = equations(f) {
-        let lines = parts.iter().flat_map(|part| display(page, part, limit));
-        return lines.collect();
+        let all = parts.iter().all(|part| page.says_nothing(part));
+        let parts = parts.iter().filter(|part| all || !page.says_nothing(part));
+        return parts.flat_map(|part| display(page, part, limit)).collect();
     }
     let layout = page.linear(f);
     let indent = |depth: usize, aligned: bool| 2 * depth + if aligned { 0 } else { 4 };

@@ -66,7 +66,7 @@ pub fn card_words(
         if let Some(r) = d.solve.riccati.get(s.shown) {
             let mut show = |e: &Expr| {
                 let e = folded.expression(&part, e, from);
-                let e = expr::collect(&folded.symbols, &e);
+                let e = expr::shown(&folded.symbols, &e);
                 expression(&e, &folded.symbols, &style, Format::Text)
             };
             let words = without_sites(&part, &riccati_words(r, &mut show));
@@ -163,7 +163,7 @@ fn terms(folded: &mut Folded, part: &Part) -> Formula {
     let all = folded.terms(part).into_iter().zip(&part.unfolded.summands);
     let all: Vec<_> = all.filter_map(|(e, s)| Some((e?, s.range))).collect();
     let each = all.into_iter().map(|(e, range)| {
-        let e = expr::collect(&folded.symbols, &e);
+        let e = expr::shown(&folded.symbols, &e);
         match e.node() {
             Node::Neg(inner) => {
                 let inner = Formula::Expr(inner.clone());

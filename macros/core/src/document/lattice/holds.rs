@@ -35,7 +35,7 @@ pub(super) fn holds(folded: &mut Folded, part: &Part, section: &mut Section) {
         section.paragraph(line);
         let left = folded.expression(part, &hold.left, from);
         let right = folded.expression(part, &hold.right, from);
-        let math = |e: Expr| Formula::Expr(expr::collect(&folded.symbols, &e));
+        let math = |e: Expr| Formula::Expr(expr::shown(&folded.symbols, &e));
         section.equation(Formula::equal(math(left), math(right)));
     }
     for stated in &part.unfolded.totals {

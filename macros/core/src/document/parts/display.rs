@@ -2,6 +2,7 @@
 //! parts, between homogeneous coordinates one of the entries before the last and one of the last, under one number;
 //! matrices by their blocks.
 
+use super::Motions;
 use super::names::{Kind, Names};
 use super::read::{Blocks, written_in_points, written_in_twists};
 use crate::expr::shape::Shape;
@@ -35,6 +36,9 @@ impl Display {
 
     /// An expression in the letters of parts, like terms collected.
     pub fn tidy(&mut self, e: &Expr) -> Expr {
+        if self.names.motions == Motions::Whole {
+            return self.with_names(e);
+        }
         if written_in_twists(e)
             && let Some(parts) = self.names.twist(e)
         {
@@ -42,16 +46,26 @@ impl Display {
             return expr::stacked(angular, linear);
         }
         let out = self.names.rewritten(e);
-        // What was printed before as it was derived stays so.
-        let named = self.names.named(&out);
-        match out == *e && named == expr::collect(&self.names.symbols, e) {
-            true => out,
+        match out == *e {
+            true => self.with_names(e),
+            false => self.names.named(&out),
+        }
+    }
+
+    /// An expression with the names of the model; what holds none stays as it was derived.
+    fn with_names(&self, e: &Expr) -> Expr {
+        let named = self.names.named(e);
+        match named == expr::shown(&self.names.symbols, e) {
+            true => e.clone(),
             false => named,
         }
     }
 
     /// A displayed formula.
     pub fn displayed(&mut self, f: &Formula) -> Formula {
+        if self.names.motions == Motions::Whole {
+            return self.inline(f);
+        }
         match f {
             Formula::Continuous(inner) => match self.displayed(inner) {
                 Formula::Rows(rows) => {

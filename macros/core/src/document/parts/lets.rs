@@ -20,6 +20,8 @@ struct Let {
 /// How a value stands in expressions: its terms, the longest first, and what is written for them.
 struct Pattern {
     terms: Vec<(Rational, Expr)>,
+    /// What the value is a power of, and its exponent.
+    power: Option<(Expr, Rational)>,
     name: Expr,
 }
 
@@ -32,7 +34,7 @@ pub struct Lets {
 impl Lets {
     /// Adds a name for a value in the letters of the page, unless it is as short.
     pub fn name(&mut self, symbols: &mut Symbols, name: &str, value: &Expr) {
-        let value = expr::collect(symbols, &self.named(symbols, value));
+        let value = expr::shown(symbols, &self.named(symbols, value));
         if value.size() <= 2 {
             return;
         }
@@ -53,7 +55,7 @@ impl Lets {
             Role::Parameter
         };
         let name = symbols.fresh_name(name);
-        let turned = expr::collect(symbols, &expr::transpose(symbols, value.clone()));
+        let turned = expr::shown(symbols, &expr::transpose(symbols, value.clone()));
         let structure =
             match turned == value && value.shape().is_square() && !value.shape().is_scalar() {
                 true => Structure::Symmetric,
@@ -128,7 +130,7 @@ impl Lets {
 }
 
 fn pattern(symbols: &Symbols, value: &Expr, name: Expr) -> Pattern {
-    let terms = match expr::collect(symbols, value).node() {
+    let terms = match expr::shown(symbols, value).node() {
         Node::Sum(terms) => terms.clone(),
         _ => vec![value.clone()],
     };
@@ -144,7 +146,11 @@ fn pattern(symbols: &Symbols, value: &Expr, name: Expr) -> Pattern {
         terms = scaled.collect::<Option<_>>().unwrap_or(terms);
     }
     terms.sort_by_key(|(_, t)| std::cmp::Reverse(t.size()));
-    Pattern { terms, name }
+    let power = match value.node() {
+        Node::Power(base, q) => Some((base.clone(), *q)),
+        _ => None,
+    };
+    Pattern { terms, power, name }
 }
 
 impl Pattern {
@@ -158,9 +164,15 @@ impl Pattern {
         if !self.may_stand_in(e) {
             return e.clone();
         }
+        if let Some(power) = self.power_of_name(e) {
+            return power;
+        }
         let e = expr::rebuild(symbols, e, &mut |x| self.put(symbols, x));
         match self.terms.as_slice() {
-            [(c, only)] => self.alone(symbols, &e, *c, only),
+            [(c, only)] => {
+                let e = self.alone(symbols, &e, *c, only);
+                self.in_trace(symbols, &e, *c, only)
+            }
             _ => match e.node() {
                 Node::Sum(terms) => self.in_sum(symbols, &e, terms),
                 _ => e,
@@ -168,13 +180,91 @@ impl Pattern {
         }
     }
 
+    /// A whole power of the name, where the expression is one: `(x·x)^{3/2}` is `r^3` of `r = |x|`.
+    fn power_of_name(&self, e: &Expr) -> Option<Expr> {
+        let (base, q) = self.power.as_ref()?;
+        let own = match e.node() {
+            Node::Power(a, own) if a == base => *own,
+            _ if e == base => Rational::ONE,
+            _ => return None,
+        };
+        let times = own.times(q.inverse()?)?;
+        times.as_integer()?;
+        Some(expr::power(self.name.clone(), times))
+    }
+
+    /// A value of one term in a trace, whose factors may be taken from any one on: `tr(C Q Q^T)` holds `Q^T C Q`.
+    fn in_trace(&self, symbols: &Symbols, e: &Expr, c: Rational, only: &Expr) -> Expr {
+        let mut out = e.clone();
+        // Each replacement leaves fewer factors.
+        while let Some(shorter) = self.turned_in_trace(symbols, &out, c, only) {
+            out = shorter;
+        }
+        out
+    }
+
+    fn turned_in_trace(
+        &self,
+        symbols: &Symbols,
+        e: &Expr,
+        c: Rational,
+        only: &Expr,
+    ) -> Option<Expr> {
+        let Node::Trace(inner) = e.node() else {
+            return None;
+        };
+        let Node::Product(list) = inner.node() else {
+            return None;
+        };
+        let scalar = |f: &Expr| f.shape().is_scalar();
+        let (numbers, word): (Vec<Expr>, Vec<Expr>) = list.iter().cloned().partition(scalar);
+        (0..word.len()).find_map(|from| {
+            let (behind, before) = word.split_at_checked(from)?;
+            let turned = expr::product(before.iter().chain(behind).cloned());
+            let named = self.alone(symbols, &turned, c, only);
+            let own = numbers.iter().cloned().chain([named.clone()]);
+            (named.size() < turned.size()).then(|| expr::trace(expr::product(own)))
+        })
+    }
+
+    /// `u·w` of `v·(A^T w)` or `(A^T w)·v`, where the name `u` stands for `A v`.
+    fn paired(&self, symbols: &Symbols, e: &Expr) -> Option<Expr> {
+        let ([(c, only)], Node::Dot(a, b)) = (self.terms.as_slice(), e.node()) else {
+            return None;
+        };
+        let Node::Product(word) = only.node() else {
+            return None;
+        };
+        let (v, turn) = word.split_last()?;
+        if !c.is_one() || !v.shape().is_vector() || word.iter().any(|f| f.shape().is_scalar()) {
+            return None;
+        }
+        let back = turn.iter().rev();
+        let back: Vec<Expr> = back.map(|f| expr::transpose(symbols, f.clone())).collect();
+        let rest = |of: &Expr| match of.node() {
+            Node::Product(list) => {
+                let rest = list.strip_prefix(back.as_slice())?;
+                (!rest.is_empty()).then(|| expr::product(rest.iter().cloned()))
+            }
+            _ => None,
+        };
+        match (a == v, b == v) {
+            (true, _) => Some(expr::dot(self.name.clone(), rest(b)?)),
+            (_, true) => Some(expr::dot(rest(a)?, self.name.clone())),
+            _ => None,
+        }
+    }
+
     /// A value of one term.
     fn alone(&self, symbols: &Symbols, e: &Expr, c: Rational, only: &Expr) -> Expr {
+        if let Some(paired) = self.paired(symbols, e) {
+            return paired;
+        }
         let whole = Context::of(e, only).into_iter().find(|found| found.at_root);
         match (whole, c.inverse()) {
             (Some(found), Some(q)) => {
                 let name = expr::scale(q, self.name.clone());
-                expr::collect(symbols, &found.with(symbols, &name))
+                expr::shown(symbols, &found.with(symbols, &name))
             }
             _ => e.clone(),
         }
@@ -216,8 +306,7 @@ impl Pattern {
     ) -> Option<(Vec<usize>, Expr)> {
         let ((first, longest), others) = self.terms.split_first()?;
         'contexts: for found in Context::of(core, longest) {
-            let put =
-                |x: &Expr| expr::coefficient(&expr::collect(symbols, &found.with(symbols, x)));
+            let put = |x: &Expr| expr::coefficient(&expr::shown(symbols, &found.with(symbols, x)));
             let (own, again) = put(longest);
             if again != *core {
                 continue;
@@ -237,7 +326,7 @@ impl Pattern {
             }
             let scale = q.times(first.inverse()?)?.times(own.inverse()?)?;
             let new = expr::scale(scale, found.with(symbols, &self.name));
-            return Some((used, expr::collect(symbols, &new)));
+            return Some((used, expr::shown(symbols, &new)));
         }
         None
     }

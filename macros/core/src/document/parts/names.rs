@@ -1,6 +1,7 @@
 //! The letters of parts: which a vector, a point or a motion is printed by, chosen so that nothing else of the
 //! document bears them.
 
+use super::Motions;
 use super::found::Found;
 use super::lets::Lets;
 use super::said::Said;
@@ -87,11 +88,19 @@ pub struct Names {
     pub(super) lets: Lets,
     /// What has been introduced.
     pub(super) said: Said,
+    /// How rigid motions are printed.
+    pub(super) motions: Motions,
 }
 
 impl Names {
     /// The letters of a document with these symbols, in which the model names `lets`.
-    pub fn new(symbols: &Symbols, doc: &Document, lets: &[(String, Expr)], sites: bool) -> Names {
+    pub fn new(
+        symbols: &Symbols,
+        doc: &Document,
+        lets: &[(String, Expr)],
+        motions: Motions,
+        sites: bool,
+    ) -> Names {
         let mut found = Found::in_document(doc);
         // The names of the model are its own, printed or not.
         let own = lets.iter().map(|(name, _)| spelling::parse(name).base);
@@ -103,10 +112,14 @@ impl Names {
             found,
             wholes: BTreeMap::new(),
             lets: Lets::default(),
-            said: Said::of(sites),
+            said: Said::of(motions, sites),
+            motions,
         };
         for (name, value) in lets {
-            let value = names.rewritten(value);
+            let value = match motions {
+                Motions::InParts => names.rewritten(value),
+                Motions::Whole => value.clone(),
+            };
             names.lets.name(&mut names.symbols, name, &value);
         }
         names
@@ -139,11 +152,11 @@ impl Names {
 
     /// An expression, like terms collected, with the names of the model.
     pub fn named(&self, e: &Expr) -> Expr {
-        let e = expr::collect(&self.symbols, e);
+        let e = expr::shown(&self.symbols, e);
         let named = self.lets.named(&self.symbols, &e);
         match named == e {
             true => e,
-            false => expr::collect(&self.symbols, &named),
+            false => expr::shown(&self.symbols, &named),
         }
     }
 

@@ -1,5 +1,6 @@
 //! Sentences that introduce the letters of parts and the names of a model, behind what holds them first.
 
+use super::Motions;
 use super::names::{Kind, Names};
 use super::read::taken_kind;
 use crate::expr::shape::{Dim, Shape};
@@ -31,10 +32,12 @@ pub struct Said {
 }
 
 impl Said {
-    /// Nothing yet; letters of many `sites` are introduced by those of one.
-    pub fn of(sites: bool) -> Said {
+    /// Nothing yet; letters of many `sites` are introduced by those of one. Where motions stay whole, entries are written
+    /// as the language has them.
+    pub fn of(motions: Motions, sites: bool) -> Said {
         Said {
             sites,
+            entries: [false, motions == Motions::Whole],
             ..Said::default()
         }
     }

@@ -1,6 +1,7 @@
 //! What a page prints is what was derived: with the letters of parts written out again every expression is
 //! equal to the one before, as the algebra proves; no inclusion is left in print, and every letter is introduced.
 
+use super::Motions;
 use super::display::Display;
 use super::each_formula;
 use super::names::Names;
@@ -111,7 +112,13 @@ fn what_is_printed_is_what_was_derived() {
     for text in MODELS {
         let d = derive_source(text).expect("a model");
         let doc = document(&d);
-        let mut page = Display::new(Names::new(&d.letters.symbols, &doc, &d.spec.lets, false));
+        let mut page = Display::new(Names::new(
+            &d.letters.symbols,
+            &doc,
+            &d.spec.lets,
+            Motions::InParts,
+            false,
+        ));
         let mut derived: Vec<Expr> = Vec::new();
         each_formula(&doc, &mut |f| {
             f.each_expression(&mut |e| derived.push(e.clone()))
@@ -152,6 +159,90 @@ fn what_is_printed_is_what_was_derived() {
             derived.len()
         );
     }
+}
+
+/// A satellite about a planet, gravity to second order, with names.
+const SATELLITE: &str = "model Satellite {
+    param m, GM: Real;
+    param J: Sym<3>;
+    group Λ: SO<3> velocity Ω;
+    field x: Vec<3>;
+    constraint next(Λ) = Λ*Ω;
+    let r = sqrt(dot(x, x));
+    let I = tr(J)*Id - J;
+    let y = Λ^T*x;
+    lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - tr(J*Ω)/h + h*GM*m/r + h*GM*tr(I)/(2*r^3)
+        - (3/2)*h*GM*dot(y, I*y)/r^5;
+}";
+
+#[test]
+fn names_of_the_model_stand_in_text_as_on_a_page() {
+    for text in MODELS.into_iter().chain([SATELLITE]) {
+        let d = derive_source(text).expect("a model");
+        let doc = document(&d);
+        let symbols = &d.letters.symbols;
+        let names = Names::new(symbols, &doc, &d.spec.lets, Motions::Whole, false);
+        let mut page = Display::new(names);
+        let mut derived: Vec<Expr> = Vec::new();
+        each_formula(&doc, &mut |f| {
+            f.each_expression(&mut |e| derived.push(e.clone()))
+        });
+        for e in &derived {
+            let again = page.tidy(e);
+            let again = page.names.written_out(&again);
+            let algebra = Algebra::new(&page.names.symbols);
+            assert!(algebra.equal(e, &again), "{}: {e:?}", d.spec.name);
+        }
+    }
+    let d = derive_source(SATELLITE).expect("a model");
+    let text = printed(&d, Format::Text);
+    for said in [
+        "We write y_k := Λ_kᵀ x_k; I := tr(J) Id - J; r_k := |x_k|.",
+        // Like terms are one, and powers of the length are powers of its name.
+        "p_{2,k} = m Δx_k/h + h m GM x_k/(2 r_k³) - 3 h GM tr(J) x_k/(4 r_k⁵)",
+        "+ 15 h GM (y_k·(J y_k)) x_k/(4 r_k⁷) - 3 h GM Λ_k J y_k/(2 r_k⁵)",
+        "L = ½ m ζ₂·ζ₂ + ½ tr(J) ζ₁·ζ₁ - ½ ζ₁·(J ζ₁) + m GM/r - GM tr(J)/(2 r³) + 3 GM y·(J y)/(2 r⁵)",
+    ] {
+        assert!(words(&text).contains(&words(said)), "{said}\n{text}");
+    }
+    for never in ["√", "|x_{k+1}|", "Λ_kᵀ x_k)"] {
+        assert!(!text.contains(never), "{never}\n{text}");
+    }
+    let page = printed(&d, Format::Latex);
+    assert!(!page.contains("\\sqrt"), "{page}");
+    assert!(page.contains("\\lvert x_{k}\\rvert"), "{page}");
+    // Without names lengths stand for roots of squares.
+    let bare = SATELLITE.replace("let r = sqrt(dot(x, x));", "");
+    let bare = bare
+        .replace("/r", "/sqrt(dot(x, x))")
+        .replace("(2*r^3)", "(2*sqrt(dot(x, x))^3)");
+    let d = derive_source(&bare).expect("a model");
+    let text = words(&printed(&d, Format::Text));
+    assert!(text.contains("h m GM x_k/(2 |x_k|³)"), "{text}");
+    let page = printed(&d, Format::Latex);
+    assert!(page.contains("2\\,\\lvert x_{k}\\rvert^{3}"), "{page}");
+}
+
+#[test]
+fn a_name_is_found_in_a_trace_from_whichever_factor_on() {
+    let model = "model Body {
+        param A, I: Sym<3>;
+        param a, b: Real;
+        field Q: Mat<3>;
+        let C = Q^T*A*Q;
+        lagrangian = tr((next(Q) - Q)*I*(next(Q) - Q)^T)/(2*h) - h*(a*tr(C)^2 + b*tr(C*C*C));
+    }";
+    let d = derive_source(model).expect("a model");
+    let text = words(&printed(&d, Format::Text));
+    for said in ["- a tr(C)² - b tr(C³)", "tr(C_k) A Q_k"] {
+        assert!(text.contains(said), "{said}\n{text}");
+    }
+    assert!(!text.contains("tr(A Q"), "{text}");
+}
+
+/// Words without the ends of lines.
+fn words(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 #[test]

@@ -102,7 +102,10 @@ impl Composer<'_> {
                     _ => self.quotient(Rational::ONE, std::slice::from_ref(top), &divisors),
                 }
             }
-            Node::Power(a, q) => self.power(self.expression(a), *q),
+            Node::Power(a, q) => match expr::power_of_length(e) {
+                Some((of, n)) => self.power(self.length(of), n),
+                None => self.power(self.expression(a), *q),
+            },
             Node::Transpose(a) => match a.node() {
                 Node::Inverse(inner) => self.expression(inner).raised(transposition(true)),
                 _ => self.expression(a).raised(transposition(false)),
@@ -131,10 +134,7 @@ impl Composer<'_> {
                 };
                 self.call(word, self.expression(a))
             }
-            Node::Call(Function::Abs, a) => {
-                let inner = self.expression(a).layout;
-                Laid::atom(Layout::fenced(Fence::Bars, inner))
-            }
+            Node::Call(Function::Abs, a) => self.length(a),
             Node::Call(function, a) => self.call(function.word(), self.expression(a)),
             Node::Map(map, a) => {
                 let word = match map {
@@ -152,6 +152,11 @@ impl Composer<'_> {
             Node::Given(a) => self.functional(a, None),
             Node::PullBack(a, which, seed) => self.functional(a, Some((*which, seed))),
         }
+    }
+
+    /// The length of a vector, or a number without its sign.
+    fn length(&self, of: &Expr) -> Laid {
+        Laid::atom(Layout::fenced(Fence::Bars, self.expression(of).layout))
     }
 
     /// The inverse of an expression; that of a transpose bears one superscript.

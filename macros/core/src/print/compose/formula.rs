@@ -181,21 +181,42 @@ impl Composer<'_> {
     }
 
     fn relation(&self, members: &[Formula], relation: Relation) -> Laid {
+        let each = members.iter().map(|member| {
+            let laid = self.formula(member);
+            let nested = laid.level == Level::Relation && relation != Relation::Implies;
+            match nested {
+                true => Layout::fenced(Fence::Round, laid.layout),
+                false => laid.layout,
+            }
+        });
+        let mut each: Vec<Layout> = each.collect();
+        // `b = b` says nothing.
+        if relation == Relation::Equal && each.len() > 2 {
+            each.dedup();
+        }
         let mut row = Vec::new();
-        for member in members {
+        for member in each {
             if !row.is_empty() {
                 row.push(Layout::Break(Strength::Relation));
                 row.push(Layout::Sign(Sign::Relation(relation)));
             }
-            let laid = self.formula(member);
-            let nested = laid.level == Level::Relation && relation != Relation::Implies;
-            row.push(if nested {
-                Layout::fenced(Fence::Round, laid.layout)
-            } else {
-                laid.layout
-            });
+            row.push(member);
         }
         Laid::new(Layout::Row(row), Level::Relation)
+    }
+
+    /// Whether all sides of a relation read alike, as those of `0 = 0`.
+    pub fn says_nothing(&self, f: &Formula) -> bool {
+        match f {
+            Formula::Continuous(inner) => self.says_nothing(inner),
+            Formula::Rows(rows) => rows.iter().all(|row| self.says_nothing(row)),
+            Formula::Relation(members, Relation::Equal | Relation::Identical) => {
+                let mut sides = members.iter().map(|member| self.formula(member).layout);
+                let first = sides.next();
+                members.len() > 1 && sides.all(|side| Some(&side) == first.as_ref())
+            }
+            _ => false,
+        }
     }
 
     fn between(&self, a: &Formula, sign: Sign, b: &Formula, level: Level) -> Laid {

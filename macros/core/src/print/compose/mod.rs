@@ -170,6 +170,9 @@ impl Composer<'_> {
 
     /// A rational power.
     fn power(&self, base: Laid, q: Rational) -> Laid {
+        if q.is_one() {
+            return base;
+        }
         if q == Rational::HALF {
             return self.root(base);
         }

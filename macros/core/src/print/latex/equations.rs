@@ -2,19 +2,13 @@
 //! that says what it is. Sources in the thesis are footnotes of the sentence before.
 
 use super::characters::{prose, spelt, symbol_of};
+use super::sources::{THESIS, citing};
 use super::{Dialect, aligned, rows};
 use crate::expr::symbol;
 use crate::print::Page;
 use crate::print::document::{Block, Document};
 use crate::print::name;
 use unicode_normalization::UnicodeNormalization;
-
-/// The thesis, as `\cite` calls it.
-const KEY: &str = "dixon2007";
-
-/// Its entry in a bibliography.
-const ENTRY: &str = "@phdthesis{dixon2007, author = {Dixon, M. F.}, title = {Geometric integrators for continuum dynamics}, \
-     school = {Imperial College London}, year = {2007}}";
 
 /// The names of all equations by their number.
 pub(super) struct Labels(Vec<String>);
@@ -86,16 +80,6 @@ pub(super) fn slug(title: &str) -> String {
     out.trim_end_matches('-').to_owned()
 }
 
-/// The head of a document: what it needs, and the entry that its footnotes cite.
-pub(super) fn preamble(document: &Document) -> String {
-    let mut blocks = document.sections.iter().flat_map(|s| &s.blocks);
-    let cites = blocks.any(|b| matches!(b, Block::Equation { tag: Some(_), .. }));
-    match cites {
-        true => format!("% Needs \\usepackage{{amsmath}}, and in the bibliography\n% {ENTRY}\n"),
-        false => "% Needs \\usepackage{amsmath}.\n".to_owned(),
-    }
-}
-
 /// The footnote with the sources of equations `from`, `from + 1`, ... in the thesis; none where they have none.
 pub(super) fn footnote(run: &[Block], from: usize, labels: &Labels) -> String {
     let several = run.len() > 1;
@@ -129,7 +113,7 @@ fn cited(tag: &str) -> String {
     };
     let said = said_of(&said);
     format!(
-        "\\cite[{}]{{{KEY}}}{said}",
+        "\\cite[{}]{{{THESIS}}}{said}",
         place
             .chars()
             .map(|c| symbol_of(c, true))
@@ -142,7 +126,7 @@ fn said_of(tag: &str) -> String {
     let pieces = tag.split('$').enumerate();
     pieces
         .map(|(i, piece)| match i % 2 {
-            0 => prose(piece),
+            0 => citing(&prose(piece)),
             _ => format!("${}$", spelt(piece)),
         })
         .collect()

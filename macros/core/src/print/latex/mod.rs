@@ -3,6 +3,7 @@
 
 mod characters;
 mod equations;
+mod sources;
 
 use super::Page;
 use super::document::{Block, Document, Inline};
@@ -13,6 +14,9 @@ use super::listing;
 use super::width::{Size, upright, width};
 use characters::{identifier, joined, prose, symbol_of, text};
 use equations::Labels;
+use sources::citing;
+
+pub use sources::standalone;
 
 /// Whose commands may be used.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -240,7 +244,7 @@ fn aligned_rows(broken: &lines::Lines, dialect: Dialect) -> Vec<String> {
 
 /// A whole document: a section with labelled equations; those that follow one another without words share a number.
 pub(super) fn document(page: &Page, document: &Document) -> String {
-    let mut out = equations::preamble(document);
+    let mut out = String::new();
     let title = text(&document.title);
     let letters = document.title.chars().map(upright).sum::<usize>();
     // The names of models have no hyphens: a title of several lines is set ragged.
@@ -292,7 +296,7 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
             }
         }
     }
-    out
+    sources::needs(&out) + &out
 }
 
 /// The letters of a heading, larger and bold, in percent of those of a sentence; a little is taken off for the number.
@@ -315,7 +319,7 @@ fn sentence(page: &Page, labels: &Labels, parts: &[Inline]) -> String {
         let before = std::mem::take(&mut taken);
         let said = match part {
             Inline::Plain(words) | Inline::Notation { page: words, .. } => {
-                prose(words.get(before..).unwrap_or_default())
+                citing(&prose(words.get(before..).unwrap_or_default()))
             }
             Inline::Code(code) => format!("\\texttt{{{}}}", text(code)),
             Inline::Reference { number, .. } => format!("\\eqref{{{}}}", labels.name(*number)),
@@ -347,7 +351,7 @@ fn sentence(page: &Page, labels: &Labels, parts: &[Inline]) -> String {
 const INLINE: usize = 50;
 
 /// Code in a typewriter face; `verbatim` would not know the Greek letters.
-fn listing(page: &Page, code: &str) -> String {
+pub(super) fn listing(page: &Page, code: &str) -> String {
     // The numbers of equations take nothing from lines of text.
     let limit = 10 * (page.style.points + NUMBER);
     let rows: Vec<String> = listing::fitted(code, limit, &typewriter)

@@ -5,6 +5,7 @@ mod derivations;
 mod documents;
 mod functionals;
 mod mathml;
+mod readers;
 mod sample;
 mod spelling;
 mod statements;

@@ -39,8 +39,8 @@ fn the_whole_momentum_has_a_scale_for_each_of_its_parts() {
     assert_eq!(scale.shape(), value.shape());
     let text = expression(scale, &d.letters.symbols, &Style::new("k"), Format::Text);
     // As a pair of the angular and the linear part.
-    let linear = "√(lin(μ_k)·lin(μ_k))";
-    let angular = format!("(√(ang(μ_k)·ang(μ_k)) + √(pos(G_k)·pos(G_k)) {linear})");
+    let linear = "|lin(μ_k)|";
+    let angular = format!("(|ang(μ_k)| + |pos(G_k)| {linear})");
     let ones = "(E₁ + E₂ + E₃)";
     assert_eq!(text, format!("({angular} {ones}, {linear} {ones})"));
 }
