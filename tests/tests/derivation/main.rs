@@ -23,6 +23,7 @@ mod meant;
 mod mutation;
 mod oracle_groups;
 mod oracle_interpreted;
+mod prose;
 mod quoted_figures;
 mod random_mixed;
 mod reduction;
