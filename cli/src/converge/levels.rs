@@ -165,7 +165,12 @@ mod tests {
             errors: vec![error],
             orders: vec![None],
         };
-        let levels = [level(0.4, 1.6), level(0.2, 0.4), level(0.1, 0.1), level(0.05, 1e-15)];
+        let levels = [
+            level(0.4, 1.6),
+            level(0.2, 0.4),
+            level(0.1, 0.1),
+            level(0.05, 1e-15),
+        ];
         let found = fitted(&levels, 0).expect("three errors");
         assert!((found - 2.0).abs() < 1e-12, "{found}");
         assert_eq!(fitted(&levels[2..], 0), None);

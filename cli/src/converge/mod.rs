@@ -106,7 +106,12 @@ fn lower(done: &Measured, order: u32) -> Option<String> {
         ),
         None => "take more levels, or smaller steps, to see whether it stays".to_owned(),
     };
-    (!named.is_empty()).then(|| format!("measured order below {order}: {}; {cause}", named.join(", ")))
+    (!named.is_empty()).then(|| {
+        format!(
+            "measured order below {order}: {}; {cause}",
+            named.join(", ")
+        )
+    })
 }
 
 /// By how much a fitted order may be below that of the step.

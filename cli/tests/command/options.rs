@@ -418,3 +418,37 @@ fn an_energy_that_is_lost_is_told_with_its_node() {
     let done = shipped(&["run", &file, "--case", &pass]);
     assert!(!done.err.contains("is lost"), "{}", done.err);
 }
+
+/// A momentum that is not projected is of first order at its node, while the motion is of second order.
+#[test]
+fn what_is_of_lower_order_at_its_node_is_told() {
+    let folder = Folder::new("options-converge-clock");
+    let text = "model Shaken {
+        param m, g, A, w: Real;
+        field x: Vec<2>;
+        advected t: Real;
+        constraint next(t) = t + h;
+        hold λ: dot(x, x) = 1;
+        lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*m*g*x[2]*(1 + A*sin(w*t));
+    }";
+    let file = folder.write("shaken.clebsch", text);
+    let case = "model = \"shaken\"\nh = 0.02\nsteps = 50\n[parameters]\nm = 2\ng = 9.81\nA = 0.1\nw = 2\n[initial]\n\
+                x = [0.6, -0.8]\nvelocity = [0.2, 0.15]\nt = 0\n";
+    folder.write("shaken.toml", case);
+    let done = shipped(&["converge", &file]);
+    let said =
+        "measured order below 2: `momentum` (1.00); `x` converges with the order of the step";
+    assert!(done.out.contains(said), "{}{}", done.out, done.err);
+    let done = shipped(&["converge", &file, "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&done.out).expect(&done.err);
+    for (at, order) in [(0, 2.0), (1, 1.0)] {
+        let fitted = json["fitted_orders"][at].as_f64().expect("an order");
+        assert!((fitted - order).abs() < 0.05, "{}", json["fitted_orders"]);
+        for level in 1..6 {
+            let measured = json["levels"][level]["orders"][at].as_f64();
+            let measured = measured.expect("an order");
+            assert!((measured - order).abs() < 0.05, "{json}");
+        }
+    }
+    assert!(json["fitted_orders"][2].is_null(), "{json}");
+}
