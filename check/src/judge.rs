@@ -18,6 +18,9 @@ const LEFT_BY_SOLVERS: f64 = 8.0;
 /// The same of what is held: searches for multipliers end when corrections are no more than 32 double roundings of its terms.
 pub const LEFT_OF_WHAT_IS_HELD: f64 = 128.0;
 
+/// Products of numbers larger than this may be larger than any number.
+const LARGE: f64 = 1e150;
+
 /// Significant bits of terms whose sums and products are exact: a zero of such terms proves nothing.
 const EXACT_BITS: u32 = 26;
 
@@ -166,6 +169,12 @@ impl Judge {
             false => Cow::Owned(self.setup.clone().with_step(self.setup.h * share)),
         };
         let parts = self.parts_of(&setup, step, before, after)?;
+        // Where terms overflow nothing is measured.
+        let mut numbers = before.iter().chain(after).map(|x| x.abs());
+        let is_large = |x: f64| (LARGE..f64::INFINITY).contains(&x);
+        if numbers.any(is_large) && parts.iter().any(|p| p.ratio().is_nan()) {
+            return Err("terms of the action are larger than any number".to_owned());
+        }
         let tested = parts.iter().filter(|p| p.tests());
         let mut out = Judged {
             worst: None,

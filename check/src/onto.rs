@@ -6,7 +6,7 @@ use crate::holds::{Rate, gradients, is_long};
 use crate::judge::LEFT_OF_WHAT_IS_HELD;
 use crate::matrix::Matrix;
 use crate::moved::{Frame, Velocity, moved};
-use crate::number::{Number, UNIT};
+use crate::number::{Number, UNIT, larger};
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::sites::{Moving, all_moving, varied};
@@ -56,8 +56,9 @@ pub fn onto_constraints(
     let Some(worst) = worst.filter(|worst| ratio(worst) > 1.0) else {
         return Ok(None);
     };
-    let is_far = |rate: &Rate| !(rate.value.abs() <= NEAR * rate.error / UNIT);
-    if start.iter().any(is_far) {
+    // Of numbers that are none nothing is near.
+    let is_near = |rate: &Rate| rate.value.abs() <= NEAR * rate.error / UNIT;
+    if !start.iter().all(is_near) {
         return Ok(None);
     }
     let count = moving.iter().map(|m| 2 * m.components).sum();
@@ -67,11 +68,12 @@ pub fn onto_constraints(
         let change = correction(&rates_here, count);
         let next = changed(&stated, setup, &moving, &at, &change).ok_or("sizes do not fit")?;
         let rates_next = rates(&stated, setup, &next, &moving)?;
+        let left_next = most(&rates_next);
         // Rounding is left in the end.
-        if !(most(&rates_next) < left) {
+        if left_next >= left || left_next.is_nan() {
             break;
         }
-        (at, left, rates_here) = (next, most(&rates_next), rates_next);
+        (at, left, rates_here) = (next, left_next, rates_next);
     }
     let change = at.iter().zip(node).map(|(x, y)| (x - y).abs());
     let by = change.fold(0.0, f64::max);
@@ -92,7 +94,7 @@ fn ratio(rate: &Rate) -> f64 {
 }
 
 fn most(all: &[Rate]) -> f64 {
-    all.iter().map(ratio).fold(0.0, f64::max)
+    all.iter().map(ratio).fold(0.0, larger)
 }
 
 fn rates(

@@ -47,7 +47,10 @@ impl fmt::Display for Undefined {
         }
         for (n, (argument, value)) in self.arguments.iter().enumerate() {
             let word = if n == 0 { ":" } else { "," };
-            write!(f, "{word} `{argument}` is {value}")?;
+            match value.abs() < 1e15 {
+                true => write!(f, "{word} `{argument}` is {value}")?,
+                false => write!(f, "{word} `{argument}` is {value:e}")?,
+            }
         }
         Ok(())
     }

@@ -8,6 +8,7 @@ use crate::plain::shown;
 use crate::resolve_model::{named, parts};
 use crate::show::{case_text, statement};
 use clap::ArgMatches;
+use clebsch_interpret::Refused;
 use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -32,6 +33,7 @@ pub(crate) fn new(
     let name = argument("name").unwrap_or_default();
     let name = name.strip_suffix(".clebsch").unwrap_or(name);
     let declared = camel(name)?;
+    admitted(&declared)?;
     let (text, case) = match argument("from") {
         None => (TEMPLATE[0].to_owned(), TEMPLATE[1].to_owned()),
         Some(from) => {
@@ -102,6 +104,20 @@ fn camel(name: &str) -> Result<String, Failure> {
         )));
     }
     Ok(out)
+}
+
+/// Refuses names that the language or what it emits uses, such as `Self` and `Vec`.
+fn admitted(declared: &str) -> Result<(), Failure> {
+    let text = renamed(TEMPLATE[0], declared);
+    let Err(Refused::Model(errors)) = clebsch_interpret::card_and_warnings(&text) else {
+        return Ok(());
+    };
+    let why = errors.iter().next().map(|d| d.message.clone());
+    Err(Failure::Usage(format!(
+        "{}; give the model another name, such as my-{}",
+        why.unwrap_or_else(|| format!("`{declared}` cannot name a model")),
+        declared.to_lowercase()
+    )))
 }
 
 /// A model's text that declares another name.

@@ -412,12 +412,11 @@ pub(super) fn elements(fields: &[Field]) -> HashMap<usize, usize> {
     each.collect()
 }
 
+/// A statement, its sizes by name, and what a case adds to it.
+type Statement = (Model, Vec<(String, usize)>, Setup);
+
 /// The statement of a case, its sizes, and what the case adds to it; none if its text is not at hand.
-fn stated(
-    card: &Card,
-    choice: Option<&Choice>,
-    case: &Case,
-) -> Option<(Model, Vec<(String, usize)>, Setup)> {
+fn stated(card: &Card, choice: Option<&Choice>, case: &Case) -> Option<Statement> {
     let model = pipeline::parse_source(card.source).ok()?;
     let sizes = card.dimensions.iter();
     let sizes: Vec<_> = sizes.map(|d| (d.name.to_owned(), d.value)).collect();

@@ -111,12 +111,12 @@ fn evens(card: &Card, records: &[&Record]) -> Vec<bool> {
     let count = apart.first().map_or(0, Vec::len);
     let falls = |at: usize| {
         let of = |row: &Vec<f64>| row.get(at).copied().unwrap_or(0.0);
-        let each = apart.windows(2).filter_map(|two| match two {
+        let mut each = apart.windows(2).filter_map(|two| match two {
             [coarse, fine] => order((&of(coarse), &of(fine))),
             _ => None,
         });
         // The last one that is not rounding: the smaller the steps, the more the lowest power is left alone.
-        each.last()
+        each.next_back()
     };
     (0..count)
         .map(|at| falls(at).is_none_or(|order| order >= EVEN))

@@ -143,3 +143,45 @@ fn rates_and_degrees_in_a_model_are_answered() {
         }
     }
 }
+
+/// Energies near the end of the range of numbers: what overflows is named, and no function is said to have left its domain.
+#[test]
+fn an_energy_beyond_the_range_of_numbers_is_named() {
+    let model = "model Chain {
+        label i in 0..N;
+        param m, c: Real;
+        field x: Real at nodes;
+        lagrangian = m*(next(x)-x)^2/(2*h) - h*c*(next(x,i)-x)^2/2;
+    }";
+    for count in [4, 40] {
+        for size in ["2.2e153", "3e153", "1e154"] {
+            let case = format!(
+                "model = \"chain\"\nh = 0.01\nsteps = 5\n[labels]\ni = {count}\n[parameters]\nm = 1\nc = {}\n[initial]\n\
+                 x = \"i*{size}\"\nmomentum_x = 0\n",
+                if count == 4 { 10 } else { 1 }
+            );
+            let folder = Folder::new("misstated-overflow");
+            let done = ran::run(&folder, model, &case, &[]);
+            assert!(
+                !done.err.contains("left its domain"),
+                "{size}: {}",
+                done.err
+            );
+            if done.code != 0 {
+                assert!(done.err.contains("`energy` is inf"), "{size}: {}", done.err);
+            }
+        }
+    }
+    let spring = "model Spring {
+        param m: Real;
+        field x: Real;
+        lagrangian = m*(next(x)-x)^2/(2*h) - h*x^2/2;
+    }";
+    let case = "model = \"spring\"\nh = 0.01\nsteps = 10\n[parameters]\nm = 1\n[initial]\nx = 1.3e154\nmomentum = 1.3e154\n";
+    let done = ran::run(&Folder::new("misstated-overflow-check"), spring, case, &[]);
+    let both = format!("{}{}", done.out, done.err);
+    assert!(
+        both.contains("`energy` is inf") && !both.contains("does NOT hold"),
+        "{both}"
+    );
+}

@@ -199,7 +199,7 @@ fn options_take_expressions() {
 #[test]
 fn a_sweep_over_the_step_keeps_the_time() {
     let folder = Folder::new("options-sweep");
-    let sweep = |name: &str, more: &[&str]| {
+    let sweep = |name: &str, more: &[&str], code: u8| {
         let out = folder.path(name);
         let all = [
             &[
@@ -213,16 +213,17 @@ fn a_sweep_over_the_step_keeps_the_time() {
             more,
         ]
         .concat();
-        assert_eq!(shipped(&all).code, 0);
+        assert_eq!(shipped(&all).code, code);
         let rows = rows(&format!("{out}/sweep.csv"));
         rows.iter().map(|row| [row[3], row[4]]).collect::<Vec<_>>()
     };
     assert_eq!(
-        sweep("until", &["--until", "2"]),
+        // The energy leaves the bound of the case with the longest step.
+        sweep("until", &["--until", "2"], 3),
         [[20.0, 2.0], [40.0, 2.0], [80.0, 2.0]]
     );
     assert_eq!(
-        sweep("steps", &["--steps", "4"]),
+        sweep("steps", &["--steps", "4"], 0),
         [[4.0, 0.4], [4.0, 0.2], [4.0, 0.1]]
     );
 }
@@ -417,4 +418,38 @@ fn an_energy_that_is_lost_is_told_with_its_node() {
     let pass = folder.write("pass.toml", &case("[1, 0, 0]", "[0, 0.5, 0]"));
     let done = shipped(&["run", &file, "--case", &pass]);
     assert!(!done.err.contains("is lost"), "{}", done.err);
+}
+
+/// A momentum that is not projected is of first order at its node, while the motion is of second order.
+#[test]
+fn what_is_of_lower_order_at_its_node_is_told() {
+    let folder = Folder::new("options-converge-clock");
+    let text = "model Shaken {
+        param m, g, A, w: Real;
+        field x: Vec<2>;
+        advected t: Real;
+        constraint next(t) = t + h;
+        hold λ: dot(x, x) = 1;
+        lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*m*g*x[2]*(1 + A*sin(w*t));
+    }";
+    let file = folder.write("shaken.clebsch", text);
+    let case = "model = \"shaken\"\nh = 0.02\nsteps = 50\n[parameters]\nm = 2\ng = 9.81\nA = 0.1\nw = 2\n[initial]\n\
+                x = [0.6, -0.8]\nvelocity = [0.2, 0.15]\nt = 0\n";
+    folder.write("shaken.toml", case);
+    let done = shipped(&["converge", &file]);
+    let said =
+        "measured order below 2: `momentum` (1.00); `x` converges with the order of the step";
+    assert!(done.out.contains(said), "{}{}", done.out, done.err);
+    let done = shipped(&["converge", &file, "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&done.out).expect(&done.err);
+    for (at, order) in [(0, 2.0), (1, 1.0)] {
+        let fitted = json["fitted_orders"][at].as_f64().expect("an order");
+        assert!((fitted - order).abs() < 0.05, "{}", json["fitted_orders"]);
+        for level in 1..6 {
+            let measured = json["levels"][level]["orders"][at].as_f64();
+            let measured = measured.expect("an order");
+            assert!((measured - order).abs() < 0.05, "{json}");
+        }
+    }
+    assert!(json["fitted_orders"][2].is_null(), "{json}");
 }

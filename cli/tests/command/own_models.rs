@@ -8,7 +8,7 @@
 mod example;
 
 use self::example::gallery;
-use super::common::{Folder, on};
+use super::common::{Folder, on, program};
 use std::fs;
 
 #[test]
@@ -59,4 +59,28 @@ fn the_first_page_shows_it_whole() {
         block == Some(&file),
         "README.md does not show cli/examples/own_models.rs"
     );
+}
+
+/// A name that no model can have is refused before anything is written; the others run.
+#[test]
+fn a_new_model_has_a_name_that_models_can_have() {
+    let folder = Folder::new("own-models-names");
+    for name in ["Some", "Vec", "Self", "none", "result", "T"] {
+        let path = folder.path(name);
+        let done = program(&["new", &path]);
+        assert_eq!(done.code, 2, "{name}");
+        assert!(
+            done.err
+                .contains("give the model another name, such as my-"),
+            "{name}: {}",
+            done.err
+        );
+    }
+    assert!(folder.names().is_empty(), "{:?}", folder.names());
+    for name in ["String", "my-some", "h", "f64", "model", "super"] {
+        let path = folder.path(name);
+        assert_eq!(program(&["new", &path]).code, 0, "{name}");
+        let run = program(&["run", &format!("{path}.clebsch"), "--steps", "2"]);
+        assert_eq!(run.code, 0, "{name}: {}", run.err);
+    }
 }

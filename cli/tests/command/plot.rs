@@ -134,3 +134,34 @@ fn sites_are_counted_from_zero() {
     let done = shipped(&["plot", &out, "--y", "q_32"]);
     assert!(done.err.contains("give a site, q_0"), "{}", done.err);
 }
+
+/// Names of the table that hold sites in their middle, as those of relative attitudes, are found too.
+#[test]
+fn columns_are_found_as_the_table_names_them() {
+    let folder = Folder::new("plot-names");
+    let model = "model Turns {
+        label i in 0..N;
+        param J: Sym<3> at nodes;
+        param k: Real;
+        group R: SO<3> at nodes velocity W;
+        constraint next(R) = R*W;
+        lagrangian = -tr(J*R^T*next(R))/h + h*k*tr(R^T*next(R, i));
+    }";
+    let case = "model = \"turns\"\nh = 0.01\nsteps = 3\n[labels]\ni = 2\n[parameters]\nJ = { I = [2, 3, 4] }\nk = 1\n[initial]\n\
+                R = { axis = [0, 0, 1], angle = 0.3 }\nangular_velocity_R = [1, 0.2, 0]\n";
+    let out = folder.path("out");
+    let done = super::ran::run(&folder, model, case, &["--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let table = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
+    let names = table.lines().next().unwrap_or_default().split(',');
+    let own: Vec<&str> = names.filter(|name| name.starts_with("relative_")).collect();
+    assert!(own.contains(&"relative_R_0_R_1_11"), "{own:?}");
+    for name in own {
+        let picture = folder.path(&format!("{name}.svg"));
+        let arguments = [
+            "plot", &out, "--x", name, "--y", "R_0_11", "--out", &picture,
+        ];
+        let done = super::common::program(&arguments);
+        assert_eq!(done.code, 0, "{name}: {}", done.err);
+    }
+}

@@ -256,7 +256,9 @@ impl Watch {
     #[inline]
     fn look(&mut self, trajectory: &dyn Trajectory, sampled: bool) -> Result<(), NotFinite> {
         trajectory.invariants(&mut self.invariants);
-        finite(trajectory, Watched::Invariant, &self.invariants)?;
+        if let Err(found) = finite(trajectory, Watched::Invariant, &self.invariants) {
+            return Err(self.told_of_overflow(trajectory, found));
+        }
         trajectory.scales(&mut self.scales);
         if trajectory.node() > 0 {
             let h = trajectory.time() / trajectory.node() as f64;
@@ -270,6 +272,26 @@ impl Watch {
             finite(trajectory, Watched::Observable, &self.observables)?;
         }
         Ok(())
+    }
+
+    /// An invariant that is NaN because its terms are larger than any number: then no function left its domain.
+    #[cold]
+    fn told_of_overflow(&mut self, trajectory: &dyn Trajectory, found: NotFinite) -> NotFinite {
+        trajectory.scales(&mut self.scales);
+        trajectory.observe(&mut self.observables);
+        let is_large = |x: &f64| x.abs() > SQUARED;
+        let of_state = self.observables.iter().any(is_large);
+        let of_terms = self
+            .scales
+            .iter()
+            .any(|x| x.is_infinite() || is_large(&x.abs().sqrt()));
+        match found.value.is_nan() && (of_state || of_terms) {
+            true => NotFinite {
+                value: f64::INFINITY,
+                ..found
+            },
+            false => found,
+        }
     }
 
     /// Shows the node to the observer.
@@ -321,6 +343,10 @@ impl Saved for Watch {
         samples.words(words);
     }
 }
+
+/// Numbers larger than this have squares that are nearly as large as any number, and a product of two numbers that is kept in two
+/// parts is NaN there.
+const SQUARED: f64 = 1e150;
 
 /// Refuses numbers that are NaN or infinite.
 #[inline]

@@ -65,7 +65,7 @@ pub(crate) fn by_configuration(spec: &Spec, e: &Expr) -> Expr {
 }
 
 /// What a clock in the action is ahead after a step of `h` and one of `-h`, of the first that does not return.
-fn clock_left(spec: &Spec, action: &Action, algebra: &Algebra) -> Option<Expr> {
+pub(crate) fn clock_left(spec: &Spec, action: &Action, algebra: &Algebra) -> Option<Expr> {
     let s = &spec.symbols;
     let clocks = spec.clocks();
     let mut used: Vec<_> = expr::letters(&action.total)

@@ -9,7 +9,7 @@ use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Function, Node, Part, Shift};
 use crate::groups::{self, Group};
-use crate::syntax::ast::{Expression, Name};
+use crate::syntax::ast::{Expression, Kind, Name};
 use crate::syntax::{AVAILABLE, FUNCTIONS, HIDEABLE, unknown};
 
 /// Whether an expression is an element of the group of this structure whatever its letters are.
@@ -165,7 +165,17 @@ impl Elaborator<'_> {
             let message = format!("`{f}` takes {wanted}, {} given", args.len());
             let d = Diagnostic::new(place, message).help(format!("write `{example}`"));
             return fail(match (f, unknown::function("derivative")) {
-                ("dot", Some(rate)) if args.len() == 1 => d.help(rate),
+                ("dot", Some(rate))
+                    if matches!(
+                        args,
+                        [Expression {
+                            kind: Kind::Name(_),
+                            ..
+                        }]
+                    ) =>
+                {
+                    d.help(rate)
+                }
                 _ => d,
             });
         }

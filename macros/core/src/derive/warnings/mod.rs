@@ -207,7 +207,9 @@ pub(crate) fn warnings(x: &Inputs) -> Vec<Warning> {
     }
     // Of a power of the step that is wrong one warning is enough.
     let none = |k: &Kinetic| !k.first_order && k.rank.is_some_and(|r| r.0 == 0);
-    let mut power_is_wrong = x.limit.is_err() || x.kinetic.is_some_and(none);
+    let has_no_limit = |why: &String| *why != super::limit::DRIVEN;
+    let mut power_is_wrong =
+        x.limit.as_ref().is_err_and(has_no_limit) || x.kinetic.is_some_and(none);
     if !power_is_wrong {
         let vanishing = terms::vanishing(x);
         power_is_wrong = vanishing.is_some();

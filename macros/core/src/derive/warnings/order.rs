@@ -18,6 +18,10 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
     let Reversal::Broken(left) = x.reversal else {
         return None;
     };
+    // A clock that does not go back says nothing of the order of a step.
+    if reversal::clock_left(x.spec, x.action, &x.engine()).is_some() {
+        return None;
+    }
     // `node incoming` and `node outgoing` ask for first order: what counts is whether the step were
     // symmetric without them.
     let (action, left) = if x.spec.node_rule == NodeRule::Symmetric {
@@ -98,6 +102,18 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
          powers of `h` only; `node incoming;` and `node outgoing;` speak of terms at one node and \
          change none that holds both ends; a scheme that is meant to be of first order may stand so",
     );
+    let clocks = x.spec.clocks();
+    let of_clock = |term: &&Expr| {
+        let mut letters = expr::letters(term).into_iter();
+        letters.any(|l| clocks.contains(&l.symbol))
+    };
+    let clock = suspects.iter().any(of_clock);
+    let d = match clock {
+        true => d.help(
+            "write a clock that multiplies a velocity at the middle of the step, `t + h/2`, or as the mean of both ends",
+        ),
+        false => d,
+    };
     Some(Warning::new(Topic::FirstOrder, d))
 }
 

@@ -119,3 +119,22 @@ fn a_term_linear_in_the_velocity_with_a_clock_in_the_middle_is_of_second_order()
     );
     assert_eq!(found, []);
 }
+
+#[test]
+fn a_clock_at_one_end_of_an_edge_makes_a_step_of_first_order() {
+    let clock = "param m, k, w: Real; field x: Real; advected t: Real; constraint next(t) = t + h; let v = next(x) - x;";
+    let with = |lagrangian: &str| topics(&format!("{clock} lagrangian = {lagrangian};"));
+    for lagrangian in [
+        "(2 + sin(w*t))*m*v^2/(2*h) - h*k*x^2/2",
+        "m*v^2/(2*h) - h*k*sin(w*t)*((x + next(x))/2)^2",
+    ] {
+        assert_eq!(with(lagrangian), [FirstOrder], "{lagrangian}");
+    }
+    for lagrangian in [
+        "(2 + sin(w*(t + h/2)))*m*v^2/(2*h) - h*k*x^2/2",
+        "m*v^2/(2*h) - h*k*sin(w*t)*x^2/2",
+        "m*v^2/(2*h) - h*k*sin(w*(t + h/2))*((x + next(x))/2)^2",
+    ] {
+        assert_eq!(with(lagrangian), [], "{lagrangian}");
+    }
+}
