@@ -75,8 +75,11 @@ pub fn onto_constraints(
         }
         (at, left, rates_here) = (next, left_next, rates_next);
     }
-    let change = at.iter().zip(node).map(|(x, y)| (x - y).abs());
-    let by = change.fold(0.0, f64::max);
+    let by = at
+        .iter()
+        .zip(node)
+        .map(|(x, y)| (x - y).abs())
+        .fold(0.0, larger);
     Ok((left <= 1.0).then(|| Moved {
         node: at,
         name: worst.name.clone(),
