@@ -36,6 +36,9 @@ pub(super) struct Measured {
     pub fitted: Vec<Option<f64>>,
 }
 
+/// Orders that differ by more are not yet those of small steps.
+const SETTLED: f64 = 0.2;
+
 /// Differences between runs that fall slower than this, with the step halved, have odd powers of it too.
 const EVEN: f64 = 1.5;
 
@@ -96,6 +99,21 @@ impl Measured {
             levels,
             fitted,
         })
+    }
+}
+
+impl Measured {
+    /// Whether the order of a quantity has stopped changing: its last three are alike. Four step sizes give three.
+    pub(super) fn is_settled(&self, at: usize) -> bool {
+        let orders = self
+            .levels
+            .iter()
+            .filter_map(|level| *level.orders.get(at)?);
+        let orders: Vec<f64> = orders.collect();
+        match orders.as_slice() {
+            [.., a, b, c] => (a - c).abs().max((b - c).abs()) <= SETTLED,
+            _ => false,
+        }
     }
 }
 
@@ -174,6 +192,30 @@ mod tests {
         let found = fitted(&levels, 0).expect("three errors");
         assert!((found - 2.0).abs() < 1e-12, "{found}");
         assert_eq!(fitted(&levels[2..], 0), None);
+    }
+
+    #[test]
+    fn an_order_settles_where_it_stops_changing() {
+        let of = |orders: &[f64]| {
+            let level = |order: &f64| Level {
+                h: 1.0,
+                steps: 1,
+                errors: vec![1.0],
+                orders: vec![Some(*order)],
+            };
+            let levels = orders.iter().map(level).collect();
+            let (names, fitted) = (vec!["x"], vec![Some(1.0)]);
+            super::Measured {
+                names,
+                levels,
+                fitted,
+            }
+            .is_settled(0)
+        };
+        assert!(of(&[0.5, 1.9, 1.95, 2.0]));
+        // Steps that are too long: the orders of a model that reaches 2 later.
+        assert!(!of(&[0.9, 0.58, 0.56]));
+        assert!(!of(&[2.0, 2.0]));
     }
 
     #[test]

@@ -97,9 +97,18 @@ fn lower(done: &Measured, order: u32) -> Option<String> {
     let named: Vec<String> = own
         .filter_map(|(name, fitted)| Some(format!("`{name}` ({:.2})", (*fitted)?)))
         .collect();
+    let settles = |at: usize| done.is_settled(at);
+    let unsettled = all()
+        .enumerate()
+        .any(|(at, (_, fitted))| is_lower(fitted) && !settles(at));
     // Another quantity that converges as the step does shows that the motion itself does.
     let as_the_step = all().find(|(_, fitted)| fitted.is_some() && !is_lower(fitted));
     let cause = match as_the_step {
+        _ if unsettled => format!(
+            "the orders still change between lines, so the largest steps are too long to show one: start with a smaller `--h`, or take \
+             more than {} levels",
+            done.levels.len()
+        ),
         Some((name, _)) => format!(
             "`{name}` converges with the order of the step, so this is an error of each node by itself, which does not add up: as of a \
              momentum that is not projected at its node"
