@@ -14,6 +14,9 @@ use crate::value::Value;
 /// Sums over more sites than this are not summed: their gradients at the sites that are judged are those of single terms.
 const SUMMED: usize = 4096;
 
+/// The least unit of an equation beside the largest.
+const LEAST_UNIT: f64 = 1e-60;
+
 /// The gradient of one held number at one node, by variables of the step.
 pub struct Gradient(Vec<(usize, f64, f64)>);
 
@@ -155,10 +158,10 @@ fn values(
 /// Takes from the residuals of a node what multipliers explain: a projection in units of the bounds. The bound of what is left is
 /// what the projection makes of them.
 pub fn without_reactions(residuals: &mut [Part], variables: &[usize], gradients: &[Gradient]) {
-    let unit: Vec<f64> = residuals
-        .iter()
-        .map(|r| r.bound.max(f64::MIN_POSITIVE))
-        .collect();
+    // An equation without terms has no rounding: its unit is small beside the others, and its square is a number.
+    let most = residuals.iter().map(|r| r.bound).fold(0.0, larger);
+    let least = if most > 0.0 { LEAST_UNIT * most } else { 1.0 };
+    let unit: Vec<f64> = residuals.iter().map(|r| r.bound.max(least)).collect();
     let mut frame: Vec<Vec<f64>> = Vec::new();
     let place = |of: usize| variables.iter().position(|v| *v == of);
     let mut columns: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();

@@ -175,7 +175,9 @@ impl Judge {
         if numbers.any(is_large) && parts.iter().any(|p| p.ratio().is_nan()) {
             return Err("terms of the action are larger than any number".to_owned());
         }
-        let tested = parts.iter().filter(|p| p.tests());
+        // Where nothing moves, every step repeats the same zeros.
+        let is_still = before == after;
+        let tested = parts.iter().filter(|p| p.tests() && !is_still);
         let mut out = Judged {
             worst: None,
             tested: tested.clone().count() as u64,
