@@ -93,7 +93,8 @@ impl Corrections {
         moved: f64,
         decrement: impl FnOnce() -> f64,
     ) -> Next {
-        let fall = moved / self.last;
+        // Beside a velocity that was not known at all, as from rest, any correction is large.
+        let fall = moved / self.last.min(1.0);
         self.last = moved;
         let unit = T::EPSILON;
         let is_rounding = r.size <= CONVERGED_ROUNDINGS * unit
@@ -196,6 +197,8 @@ mod tests {
         };
         // An equation that had no terms at rest is large beside its scale; the other corrections fall as their squares.
         assert_eq!(next([2.9e-2, 8.4e-7]), Next::Correct);
+        // A first correction beside a velocity of zero has no length to be measured by.
+        assert_eq!(next([4.7e307, 1.1e-6]), Next::Correct);
         // Those that fall as far as the residual leave rounding.
         assert_eq!(next([2.9e-2, 1e-14]), Next::CorrectAndEnd);
     }
