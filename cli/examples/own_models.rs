@@ -1,6 +1,6 @@
 //! A command line of one's own: a model stated here, with its cases, under the commands of `clebsch`.
 
-use clebsch_cli::gallery::{Case, Entry, Gallery};
+use clebsch_cli::gallery::{Case, Citations, Entry, Gallery};
 use std::process::ExitCode;
 
 clebsch::model! {
@@ -40,6 +40,7 @@ pub fn gallery() -> Gallery {
     Gallery {
         entries: vec![Entry {
             card: Compass::CARD,
+            citations: Citations::NONE,
             cases: vec![swinging],
         }],
         ..Gallery::default()

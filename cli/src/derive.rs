@@ -4,7 +4,7 @@
 use crate::Streams;
 use crate::bounded;
 use crate::failure::Failure;
-use crate::gallery::Gallery;
+use crate::gallery::{Citations, Gallery};
 use crate::generated;
 use crate::lines::fitted;
 use crate::plain::shown;
@@ -31,11 +31,13 @@ pub fn derive(
     if matches.get_flag("write") {
         return write_all(gallery, Path::new("generated"));
     }
-    let (name, source) = source(gallery, text("model"), streams.input)?;
+    let (name, source, mut citations) = source(gallery, text("model"), streams.input)?;
+    if matches.get_flag("no-thesis") {
+        citations = Citations::NONE;
+    }
     let proofs = Proofs {
         explain: matches.get_flag("explain"),
         second: matches.get_flag("second-proof"),
-        no_thesis: matches.get_flag("no-thesis"),
         standalone: matches.get_flag("standalone"),
     };
     let format = format(matches)?;
@@ -45,7 +47,7 @@ pub fn derive(
     let name = shown(&name).to_string();
     let width = streams.width;
     let (derivation, warnings) =
-        derived(&name, &source, format, proofs, width).map_err(Failure::Usage)?;
+        derived(&name, &source, citations, format, proofs, width).map_err(Failure::Usage)?;
     streams.out.write_all(derivation.as_bytes())?;
     // What cannot be written there is in the derivation too.
     let _ = streams.err.write_all(warnings.as_bytes());
@@ -56,13 +58,13 @@ pub fn derive(
 const WITHOUT_PROVER: &str = "this command was built without the second prover; build it with `cargo run --profile quick \
      -p clebsch-cli --features second-proof -- derive MODEL --second-proof`; `--explain` shows the first proof";
 
-/// The text of a model: of the gallery when there is one of that name, else of the file; `-` is standard
-/// input.
+/// The text of a model and what is cited of it: of the gallery when there is one of that name, else of the file, which
+/// cites nothing; `-` is standard input.
 fn source(
     gallery: &Gallery,
     name: &str,
     input: &mut dyn Read,
-) -> Result<(String, String), Failure> {
+) -> Result<(String, String, Citations), Failure> {
     if name == "-" {
         let text = bounded::stream(input, "standard input")?;
         if text.trim().is_empty() {
@@ -70,15 +72,15 @@ fn source(
                 "standard input is empty; `-` reads a model's text from there".to_owned(),
             ));
         }
-        return Ok(("standard input".to_owned(), text));
+        return Ok(("standard input".to_owned(), text, Citations::NONE));
     }
     let named = named(gallery, name, "derive takes a model or its text")?;
     let text = statement(&named).to_owned();
-    let name = match named {
-        Named::Compiled(entry) => entry.card.kebab.to_owned(),
-        Named::Text(text) => text.name,
+    let (name, citations) = match named {
+        Named::Compiled(entry) => (entry.card.kebab.to_owned(), entry.citations),
+        Named::Text(text) => (text.name, Citations::NONE),
     };
-    Ok((name, text))
+    Ok((name, text, citations))
 }
 
 /// What is printed beside the equations, in all forms but rust and json.
@@ -88,8 +90,6 @@ pub struct Proofs {
     pub explain: bool,
     /// What equality saturation makes of each step of it, which takes longer than all the rest.
     pub second: bool,
-    /// The places of equations in the thesis are left out.
-    pub no_thesis: bool,
     /// LaTeX is a document that compiles by itself.
     pub standalone: bool,
 }
@@ -109,28 +109,16 @@ fn format(matches: &ArgMatches) -> Result<&str, Failure> {
     }
 }
 
-/// The derivation of the model text `source` (of the file or model `name`) in the form `format`:
-/// text, latex, markdown, rust or json, or the ending of such a file, with the proofs asked for. Beside
-/// it the warnings, with line, column and caret.
-///
-/// # Errors
-/// The engine's message with line, column and caret.
-pub fn derive_text(
-    name: &str,
-    source: &str,
-    format: &str,
-    proofs: Proofs,
-) -> Result<(String, String), String> {
-    derived(name, source, format, proofs, None)
-}
-
 /// Columns of the plain text where the terminal has more.
 const PAGE: usize = 100;
 
-/// As [`derive_text`], plain text in lines of at most `width` letters.
+/// The derivation of the model text `source` (of the file or model `name`) in the form `format`: text, latex, markdown,
+/// rust or json, or the ending of such a file, with what is cited of it and the proofs asked for; plain text in lines of
+/// at most `width` letters. Beside it the warnings, with line, column and caret.
 fn derived(
     name: &str,
     source: &str,
+    citations: Citations,
     format: &str,
     proofs: Proofs,
     width: Option<usize>,
@@ -150,16 +138,15 @@ fn derived(
         _ => Format::Text,
     };
     let columns = width.unwrap_or(PAGE).min(PAGE);
-    let sources = !proofs.no_thesis;
     let mut printed =
-        document::printed_telling(&derivation, format, columns, sources, Some(source));
+        document::printed_telling(&derivation, format, columns, citations, Some(source));
     let proof = explanation(&derivation, proofs);
     if !proof.is_empty() && format != Format::Json {
         printed.push('\n');
         printed.push_str(&code(&proof, &Style::default(), format));
     }
     if proofs.standalone {
-        printed = standalone(&printed);
+        printed = standalone(&printed, citations.work.as_ref());
     }
     if let (Format::Text, Some(width)) = (format, width) {
         printed = fitted(&printed, width);
@@ -192,7 +179,7 @@ fn on_lattice(
     let printed = document::printed_lattice(model, source, format, columns).map_err(told)?;
     let mut text = printed.text;
     if proofs.standalone {
-        text = standalone(&text);
+        text = standalone(&text, None);
     }
     if format == Format::Text && (proofs.explain || proofs.second) {
         let shortest = pipeline::derive_model(model).map_err(told)?;
@@ -251,7 +238,7 @@ fn write_all(gallery: &Gallery, folder: &Path) -> Result<(), Failure> {
         let kebab = entry.card.kebab;
         let derivation = derive_source(entry.card.source)
             .map_err(|errors| Failure::Failed(errors.render(entry.card.source, kebab)))?;
-        let files = generated::files(&derivation).map_err(Failure::Failed)?;
+        let files = generated::files(&derivation, entry.citations).map_err(Failure::Failed)?;
         let target = folder.join(kebab);
         std::fs::create_dir_all(&target)
             .map_err(|error| Failure::io(&format!("cannot make {}", shown(&target)), &error))?;

@@ -6,7 +6,7 @@ use crate::plain::shown;
 use crate::suggestion::nearest;
 use clebsch::card::{Card, Kind};
 use clebsch_core::pipeline;
-pub use clebsch_models::{Case, CaseFile, Entry, Family, ModelFile};
+pub use clebsch_models::{Case, CaseFile, Citations, Entry, Family, ModelFile};
 
 /// All models, in the order in which they are listed.
 #[derive(Clone, Debug, Default)]

@@ -1,12 +1,12 @@
-//! The files of `generated/` for one model: its derivation as Markdown and LaTeX, and the emitted
+//! The files of `generated/` for one model: its derivation as Markdown and LaTeX, with what is cited of it, and the emitted
 //! Rust. The same bytes on every machine; a test checks that the committed ones are these.
 
 mod calls;
 
 use clebsch_core::Derivation;
-use clebsch_core::document::printed;
+use clebsch_core::document::{Citations, printed_telling};
 use clebsch_core::emit::{emit, refusal};
-use clebsch_core::print::Format;
+use clebsch_core::print::{Format, Style};
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -14,16 +14,17 @@ use quote::quote;
 ///
 /// # Errors
 /// The reason why no stepper is emitted for the model.
-pub fn files(d: &Derivation) -> Result<Vec<(String, String)>, String> {
+pub fn files(d: &Derivation, citations: Citations) -> Result<Vec<(String, String)>, String> {
+    let printed = |format| printed_telling(d, format, Style::default().columns, citations, None);
     let note = "Written by `clebsch derive --write`. Do not edit.";
     Ok(vec![
         (
             "derivation.md".to_owned(),
-            format!("<!-- {note} -->\n\n{}", printed(d, Format::Markdown)),
+            format!("<!-- {note} -->\n\n{}", printed(Format::Markdown)),
         ),
         (
             "derivation.tex".to_owned(),
-            format!("% {note}\n{}", printed(d, Format::Latex)),
+            format!("% {note}\n{}", printed(Format::Latex)),
         ),
         (
             "stepper.rs".to_owned(),

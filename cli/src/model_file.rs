@@ -4,7 +4,7 @@
 use crate::case_file;
 use crate::case_file::labels::{self, Stated};
 use crate::failure::Failure;
-use crate::gallery::{Case, Entry};
+use crate::gallery::{Case, Citations, Entry};
 use crate::named_cases::WhichCase;
 use crate::plain::shown;
 use crate::sample::onto_constraints;
@@ -56,7 +56,11 @@ pub(crate) fn read(
             vec![sample_on_lattice(&text, &stated, &card)?]
         }
     };
-    Ok(Entry { card, cases })
+    Ok(Entry {
+        card,
+        citations: Citations::NONE,
+        cases,
+    })
 }
 
 /// How many sites there are and how the line ends: as the case says, if one is given by a file.

@@ -1,7 +1,8 @@
 //! A rigid body in a field that is quadratic in the direction of its axis: a satellite under the
 //! gradient of gravity, or Brun's problem, which is integrable for the inertia of the body itself.
 
-use crate::case::{Case, Entry, bounds, diagonal, poinsot, rotation};
+use crate::case::{Case, Citations, Entry, Place, bounds, diagonal, poinsot, rotation};
+use crate::thesis::THESIS;
 
 clebsch::model! {
     /// Rigid body in a quadratic field.
@@ -21,6 +22,18 @@ clebsch::model! {
         lagrangian = -tr(J*Ω)/h - (h/2)*dot(Γ, K*Γ);
     }
 }
+
+/// Which of its equations are those of the thesis.
+const CITATIONS: Citations = Citations {
+    work: Some(THESIS),
+    statement: "",
+    places: &[
+        (Place::Reconstruction("Λ"), "(2.62)"),
+        (Place::Rule("Γ"), "(2.141)"),
+        (Place::Relation("Λ"), "(2.60)"),
+        (Place::Relation("Γ"), "(2.147)"),
+    ],
+};
 
 fn case(name: &str, doc: &str, moments: [f64; 3], field: Vec<f64>, axis: [f64; 3]) -> Case {
     Case {
@@ -43,6 +56,7 @@ pub fn entry() -> Entry {
     let moments = [3.5, 2.5, 2.0];
     Entry {
         card: BodyInQuadraticField::CARD,
+        citations: CITATIONS,
         cases: vec![
             case(
                 "satellite",

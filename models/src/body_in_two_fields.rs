@@ -1,7 +1,8 @@
 //! A heavy top that also carries a dipole in a uniform field: two advected vectors. Of the Kowalevski
 //! type it is integrable (Bogoyavlenskij 1984; Reyman and Semenov-Tian-Shansky 1987).
 
-use crate::case::{Case, Entry, bounds, diagonal, identity, poinsot};
+use crate::case::{Case, Citations, Entry, Place, bounds, diagonal, identity, poinsot};
+use crate::thesis::THESIS;
 
 clebsch::model! {
     /// Rigid body about a fixed point in two uniform fields.
@@ -30,6 +31,20 @@ clebsch::model! {
         lagrangian = -tr(J*Ω)/h - h*(dot(gU, Γ) - dot(p, B));
     }
 }
+
+/// Which of its equations are those of the thesis.
+const CITATIONS: Citations = Citations {
+    work: Some(THESIS),
+    statement: "",
+    places: &[
+        (Place::Reconstruction("Λ"), "(2.62)"),
+        (Place::Rule("Γ"), "(2.141)"),
+        (Place::Rule("B"), "(2.141)"),
+        (Place::Relation("Λ"), "(2.60)"),
+        (Place::Relation("Γ"), "(2.147)"),
+        (Place::Relation("B"), "(2.147)"),
+    ],
+};
 
 fn case(
     name: &str,
@@ -60,6 +75,7 @@ fn case(
 pub fn entry() -> Entry {
     Entry {
         card: BodyInTwoFields::CARD,
+        citations: CITATIONS,
         cases: vec![
             case(
                 "kowalevski",

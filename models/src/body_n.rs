@@ -1,7 +1,8 @@
 //! The rigid body of any dimension, with any left factor (thesis 2.3; Moser and Veselov 1991, Manakov
 //! 1976).
 
-use crate::case::{Case, Entry};
+use crate::case::{Case, Citations, Entry, Place};
+use crate::thesis::THESIS;
 use clebsch::nalgebra::SMatrix;
 use clebsch::solvers::left_factor::LeftFactor;
 
@@ -18,6 +19,16 @@ clebsch::model! {
         lagrangian = -tr(C^T*Ω)/h;
     }
 }
+
+/// Which of its equations are those of the thesis.
+const CITATIONS: Citations = Citations {
+    work: Some(THESIS),
+    statement: "",
+    places: &[
+        (Place::Reconstruction("Λ"), "(2.62)"),
+        (Place::Relation("Λ"), "(2.60)"),
+    ],
+};
 
 const STEP: f64 = 0.1;
 
@@ -74,6 +85,7 @@ fn case<const N: usize>(name: &str, doc: &str, c: SMatrix<f64, N, N>, fraction: 
 pub fn entry() -> Entry {
     Entry {
         card: BodyN::<4>::CARD,
+        citations: CITATIONS,
         cases: vec![
             case(
                 "four",

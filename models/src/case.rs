@@ -2,6 +2,7 @@
 //! invariants keep, in the order of the model's card.
 
 use clebsch::card::Card;
+pub use clebsch_core::document::{Citations, Place, Work};
 
 /// A case of a model.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,11 +23,13 @@ pub struct Case {
     pub bounds: Vec<(String, f64)>,
 }
 
-/// A model of the gallery with its cases; the first one is the default.
+/// A model of the gallery with what is cited of it and its cases; the first one is the default.
 #[derive(Clone, Debug)]
 pub struct Entry {
     /// The model as data.
     pub card: Card,
+    /// Where its equations stand in a work.
+    pub citations: Citations,
     /// Its cases.
     pub cases: Vec<Case>,
 }

@@ -1,7 +1,7 @@
 //! The free rigid body in unit quaternions (thesis 2.8, the Cayley-Klein form): a family of
 //! discretisations, of which the member `c = 0` is the Moser-Veselov system seen from SU(2).
 
-use crate::case::{Case, Entry, bounds, diagonal};
+use crate::case::{Case, Citations, Entry, bounds, diagonal};
 
 clebsch::model! {
     /// Free rigid body in unit quaternions. The body momentum is the map q -> q* m q of Hopf: its
@@ -41,6 +41,7 @@ pub fn entry() -> Entry {
     let rounding = 1e-12;
     Entry {
         card: CayleyKlein::CARD,
+        citations: Citations::NONE,
         cases: vec![
             case(
                 "figure-2-9",

@@ -1,7 +1,7 @@
 //! The free rigid body in unit quaternions, in the space frame: the inertia is carried by the
 //! rotation that the quaternion covers, the momentum is constant.
 
-use crate::case::{Case, Entry, diagonal};
+use crate::case::{Case, Citations, Entry, diagonal};
 use crate::cayley_klein::{MOMENTUM, SYMMETRIC};
 
 clebsch::model! {
@@ -39,6 +39,7 @@ fn case(name: &str, doc: &str, moments: [f64; 3], c: f64) -> Case {
 pub fn entry() -> Entry {
     Entry {
         card: CayleyKleinSpatial::CARD,
+        citations: Citations::NONE,
         cases: vec![
             case(
                 "figure-2-9",

@@ -1,7 +1,7 @@
 //! A charge in uniform magnetic and electric fields. The term linear in the velocity makes the step the
 //! centred rotation of Boris (1970); its vector potential is B x X/2.
 
-use crate::case::{Case, Entry};
+use crate::case::{Case, Citations, Entry};
 
 clebsch::model! {
     /// Charged particle in uniform magnetic and electric fields.
@@ -41,6 +41,7 @@ fn case(name: &str, doc: &str, electric: [f64; 3]) -> Case {
 pub fn entry() -> Entry {
     Entry {
         card: ChargedParticle::CARD,
+        citations: Citations::NONE,
         cases: vec![
             case(
                 "drift",

@@ -1,7 +1,8 @@
 //! Two rigid bodies joined by a ball and socket (thesis 2.8, with the coupling corrected), seen from
 //! the joint; the centre of mass of the whole is at rest.
 
-use crate::case::{Case, Entry, bounds, diagonal, identity, poinsot};
+use crate::case::{Case, Citations, Entry, Place, bounds, diagonal, identity, poinsot};
+use crate::thesis::{THESIS, system};
 
 clebsch::model! {
     /// Two rigid bodies with a spherical joint.
@@ -24,6 +25,48 @@ clebsch::model! {
         lagrangian = -(tr(J1*Ω1) + tr(J2*Ω2) + eps*dot((Ω1 - Id)*d1, R*(Ω2 - Id)*d2))/h;
     }
 }
+
+/// Where its equations stand in the thesis, and what is corrected.
+const CITATIONS: Citations = Citations {
+    work: Some(THESIS),
+    statement: system!("2.8.2", "-h"),
+    places: &[
+        (Place::Reconstruction("Λ1"), "(2.62)"),
+        (Place::Reconstruction("Λ2"), "(2.62)"),
+        (Place::Rule("R"), "(2.167)"),
+        (
+            Place::Action,
+            "(2.166) times $-1/h$, corrected: there the matrix $A$ of the vector form stands under the trace",
+        ),
+        (Place::ClebschAction, "(2.168)"),
+        (Place::Relation("Λ1"), "(2.170)"),
+        (Place::Relation("Λ2"), "(2.170)"),
+        (
+            Place::Relation("R"),
+            "(2.171) corrected: there the terms of the multiplier have the other sign",
+        ),
+        (Place::Relation("Ω1"), "(2.174)"),
+        (Place::Relation("Ω2"), "(2.174)"),
+        (
+            Place::Lifted,
+            "(2.180) corrected: there $skew$ for $2 skew$ in the terms of the multiplier of the relative orientation",
+        ),
+        (Place::Momentum, "(2.176) times $-1/h$"),
+        (Place::AtStart, "(2.176), with the same correction"),
+        (
+            Place::Balance,
+            "(2.184); (2.182) and (2.183) print $skew$ for $2 skew$ in its last term",
+        ),
+        (
+            Place::Riccati,
+            "(2.187) has the coupling in the factor instead of $N$",
+        ),
+        (
+            Place::Continuous,
+            "table A.5, whose matrix $A$ belongs to the vector form",
+        ),
+    ],
+};
 
 /// A body: principal moments about its own centre of mass, and the arm from the joint to it.
 #[derive(Clone, Copy)]
@@ -102,6 +145,7 @@ pub fn entry() -> Entry {
     ];
     Entry {
         card: CoupledBodies::CARD,
+        citations: CITATIONS,
         cases: vec![
             case(
                 "symmetric",

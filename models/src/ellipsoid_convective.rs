@@ -1,8 +1,9 @@
 //! Elastic ellipsoid (affine body) seen from the body, a material of Mooney and Rivlin (thesis 3.1.2 and 3.2.3, with
 //! (3.27) corrected for potentials and (3.61) for its natural state). Any number of dimensions from two to four.
 
-use crate::case::{Case, Entry};
+use crate::case::{Case, Citations, Entry, Place};
 use crate::ellipsoids::ellipsoids;
+use crate::thesis::{THESIS, system};
 
 clebsch::model! {
     /// Elastic ellipsoid, convective representation.
@@ -27,6 +28,28 @@ clebsch::model! {
     }
 }
 
+/// Where its equations stand in the thesis, and what is corrected.
+const CITATIONS: Citations = Citations {
+    work: Some(THESIS),
+    statement: system!("3.1.2", "h"),
+    places: &[
+        (Place::Reconstruction("Q"), "(3.16)"),
+        (Place::Rule("C"), "(3.23)"),
+        (Place::Action, "(3.18) times $1/h$, with a potential"),
+        (Place::ClebschAction, "(3.25)"),
+        (Place::Relation("Q"), "(3.28)"),
+        (Place::Relation("C"), "(3.28)"),
+        (Place::Relation("G"), "(3.28)"),
+        (Place::Lifted, "(3.32)"),
+        (Place::Momentum, "(3.31) has the gradient alone for $M$"),
+        (Place::AtStart, "(3.30)"),
+        (
+            Place::Balance,
+            "(3.27) is the same for free motion, with the gradient alone for $M$; with a potential it is not",
+        ),
+    ],
+};
+
 /// The model and its cases.
 pub fn entry() -> Entry {
     // The momentum seen from the body is Q^T C0 V I0.
@@ -36,6 +59,7 @@ pub fn entry() -> Entry {
     });
     Entry {
         card: EllipsoidConvective::<3>::CARD,
+        citations: CITATIONS,
         cases: cases.collect(),
     }
 }

@@ -1,8 +1,9 @@
 //! Elastic ellipsoid (affine body) seen from space, its energy a function of the second moments there (thesis 3.1.2,
 //! with (3.35) corrected for potentials). Any number of dimensions from two to four.
 
-use crate::case::{Case, Entry};
+use crate::case::{Case, Citations, Entry, Place};
 use crate::ellipsoids::ellipsoids;
+use crate::thesis::{THESIS, system};
 
 clebsch::model! {
     /// Elastic ellipsoid, spatial representation.
@@ -27,6 +28,37 @@ clebsch::model! {
     }
 }
 
+/// Where its equations stand in the thesis, and what is corrected.
+const CITATIONS: Citations = Citations {
+    work: Some(THESIS),
+    statement: system!("3.1.2", "h"),
+    places: &[
+        (Place::Reconstruction("Q"), "(3.16)"),
+        (Place::Rule("S"), "(3.24)"),
+        (Place::Action, "(3.20) times $1/h$, with a potential"),
+        (Place::ClebschAction, "(3.26)"),
+        (
+            Place::Relation("Q"),
+            "(3.36), whose solved form prints $Γ$ for $γ$",
+        ),
+        (Place::Relation("S"), "(3.36)"),
+        (Place::Relation("g"), "(3.36)"),
+        (Place::Lifted, "(3.40)"),
+        (
+            Place::Momentum,
+            "(3.39) has the gradient alone for $m$, and there the container's metric is missing",
+        ),
+        (
+            Place::AtStart,
+            "(3.38) corrected: there the last bracket closes too late",
+        ),
+        (
+            Place::Balance,
+            "(3.35) is the same for free motion, with the gradient alone for $m$; with a potential it is not",
+        ),
+    ],
+};
+
 /// The model and its cases.
 pub fn entry() -> Entry {
     // The momentum in space is C0 V I0 Q^T.
@@ -36,6 +68,7 @@ pub fn entry() -> Entry {
     });
     Entry {
         card: EllipsoidSpatial::<3>::CARD,
+        citations: CITATIONS,
         cases: cases.collect(),
     }
 }

@@ -1,6 +1,7 @@
 //! The free rigid body in the body representation (thesis 2.5): the Moser-Veselov system.
 
-use crate::case::{Case, Entry, diagonal, identity, poinsot};
+use crate::case::{Case, Citations, Entry, Place, diagonal, identity, poinsot};
+use crate::thesis::{THESIS, system};
 
 clebsch::model! {
     /// Free rigid body, body representation.
@@ -13,6 +14,24 @@ clebsch::model! {
         lagrangian = -tr(J*Ω)/h;
     }
 }
+
+/// Where its equations stand in the thesis, and what is corrected.
+const CITATIONS: Citations = Citations {
+    work: Some(THESIS),
+    statement: system!("2.5.4", "-h"),
+    places: &[
+        (Place::Reconstruction("Λ"), "(2.62)"),
+        (Place::Action, "(2.29) times $-1/h$"),
+        (Place::ClebschAction, "(2.75)"),
+        (Place::Relation("Λ"), "(2.60)"),
+        (Place::Relation("Ω"), "(2.77)"),
+        (Place::Lifted, "(2.79)"),
+        (Place::Momentum, "(2.86) times $-1/h$"),
+        (Place::AtStart, "(2.79)"),
+        (Place::Balance, "(2.85)"),
+        (Place::Continuous, "table A.2"),
+    ],
+};
 
 fn case(name: &str, doc: &str, moments: [f64; 3], momentum: [f64; 3], steps: u64) -> Case {
     Case {
@@ -42,6 +61,7 @@ pub fn entry() -> Entry {
     let flat = [1.0, 2.0, 3.0];
     Entry {
         card: FreeBody::CARD,
+        citations: CITATIONS,
         cases: vec![
             case(
                 "figure-2-5",

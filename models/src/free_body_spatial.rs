@@ -1,7 +1,10 @@
 //! The free rigid body in the spatial representation (thesis 2.5.5): the Poinsot matrix is carried
 //! along by the motion, the spatial momentum is constant.
 
-use crate::case::{Case, Entry, bounds, carried, identity, poinsot, rotation, turned};
+use crate::case::{
+    Case, Citations, Entry, Place, bounds, carried, identity, poinsot, rotation, turned,
+};
+use crate::thesis::{THESIS, system};
 
 clebsch::model! {
     /// Free rigid body, spatial representation.
@@ -17,6 +20,42 @@ clebsch::model! {
         lagrangian = -tr(ω*J)/h;
     }
 }
+
+/// Where its equations stand in the thesis, and what is corrected.
+const CITATIONS: Citations = Citations {
+    work: Some(THESIS),
+    statement: system!("2.5.5", "-h"),
+    places: &[
+        (Place::Reconstruction("Λ"), "(2.106)"),
+        (Place::Rule("J"), "(2.120)"),
+        (Place::Action, "(2.37) times $-1/h$"),
+        (
+            Place::ClebschAction,
+            "(2.101), where the second multiplier carries a factor $1/2$",
+        ),
+        (Place::Relation("Λ"), "(2.104)"),
+        (
+            Place::Relation("J"),
+            "(2.104), where the multiplier carries a factor $1/2$",
+        ),
+        (
+            Place::Relation("ω"),
+            "(2.107) corrected: there $Pᵀ Λᵀ$ for $P Λᵀ$",
+        ),
+        (Place::Lifted, "(2.111)"),
+        (Place::Momentum, "(2.109) times $-1/h$"),
+        (Place::AtEnd, "(2.108)"),
+        (Place::Balance, "(2.120)"),
+        (
+            Place::Riccati,
+            "A.3 solves it; there step 6 divides by the new tensor for the old one",
+        ),
+        (
+            Place::Continuous,
+            "table A.3, where both terms have the other sign",
+        ),
+    ],
+};
 
 /// Momenta in body axes; the statement takes what belongs to space.
 fn case(name: &str, doc: &str, moments: [f64; 3], attitude: Vec<f64>, momentum: [f64; 3]) -> Case {
@@ -40,6 +79,7 @@ fn case(name: &str, doc: &str, moments: [f64; 3], attitude: Vec<f64>, momentum: 
 pub fn entry() -> Entry {
     Entry {
         card: FreeBodySpatial::CARD,
+        citations: CITATIONS,
         cases: vec![
             case(
                 "figure-2-7",

@@ -1,6 +1,7 @@
 //! The heavy top in the body representation (thesis 2.7.1, with the corrected (2.155)).
 
-use crate::case::{Case, Entry, diagonal, identity, poinsot};
+use crate::case::{Case, Citations, Entry, Place, diagonal, identity, poinsot};
+use crate::thesis::{THESIS, system};
 
 clebsch::model! {
     /// Heavy top, body representation.
@@ -22,6 +23,38 @@ clebsch::model! {
         lagrangian = -tr(J*Ω)/h - h*dot(gU, Γ);
     }
 }
+
+/// Where its equations stand in the thesis, and what is corrected.
+const CITATIONS: Citations = Citations {
+    work: Some(THESIS),
+    statement: system!("2.7.1", "-h"),
+    places: &[
+        (Place::Reconstruction("Λ"), "(2.62)"),
+        (Place::Rule("Γ"), "(2.141); (2.155) prints $Ω$ for $Ωᵀ$"),
+        (
+            Place::Action,
+            "(2.142) times $-1/h$, which takes the potential at node $k$",
+        ),
+        (Place::ClebschAction, "(2.143)"),
+        (
+            Place::Relation("Λ"),
+            "(2.145) corrected: there $Ωᵀ P$ for $P Ωᵀ$",
+        ),
+        (Place::Relation("Γ"), "(2.145)"),
+        (Place::Relation("Ω"), "(2.148)"),
+        (Place::Lifted, "(2.153)"),
+        (
+            Place::Momentum,
+            "(2.156) times $-1/h$, corrected: there $2/h² skew$ for $2 skew$",
+        ),
+        (Place::AtStart, "(2.151)"),
+        (
+            Place::Balance,
+            "(2.155) corrected: there $Ad*$ of $Ωᵀ$ for $Ad*$ of $Ω$; its gradient is that of the edge after the node alone",
+        ),
+        (Place::Continuous, "table A.4"),
+    ],
+};
 
 /// Rotation by the angle with this cosine and sine about the second axis: tilts the top.
 fn tilted(cos: f64, sin: f64) -> Vec<f64> {
@@ -63,6 +96,7 @@ pub fn entry() -> Entry {
     let centre = [0.0, 0.0, 1.0];
     Entry {
         card: HeavyTop::CARD,
+        citations: CITATIONS,
         cases: vec![
             case(
                 "lagrange",

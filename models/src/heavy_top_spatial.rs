@@ -1,7 +1,8 @@
 //! The heavy top in the spatial representation, which thesis 2.7 mentions and does not give: second
 //! moments and centre of mass are carried along by the motion, the vertical is fixed.
 
-use crate::case::{Case, Entry, bounds, carried, poinsot, turned};
+use crate::case::{Case, Citations, Entry, Place, bounds, carried, poinsot, turned};
+use crate::thesis::THESIS;
 
 clebsch::model! {
     /// Heavy top, spatial representation.
@@ -25,6 +26,21 @@ clebsch::model! {
         lagrangian = -tr(ω*J)/h - h*w*dot(χ, z);
     }
 }
+
+/// Which of its equations are those of the thesis.
+const CITATIONS: Citations = Citations {
+    work: Some(THESIS),
+    statement: "",
+    places: &[
+        (Place::Reconstruction("Λ"), "(2.106)"),
+        (Place::Rule("J"), "(2.120)"),
+        (Place::Relation("Λ"), "(2.104)"),
+        (
+            Place::Relation("J"),
+            "(2.104), where the multiplier carries a factor $1/2$",
+        ),
+    ],
+};
 
 /// Rotation by the angle of the 3-4-5 triangle about the second axis: tilts the top.
 fn tilted() -> Vec<f64> {
@@ -62,6 +78,7 @@ pub fn entry() -> Entry {
     let symmetric = [2.0, 2.0, 1.0];
     Entry {
         card: HeavyTopSpatial::CARD,
+        citations: CITATIONS,
         cases: vec![
             case(
                 "lagrange",

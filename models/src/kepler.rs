@@ -1,7 +1,7 @@
 //! A planet about a fixed sun (Kepler's problem) in coordinates of space. With a potential at the nodes
 //! the step is Störmer and Verlet's (Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.4).
 
-use crate::case::{Case, Entry, bounds};
+use crate::case::{Case, Citations, Entry, bounds};
 
 clebsch::model! {
     /// Planet about a fixed sun.
@@ -36,6 +36,7 @@ fn case(name: &str, doc: &str, h: f64, place: f64, speed: f64, energy: f64) -> C
 pub fn entry() -> Entry {
     Entry {
         card: Kepler::CARD,
+        citations: Citations::NONE,
         cases: vec![
             case(
                 "circular",

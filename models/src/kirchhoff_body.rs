@@ -3,7 +3,7 @@
 //! The discretisation follows Moser and Veselov for the rotation; the linear velocity of a step is
 //! the mean of its translation seen from both ends, so that the step is symmetric in time.
 
-use crate::case::{Case, Entry, bounds, diagonal};
+use crate::case::{Case, Citations, Entry, bounds, diagonal};
 
 clebsch::model! {
     /// Rigid body in an ideal fluid, with added masses, coupling, and net weight.
@@ -58,6 +58,7 @@ fn case(name: &str, doc: &str, coupling: [f64; 3], b: [f64; 4], steps: u64) -> C
 pub fn entry() -> Entry {
     Entry {
         card: KirchhoffBody::CARD,
+        citations: Citations::NONE,
         cases: vec![
             case(
                 "ellipsoid",

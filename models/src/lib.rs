@@ -22,8 +22,9 @@ pub mod kepler;
 pub mod kirchhoff_body;
 pub mod lattices;
 pub mod mixed_four;
+mod thesis;
 
-pub use case::{Case, Entry};
+pub use case::{Case, Citations, Entry};
 pub use files::{CaseFile, FILES, Family, ModelFile};
 
 /// All models, in order of their names.

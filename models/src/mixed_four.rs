@@ -2,7 +2,8 @@
 //! quaternions and a point mass, whose kinetic energy is quartic. Springs act at the nodes, so that a step solves for each
 //! by itself, in its own way.
 
-use crate::case::{Case, Entry, diagonal, identity};
+use crate::case::{Case, Citations, Entry, Place, diagonal, identity};
+use crate::thesis::THESIS;
 
 clebsch::model! {
     /// Two bodies, a rigid motion and a point mass joined by springs.
@@ -46,6 +47,13 @@ clebsch::model! {
     }
 }
 
+/// Which of its equations are those of the thesis.
+const CITATIONS: Citations = Citations {
+    work: Some(THESIS),
+    statement: "",
+    places: &[(Place::Reconstruction("R"), "(2.62)")],
+};
+
 fn case(name: &str, doc: &str, quartic: f64) -> Case {
     Case {
         name: name.to_owned(),
@@ -86,6 +94,7 @@ fn case(name: &str, doc: &str, quartic: f64) -> Case {
 pub fn entry() -> Entry {
     Entry {
         card: MixedFour::CARD,
+        citations: CITATIONS,
         cases: vec![
             case(
                 "quartic",

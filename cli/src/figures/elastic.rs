@@ -5,7 +5,7 @@ use super::bipolar;
 use super::sheet::{Series, Subject, change, dashed, line, magnitudes, norm, panel, sheet};
 use crate::case_file;
 use crate::failure::Failure;
-use crate::gallery::{Entry, Gallery};
+use crate::gallery::{Citations, Entry, Gallery};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::record::Record;
 
@@ -32,7 +32,11 @@ pub(super) fn with_files(gallery: &Gallery) -> Result<Gallery, Failure> {
         let read = clebsch_interpret::card(text);
         let card = read.map_err(|refused| Failure::Usage(format!("{model}: {refused}")))?;
         let cases = vec![case_file::read(file, case, &card)?.case];
-        gallery.entries.push(Entry { card, cases });
+        gallery.entries.push(Entry {
+            card,
+            citations: Citations::NONE,
+            cases,
+        });
     }
     Ok(gallery)
 }

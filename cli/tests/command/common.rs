@@ -5,7 +5,7 @@
 use clebsch::card::{Card, Conserved, Field, Invariant, Kind, OpenError, Settings, Trajectory};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{Poinsot, Rotation, StartError, StepCause, StepError, validate};
-use clebsch_cli::gallery::{Case, Entry, Gallery};
+use clebsch_cli::gallery::{Case, Citations, Entry, Gallery};
 use clebsch_cli::{Streams, execute};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -241,6 +241,7 @@ pub fn gallery() -> Gallery {
     Gallery {
         entries: vec![Entry {
             card: CARD,
+            citations: Citations::NONE,
             cases: vec![case(), quiet],
         }],
         files: Vec::new(),

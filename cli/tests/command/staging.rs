@@ -4,7 +4,7 @@
 use super::common::{Done, Folder, clebsch, on};
 use clebsch::StepError;
 use clebsch::card::{Card, OpenError, Settings, Trajectory};
-use clebsch_cli::gallery::{Entry, Gallery};
+use clebsch_cli::gallery::{Citations, Entry, Gallery};
 use std::cell::RefCell;
 use std::fs;
 use std::path::Path;
@@ -63,6 +63,7 @@ fn run_while(event: impl FnOnce() + 'static, out: &str, more: &[&str]) -> Done {
     let gallery = Gallery {
         entries: vec![Entry {
             card,
+            citations: Citations::NONE,
             cases: vec![super::common::case()],
         }],
         files: Vec::new(),

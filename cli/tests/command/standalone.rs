@@ -145,6 +145,26 @@ fn every_shipped_model_is_a_document_that_compiles_by_itself() {
 }
 
 #[test]
+fn only_models_of_the_gallery_cite_whatever_the_structure_of_a_file() {
+    let folder = Folder::new("cited");
+    let text = clebsch_models::find("heavy-top")
+        .expect("a model")
+        .card
+        .source;
+    let file = folder.write("own.clebsch", text);
+    for format in ["text", "latex", "markdown", "json"] {
+        let own = shipped(&["derive", &file, "--format", format]);
+        assert_eq!(own.code, 0, "{}", own.err);
+        let bare = shipped(&["derive", "heavy-top", "--no-thesis", "--format", format]);
+        assert_eq!(own.out, bare.out);
+        let cites = |out: &str| ["thesis", "dixon2007", "section 2.7.1"].map(|w| out.contains(w));
+        assert_eq!(cites(&own.out), [false; 3], "{}", own.out);
+        let gallery = shipped(&["derive", "heavy-top", "--format", format]);
+        assert!(cites(&gallery.out).contains(&true), "{}", gallery.out);
+    }
+}
+
+#[test]
 fn names_of_all_kinds_compile() {
     let folder = Folder::new("standalone");
     let model = "model Sätze_1 {

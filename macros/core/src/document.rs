@@ -2,6 +2,7 @@
 //! relations, the balance with its momentum map, what is solved, invariants, the limit. One
 //! document; the printers turn it into text, LaTeX, Markdown, MathML or JSON.
 
+pub mod citations;
 mod compose;
 mod folded;
 mod holds;
@@ -16,8 +17,8 @@ mod sheet;
 mod solution;
 mod source;
 mod structure;
-pub mod thesis;
 
+pub use citations::{Citations, Place, Work};
 pub use compose::{Telling, document, document_telling};
 pub use lattice::{
     CardWords, InvariantWords, Printed, card_words, default_choice, printed_lattice,
@@ -37,19 +38,19 @@ pub fn style(d: &Derivation) -> Style {
     Style::new(&d.spec.time_index)
 }
 
-/// The derivation in a format.
+/// The derivation in a format; it cites nothing.
 pub fn printed(d: &Derivation, format: Format) -> String {
-    printed_telling(d, format, Style::default().columns, true, None)
+    printed_telling(d, format, Style::default().columns, Citations::NONE, None)
 }
 
-/// The derivation in a format, its plain text in lines of at most so many columns where that can be; with the places of
-/// its equations in the thesis, or without; with the model as `stated`, where its text is known. What becomes part of a
-/// paper, LaTeX and Markdown, begins with the scheme.
+/// The derivation in a format, its plain text in lines of at most so many columns where that can be; with what is
+/// cited of the model; with the model as `stated`, where its text is known. What becomes part of a paper, LaTeX and
+/// Markdown, begins with the scheme.
 pub fn printed_telling(
     d: &Derivation,
     format: Format,
     columns: usize,
-    sources: bool,
+    citations: Citations,
     stated: Option<&str>,
 ) -> String {
     let style = Style {
@@ -57,7 +58,7 @@ pub fn printed_telling(
         ..style(d)
     };
     let told = Telling {
-        sources,
+        citations,
         scheme: matches!(format, Format::Latex | Format::Markdown),
         stated,
     };

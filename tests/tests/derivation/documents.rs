@@ -4,6 +4,8 @@
 
 use clebsch_cli::gallery::Gallery;
 use clebsch_cli::{Streams, execute};
+use clebsch_core::document::printed_telling;
+use clebsch_core::print::Format;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -45,7 +47,7 @@ fn the_extract_on_the_first_page_is_what_is_printed() {
     let page = fs::read_to_string(root().join("README.md")).unwrap();
     let model = clebsch_models::find("heavy-top").expect("in the gallery");
     let d = clebsch_core::derive_source(model.card.source).expect("derives");
-    let printed = clebsch_core::document::printed(&d, clebsch_core::print::Format::Text);
+    let printed = printed_telling(&d, Format::Text, 100, model.citations, None);
     let printed = flat(&printed);
     let extract = block_after(&page, "derive heavy-top` prints the whole derivation");
     let equations: Vec<&str> = extract.split("\n\n").collect();

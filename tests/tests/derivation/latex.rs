@@ -2,12 +2,17 @@
 //! environments and `\\left` nest, every row of an alignment has its mark, and only known commands
 //! occur. Takes the derivations of the gallery and some models that print what those do not.
 
-use clebsch_core::document::printed;
-use clebsch_core::print::Format;
+use clebsch_core::document::{Citations, printed_telling};
+use clebsch_core::print::{Format, Style};
 use clebsch_core::{Derivation, derive_source};
 
 fn derive(text: &str) -> Derivation {
     derive_source(text).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn latex(text: &str, citations: Citations) -> String {
+    let columns = Style::default().columns;
+    printed_telling(&derive(text), Format::Latex, columns, citations, None)
 }
 
 /// Commands of LaTeX and amsmath that may occur.
@@ -239,11 +244,18 @@ fn fault(text: &str) -> Option<String> {
     open.pop().map(|o| format!("{o} is never closed"))
 }
 
-fn documents() -> Vec<(String, String)> {
+/// Models by name, with what is cited of them.
+fn documents() -> Vec<(String, String, Citations)> {
     let gallery = clebsch_models::gallery();
-    let mut all: Vec<(String, String)> = gallery
+    let mut all: Vec<(String, String, Citations)> = gallery
         .iter()
-        .map(|e| (e.card.name.to_owned(), e.card.source.to_owned()))
+        .map(|e| {
+            (
+                e.card.name.to_owned(),
+                e.card.source.to_owned(),
+                e.citations,
+            )
+        })
         .collect();
     for text in [
         clebsch_oracle::oracle::action::mixed::REDUCED,
@@ -266,15 +278,19 @@ fn documents() -> Vec<(String, String)> {
                 - h*exp(-x_y_z*dot(g, Gamma_k))*sqrt(1 + under_score^2 + dot(Gamma_k, Gamma_k));
         }",
     ] {
-        all.push((text.chars().take(24).collect(), text.to_owned()));
+        all.push((
+            text.chars().take(24).collect(),
+            text.to_owned(),
+            Citations::NONE,
+        ));
     }
     all
 }
 
 #[test]
 fn every_derivation_is_well_formed_latex() {
-    for (name, source) in documents() {
-        let text = printed(&derive(&source), Format::Latex);
+    for (name, source, citations) in documents() {
+        let text = latex(&source, citations);
         if let Some(fault) = fault(&text) {
             panic!("{name}: {fault}\n{text}");
         }
@@ -284,7 +300,7 @@ fn every_derivation_is_well_formed_latex() {
 #[test]
 fn faults_are_noticed() {
     let model = clebsch_models::find("heavy-top").expect("in the gallery");
-    let right = printed(&derive(model.card.source), Format::Latex);
+    let right = latex(model.card.source, model.citations);
     assert_eq!(fault(&right), None);
     for (from, to) in [
         ("}", ""),

@@ -9,6 +9,7 @@
 #[path = "../common/allocations.rs"]
 mod allocations;
 mod architecture;
+mod citations;
 #[path = "../common/mod.rs"]
 mod common;
 mod continuous_limit;

@@ -3,8 +3,9 @@
 //! is compared with `generated/` by `generated_fresh`. To accept new output after reading it:
 //! `INSTA_UPDATE=always cargo test --profile quick --test derivation snapshots`.
 
-use clebsch_core::print::Format;
-use clebsch_core::{Derivation, derive_source, document};
+use clebsch_core::document::{Citations, printed_telling};
+use clebsch_core::print::{Format, Style};
+use clebsch_core::{Derivation, derive_source};
 use insta::assert_snapshot;
 
 /// Statements that the engine derives and prints, and that have no place in the gallery: no stepper
@@ -56,15 +57,16 @@ fn derive(name: &str, source: &str) -> Derivation {
     derive_source(source).unwrap_or_else(|errors| panic!("{}", errors.render(source, name)))
 }
 
+fn text(d: &Derivation, citations: Citations) -> String {
+    printed_telling(d, Format::Text, Style::default().columns, citations, None)
+}
+
 #[test]
 fn models_of_the_gallery_print_as_before() {
     for entry in clebsch_models::gallery() {
         let name = entry.card.kebab;
         let d = derive(name, entry.card.source);
-        assert_snapshot!(
-            format!("{name}.derivation"),
-            document::printed(&d, Format::Text)
-        );
+        assert_snapshot!(format!("{name}.derivation"), text(&d, entry.citations));
     }
 }
 
@@ -72,9 +74,6 @@ fn models_of_the_gallery_print_as_before() {
 fn models_without_a_stepper_print_as_before() {
     for (name, source) in ENGINE_ONLY {
         let d = derive(name, source);
-        assert_snapshot!(
-            format!("{name}.derivation"),
-            document::printed(&d, Format::Text)
-        );
+        assert_snapshot!(format!("{name}.derivation"), text(&d, Citations::NONE));
     }
 }

@@ -1,6 +1,7 @@
 //! The sections of a derivation, in the order of a paper: the first ones here, up to the Clebsch
 //! relations; motion, solution and what follows from them in files of their own.
 
+use super::citations::{Citations, Place};
 use super::sheet::{Sheet, references};
 use super::{holds, motion, outlook, scheme, solution, source, structure};
 use crate::check::spec::Subject;
@@ -18,17 +19,17 @@ use crate::syntax::ast::NodeRule;
 pub struct Telling<'a> {
     /// The text of the model, where it is known.
     pub stated: Option<&'a str>,
-    /// Where its equations stand in the thesis, and what is wrong with them there.
-    pub sources: bool,
+    /// Where its equations stand in a work, and what is wrong with them there.
+    pub citations: Citations,
     /// The variational principle and the algorithm of a step before all else, as in a paper.
     pub scheme: bool,
 }
 
-/// The derivation as a document.
+/// The derivation as a document, which cites nothing.
 pub fn document(d: &Derivation) -> Document {
     let told = Telling {
         stated: None,
-        sources: true,
+        citations: Citations::NONE,
         scheme: false,
     };
     document_telling(d, told)
@@ -36,8 +37,9 @@ pub fn document(d: &Derivation) -> Document {
 
 /// The derivation as a document with what is asked for.
 pub fn document_telling(d: &Derivation, told: Telling<'_>) -> Document {
-    let sheet = Sheet::new(d);
+    let sheet = Sheet::new(d, told.citations);
     let mut doc = Document::titled(format!("{}: discrete equations of motion", d.spec.name));
+    doc.work = told.citations.work;
     model(&sheet, &mut doc, told);
     warnings(&sheet, &mut doc);
     structure::reduction(&sheet, &mut doc);
@@ -57,10 +59,7 @@ pub fn document_telling(d: &Derivation, told: Telling<'_>) -> Document {
     if told.scheme {
         scheme::up_front(&sheet, &mut doc);
     }
-    match told.sources {
-        true => doc,
-        false => doc.without_sources(),
-    }
+    doc
 }
 
 fn model(sheet: &Sheet, doc: &mut Document, told: Telling<'_>) {
@@ -76,16 +75,8 @@ fn model(sheet: &Sheet, doc: &mut Document, told: Telling<'_>) {
     if !meanings.is_empty() {
         section.list(meanings);
     }
-    if let Some((number, factor)) = sheet.thesis.section().filter(|_| told.sources) {
-        let factor: Inline = match factor.strip_prefix('-') {
-            Some(step) => Formula::neg(Formula::name(step)).into(),
-            None => Formula::name(factor).into(),
-        };
-        section.paragraph([
-            format!("By its structure this is the system of section {number} of M. F. Dixon, Geometric integrators for continuum dynamics (2007), the thesis cited below; its Lagrangian and momenta are ").into(),
-            factor,
-            " times those printed here, and it indexes velocities by the end of the step.".into(),
-        ]);
+    if !told.citations.statement.is_empty() {
+        section.paragraph(Inline::with_names(told.citations.statement));
     }
 }
 
@@ -177,7 +168,7 @@ fn capitalised(text: &str) -> String {
 fn constraints(sheet: &Sheet, doc: &mut Document) {
     let spec = &sheet.d.spec;
     let section = doc.section("Constraints");
-    for (i, c) in spec.configurations.iter().enumerate() {
+    for c in &spec.configurations {
         if c.group.is_additive() {
             let (here, next) = (sheet.here(c.element), sheet.at(c.element, Shift::NEXT));
             section.paragraph([
@@ -228,7 +219,10 @@ fn constraints(sheet: &Sheet, doc: &mut Document) {
             ", on the edge from this node to the next:".into(),
         ]);
         let equation = Formula::equal(sheet.at(c.element, Shift::NEXT), sheet.math(&c.update));
-        section.sourced(equation, sheet.thesis.reconstruction(i));
+        section.sourced(
+            equation,
+            sheet.source(Place::Reconstruction(sheet.name_of(c.element))),
+        );
     }
     advected(sheet, section);
     holds::stated(sheet, section);
@@ -249,7 +243,10 @@ fn advected(sheet: &Sheet, section: &mut Section) {
             }
             None => update,
         };
-        section.sourced(equation, sheet.thesis.transport(j));
+        section.sourced(
+            equation,
+            sheet.source(Place::Rule(sheet.name_of(a.quantity))),
+        );
         section.labelled(&transport_label(j));
     }
 }
@@ -302,7 +299,7 @@ fn action(sheet: &Sheet, doc: &mut Document) {
             Formula::name(&format!("ℓ_{k}")),
             sheet.math(&d.action.total),
         ),
-        sheet.thesis.action(),
+        sheet.source(Place::Action),
     );
     let weight = if d
         .spec
@@ -326,7 +323,7 @@ fn action(sheet: &Sheet, doc: &mut Document) {
     );
     section.sourced(
         Formula::defined(Formula::name(&format!("ℓ^c_{k}")), sheet.math(&total)),
-        sheet.thesis.clebsch_action(),
+        sheet.source(Place::ClebschAction),
     );
 }
 
@@ -404,9 +401,9 @@ fn relations(sheet: &Sheet, doc: &mut Document) {
             Formula::Expr(expr::integer(0))
         };
         let equation = Formula::equal(sheet.derived(&r.gradient), right);
-        section.sourced(equation, sheet.thesis.relation(r.variable));
+        let name = sheet.name_of(r.variable.symbol);
+        section.sourced(equation, sheet.source(Place::Relation(name)));
         section.labelled(&relation_label(r.variable.symbol));
-        let name = &sheet.symbols().get(r.variable.symbol).name;
         section.noted(&format!("Variation of {name}."));
     }
     theta_explained(sheet, section);

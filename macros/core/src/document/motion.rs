@@ -1,6 +1,7 @@
 //! Elimination of the multipliers: the momentum map at both ends of an edge, from it the discrete
 //! Euler-Poincaré equations with their coadjoint transport and diamonds, defined where they stand.
 
+use super::citations::Place;
 use super::compose::{pairing, relation_label, transport_label, variation_label};
 use super::sheet::{Sheet, references};
 use crate::check::spec::Configuration;
@@ -87,7 +88,7 @@ pub fn momentum_maps(sheet: &Sheet, doc: &mut Document) {
         }
         section.sourced(
             Formula::equal(sheet.lifted(i, 0), Formula::Sum(terms)),
-            sheet.thesis.lifted(),
+            sheet.source(Place::Lifted),
         );
         section.labelled(&format!("lifted {i}"));
         section.paragraph(["The edge momentum:".into()]);
@@ -237,7 +238,7 @@ fn edge(sheet: &Sheet, section: &mut Section, c: &Configuration, m: &Momentum, i
                 .collect(),
             Relation::Equal,
         ),
-        sheet.thesis.momentum(),
+        sheet.source(Place::Momentum),
     );
 }
 
@@ -287,7 +288,7 @@ fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize
     terms.extend(diamonds(sheet, i));
     section.sourced(
         Formula::equal(start, Formula::Sum(terms)),
-        sheet.thesis.at_start(),
+        sheet.source(Place::AtStart),
     );
     section.labelled(&format!("start {i}"));
     let mut words: Vec<Inline> = vec![
@@ -306,7 +307,7 @@ fn elimination(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize
     section.paragraph(words);
     section.sourced(
         Formula::equal(end, sheet.lifted(i, 1)),
-        sheet.thesis.at_end(),
+        sheet.source(Place::AtEnd),
     );
     section.labelled(&format!("end {i}"));
 }
@@ -365,7 +366,7 @@ pub fn balance(sheet: &Sheet, doc: &mut Document) {
         let terms: Vec<Formula> = [first].into_iter().chain(diamonds(sheet, i)).collect();
         section.sourced(
             Formula::equal(left, Formula::Sum(terms)),
-            sheet.thesis.balance(),
+            sheet.source(Place::Balance),
         );
         section.labelled(&format!("balance {i}"));
         gradients(sheet, section, i);

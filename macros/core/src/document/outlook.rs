@@ -1,6 +1,7 @@
 //! What follows from the equations: conserved quantities, the continuous equations of motion in the
 //! limit of small steps, and the list of identities that prove the derivation.
 
+use super::citations::Place;
 use super::sheet::{Sheet, references};
 use crate::check::spec::Configuration;
 use crate::derive::holds;
@@ -266,7 +267,7 @@ fn equations(sheet: &Sheet, section: &mut Section, c: &Configuration, i: usize, 
             vec![Formula::rate(mu), Formula::Sum(named), explicit],
             Relation::Equal,
         )),
-        sheet.thesis.continuous(),
+        sheet.source(Place::Continuous),
     );
     section.labelled(&format!("continuous {i}"));
     if let Some(turn) = x.reconstruction.get(i) {

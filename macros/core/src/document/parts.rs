@@ -51,12 +51,14 @@ pub fn in_parts(
     let mut page = Display::new(Names::new(symbols, &doc, lets, motions, sites));
     let Document {
         title,
+        work,
         remarks,
         sections,
     } = doc;
     let sections = sections.into_iter().map(|s| section(&mut page, s));
     let doc = Document {
         title,
+        work,
         remarks,
         sections: sections.collect(),
     };

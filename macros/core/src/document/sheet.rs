@@ -1,7 +1,7 @@
 //! What every section of a derivation needs: the derivation, its citations, letters that no symbol
 //! of the model bears, and the small formulas that recur.
 
-use super::thesis::Thesis;
+use super::citations::{Citations, Place};
 use crate::check::spec::Configuration;
 use crate::derive::Derivation;
 use crate::expr::symbol::{SymbolId, Symbols};
@@ -14,16 +14,23 @@ pub struct Sheet<'a> {
     /// The derivation.
     pub d: &'a Derivation,
     /// Its citations.
-    pub thesis: Thesis<'a>,
+    pub citations: Citations,
 }
 
 impl<'a> Sheet<'a> {
     /// Opens a derivation.
-    pub fn new(d: &'a Derivation) -> Sheet<'a> {
-        Sheet {
-            d,
-            thesis: Thesis::new(d),
-        }
+    pub fn new(d: &'a Derivation, citations: Citations) -> Sheet<'a> {
+        Sheet { d, citations }
+    }
+
+    /// The source of an equation, where one is cited.
+    pub fn source(&self, place: Place<'_>) -> Option<String> {
+        self.citations.of(place)
+    }
+
+    /// The name that the model gives a symbol.
+    pub fn name_of(&self, symbol: SymbolId) -> &'a str {
+        &self.symbols().get(symbol).name
     }
 
     /// The symbols.

@@ -1,6 +1,7 @@
 //! What each step solves: the Moser-Veselov equation, the matrix Riccati equation it is equivalent
 //! to, the Hamiltonian matrix and the invariant subspace that solve that, and what the stepper does.
 
+use super::citations::Place;
 use super::sheet::{Sheet, listed};
 use crate::check::spec::{Configuration, Spec};
 use crate::derive::convex::convexity;
@@ -166,7 +167,7 @@ fn equation(
     let mirrored = Formula::Product(vec![letter.clone(), Formula::transpose(w.clone())]);
     section.sourced(
         Formula::equal(Formula::minus(product, mirrored), momentum(sheet, c, mv, i)),
-        sheet.thesis.riccati(),
+        sheet.source(Place::Riccati),
     );
     let mut with = Vec::new();
     if named {

@@ -8,10 +8,25 @@ use super::formula::Formula;
 pub struct Document {
     /// Title.
     pub title: String,
+    /// The work that sources of equations are places in.
+    pub work: Option<Work>,
     /// Remarks on the model as data, for what reads documents by program.
     pub remarks: Vec<Remark>,
     /// Sections in order.
     pub sections: Vec<Section>,
+}
+
+/// A work that is cited, with its entries in bibliographies.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Work {
+    /// How sentences name it: `thesis` in `thesis (2.85)`.
+    pub named: &'static str,
+    /// As `\cite` calls it.
+    pub key: &'static str,
+    /// Its entry for BibTeX.
+    pub entry: &'static str,
+    /// The same in `thebibliography`.
+    pub item: &'static str,
 }
 
 /// What is remarked of a model, at which of its tokens.
@@ -121,6 +136,21 @@ impl Inline {
             .collect()
     }
 
+    /// A sentence in which a name between dollar signs is mathematics; it may have a sign.
+    pub fn with_names(text: &str) -> Vec<Inline> {
+        let name = |piece: &str| match piece.strip_prefix('-') {
+            Some(rest) => Formula::neg(Formula::name(rest)),
+            None => Formula::name(piece),
+        };
+        let pieces = text.split('$').enumerate();
+        pieces
+            .map(|(i, piece)| match i % 2 {
+                0 => Inline::Plain(piece.to_owned()),
+                _ => Inline::Math(name(piece)),
+            })
+            .collect()
+    }
+
     /// The number of the equation with this label.
     pub fn reference(label: &str) -> Inline {
         Inline::Reference {
@@ -162,20 +192,11 @@ impl Document {
         out
     }
 
-    /// The same without the sources of its equations.
-    pub fn without_sources(mut self) -> Document {
-        for block in self.sections.iter_mut().flat_map(|s| &mut s.blocks) {
-            if let Block::Equation { tag, .. } = block {
-                *tag = None;
-            }
-        }
-        self
-    }
-
     /// An empty document.
     pub fn titled(title: impl Into<String>) -> Document {
         Document {
             title: title.into(),
+            work: None,
             remarks: Vec::new(),
             sections: Vec::new(),
         }

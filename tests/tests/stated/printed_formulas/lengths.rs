@@ -3,7 +3,7 @@
 
 use super::reading::ROUNDING;
 use clebsch_core::derive_source;
-use clebsch_core::document::printed_telling;
+use clebsch_core::document::{Citations, printed_telling};
 use clebsch_core::print::Format;
 use clebsch_oracle::printed::{Value, value};
 
@@ -99,7 +99,7 @@ fn lengths_and_names() {
     let next = [0, 1, 2].map(|i| here[i] + STEP[i]);
     for model in [NAMED, UNNAMED] {
         let d = derive_source(model).expect("a model");
-        let text = printed_telling(&d, Format::Text, 100_000, true, Some(model));
+        let text = printed_telling(&d, Format::Text, 100_000, Citations::NONE, Some(model));
         assert_eq!(model == NAMED, text.contains("We write "), "{text}");
         let mut known = vec![
             ("h".to_owned(), Value::number(H)),

@@ -1,12 +1,12 @@
 //! Displayed equations of a document: one by one, or several in a row as a group under one number, each with a name
-//! that says what it is. Sources in the thesis are footnotes of the sentence before.
+//! that says what it is. Sources are footnotes of the sentence before.
 
 use super::characters::{prose, spelt, symbol_of};
-use super::sources::{THESIS, citing};
+use super::sources::citing;
 use super::{Dialect, aligned, rows};
 use crate::expr::symbol;
 use crate::print::Page;
-use crate::print::document::{Block, Document};
+use crate::print::document::{Block, Document, Work};
 use crate::print::name;
 use unicode_normalization::UnicodeNormalization;
 
@@ -80,14 +80,14 @@ pub(super) fn slug(title: &str) -> String {
     out.trim_end_matches('-').to_owned()
 }
 
-/// The footnote with the sources of equations `from`, `from + 1`, ... in the thesis; none where they have none.
-pub(super) fn footnote(run: &[Block], from: usize, labels: &Labels) -> String {
+/// The footnote with the sources of equations `from`, `from + 1`, ... in a work; none where they have none.
+pub(super) fn footnote(run: &[Block], from: usize, labels: &Labels, work: Option<&Work>) -> String {
     let several = run.len() > 1;
     let sources = run.iter().enumerate().filter_map(|(i, block)| {
         let Block::Equation { tag: Some(tag), .. } = block else {
             return None;
         };
-        let source = cited(tag);
+        let source = cited(tag, work);
         Some(match several {
             true => format!("\\eqref{{{}}}: {source}", labels.name(from + i)),
             false => source,
@@ -100,9 +100,10 @@ pub(super) fn footnote(run: &[Block], from: usize, labels: &Labels) -> String {
     }
 }
 
-/// `thesis (2.145) corrected: ...` as a citation with what is said of it.
-fn cited(tag: &str) -> String {
-    let Some(rest) = tag.strip_prefix("thesis ") else {
+/// `thesis (2.145) corrected: ...` as a citation of the work with what is said of it.
+fn cited(tag: &str, work: Option<&Work>) -> String {
+    let place = work.and_then(|w| Some((w.key, tag.strip_prefix(w.named)?.strip_prefix(' ')?)));
+    let Some((key, rest)) = place else {
         return said_of(tag);
     };
     let end = rest.find(')').map_or(rest.len(), |at| at + 1);
@@ -113,7 +114,7 @@ fn cited(tag: &str) -> String {
     };
     let said = said_of(&said);
     format!(
-        "\\cite[{}]{{{THESIS}}}{said}",
+        "\\cite[{}]{{{key}}}{said}",
         place
             .chars()
             .map(|c| symbol_of(c, true))

@@ -289,14 +289,17 @@ pub(super) fn document(page: &Page, document: &Document) -> String {
                 Block::Equation { .. } => {
                     // Behind the sentence that leads to the equations.
                     let end = out.trim_end_matches('\n').len();
-                    out.insert_str(end, &equations::footnote(run, number, &labels));
+                    out.insert_str(
+                        end,
+                        &equations::footnote(run, number, &labels, document.work.as_ref()),
+                    );
                     out.push_str(&equations::displayed(page, run, number, &labels));
                     number += run.len();
                 }
             }
         }
     }
-    sources::needs(&out) + &out
+    sources::needs(&out, document.work.as_ref()) + &out
 }
 
 /// The letters of a heading, larger and bold, in percent of those of a sentence; a little is taken off for the number.

@@ -4,9 +4,9 @@ use super::mathml::check;
 use super::sample::Sample;
 use crate::expr::shape::Shape;
 use crate::expr::{self, Expr};
-use crate::print::document::{Document, Inline};
+use crate::print::document::{Document, Inline, Work};
 use crate::print::formula::{Formula, Operator, Relation};
-use crate::print::{Format, Style, render};
+use crate::print::{Format, Style, render, standalone};
 
 /// A sum too long for a line.
 fn long(s: &Sample) -> Expr {
@@ -130,11 +130,20 @@ fn latex_is_a_section_with_numbered_equations() {
     assert!(!tex.contains("\n\n\\begin{equation}"));
 }
 
+/// A work that equations are cited from.
+const WORK: Work = Work {
+    named: "thesis",
+    key: "top2007",
+    entry: "@phdthesis{top2007, title = {Tops}}",
+    item: "\\emph{Tops}, 2007.",
+};
+
 /// A bare document: equations that follow one another are one group, their sources a footnote of the sentence before.
 #[test]
 fn equations_in_a_row_share_a_number() {
     let s = Sample::new();
     let mut doc = Document::titled("Top: equations");
+    doc.work = Some(WORK);
     let section = doc.section("Motion");
     section.text("It moves in SO(3) by");
     section.cited(
@@ -150,22 +159,28 @@ fn equations_in_a_row_share_a_number() {
     section.paragraph(["By ".into(), Inline::reference("first"), ".".into()]);
     doc.section("Certificate").appendix = true;
     let tex = render(&doc, &s.symbols, &Style::default(), Format::Latex);
-    let wanted = "It moves in $\\mathrm{SO}(3)$ by\\footnote{\\eqref{eq:top:first}: \\cite[(2.1)]{dixon2007}; \
-         \\eqref{eq:top:motion-2}: \\cite[(2.2)]{dixon2007} times $-1/h$, corrected: there $e\\,\\Omega{}^{\\mathsf{T}}$ for $2\\,\\operatorname{skew}$.}\n\
+    let wanted = "It moves in $\\mathrm{SO}(3)$ by\\footnote{\\eqref{eq:top:first}: \\cite[(2.1)]{top2007}; \
+         \\eqref{eq:top:motion-2}: \\cite[(2.2)]{top2007} times $-1/h$, corrected: there $e\\,\\Omega{}^{\\mathsf{T}}$ for $2\\,\\operatorname{skew}$.}\n\
          \\begin{subequations}\n\\begin{gather}\n\
          a = b \\label{eq:top:first} \\\\\nc = d \\label{eq:top:motion-2}\n\
          \\end{gather}\n\\end{subequations}\n\
          \\noindent \\eqref{eq:top:motion-2}: variation of c.\n\nBy \\eqref{eq:top:first}.\n\n\
          \\subsection*{Appendix: certificate}\n";
     assert!(tex.ends_with(wanted), "{tex}\n{wanted}");
-    let plain = render(
-        &doc.without_sources(),
-        &s.symbols,
-        &Style::default(),
-        Format::Latex,
-    );
     assert!(
-        !plain.contains("cite") && !plain.contains("dixon"),
+        tex.contains("% @phdthesis{top2007, title = {Tops}}\n"),
+        "{tex}"
+    );
+    let alone = standalone(&tex, doc.work.as_ref());
+    assert!(
+        alone.contains("\\bibitem{top2007} \\emph{Tops}, 2007.\n"),
+        "{alone}"
+    );
+    // A source in no work of the document is words.
+    doc.work = None;
+    let plain = render(&doc, &s.symbols, &Style::default(), Format::Latex);
+    assert!(
+        plain.contains("thesis (2.1);") && !plain.contains("cite"),
         "{plain}"
     );
 }
