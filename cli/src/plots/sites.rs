@@ -4,7 +4,7 @@
 use super::axis::Axis;
 use super::figure::Panel;
 use super::map::Map;
-use super::{begins_undetermined, figure, letter, place};
+use super::{figure, letter, place};
 use crate::output::Finished;
 use crate::output::sites::{AtSites, at_sites};
 use crate::plots::Plot;
@@ -41,11 +41,7 @@ pub(super) fn maps(
     let own = all
         .iter()
         .filter(|q| wanted(q.field, q.moves) && q.field.count() <= COMPONENTS);
-    let panels = own.flat_map(|q| {
-        let undetermined = begins_undetermined(run.card, &q.name, &samples.record);
-        of_quantity(q, undetermined, &samples.record)
-    });
-    let panels: Vec<Panel> = panels.collect();
+    let panels: Vec<Panel> = own.flat_map(|q| of_quantity(q, &samples.record)).collect();
     if panels.is_empty() {
         return Some(Ok(None));
     }
@@ -57,19 +53,16 @@ pub(super) fn maps(
     Some(figure(run, window, what, panels))
 }
 
-fn of_quantity(q: &AtSites<'_>, undetermined: bool, record: &Record) -> Vec<Panel> {
+fn of_quantity(q: &AtSites<'_>, record: &Record) -> Vec<Panel> {
     // Components of one quantity have one unit: what is rounding beside another one is zero.
     let columns = q.members.iter().flat_map(|(_, columns)| columns.clone());
     let values = columns.flat_map(|c| record.observables.column(c));
     let size = largest(values.filter(|v| v.is_finite()).map(f64::abs));
     let components = 0..q.field.count();
-    let begin = if undetermined { f64::NAN } else { 0.0 };
-    components
-        .map(|c| panel(q, c, (record, begin), size))
-        .collect()
+    components.map(|c| panel(q, c, record, size)).collect()
 }
 
-fn panel(q: &AtSites<'_>, component: usize, (record, begin): (&Record, f64), size: f64) -> Panel {
+fn panel(q: &AtSites<'_>, component: usize, record: &Record, size: f64) -> Panel {
     let frame = match q.field.kind {
         Kind::BodyMomentum => Some(", body frame"),
         Kind::SpatialMomentum => Some(", space frame"),
@@ -83,8 +76,6 @@ fn panel(q: &AtSites<'_>, component: usize, (record, begin): (&Record, f64), siz
         let mut all: Vec<f64> = all.collect();
         let first = all.first().copied().filter(|_| change).unwrap_or(0.0);
         all.iter_mut().for_each(|v| *v -= first);
-        // Not a number where the start determines nothing.
-        all.iter_mut().take(1).for_each(|v| *v += begin);
         all
     };
     let rows = shown(&q.members).map(|(site, columns)| (*site, column(columns)));
