@@ -234,8 +234,8 @@ fn plot() -> Command {
             option(
                 "y",
                 "NAME",
-                "Column to draw, such as X.1, X (all components) or q_3 (site 3 of a chain); may be repeated. Without it \
-                 the columns are listed",
+                "Column to draw, such as X.1, X (all components) or q_3 (site 3 of a chain); a list with commas, or repeated. \
+                 Without it the columns are listed",
             )
             .action(ArgAction::Append),
         )

@@ -4,6 +4,7 @@
 
 pub(crate) mod arrays;
 mod interrupted;
+mod multipliers;
 mod pdf;
 pub(crate) mod points;
 pub(crate) mod run_json;
@@ -15,6 +16,7 @@ mod thinned;
 pub(crate) mod vtk;
 
 pub(crate) use interrupted::Listening;
+pub(crate) use multipliers::is_multiplier;
 pub use staging::{Found, Staging};
 
 use crate::checkpoint;

@@ -1,11 +1,14 @@
-//! Columns of a finished run by their names: `X.1`, `X_1`, `q_3`, `invariant_energy`, `time`.
+//! Columns of a finished run by their names: `X.1`, `X_1`, `X[1]`, `q_3`, `invariant_energy`, `time`.
 //! Takes the folder of a run; gives the numbers of a column within a range of time.
 
 use crate::case_file::archive::{Archive, Array};
 use crate::case_file::quantity_of;
 use crate::failure::Failure;
+use crate::output::is_multiplier;
 use crate::plain::shown;
 use crate::suggestion::nearest;
+use clebsch::scalar::{larger, largest};
+use clebsch_core::expr::symbol::ascii;
 use serde_json::Value;
 use std::ops::Range;
 use std::path::Path;
@@ -15,6 +18,8 @@ pub(super) struct Columns {
     archive: Archive,
     run: Value,
     times: Vec<f64>,
+    /// Whether the first sample is of node 0, before any step.
+    from_start: bool,
 }
 
 /// A column within the range of time.
@@ -24,8 +29,10 @@ pub(super) struct Series {
     pub name: String,
     /// The array that it is of.
     pub of: String,
-    /// Its numbers, one a sample.
+    /// Its numbers, one a sample. A multiplier has none at node 0: no step has found it.
     pub values: Vec<f64>,
+    /// Of the largest number of the array at all samples, or the scale of the invariant: beside it numbers may be rounding.
+    pub size: f64,
 }
 
 impl Columns {
@@ -47,10 +54,13 @@ impl Columns {
         let times = archive.array("time").map_err(Failure::Usage)?;
         let count = times.shape.first().copied().unwrap_or(0);
         let times = times.numbers(0, count);
+        let nodes = archive.array("node").ok();
+        let first = nodes.and_then(|nodes| nodes.numbers(0, 1).first().copied());
         Ok(Self {
             archive,
             run,
             times,
+            from_start: first == Some(0.0),
         })
     }
 
@@ -119,11 +129,12 @@ impl Columns {
     /// # Errors
     /// Usage: the run has no such column.
     pub fn all(&self, name: &str, range: &Range<usize>) -> Result<Vec<Series>, Failure> {
-        let array = match self.archive.has(name) && !self.has_sites(name) {
-            true => Some(self.archive.array(name).map_err(Failure::Usage)?),
-            false => None,
+        let shape = match self.archive.has(name) && !self.has_sites(name) {
+            true => Some(self.archive.array(name).map_err(Failure::Usage)?.shape),
+            false => self.shape_at_site(name),
         };
-        let inner = array.as_ref().and_then(|array| array.shape.get(1..));
+        // Behind the sample, or the sample and the site.
+        let inner = shape.as_ref().and_then(|shape| shape.get(1..));
         let names: Vec<String> = match inner {
             Some([n]) => (1..=*n).map(|i| format!("{name}.{i}")).collect(),
             Some([r, c]) if *r < 10 && *c < 10 => (1..=*r)
@@ -141,18 +152,80 @@ impl Columns {
     pub fn series(&self, name: &str, range: &Range<usize>) -> Result<Series, Failure> {
         let (of, array, entry) = self.found(name)?;
         let stride: usize = array.shape.iter().skip(1).product();
-        let values = range
-            .clone()
-            .filter_map(|sample| array.numbers(sample * stride + entry, 1).first().copied());
+        let undetermined = self.from_start && self.is_multiplier(&of);
+        let values = range.clone().filter_map(|sample| {
+            let value = array.numbers(sample * stride + entry, 1).first().copied();
+            value.map(|value| match undetermined && sample == 0 {
+                true => f64::NAN,
+                false => value,
+            })
+        });
+        let values: Vec<f64> = values.collect();
+        let all = array.numbers(0, self.times.len() * stride);
+        let finite = all.into_iter().filter(|x| x.is_finite());
+        let size = larger(largest(finite), self.scale(&of));
         Ok(Series {
             name: name.to_owned(),
             of,
-            values: values.collect(),
+            values,
+            size,
         })
+    }
+
+    /// The scale that the run gives to an invariant; 0 of other arrays.
+    fn scale(&self, array: &str) -> f64 {
+        let own = array.strip_prefix("invariant_");
+        let invariants = self.run["results"]["invariants"].as_array();
+        let mut all = invariants.into_iter().flatten();
+        let found = all.find(|told| told["name"].as_str().map(ascii).as_deref() == own);
+        found.and_then(|told| told["scale"].as_f64()).unwrap_or(0.0)
+    }
+
+    /// Whether an array is of a multiplier: a run says how far each is off its constraint, and how fast.
+    fn is_multiplier(&self, array: &str) -> bool {
+        is_multiplier(array, |name| self.archive.has(&format!("invariant_{name}")))
+    }
+
+    /// The first and the last of the arrays of one name at sites: `tension_0 to tension_9`.
+    fn copies(&self, name: &str) -> Option<String> {
+        let site = |known: &str| -> Option<usize> {
+            let rest = known.strip_prefix(name)?.strip_prefix('_')?;
+            rest.parse().ok()
+        };
+        let sites = || self.archive.names().filter_map(site);
+        let (first, last) = (sites().min()?, sites().max()?);
+        Some(format!("{name}_{first} to {name}_{last}"))
+    }
+
+    /// The shape of what an array has at one site, behind the number of samples: of a name such as `x_10`.
+    fn shape_at_site(&self, name: &str) -> Option<Vec<usize>> {
+        let plain = plain(name);
+        let (head, site) = plain.rsplit_once(['_', '.'])?;
+        let site: usize = site.parse().ok()?;
+        if !self.archive.has(head) || !self.has_sites(head) {
+            return None;
+        }
+        let array = self.archive.array(head).ok()?;
+        let (samples, inner) = array.shape.split_first()?;
+        let known = self.sites(head, inner).contains(&site);
+        let rest = inner.get(1..).filter(|_| known)?;
+        Some([&[*samples], rest].concat())
+    }
+
+    /// The site in a column's name that an end gives: it is a parameter of the run, and no column.
+    fn prescribed<'a>(&self, head: &str, component: &'a str) -> Option<&'a str> {
+        let mut parts = component.split(['.', '_']).filter(|part| !part.is_empty());
+        let site = parts.next()?;
+        site.parse::<usize>().ok()?;
+        self.run["parameters"]
+            .get(format!("{head}_{site}"))
+            .map(|_| site)
     }
 
     /// The array of a column, and which of its entries the column is.
     fn found(&self, name: &str) -> Result<(String, Array, usize), Failure> {
+        let plain = plain(name);
+        let name = plain.as_str();
         let splits = name
             .char_indices()
             .filter(|(_, c)| ['.', '_'].contains(c))
@@ -169,14 +242,25 @@ impl Columns {
             }
             let inner = array.shape.get(1..).unwrap_or_default();
             let sites = self.has_sites(head).then(|| self.sites(head, inner));
-            return match entry(component, inner, sites.as_deref()) {
-                Some(entry) => Ok((head.to_owned(), array, entry)),
-                None => Err(Failure::Usage(format!(
-                    "`{}` names no single column of `{head}`; give {}",
-                    shown(name),
-                    example(head, inner, sites.as_deref())
-                ))),
+            if let Some(entry) = entry(component, inner, sites.as_deref()) {
+                return Ok((head.to_owned(), array, entry));
+            }
+            let site = sites
+                .as_ref()
+                .and_then(|_| self.prescribed(head, component));
+            let what = match site {
+                Some(site) => {
+                    format!("an end prescribes `{head}_{site}`, so the run has no such column")
+                }
+                None => format!("`{}` names no single column of `{head}`", shown(name)),
             };
+            let instead = example(head, inner, sites.as_deref());
+            return Err(Failure::Usage(format!("{what}; give {instead}")));
+        }
+        if let Some(copies) = self.copies(name) {
+            return Err(Failure::Usage(format!(
+                "`{name}` has a column at each site; give a site, {copies}"
+            )));
         }
         let end = format!("_{name}");
         let longer = self.archive.names().find(|known| known.ends_with(&end));
@@ -223,6 +307,12 @@ impl Columns {
     }
 }
 
+/// A name with its indices behind points: `X[1]` is `X.1`.
+fn plain(name: &str) -> String {
+    let points = name.replace(['[', ','], ".");
+    points.replace([']', ' '], "")
+}
+
 /// The entry that a component names: none for a single number. Sites are named as they are counted along the chain.
 fn entry(component: &str, inner: &[usize], sites: Option<&[usize]>) -> Option<usize> {
     let parts = component.split(['.', '_']);
@@ -263,11 +353,13 @@ fn entry(component: &str, inner: &[usize], sites: Option<&[usize]>) -> Option<us
 
 /// A column of an array, as it is written.
 fn example(name: &str, inner: &[usize], sites: Option<&[usize]>) -> String {
-    let site = sites.and_then(|sites| sites.first());
-    match (inner, site) {
-        ([_], Some(site)) => format!("a site, {name}_{site}"),
-        ([_, _], Some(site)) => format!("a site and a component, {name}_{site}.1"),
-        (_, Some(site)) => format!("a site and an entry, {name}_{site}.11"),
+    let ends = sites.and_then(|sites| sites.first().zip(sites.last()));
+    match (inner, ends) {
+        ([_], Some((first, last))) => format!("a site, {name}_{first} to {name}_{last}"),
+        ([_, n], Some((first, last))) => {
+            format!("a site and a component, {name}_{first}.1 to {name}_{last}.{n}")
+        }
+        (_, Some((first, _))) => format!("a site and an entry, {name}_{first}.11"),
         ([], None) => format!("`{name}` itself"),
         ([n], None) => format!("a component, {name}.1 to {name}.{n}"),
         (_, None) => format!("an entry, {name}.11"),

@@ -1,7 +1,7 @@
 //! The pictures of `clebsch plot`. Takes series; gives SVG.
 
 use super::columns::Series;
-use crate::plots::axis::{Axis, plain};
+use crate::plots::axis::{Axis, ROUNDING, plain};
 use crate::plots::curve::{Curve, Stroke};
 use crate::plots::figure::{Figure, Panel};
 use crate::plots::reduce;
@@ -18,21 +18,25 @@ const HEIGHT: u32 = 520;
 
 /// Series against time, those of one array in one panel.
 pub(super) fn against_time(title: &str, time: &Series, all: &[Series]) -> Result<String, String> {
-    let mut panels: Vec<(String, Vec<Curve>)> = Vec::new();
+    let mut panels: Vec<(&Series, Vec<Curve>)> = Vec::new();
     for series in all {
         let points = reduce::extremes(&time.values, series.values.iter().copied());
-        match panels.iter_mut().find(|(of, _)| *of == series.of) {
+        match panels.iter_mut().find(|(first, _)| first.of == series.of) {
             Some((_, curves)) => curves.push(curve(series, curves.len(), points)),
-            None => panels.push((series.of.clone(), vec![curve(series, 0, points)])),
+            None => panels.push((series, vec![curve(series, 0, points)])),
         }
     }
-    let panels = panels.into_iter().map(|(of, curves)| Panel {
-        map: None,
-        caption: of.clone(),
-        y_label: of,
-        y: Axis::around(&curves),
-        height: 240.max(60 + 17 * u32::try_from(curves.len()).unwrap_or(0)),
-        curves,
+    let panels = panels.into_iter().map(|(first, curves)| {
+        let lines = |count: usize, tall: u32| tall * u32::try_from(count).unwrap_or(0);
+        let notes = curves.iter().filter(|curve| curve.note.is_some()).count();
+        Panel {
+            map: None,
+            caption: first.of.clone(),
+            y_label: first.of.clone(),
+            y: Axis::around_parts(&curves, first.size),
+            height: 240.max(60 + lines(curves.len(), 17) + lines(notes, 20)),
+            curves,
+        }
     });
     let (from, to) = ends(time);
     let figure = Figure {
@@ -58,6 +62,7 @@ pub(super) fn against(
     let curves = pairs().enumerate().map(|(index, (x, series))| {
         let stride = series.values.len().div_ceil(MOST).max(1);
         let points = x.values.iter().copied().zip(series.values.iter().copied());
+        let points = points.filter(|(x, y)| !x.is_nan() && !y.is_nan());
         let own = curve(series, index, points.step_by(stride).collect());
         match several {
             true => Curve {
@@ -103,10 +108,20 @@ pub(super) fn against(
 fn curve(series: &Series, index: usize, points: Vec<(f64, f64)>) -> Curve {
     Curve {
         label: series.name.clone(),
-        note: None,
+        note: rounding(series),
         points,
         stroke: Stroke::number(index),
     }
+}
+
+/// What is said of values that differ by no more than rounding in the numbers of their quantity.
+fn rounding(series: &Series) -> Option<String> {
+    let finite = series.values.iter().filter(|value| value.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(*value), high.max(*value))
+    });
+    let varies = high > low && high - low <= ROUNDING * series.size;
+    varies.then(|| "constant to rounding".to_owned())
 }
 
 fn ends(time: &Series) -> (f64, f64) {

@@ -21,8 +21,11 @@ pub(crate) fn plot(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result<u8
         .get_one::<PathBuf>("dir")
         .map_or(Path::new("."), PathBuf::as_path);
     let columns = Columns::open(folder)?;
-    let y: Vec<&String> = matches.get_many("y").into_iter().flatten().collect();
-    let x: Vec<&String> = matches.get_many("x").into_iter().flatten().collect();
+    let listed = |key: &str| -> Vec<&str> {
+        let all = matches.get_many::<String>(key).into_iter().flatten();
+        all.flat_map(|text| split(text)).collect()
+    };
+    let (x, y) = (listed("x"), listed("y"));
     if y.is_empty() {
         writeln!(
             streams.out,
@@ -73,9 +76,24 @@ pub(crate) fn plot(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result<u8
     Ok(DONE)
 }
 
+/// The names of a list, between commas that stand in no brackets: `R[1,2],x` has two.
+fn split(text: &str) -> Vec<&str> {
+    let mut depth = 0_usize;
+    let between = |letter: char| {
+        match letter {
+            '[' => depth += 1,
+            ']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        letter == ',' && depth == 0
+    };
+    let names = text.split(between).map(str::trim);
+    names.filter(|name| !name.is_empty()).collect()
+}
+
 /// `plot-q.svg`, or `plot-q-p.svg` for p against q.
-fn file_name(x: &[&String], y: &[&String]) -> String {
-    let names: Vec<&str> = x.iter().chain(y).map(|name| name.as_str()).collect();
+fn file_name(x: &[&str], y: &[&str]) -> String {
+    let names: Vec<&str> = x.iter().chain(y).copied().collect();
     let plain = |c: char| {
         if c.is_alphanumeric() || "-_".contains(c) {
             c

@@ -25,7 +25,7 @@ pub struct Axis {
 const DECADES: f64 = 5.0;
 
 /// Values that agree to so much of their size are drawn as a flat line: the rest is rounding.
-const ROUNDING: f64 = 1e-12;
+pub(crate) const ROUNDING: f64 = 1e-12;
 
 impl Axis {
     /// From `low` to `high` as they are, with about `count` ticks.
@@ -117,6 +117,11 @@ impl Axis {
     /// Around the values of `curves`, with a margin. Values that agree to twelve digits are drawn as a
     /// flat line, not as rounding noise.
     pub fn around(curves: &[Curve]) -> Self {
+        Self::around_parts(curves, 0.0)
+    }
+
+    /// The same of parts of a quantity of this `size`: what is rounding beside it is flat too.
+    pub fn around_parts(curves: &[Curve], size: f64) -> Self {
         let values = curves
             .iter()
             .flat_map(|curve| curve.points.iter().map(|point| point.1));
@@ -128,10 +133,14 @@ impl Axis {
             return Self::linear(-1.0, 1.0, 5);
         }
         let largest = low.abs().max(high.abs());
-        let margin = if high - low > ROUNDING * largest {
+        let size = size.max(largest);
+        let margin = if high - low > ROUNDING * size {
             0.06 * (high - low)
-        } else if largest > 0.0 {
-            0.2 * largest
+        } else if largest > ROUNDING * size {
+            // So wide that the rounding is not seen.
+            (0.2 * largest).max(200.0 * (high - low))
+        } else if size > 0.0 {
+            0.2 * size
         } else {
             1.0
         };
@@ -333,5 +342,19 @@ mod tests {
         };
         let axis = Axis::around(&[curve]);
         assert!(axis.low < 0.9 && axis.high > 1.1);
+        // Beside other parts of its quantity: noise about zero, and a small number with the noise of a large one.
+        for (first, second) in [(1e-17, -3e-17), (1e-8, 1e-8 + 1e-14), (2e-12, 3e-12)] {
+            let curve = Curve {
+                label: String::new(),
+                note: None,
+                points: vec![(0.0, first), (1.0, second)],
+                stroke: super::super::Stroke::number(0),
+            };
+            let axis = Axis::around_parts(std::slice::from_ref(&curve), 10.0);
+            let seen = (first - second).abs() / (axis.high - axis.low);
+            assert!(seen < 0.003, "{first}: {seen}");
+            let own = Axis::around(&[curve]);
+            assert!((first - second).abs() / (own.high - own.low) > 0.8);
+        }
     }
 }

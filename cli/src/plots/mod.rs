@@ -22,13 +22,13 @@ pub(crate) use comparison::comparison;
 pub(crate) use particles::{particles, vorticity};
 pub(crate) use snapshots::snapshots;
 
-use crate::output::Finished;
 use crate::output::points::{Diagonals, Linear};
+use crate::output::{Finished, is_multiplier};
 use crate::plain::steps;
 use crate::record::Samples;
 use crate::run::end;
 use axis::{Axis, FLOOR, superscript};
-use clebsch::card::{Conserved, Field, Kind};
+use clebsch::card::{Card, Conserved, Field, Kind};
 use clebsch::integrate::Drift;
 use clebsch::nalgebra::DMatrix;
 use clebsch::record::Record;
@@ -285,7 +285,8 @@ fn observables(
     let diagonals = Diagonals::of(run.card);
     let mut panels = Vec::new();
     for (field, columns) in fields.into_iter().zip(columns) {
-        panels.push(panel(field, columns.clone(), shown));
+        let from = usize::from(begins_undetermined(run.card, field.name, shown.record));
+        panels.push(panel(field, columns.clone(), from, shown));
         panels.extend(volume(field, &columns, shown, diagonals.have(field)));
     }
     figure(run, shown, what, panels)
@@ -329,13 +330,20 @@ fn volume(
     })
 }
 
-/// The components of one observable, which are the given columns of the record.
-fn panel(field: &Field, columns: Range<usize>, shown: Window<'_>) -> Panel {
+/// Whether the first sample of an observable tells nothing: it is a multiplier, which no step has found at node 0.
+fn begins_undetermined(card: &Card, name: &str, record: &Record) -> bool {
+    let said = |invariant: &str| card.invariants.iter().any(|own| own.name == invariant);
+    record.nodes.first() == Some(&0) && is_multiplier(name, said)
+}
+
+/// The components of one observable, which are the given columns of the record, from this sample on.
+fn panel(field: &Field, columns: Range<usize>, from: usize, shown: Window<'_>) -> Panel {
     let letter = letter(field);
-    let times = shown.record.times.get(..shown.count).unwrap_or_default();
+    let times = shown.record.times.get(from..shown.count);
+    let times = times.unwrap_or_default();
     let column = |component: usize| {
         let values = shown.record.observables.column(columns.start + component);
-        values.take(shown.count)
+        values.take(shown.count).skip(from)
     };
     let skew = is_skew(field, &column);
     let above = |component: &usize| !skew || component / field.cols < component % field.cols;

@@ -12,9 +12,10 @@ const STRETCHES: usize = 1000;
 /// Points of an envelope: a smooth line rather than a band.
 const ENVELOPE: usize = 150;
 
-/// Least and greatest value of each stretch, in the order in which they occur.
+/// Least and greatest value of each stretch, in the order in which they occur. What is no number is left out.
 pub(crate) fn extremes(times: &[f64], values: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
-    let points: Vec<(f64, f64)> = times.iter().copied().zip(values).collect();
+    let points = times.iter().copied().zip(values);
+    let points: Vec<(f64, f64)> = points.filter(|point| !point.1.is_nan()).collect();
     let stretch = points.len().div_ceil(STRETCHES);
     if stretch <= 2 {
         return points;
@@ -86,6 +87,10 @@ mod tests {
         assert!(kept.len() <= 2 * STRETCHES + 2);
         assert!(kept.contains(&(54_321.0, 7.0)));
         assert!(kept.is_sorted_by(|a, b| a.0 <= b.0));
+        let undetermined = |time: f64| if time == 0.0 { f64::NAN } else { spike(time) };
+        let kept = extremes(&times, times.iter().copied().map(undetermined));
+        assert_eq!(kept.first(), Some(&(1.0, 0.0)));
+        assert!(kept.contains(&(54_321.0, 7.0)));
         let points: Vec<_> = times.iter().map(|&time| (time, spike(time))).collect();
         let kept = envelope(&points);
         assert!(kept.len() <= ENVELOPE);

@@ -1,10 +1,10 @@
-//! The shape of a line at eight times: the curve of its places in the plane or in space, or a field over its sites.
-//! Takes a run; gives an SVG of two rows of panels, nothing for models without a line.
+//! The shape of a line at eight times: its places in the planes of their largest components, or a field over its sites.
+//! Takes a run; gives an SVG of two rows of panels a plane, nothing for models without a line.
 
 use super::figure::{Area, fine, text};
-use super::sphere::{COLUMN, WIDE, printed_size, view};
+use super::sphere::{COLUMN, WIDE, printed_size};
 use super::window::Window;
-use super::{Plot, axis, titles};
+use super::{Plot, axis, subscript, titles};
 use crate::output::Finished;
 use crate::output::sites::{AtSites, at_sites};
 use crate::page::places::{Places, Point};
@@ -20,13 +20,17 @@ const COLUMNS: usize = 4;
 /// Most points of a curve: more are not told apart in a panel.
 const POINTS: usize = 400;
 const GAP: f64 = 14.0;
-const LEFT: f64 = 16.0;
+const LEFT: f64 = 32.0;
+/// Room beside the last panel.
+const RIGHT: f64 = 16.0;
 /// Where panels begin, below the title if there is one.
 const TOP: f64 = 58.0;
 const BARE: f64 = 8.0;
 /// Above each panel for its time, below all for the scale.
 const ABOVE: f64 = 26.0;
-const BELOW: f64 = 44.0;
+const BELOW: f64 = 52.0;
+/// Part of the largest extent from which on the third one has a plane of its own.
+const DEEP: f64 = 0.1;
 const INK: RGBColor = RGBColor(30, 30, 30);
 const FAINT: RGBColor = RGBColor(150, 150, 150);
 const CURVE: RGBColor = RGBColor(0, 90, 156);
@@ -44,7 +48,7 @@ pub(crate) fn snapshots(run: &Finished<'_>, record: &Record) -> Plot {
         return Ok(None);
     };
     let shots = shots(run, record, field);
-    let Some(strip) = Strip::of(field, shots) else {
+    let Some(strip) = Strip::of(field, &shots) else {
         return Ok(None);
     };
     let window = Window {
@@ -54,7 +58,8 @@ pub(crate) fn snapshots(run: &Finished<'_>, record: &Record) -> Plot {
     };
     let what = match field.field.count() {
         1 => format!("{} along the line", field.name),
-        _ => format!("shape of {}", field.name),
+        2 => format!("shape of {}", field.name),
+        _ => format!("shape of {}, {}", field.name, strip.seen()),
     };
     let titles = (!run.plan.paper).then(|| titles(run, window, &what));
     strip.svg(titles).map(Some)
@@ -101,19 +106,39 @@ fn shots(run: &Finished<'_>, record: &Record, field: &AtSites<'_>) -> Vec<Shot> 
 }
 
 /// What the two directions of a panel are.
+#[derive(Clone, Copy)]
 enum Seen {
     /// The coordinates with these numbers.
     Plane([usize; 2]),
-    /// All three, from one side.
-    Space,
     /// The number of the point, and a number.
     Graph,
 }
 
-/// Curves in panels of one scale.
+/// The planes in which points of three coordinates are seen, from the range of each. The first holds the two largest; where the
+/// third is not small, the second holds it and the largest.
+fn planes(extents: [f64; 3]) -> Vec<Seen> {
+    let mut order = [0, 1, 2];
+    order.sort_by(|a, b| extents[*b].total_cmp(&extents[*a]));
+    let [most, second, third] = order;
+    let plane = |a: usize, b: usize| Seen::Plane([a.min(b), a.max(b)]);
+    let mut all = vec![plane(most, second)];
+    if extents[third] > DEEP * extents[most] {
+        all.push(plane(most, third));
+    }
+    all
+}
+
+/// Curves in panels of one scale, a block of them for each plane.
 struct Strip {
-    seen: Seen,
+    /// Of what is drawn, for the axes.
+    name: String,
     times: Vec<f64>,
+    blocks: Vec<Block>,
+}
+
+/// The curves of one plane.
+struct Block {
+    seen: Seen,
     curves: Vec<Vec<[f64; 2]>>,
     low: [f64; 2],
     high: [f64; 2],
@@ -121,36 +146,47 @@ struct Strip {
 
 impl Strip {
     /// `None` where there is nothing that can be drawn.
-    fn of(field: &AtSites<'_>, shots: Vec<Shot>) -> Option<Self> {
-        let all = || shots.iter().flat_map(|s| &s.points);
-        let range = |d: usize| {
-            let own = all().filter_map(|p| p.get(d)).filter(|x| x.is_finite());
-            own.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+    fn of(field: &AtSites<'_>, shots: &[Shot]) -> Option<Self> {
+        let extent = |d: usize| {
+            let all = shots.iter().flat_map(|s| &s.points);
+            let own = all.filter_map(|p| p.get(d)).filter(|x| x.is_finite());
+            let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
                 (a.min(*x), b.max(*x))
-            })
+            });
+            high - low
         };
         let seen = match field.field.count() {
-            1 => Seen::Graph,
-            2 => Seen::Plane([0, 1]),
-            _ => {
-                let widths = [0, 1, 2].map(|d| range(d).1 - range(d).0);
-                let widest = largest(widths);
-                let flat = (0..3).find(|d| widths[*d] <= 1e-6 * widest);
-                match flat {
-                    Some(0) => Seen::Plane([1, 2]),
-                    Some(1) => Seen::Plane([0, 2]),
-                    Some(_) => Seen::Plane([0, 1]),
-                    None => Seen::Space,
-                }
-            }
+            1 => vec![Seen::Graph],
+            2 => vec![Seen::Plane([0, 1])],
+            _ => planes([0, 1, 2].map(extent)),
         };
-        let [right, up, _] = view();
+        let blocks = seen.into_iter().map(|seen| Block::of(seen, shots));
+        Some(Strip {
+            name: field.name.clone(),
+            times: shots.iter().map(|s| s.time).collect(),
+            blocks: blocks.collect::<Option<_>>()?,
+        })
+    }
+
+    /// The planes, for the title: `components 1 and 3`.
+    fn seen(&self) -> String {
+        let plane = |block: &Block| match block.seen {
+            Seen::Plane([a, b]) => Some(format!("{} and {}", a + 1, b + 1)),
+            Seen::Graph => None,
+        };
+        let all: Vec<String> = self.blocks.iter().filter_map(plane).collect();
+        format!("components {}", all.join(", below "))
+    }
+}
+
+impl Block {
+    /// `None` where there is nothing that can be drawn.
+    fn of(seen: Seen, shots: &[Shot]) -> Option<Self> {
         let put = |(k, p): (usize, &Vec<f64>)| {
             let at = |d: usize| p.get(d).copied().unwrap_or(f64::NAN);
             match seen {
                 Seen::Graph => [k as f64, at(0)],
                 Seen::Plane([a, b]) => [at(a), at(b)],
-                Seen::Space => [&right, &up].map(|v| (0..3).map(|d| v[d] * at(d)).sum()),
             }
         };
         let curve = |shot: &Shot| -> Vec<[f64; 2]> {
@@ -178,9 +214,8 @@ impl Strip {
             let middle = 0.5 * (low[d] + high[d]);
             (low[d], high[d]) = (middle - 0.5 * wide, middle + 0.5 * wide);
         }
-        Some(Strip {
+        Some(Block {
             seen,
-            times: shots.iter().map(|s| s.time).collect(),
             curves,
             low,
             high,
@@ -191,19 +226,35 @@ impl Strip {
         self.high[d] - self.low[d]
     }
 
+    /// The sides of a panel, in pixels.
+    fn side(&self, width: f64) -> [f64; 2] {
+        let ratio = match self.seen {
+            Seen::Graph => 0.7,
+            Seen::Plane(_) => (self.wide(1) / self.wide(0)).min(1.6),
+        };
+        [width, (width * ratio).round()]
+    }
+
+    /// Pixels for a unit of each direction. A shape has one scale both ways; a graph fills its panel.
+    fn unit(&self, side: [f64; 2]) -> [f64; 2] {
+        let unit = [side[0] / self.wide(0), side[1] / self.wide(1)];
+        match self.seen {
+            Seen::Graph => unit,
+            Seen::Plane(_) => [unit[0].min(unit[1]); 2],
+        }
+    }
+}
+
+impl Strip {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     fn svg(&self, titles: Option<(String, String)>) -> Result<String, String> {
         let whole = if titles.is_some() { WIDE } else { COLUMN };
         let top = if titles.is_some() { TOP } else { BARE };
         let columns = COLUMNS as f64;
-        let width = (whole - 2.0 * LEFT - GAP * (columns - 1.0)) / columns;
-        let ratio = match self.seen {
-            Seen::Graph => 0.7,
-            _ => (self.wide(1) / self.wide(0)).min(1.6),
-        };
-        let side = [width, (width * ratio).round()];
-        let rows = self.curves.len().div_ceil(COLUMNS) as f64;
-        let tall = (top + rows * (side[1] + ABOVE) + BELOW) as u32;
+        let width = (whole - LEFT - RIGHT - GAP * (columns - 1.0)) / columns;
+        let rows = self.times.len().div_ceil(COLUMNS) as f64;
+        let height = |block: &Block| rows * (block.side(width)[1] + ABOVE) + BELOW;
+        let tall = (top + self.blocks.iter().map(height).sum::<f64>()) as u32;
         let mut svg = String::new();
         {
             let size = (fine(whole as u32), fine(tall));
@@ -214,16 +265,22 @@ impl Strip {
                     text(&root, title, 16, INK, (16, 10))?;
                     text(&root, subtitle, 12, FAINT, (16, 31))?;
                 }
-                for (k, (curve, time)) in self.curves.iter().zip(&self.times).enumerate() {
-                    let (row, column) = ((k / COLUMNS) as f64, (k % COLUMNS) as f64);
-                    let corner = [
-                        LEFT + column * (width + GAP),
-                        top + row * (side[1] + ABOVE) + ABOVE,
-                    ];
-                    self.panel(&root, curve, *time, (corner, side))?;
+                let mut top = top;
+                for block in &self.blocks {
+                    let side = block.side(width);
+                    for (k, (curve, time)) in block.curves.iter().zip(&self.times).enumerate() {
+                        let (row, column) = ((k / COLUMNS) as f64, (k % COLUMNS) as f64);
+                        let corner = [
+                            LEFT + column * (width + GAP),
+                            top + row * (side[1] + ABOVE) + ABOVE,
+                        ];
+                        block.panel(&root, curve, *time, (corner, side))?;
+                    }
+                    let below = top + rows * (side[1] + ABOVE);
+                    block.axes(&root, &self.name, [below - side[1], below], width)?;
+                    block.scale(&root, [LEFT, below + 22.0], side)?;
+                    top += height(block);
                 }
-                let below = top + rows * (side[1] + ABOVE);
-                self.scale(&root, [LEFT, below + 14.0], side)?;
                 root.present()?;
                 Ok(())
             };
@@ -236,7 +293,9 @@ impl Strip {
         };
         Ok(svg.replacen(&large, &printed, 1))
     }
+}
 
+impl Block {
     fn panel(
         &self,
         root: &Area<'_>,
@@ -251,12 +310,8 @@ impl Strip {
         #[allow(clippy::cast_possible_truncation)]
         let above = (corner[0] as i32, corner[1] as i32 - 17);
         text(root, &words, 12, INK, above)?;
-        // One scale both ways, the shape in the middle; a graph fills its panel.
-        let unit = [side[0] / self.wide(0), side[1] / self.wide(1)];
-        let unit = match self.seen {
-            Seen::Graph => unit,
-            _ => [unit[0].min(unit[1]); 2],
-        };
+        // The shape in the middle of its panel.
+        let unit = self.unit(side);
         let middle = |d: usize| 0.5 * (self.low[d] + self.high[d]);
         let at = |p: &[f64; 2]| {
             let part = |d: usize| (p[d] - middle(d)) * unit[d];
@@ -277,6 +332,25 @@ impl Strip {
         Ok(())
     }
 
+    /// The names of the components beside the first panel of the last row, which reaches over these heights.
+    #[allow(clippy::cast_possible_truncation)]
+    fn axes(
+        &self,
+        root: &Area<'_>,
+        name: &str,
+        [top, below]: [f64; 2],
+        width: f64,
+    ) -> Result<(), Box<dyn std::error::Error>> {
+        let Seen::Plane(components) = self.seen else {
+            return Ok(());
+        };
+        let [across, up] = components.map(|d| format!("{name}{}", subscript(d + 1)));
+        let middle = (LEFT + 0.5 * width) as i32;
+        text(root, &across, 12, INK, (middle, below as i32 + 4))?;
+        let middle = (0.5 * (top + below)) as i32 - 7;
+        text(root, &up, 12, INK, (8, middle))
+    }
+
     /// A length of one digit below the first panel, and what the directions are.
     fn scale(
         &self,
@@ -284,28 +358,23 @@ impl Strip {
         [left, top]: [f64; 2],
         side: [f64; 2],
     ) -> Result<(), Box<dyn std::error::Error>> {
-        let unit = match self.seen {
-            Seen::Graph => {
-                let words = format!(
-                    "from site to site; between {} and {}; a dot at the first site",
-                    axis::short(self.low[1]),
-                    axis::short(self.high[1])
-                );
-                #[allow(clippy::cast_possible_truncation)]
-                return text(root, &words, 12, INK, (left as i32, top as i32));
-            }
-            _ => (side[0] / self.wide(0)).min(side[1] / self.wide(1)),
+        let Seen::Plane([across, up]) = self.seen else {
+            let words = format!(
+                "from site to site; between {} and {}; a dot at the first site",
+                axis::short(self.low[1]),
+                axis::short(self.high[1])
+            );
+            #[allow(clippy::cast_possible_truncation)]
+            return text(root, &words, 12, INK, (left as i32, top as i32));
         };
+        let [unit, _] = self.unit(side);
         let most = 0.5 * side[0] / unit;
         let power = 10_f64.powf(most.log10().floor());
         let times = [5.0, 2.0, 1.0].into_iter().find(|x| x * power <= most);
         let length = times.unwrap_or(1.0) * power;
         let ends = [[left, top + 6.0], [left + length * unit, top + 6.0]].map(pixel);
         root.draw(&PathElement::new(ends, INK.stroke_width(fine(2))))?;
-        let seen = match self.seen {
-            Seen::Plane([a, b]) => format!("component {} to the right, {} up", a + 1, b + 1),
-            _ => "seen from one side, component 3 up".to_owned(),
-        };
+        let seen = format!("component {} to the right, {} up", across + 1, up + 1);
         let words = format!("{}; {seen}; a dot at the first site", axis::short(length));
         #[allow(clippy::cast_possible_truncation)]
         text(
@@ -322,4 +391,30 @@ impl Strip {
 fn pixel(place: [f64; 2]) -> (i32, i32) {
     let at = |d: usize| (place[d] * f64::from(fine(1))).round() as i32;
     (at(0), at(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Seen, planes};
+
+    /// The planes as components, counted from one.
+    fn seen(extents: [f64; 3]) -> Vec<[usize; 2]> {
+        let own = |seen: Seen| match seen {
+            Seen::Plane(plane) => plane.map(|d| d + 1),
+            Seen::Graph => [0, 0],
+        };
+        planes(extents).into_iter().map(own).collect()
+    }
+
+    #[test]
+    fn the_largest_components_are_seen() {
+        assert_eq!(seen([1.0, 0.0, 0.8]), [[1, 3]]);
+        assert_eq!(seen([0.5, 2.0, 0.1]), [[1, 2]]);
+        assert_eq!(seen([0.05, 1.0, 3.0]), [[2, 3]]);
+        // A depth that is not small is seen beside the largest one.
+        assert_eq!(seen([1.0, 0.2, 0.8]), [[1, 3], [1, 2]]);
+        assert_eq!(seen([0.2, 0.4, 1.0]), [[2, 3], [1, 3]]);
+        // A straight line.
+        assert_eq!(seen([0.0, 0.0, 1.0]), [[1, 3]]);
+    }
 }

@@ -48,7 +48,7 @@ pub(super) struct Sphere {
 }
 
 /// From where it is seen: right, up, and towards the reader.
-pub(super) fn view() -> [Vector; 3] {
+fn view() -> [Vector; 3] {
     let (azimuth, elevation) = (35.0_f64.to_radians(), 22.0_f64.to_radians());
     let towards = Vector::new(
         elevation.cos() * azimuth.cos(),

@@ -153,3 +153,25 @@ fn euler_angles_are_drawn_where_they_mean_something() {
     );
     assert!(top.contains("φ precession") && top.contains("ψ spin"));
 }
+
+/// A field without a documentation comment has its name alone above its panel; one with it has both.
+#[test]
+fn panels_of_fields_are_named_as_the_model_documents_them() {
+    let folder = Folder::new("panels-of-fields");
+    let model = "model Two {
+        param m: Real;
+        field y: Vec<2>;
+        /// height of the lid
+        field z: Real;
+        lagrangian = m*dot(next(y) - y, next(y) - y)/(2*h) + m*(next(z) - z)^2/(2*h) - h*dot(y, y)/2;
+    }";
+    let case = "model = \"two\"\nh = 0.05\nsteps = 30\n[parameters]\nm = 1.0\n[initial]\ny = [1.0, 0.0]\nmomentum_y = [0.0, 0.5]\n\
+                z = 0.0\nmomentum_z = 1.0\n";
+    let out = folder.path("out");
+    let done = super::ran::run(&folder, model, case, &["--out", &out]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let svg = fs::read_to_string(format!("{out}/fields.svg")).expect("is drawn");
+    let lines: Vec<&str> = svg.lines().map(str::trim).collect();
+    assert!(lines.contains(&"y") && lines.contains(&"z: height of the lid"));
+    assert!(!svg.contains("y: "));
+}

@@ -91,6 +91,50 @@ fn rods_have_maps_of_their_angles_and_some_of_their_spheres() {
     assert!(paper("attitude").contains("6 of 10 spheres are shown"));
 }
 
+/// A chain in a plane is seen from its side, without any slant; one in space in two planes.
+#[test]
+fn a_chain_in_space_is_drawn_in_planes_of_its_components() {
+    let folder = Folder::new("pictures-of-a-chain");
+    let flat = "model = \"hanging-chain\"\nh = 0.002\nsteps = 100\n[labels]\ni = 10\n[ends]\ni = [\"pinned\", \"free\"]\n\
+                [parameters]\nm = 0.025\na = 0.1\ng = [0.0, 0.0, -1.0]\n[initial]\nx = [\"0.1*i\", 0.0, 0.0]\n\
+                momentum_x = [0.0, 0.0, 0.0]\n";
+    let own = drawn(&folder, "hanging-chain", flat, &[]);
+    let svg = own("snapshots");
+    for words in [
+        "shape of x, components 1 and 3",
+        "component 1 to the right, 3 up",
+        "x₁",
+        "x₃",
+    ] {
+        assert!(svg.contains(words), "{words}");
+    }
+    assert!(!svg.contains("below") && !svg.contains("x₂"));
+    // At the start it is level.
+    let line = svg.split("<polyline").nth(1).expect("the first shape");
+    let points = line.split("points=\"").nth(1).expect("its points");
+    let points = points.split('"').next().expect("their end");
+    let heights: Vec<&str> = points
+        .split_whitespace()
+        .filter_map(|p| Some(p.split_once(',')?.1))
+        .collect();
+    assert!(heights.len() == 11 && heights.iter().all(|y| *y == heights[0]));
+
+    let deep = flat.replace(
+        "momentum_x = [0.0, 0.0, 0.0]",
+        "momentum_x = [0.0, \"0.1*i/N\", 0.0]",
+    );
+    let svg = drawn(&folder, "hanging-chain", &deep, &[])("snapshots");
+    assert!(svg.contains("shape of x, components 1 and 2"), "{svg:.600}");
+    let sideways = flat.replace(
+        "momentum_x = [0.0, 0.0, 0.0]",
+        "momentum_x = [0.0, \"0.02*i/N\", 0.0]",
+    );
+    let long = sideways.replace("g = [0.0, 0.0, -1.0]", "g = [0.0, 0.0, -20.0]");
+    let svg = drawn(&folder, "hanging-chain", &long, &[])("snapshots");
+    let told = "shape of x, components 1 and 3, below 1 and 2";
+    assert!(svg.contains(told), "{svg:.600}");
+}
+
 #[test]
 fn a_few_bodies_have_their_angles_against_time() {
     let folder = Folder::new("pictures-of-few-bodies");

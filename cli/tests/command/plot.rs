@@ -127,12 +127,110 @@ fn sites_are_counted_from_zero() {
     assert!(listed.out.contains("  x_1.1 to x_"), "{}", listed.out);
     let done = shipped(&["plot", &held, "--y", "x_0.1"]);
     assert!(
-        done.err.contains("give a site and a component, x_1.1"),
+        done.err.contains(
+            "an end prescribes `x_0`, so the run has no such column; give a site and a component, x_1.1 to x_20.3"
+        ),
         "{}",
         done.err
     );
     let done = shipped(&["plot", &out, "--y", "q_32"]);
-    assert!(done.err.contains("give a site, q_0"), "{}", done.err);
+    assert!(
+        done.err.contains("give a site, q_0 to q_31"),
+        "{}",
+        done.err
+    );
+    let done = shipped(&["plot", &held, "--y", "lambda"]);
+    assert!(
+        done.err.contains("give a site, lambda_0 to lambda_19"),
+        "{}",
+        done.err
+    );
+    // Of a vector at a site all components; lists and brackets.
+    for (name, labels) in [
+        ("x_10", &["x_10.1", "x_10.2", "x_10.3"][..]),
+        ("x_10.1,x_9.3", &["x_10.1", "x_9.3"]),
+        ("x[10][2], lambda_3", &["x[10][2]", "lambda_3"]),
+    ] {
+        let svg = curves(&held, &folder, &[name]).0;
+        for label in labels {
+            assert!(svg.contains(label), "{name}: {label}");
+        }
+    }
+}
+
+/// A picture of these columns, and the points of its longest lines.
+fn curves(run: &str, folder: &Folder, names: &[&str]) -> (String, Vec<Vec<[f64; 2]>>) {
+    let out = folder.path("curves.svg");
+    let mut arguments = vec!["plot", run, "--out", &out];
+    arguments.extend(names.iter().flat_map(|name| ["--y", name]));
+    let done = shipped(&arguments);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let svg = fs::read_to_string(&out).expect("a picture");
+    let of_line = |text: &str| -> Vec<[f64; 2]> {
+        let points = text.split("points=\"").nth(1).unwrap_or_default();
+        let points = points.split('"').next().unwrap_or_default();
+        let number = |text: &str| text.parse::<f64>().expect("a number");
+        let point = |text: &str| text.split_once(',').map(|(x, y)| [number(x), number(y)]);
+        points.split_whitespace().filter_map(point).collect()
+    };
+    let lines = svg.split("<polyline").skip(1).map(of_line);
+    let lines = lines.filter(|line| line.len() > 2).collect();
+    (svg, lines)
+}
+
+#[test]
+fn a_multiplier_begins_where_a_step_has_found_it() {
+    let folder = Folder::new("plot-multiplier");
+    let out = folder.path("run");
+    let run = [
+        "run",
+        "hanging-chain:swing",
+        "--steps",
+        "5",
+        "--quiet",
+        "--out",
+        &out,
+    ];
+    assert_eq!(shipped(&run).code, 0);
+    let left = |name: &str| curves(&out, &folder, &[name]).1[0].clone();
+    assert_eq!(left("x_1.1").len(), 6);
+    let multiplier = left("lambda_3");
+    assert_eq!(multiplier.len(), 5);
+    assert!(multiplier[0][0] > left("x_1.1")[0][0] + 1.0);
+}
+
+#[test]
+fn what_is_constant_to_rounding_is_drawn_flat() {
+    let folder = Folder::new("plot-flat");
+    let out = folder.path("run");
+    let run = [
+        "run",
+        "kepler:eccentric",
+        "--steps",
+        "500",
+        "--quiet",
+        "--out",
+        &out,
+    ];
+    assert_eq!(shipped(&run).code, 0);
+    let height = |line: &[[f64; 2]]| {
+        let heights = || line.iter().map(|point| point[1]);
+        heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min)
+    };
+    // The first is rounding about zero, the norm of the whole is not small.
+    for name in [
+        "invariant_momentum_angular.1",
+        "invariant_momentum_angular.2",
+        "invariant_momentum_angular.3",
+    ] {
+        let (svg, lines) = curves(&out, &folder, &[name]);
+        assert!(svg.contains("constant to rounding"), "{name}");
+        // Of a chart nearly a thousand units high.
+        assert!(lines.iter().all(|line| height(line) < 10.0), "{name}");
+    }
+    let (svg, lines) = curves(&out, &folder, &["X.1"]);
+    assert!(!svg.contains("constant to rounding"));
+    assert!(lines.iter().any(|line| height(line) > 300.0));
 }
 
 /// Names of the table that hold sites in their middle, as those of relative attitudes, are found too.

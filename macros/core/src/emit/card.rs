@@ -93,9 +93,9 @@ fn element_field(d: &Derivation, i: usize) -> FieldOf {
         Family::Coordinates(names) => (names.kind, names.words),
         Family::Linear(_) => ("Matrix", "configuration, reference to space"),
         Family::Field(shape) => match (shape.is_scalar(), shape.is_vector()) {
-            (true, _) => ("Scalar", "field"),
-            (false, true) => ("Vector", "field"),
-            (false, false) => ("Matrix", "field"),
+            (true, _) => ("Scalar", ""),
+            (false, true) => ("Vector", ""),
+            (false, false) => ("Matrix", ""),
         },
     };
     FieldOf {

@@ -1,0 +1,30 @@
+//! Which outputs of a run are multipliers of held constraints. Takes names; every multiplier has invariants of its own.
+
+/// Whether a quantity is a multiplier, or its copy at a site: a run says of each how far the start and the steps are off its
+/// constraint, and how fast. The names of a run's invariants are told by `said`.
+pub(crate) fn is_multiplier(name: &str, said: impl Fn(&str) -> bool) -> bool {
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let copy = name.rsplit_once('_').filter(|(_, site)| is_number(site));
+    let names = std::iter::once(name).chain(copy.map(|(own, _)| own));
+    let mut names = names.filter(|own| !own.is_empty());
+    names.any(|own| {
+        let parts = ["constraint", "constraint_rate"].map(|part| format!("{part}_{own}"));
+        parts.iter().all(|part| said(part))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_multiplier;
+
+    #[test]
+    fn multipliers_are_told_by_their_invariants() {
+        let names = ["energy", "constraint_tension", "constraint_rate_tension"];
+        let said = |name: &str| names.contains(&name);
+        for (name, is) in [("tension", true), ("tension_0", true), ("x_0", false)] {
+            assert_eq!(is_multiplier(name, said), is, "{name}");
+        }
+        assert!(!is_multiplier("rate_tension", said));
+        assert!(!is_multiplier("_0", said));
+    }
+}
