@@ -3,7 +3,7 @@
 
 use crate::group::{Group, LEFT};
 use crate::matrix::Matrix;
-use crate::number::Number;
+use crate::number::{Number, larger};
 use crate::stated::{Role, Side};
 
 /// The axes of an angular velocity.
@@ -25,12 +25,18 @@ pub struct Velocity {
 }
 
 impl Velocity {
+    /// The largest of its numbers.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        let turning = self.turning.iter().flat_map(|(w, _)| w);
+        let moving = self.moving.iter().flatten();
+        turning.chain(moving).map(|x| x.abs()).fold(0.0, larger)
+    }
+
     /// Whether nothing moves.
     #[must_use]
     pub fn is_zero(&self) -> bool {
-        let turning = self.turning.iter().flat_map(|(w, _)| w);
-        let moving = self.moving.iter().flatten();
-        turning.chain(moving).all(|x| *x == 0.0)
+        self.size() == 0.0
     }
 }
 

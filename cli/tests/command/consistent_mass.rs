@@ -1,7 +1,7 @@
 //! Chains whose velocities stand in terms of neighbours alone, as with the consistent mass matrix of linear elements: the
 //! recorded momenta of a step against the derivatives of the action by hand.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Folder, program};
 
 const MODEL: &str = "model Bar {
     label i in 0..N step s;
@@ -53,7 +53,7 @@ fn velocities_of_neighbours_alone_are_found_for_every_number_of_sites() {
         );
         let case = folder.write("bar.toml", &case);
         let out = folder.path("out");
-        let done = clebsch(&[
+        let done = program(&[
             "run", &model, "--case", &case, "--csv", "--out", &out, "--force",
         ]);
         assert_eq!(done.code, 0, "{n}: {}", done.err);

@@ -1,7 +1,7 @@
 //! Multipliers as they are recorded and as derivations print them: what the equations of a step and of the projection on
 //! arrival leave for them, solved by hand from recorded places and momenta.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Folder, program};
 
 /// The columns of a run by name, at two nodes.
 fn two_nodes(folder: &Folder, model: &str, case: &str) -> impl Fn(&str, usize) -> f64 {
@@ -10,7 +10,7 @@ fn two_nodes(folder: &Folder, model: &str, case: &str) -> impl Fn(&str, usize) -
         folder.write("own.toml", case),
     );
     let out = folder.path("out");
-    let done = clebsch(&[
+    let done = program(&[
         "run", &model, "--case", &case, "--every", "1", "--out", &out, "--force",
     ]);
     assert_eq!(done.code, 0, "{}", done.err);
@@ -159,7 +159,7 @@ fn light_bodies_on_a_hinge_stay_on_it() {
          momentum_x = [1e-9, 0.0, 0.0]\nmomentum_y = [2e-9, 0.0, 0.0]\n\
          [bounds]\nconstraint_rate_n = 1e-14\nconstraint_rate_ax = 1e-14\nconstraint_rate_ay = 1e-14\n",
     );
-    let done = clebsch(&["run", &model, "--case", &case]);
+    let done = program(&["run", &model, "--case", &case]);
     assert_eq!(done.code, 0, "{}{}", done.out, done.err);
 }
 
@@ -176,7 +176,7 @@ fn a_held_rod_of_one_segment_has_an_energy() {
         env!("CARGO_MANIFEST_DIR")
     );
     let case = folder.write("one.toml", case);
-    let done = clebsch(&["run", &model, "--case", &case, "--json"]);
+    let done = program(&["run", &model, "--case", &case, "--json"]);
     assert_eq!(done.code, 0, "{}{}", done.out, done.err);
     let object: serde_json::Value = serde_json::from_str(&done.out).expect("one JSON object");
     let energy = &object["results"]["invariants"][0];
@@ -216,7 +216,7 @@ fn the_one_site_that_moves_has_its_momentum() {
             folder.write("links.clebsch", &model(last)),
             folder.write("case.toml", case),
         );
-        let done = clebsch(&["run", &model, "--case", &case]);
+        let done = program(&["run", &model, "--case", &case]);
         assert_eq!(done.code, 2, "{}", done.out);
         assert!(
             done.err.contains("is not tangent to the constraint"),
@@ -265,7 +265,7 @@ body_momentum = [[-0.01110885263621708, 0.04994609090395395, -0.1353340905761882
         folder.write("own.clebsch", model),
         folder.write("own.toml", case),
     );
-    let done = clebsch(&["run", &model, "--case", &case, "--json"]);
+    let done = program(&["run", &model, "--case", &case, "--json"]);
     assert_eq!(done.code, 0, "{}", done.err);
     let object: serde_json::Value = serde_json::from_str(&done.out).expect("one JSON object");
     let all = object["results"]["invariants"]
