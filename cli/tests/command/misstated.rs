@@ -196,6 +196,10 @@ fn slips_of_a_new_user_are_answered_by_what_to_write() {
         let done = crate::common::program_in(&folder.path(""), arguments);
         format!("{}{}", done.out, done.err)
     };
+    let sample = said(&["case", "two.clebsch"]);
+    for words in ["mass at y", "position of the second mass"] {
+        assert!(sample.contains(words), "{words}\n{sample}");
+    }
     let of_case = |from: &str, to: &str| {
         folder.write("own.toml", &case.replace(from, to));
         said(&["check", "two.clebsch", "--case", "own.toml"])
