@@ -4,6 +4,7 @@
 use crate::plain::shown;
 use clebsch_core::lattice::value::translated;
 use std::ops::Range;
+use toml::de::DeValue;
 
 /// Words for no value at all.
 const NOTHING: [&str; 5] = ["None", "null", "nil", "NULL", "NaN"];
@@ -32,7 +33,8 @@ fn one(value: &str) -> Option<String> {
         return Some(format!("expected a number, found `{value}`"));
     }
     let is_quoted = value.starts_with(['"', '\'']) || value.is_empty();
-    if is_quoted {
+    // Where the value itself is TOML, something else is wrong.
+    if is_quoted || DeValue::parse(value).is_ok() {
         return None;
     }
     let written = translated(value)?;
