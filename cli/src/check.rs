@@ -4,11 +4,14 @@
 use crate::Streams;
 use crate::failure::Failure;
 use crate::gallery::Gallery;
+use crate::named_cases::WhichCase;
 use crate::plain::shown;
 use crate::plan::Plan;
-use crate::resolve_model::resolved;
+use crate::resolve_model::{Named, asked, case_of, entry, resolved};
 use clap::ArgMatches;
 use clebsch::card::Card;
+use clebsch_core::pipeline;
+use clebsch_core::syntax::ast::Statement;
 
 /// Runs the command.
 ///
@@ -19,9 +22,15 @@ pub(crate) fn check(
     matches: &ArgMatches,
     streams: &mut Streams<'_>,
 ) -> Result<(), Failure> {
+    if let (Named::Text(text), case) = asked(gallery, matches)?
+        && let Err(no_case) = case_of(&text, case)
+    {
+        let entry = entry(&text, &WhichCase::First, streams)?;
+        writeln!(streams.out, "{}", derived(&entry.card))?;
+        return Err(no_case);
+    }
     let resolved = resolved(gallery, matches, streams)?;
-    let model = resolved.entry.card;
-    writeln!(streams.out, "model {}: derived", model.kebab)?;
+    writeln!(streams.out, "{}", derived(&resolved.entry.card))?;
     let plan = Plan::new(&resolved, matches)?;
     let card = resolved.entry.card_of(&plan.case);
     for line in plan.starts(&card) {
@@ -38,6 +47,23 @@ pub(crate) fn check(
         .map_err(|error| Failure::Failed(error.to_string()))?;
     writeln!(streams.out, "first step: solved")?;
     Ok(())
+}
+
+/// That a model derives, and how many configurations it states.
+fn derived(card: &Card) -> String {
+    let stated = pipeline::parse_source(card.source).map(|model| {
+        let each = model.statements.iter().map(|s| match s {
+            Statement::Group { .. } => 1,
+            Statement::Field { names, .. } => names.len(),
+            _ => 0,
+        });
+        each.sum::<usize>()
+    });
+    match stated {
+        Ok(1) => format!("model {}: derived, 1 configuration", card.kebab),
+        Ok(count) => format!("model {}: derived, {count} configurations", card.kebab),
+        Err(_) => format!("model {}: derived", card.kebab),
+    }
 }
 
 /// How many values a case gives.

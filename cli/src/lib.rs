@@ -17,6 +17,7 @@ pub mod derive;
 pub mod failure;
 mod figures;
 mod follow;
+mod foreign_option;
 pub mod gallery;
 pub mod generated;
 mod lines;
@@ -107,10 +108,18 @@ pub fn execute(
         progress: streams.progress,
         width: streams.width,
     };
-    let command = arguments::command(streams.width);
-    let matches = match command.try_get_matches_from(arguments) {
+    let mut command = arguments::command(streams.width);
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let name = arguments
+        .get(1)
+        .and_then(|name| name.to_str())
+        .map(str::to_owned);
+    let matches = match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => matches,
-        Err(error) => return answer_clap(&error, streams),
+        Err(error) => {
+            let error = foreign_option::explained(error, &command, name.as_deref());
+            return answer_clap(&error, streams);
+        }
     };
     let as_json = matches.subcommand().is_some_and(|(name, matches)| {
         ["run", "sweep", "collect", "compare", "converge", "figures"].contains(&name)

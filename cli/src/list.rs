@@ -8,6 +8,7 @@ use crate::gallery::{Case, Entry, Family, Gallery, declared, family};
 use crate::named_cases::NamedCases;
 use crate::plain::shown;
 use crate::resolve_model::{Named, named};
+use crate::suggestion::slip;
 use clap::ArgMatches;
 use clebsch::card::Conserved;
 use clebsch_core::pipeline;
@@ -34,6 +35,13 @@ pub fn list(
     let which = matches.get_one::<String>("which").map(String::as_str);
     let of_family = which.and_then(|which| Family::ALL.into_iter().find(|f| f.name() == which));
     if let (Some(model), None) = (which, of_family) {
+        let families = Family::ALL.map(Family::name);
+        if let Some(near) = slip(model, &families) {
+            return Err(Failure::Usage(format!(
+                "no family or model `{}`; did you mean `{near}`?",
+                shown(model)
+            )));
+        }
         return cases(gallery, model, matches.get_flag("json"), streams);
     }
     let mut rows: Vec<Row> = gallery.entries.iter().map(compiled).collect();

@@ -100,12 +100,35 @@ fn sample(card: &Card, file: &str) -> Case {
         initial: values(card.initial),
         bounds: Vec::new(),
     };
-    if let Ok(model) = pipeline::parse_source(card.source)
-        && held
-    {
-        onto_constraints(&model, card, &mut case);
+    if let Ok(model) = pipeline::parse_source(card.source) {
+        apart(&model, card, &mut case);
+        if held {
+            onto_constraints(&model, card, &mut case);
+        }
     }
     case
+}
+
+/// Moves fields of one shape apart: many Lagrangians are singular where two positions are the same.
+fn apart(model: &Model, card: &Card, case: &mut Case) {
+    let is_field = |name: &str| {
+        model.statements.iter().any(|s| match s {
+            Statement::Field { names, .. } => names.iter().any(|own| own.text == name),
+            _ => false,
+        })
+    };
+    let mut before: Vec<[usize; 2]> = Vec::new();
+    for (field, numbers) in card.initial.iter().zip(&mut case.initial) {
+        if field.cols != 1 || !is_field(field.name) {
+            continue;
+        }
+        let shape = [field.rows, field.cols];
+        let distance = before.iter().filter(|own| **own == shape).count();
+        if let Some(first) = numbers.first_mut() {
+            *first += distance as f64;
+        }
+        before.push(shape);
+    }
 }
 
 /// Whether the model of a card holds constraints.

@@ -1,7 +1,8 @@
 //! A number of a case by its name on the command line: `gU.z`, `q_3`, `h`.
 //! Takes a name and a card; gives the entries of parameters, initial values or the step that the name stands for.
 
-use crate::case_file::{Motion, at_site, is_velocity};
+use crate::case_file::labels::Stated;
+use crate::case_file::{Motion, at_site, is_key_of_rotation, is_velocity};
 use crate::gallery::Case;
 use crate::substitute::is_within_a_table;
 use clebsch::card::{Card, Field, Kind};
@@ -163,6 +164,11 @@ fn place(name: &str, card: &Card, motion: &Motion) -> Result<Place, String> {
             "the case gives the momentum instead of `{field}`; give the velocity whole, by --set {field}=..., or in the case"
         ));
     }
+    if let Some(label) = label(name, card) {
+        return Err(format!(
+            "`{name}` is the number of sites of `{label}` and is read from the case: write `{name} = ...` under [labels] there"
+        ));
+    }
     let mut names: Vec<&str> = Vec::new();
     for fields in [card.parameters, card.initial] {
         for own in fields {
@@ -183,6 +189,14 @@ fn place(name: &str, card: &Card, motion: &Motion) -> Result<Place, String> {
         card.kebab,
         names.join(", ")
     ))
+}
+
+/// The index of the label whose number of sites has this name.
+fn label(name: &str, card: &Card) -> Option<String> {
+    let stated = Stated::read(card.source)?;
+    let mut labels = stated.lattice.labels.iter();
+    let own = labels.find(|l| l.count.text == name && !l.grid)?;
+    Some(own.index.text.clone())
 }
 
 /// The fields of a name, and the first of them. Along a line a name is that of a case file: without the number of a site it is that of
@@ -232,6 +246,13 @@ fn entries(
             )),
         };
     };
+    if matches!(field.kind, Kind::Rotation | Kind::UnitQuaternion) && is_key_of_rotation(component)
+    {
+        return Err(format!(
+            "the case does not give `{name}` by a table with `{component}`; write \
+             `--set '{name}={{axis=[0,1,0], angle=1}}'`, or this table in the case"
+        ));
+    }
     let outside = || match cols {
         1 => format!("`{name}` has the components {name}.1 to {name}.{rows}, or x, y, z of three"),
         _ => {

@@ -186,7 +186,15 @@ pub(crate) fn named<'a>(gallery: &'a Gallery, name: &str, but: &str) -> Result<N
     }
     let is_meant = path.exists() || path.extension().is_some_and(|end| end == "clebsch");
     if !is_meant {
-        return Err(gallery.unknown(name));
+        let beside = format!("{name}.clebsch");
+        return Err(match Path::new(&beside).is_file() {
+            true => Failure::Usage(format!(
+                "no model `{}`; did you mean `{}`?",
+                shown(name),
+                shown(&beside)
+            )),
+            false => gallery.unknown(name),
+        });
     }
     if !path.exists() {
         return Err(Failure::Usage(format!(

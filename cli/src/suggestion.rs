@@ -22,6 +22,17 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     best.map(|(_, name)| name)
 }
 
+/// The only known name that differs from what was typed by one letter, or by two letters in the other order.
+#[must_use]
+pub fn slip<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
+    let is_near = |name: &&&str| strsim::damerau_levenshtein(typed, name) == 1;
+    let mut near = known.iter().filter(is_near);
+    match (near.next(), near.next()) {
+        (Some(only), None) => Some(only),
+        _ => None,
+    }
+}
+
 /// Gives `; did you mean ...?` for the [`nearest`] name, else `; known: ...`, else nothing.
 #[must_use]
 pub fn did_you_mean<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> String {
@@ -40,7 +51,18 @@ pub fn did_you_mean<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -
 
 #[cfg(test)]
 mod tests {
-    use super::did_you_mean;
+    use super::{did_you_mean, slip};
+
+    #[test]
+    fn a_slip_has_one_name_near_it() {
+        let names = ["velocity_x", "velocity_y"];
+        assert_eq!(slip("velocty_y", &names), Some("velocity_y"));
+        assert_eq!(slip("velcoity_x", &names), Some("velocity_x"));
+        assert_eq!(
+            [slip("velocity_z", &names), slip("velocity", &names)],
+            [None; 2]
+        );
+    }
 
     #[test]
     fn of_many_names_some_are_told() {

@@ -52,6 +52,11 @@ pub(super) fn numbers(
     }
 }
 
+/// Whether a key is one of the tables that state a rotation.
+pub(crate) fn is_key_of_rotation(key: &str) -> bool {
+    tables::keys().any(|known| known == key)
+}
+
 /// Whether a value stands for an element by a table of its own.
 pub(super) fn is_table(value: &DeValue<'_>) -> bool {
     value.as_table().is_some_and(|table| {

@@ -12,6 +12,7 @@ use super::value::{self, Numbers, expected};
 use super::velocity::{self, Way};
 use crate::failure::Failure;
 use crate::model_file::is_momentum;
+use crate::suggestion::slip;
 use clebsch::card::{Field, Kind};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use toml::Spanned;
@@ -155,6 +156,9 @@ impl Fields<'_> {
             let written = own.fields.iter().find(|field| field.name == asked);
             if let Some(field) = written {
                 return Some(format!("; did you mean `{}`?", field.ascii));
+            }
+            if let Some(near) = slip(asked, &names) {
+                return Some(format!("; did you mean `{near}`?"));
             }
             velocity::is_meant(asked)
                 .then(|| own.how_to_move())

@@ -2,6 +2,7 @@
 //! I in the place of J. Takes a table of a case file; gives J with `I = tr(J) Id - J`.
 
 use super::value::{Numbers, numbers};
+use crate::plots::axis;
 use clebsch::card::{Field, Kind};
 use std::collections::HashSet;
 use toml::Spanned;
@@ -101,6 +102,30 @@ pub(super) fn field(field: &Field) -> Field {
     }
 }
 
+/// Why no body in space has these principal moments; nothing of a matrix that is not diagonal.
+fn impossible(entries: &[f64], n: usize) -> Option<String> {
+    let at = |i: usize| entries.get(i * n + i).copied().unwrap_or_default();
+    let is_diagonal = entries
+        .iter()
+        .enumerate()
+        .all(|(k, x)| k / n == k % n || *x == 0.0);
+    if n != 3 || !is_diagonal {
+        return None;
+    }
+    (0..3).find_map(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let (own, sum) = (at(i), at(j) + at(k));
+        let (first, second) = (j.min(k) + 1, j.max(k) + 1);
+        (own > sum * (1.0 + 4.0 * f64::EPSILON)).then(|| {
+            format!(
+                "moments of inertia obey I{} <= I{first} + I{second}; {own} > {}",
+                i + 1,
+                axis::short(sum)
+            )
+        })
+    })
+}
+
 /// J of an inertia given by its principal moments or in full: `tr(I)/2 Id - I`.
 pub(super) fn second_moments(
     field: &Field,
@@ -128,6 +153,9 @@ pub(super) fn second_moments(
                 ));
             }
         }
+    }
+    if let Some(why) = impossible(&entries, n) {
+        return Err(why);
     }
     let half: f64 = (0..n).map(|i| 0.5 * entries[i * n + i]).sum();
     Ok(entries

@@ -2,6 +2,7 @@
 //! Takes the file's name and text; gives lines and placed messages.
 
 use super::motion::Motion;
+use super::not_toml;
 use crate::failure::Failure;
 use crate::gallery::Case;
 use crate::plain::shown;
@@ -60,8 +61,12 @@ impl<'a> File<'a> {
     /// Usage: it is no TOML, with the line.
     pub fn document(&self) -> Result<Spanned<DeTable<'a>>, Failure> {
         DeTable::parse(self.text).map_err(|error| {
-            let message = format!("not TOML: {}", error.message());
-            self.wrong(error.span().as_ref(), &message)
+            let span = error.span();
+            let instead = span
+                .as_ref()
+                .and_then(|span| not_toml::instead(self.text, span));
+            let message = instead.unwrap_or_else(|| format!("not TOML: {}", error.message()));
+            self.wrong(span.as_ref(), &message)
         })
     }
 

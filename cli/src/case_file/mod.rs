@@ -16,6 +16,7 @@ pub(crate) mod labels;
 mod lattice;
 mod location;
 mod motion;
+mod not_toml;
 mod read;
 mod remarks;
 mod sample;
@@ -27,6 +28,7 @@ mod value;
 mod velocity;
 mod write;
 
+pub(crate) use attitude::is_key_of_rotation;
 pub(crate) use beside::{at_site, line_of, quantity_of};
 pub(crate) use chosen::choice;
 pub(crate) use lattice::write_lattice;

@@ -83,7 +83,11 @@ impl Motion {
             }
             // What rests has no momentum, but where the action has terms linear in velocities.
             Err(_) if self.given.is_empty() => Ok(()),
-            Err(why) => Err(self.wrong(card, why)),
+            Err(NoMomentum::Lost(name)) => {
+                let zero = self.zero(card, choice, case, &name);
+                Err(self.wrong(card, NoMomentum::Lost(name), zero))
+            }
+            Err(why) => Err(self.wrong(card, why, None)),
         }
     }
 
@@ -130,7 +134,29 @@ impl Motion {
         given.chain(self.resting.iter().copied())
     }
 
-    fn wrong(&self, card: &Card, why: NoMomentum) -> Wrong {
+    /// The parameter that is 0 and without which a configuration has no kinetic energy.
+    fn zero(
+        &self,
+        card: &Card,
+        choice: Option<&Choice>,
+        case: &Case,
+        lost: &str,
+    ) -> Option<&'static str> {
+        let all = card.parameters.iter().zip(&case.parameters).enumerate();
+        let mut zero = all.filter(|(_, (_, own))| own.iter().all(|x| *x == 0.0));
+        zero.find_map(|(at, (field, _))| {
+            let mut other = case.clone();
+            for (k, x) in other.parameters.get_mut(at)?.iter_mut().enumerate() {
+                let on_diagonal = field.cols <= 1 || k / field.cols == k % field.cols;
+                *x = f64::from(u8::from(on_diagonal));
+            }
+            let found = self.momenta(card, choice, &other);
+            let still = matches!(&found, Err(NoMomentum::Lost(name)) if name == lost);
+            (!still).then_some(field.ascii)
+        })
+    }
+
+    fn wrong(&self, card: &Card, why: NoMomentum, zero: Option<&str>) -> Wrong {
         let named = |name: &str| {
             let elements = elements(card.initial);
             let own = |start: &&Start| {
@@ -161,7 +187,12 @@ impl Motion {
                      Give velocities for which it stays zero"
                 )
             }
-            NoMomentum::Lost(name) => lost(card, &name, momentum),
+            NoMomentum::Lost(name) => match zero {
+                Some(zero) => format!(
+                    "no momentum depends on this velocity, since the parameter `{zero}` of the kinetic energy is 0; give `{zero}` another value"
+                ),
+                None => lost(card, &name, momentum),
+            },
             NoMomentum::Coupled(_, other) => format!(
                 "the momentum depends on the velocity of `{other}` too, of which the momentum is given; give both by velocities or both by momenta"
             ),

@@ -53,7 +53,10 @@ fn read_values(text: &str) -> Result<Vec<f64>, String> {
             let count = crate::arguments::whole(count.trim())
                 .and_then(|count| usize::try_from(count).ok())
                 .filter(|count| (1..=MOST_VALUES).contains(count))
-                .ok_or_else(|| format!("give from 1 to {MOST_VALUES} values"))?;
+                .ok_or_else(|| match count_of(from, to, count) {
+                    Some(count) => format!("the third part is a count; write {from}:{to}:{count}"),
+                    None => format!("give from 1 to {MOST_VALUES} values"),
+                })?;
             if count == 1 {
                 return Ok(vec![from]);
             }
@@ -68,6 +71,15 @@ fn read_values(text: &str) -> Result<Vec<f64>, String> {
         [list] => list.split(',').map(number).collect(),
         _ => Err("a range has three parts, FROM:TO:COUNT".to_owned()),
     }
+}
+
+/// How many values a range has whose third part was meant for their distance.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn count_of(from: f64, to: f64, distance: &str) -> Option<usize> {
+    let distance = distance.trim().parse::<f64>().ok()?;
+    let parts = ((to - from) / distance).abs().round();
+    let fits = distance.fract() != 0.0 && parts.is_finite() && parts < MOST_VALUES as f64;
+    fits.then_some(parts as usize + 1)
 }
 
 /// How many points all axes have together.
@@ -112,6 +124,8 @@ mod tests {
         for wrong in ["", "1:2", "1:2:0", "1:inf:3", "a", "1,,2", "1:2:3:4"] {
             assert!(read_values(wrong).is_err(), "{wrong}");
         }
+        let why = read_values("1:2:0.25").expect_err("no count");
+        assert_eq!(why, "the third part is a count; write 1:2:5");
     }
 
     #[test]

@@ -185,3 +185,70 @@ fn an_energy_beyond_the_range_of_numbers_is_named() {
         "{both}"
     );
 }
+
+#[test]
+fn slips_of_a_new_user_are_answered_by_what_to_write() {
+    let folder = Folder::new("slips");
+    let new = crate::common::program_in(&folder.path(""), &["new", "two"]);
+    assert_eq!(new.code, 0, "{}", new.err);
+    let case = std::fs::read_to_string(folder.path("two.toml")).expect("it was written");
+    let said = |arguments: &[&str]| {
+        let done = crate::common::program_in(&folder.path(""), arguments);
+        format!("{}{}", done.out, done.err)
+    };
+    let sample = said(&["case", "two.clebsch"]);
+    for words in ["mass at y", "position of the second mass"] {
+        assert!(sample.contains(words), "{words}\n{sample}");
+    }
+    let of_case = |from: &str, to: &str| {
+        folder.write("own.toml", &case.replace(from, to));
+        said(&["check", "two.clebsch", "--case", "own.toml"])
+    };
+    for (from, to, answer) in [
+        (
+            "k = 50.0",
+            "k = 2*pi**2",
+            "put expressions in quotes: \"2*pi^2\"",
+        ),
+        ("k = 50.0", "k = (3.0, 0.0)", "write [3.0, 0.0]"),
+        ("k = 50.0", "k = None", "expected a number, found `None`"),
+        ("k = 50.0", "k = \"2*np.pi\"", "write `pi`"),
+        ("velocity_y =", "velocty_y =", "did you mean `velocity_y`?"),
+        (
+            "m1 = 1.0",
+            "m1 = 0",
+            "the parameter `m1` of the kinetic energy is 0",
+        ),
+    ] {
+        let found = of_case(from, to);
+        assert!(found.contains(answer), "{to}\n{found}");
+    }
+    for (arguments, answer) in [
+        (vec!["run", "two"], "did you mean `two.clebsch`?"),
+        (vec!["run", "two.clebsch", "--time", "1"], "'--until'"),
+        (vec!["list", "chian"], "did you mean `chain`?"),
+        (
+            vec!["check", "two.clebsch"],
+            "model two: derived, 2 configurations",
+        ),
+        (
+            vec!["check", "two.clebsch", "--case", "sample"],
+            "first step: solved",
+        ),
+        (
+            vec!["run", "toda-chain", "--set", "N=100"],
+            "`N` is the number of sites of `i`",
+        ),
+        (
+            vec!["run", "free-body", "--set", "Lambda.angle=1"],
+            "`--set 'Lambda={axis=[0,1,0], angle=1}'`",
+        ),
+        (
+            vec!["run", "free-body", "--set", "I=[0.2, 0.2, 0.55]"],
+            "moments of inertia obey I3 <= I1 + I2; 0.55 > 0.4",
+        ),
+    ] {
+        let found = said(&arguments);
+        assert!(found.contains(answer), "{arguments:?}\n{found}");
+    }
+}

@@ -61,14 +61,19 @@ pub fn derive_lattice(
 ) -> Result<(Unfolded, Derivation), Errors> {
     let unfolded = lattice::unfold(model, line, choice)?;
     let _room = work::room(room(&unfolded));
-    let spec = written_out(&unfolded)?;
+    let spec = written_out(&unfolded, line, choice)?;
     let derived = derive::derive(spec).map_err(Errors::first_at_each_place)?;
     Ok((unfolded, derived))
 }
 
 /// A lattice that is written out, checked: its configurations know of what they are copies.
-fn written_out(unfolded: &Unfolded) -> Result<Spec, Errors> {
+fn written_out(unfolded: &Unfolded, line: &Lattice, choice: &Choice) -> Result<Spec, Errors> {
     let mut spec = check::check_written_out(&unfolded.model)?;
+    let motionless = check::without_velocity(&spec);
+    if let Some(first) = motionless.first() {
+        let found = (*first, motionless.as_slice());
+        return Err(unfolded.motionless(line, choice, &spec, found).into());
+    }
     let mut families: Vec<(String, usize)> = Vec::new();
     for (i, c) in spec.configurations.iter_mut().enumerate() {
         let name = &spec.symbols.get(c.element).name;
@@ -96,7 +101,7 @@ pub fn outline_lattice(
 ) -> Result<(Unfolded, derive::Outline), Errors> {
     let unfolded = lattice::unfold(model, line, choice)?;
     let _room = work::room(room(&unfolded));
-    let spec = written_out(&unfolded)?;
+    let spec = written_out(&unfolded, line, choice)?;
     let outline = derive::outline(spec).map_err(Errors::first_at_each_place)?;
     Ok((unfolded, outline))
 }

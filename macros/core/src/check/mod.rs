@@ -27,6 +27,7 @@ pub(crate) use names::is_rust_word;
 
 use declare::Declared;
 use elaborate::Elaborator;
+pub(crate) use messages::unused_velocity;
 use spec::{Advected, Assumption, Configuration, Hold, Side, Spec, Subject};
 
 /// Largest expression tree the derivation takes on.
@@ -49,7 +50,7 @@ pub fn check(model: &Model) -> Result<Spec, Errors> {
 }
 
 /// Checks a lattice that is written out, which was bounded when it was. Of the same mistake in
-/// several copies the first is told.
+/// several copies the first is told. Configurations [`without_velocity`] are left to the caller, who knows their sites.
 pub fn check_written_out(model: &Model) -> Result<Spec, Errors> {
     counted(model, Extent::WrittenOut).map_err(Errors::first_at_each_place)
 }
@@ -277,7 +278,7 @@ fn checked(model: &Model, extent: Extent) -> Result<Spec, Errors> {
     spec.lets = elaborator.bound().to_vec();
     spec.unused_lets = unused_definitions(model);
     spec.of_site = extent == Extent::Site;
-    usage(&spec)?;
+    usage(&spec, extent)?;
     hold::without_clocks(&spec)?;
     Ok(spec)
 }
@@ -429,11 +430,10 @@ fn remarks(model: &Model, declared: &Declared) -> Vec<(Subject, Vec<String>)> {
     out
 }
 
-/// What is declared must be used where the theory needs it, and only there.
-fn usage(spec: &Spec) -> Result<(), Errors> {
-    let mut errors = Errors::new();
+/// The configurations whose velocity or increment the Lagrangian does not contain.
+pub fn without_velocity(spec: &Spec) -> Vec<&Configuration> {
     let used = expr::letters(&spec.lagrangian);
-    for c in &spec.configurations {
+    let is_still = |c: &&Configuration| {
         let velocity = Letter {
             symbol: c.velocity,
             shift: Shift::HERE,
@@ -443,7 +443,17 @@ fn usage(spec: &Spec) -> Result<(), Errors> {
             shift: Shift::NEXT,
         };
         // Stated by the elements at both ends of the step: the reduction brings the velocity in.
-        if !spec.of_site && !used.contains(&velocity) && !used.contains(&next) {
+        !used.contains(&velocity) && !used.contains(&next)
+    };
+    spec.configurations.iter().filter(is_still).collect()
+}
+
+/// What is declared must be used where the theory needs it, and only there.
+fn usage(spec: &Spec, extent: Extent) -> Result<(), Errors> {
+    let mut errors = Errors::new();
+    let used = expr::letters(&spec.lagrangian);
+    if extent == Extent::Stated {
+        for c in without_velocity(spec) {
             errors.push(messages::unused_velocity(spec, c));
         }
     }

@@ -154,7 +154,7 @@ impl Lattice {
             out.statement(statement, &mut errors);
         }
         out.functionals(model, &mut errors);
-        out.check_ends(&mut errors);
+        out.check_ends(model, &mut errors);
         out.check_names(model, &mut errors);
         errors.propagate()?;
         Ok(out)
@@ -501,7 +501,7 @@ impl Lattice {
     }
 
     /// What is given at an end is a configuration there.
-    fn check_ends(&self, errors: &mut Errors) {
+    fn check_ends(&self, model: &Model, errors: &mut Errors) {
         for alternative in self.ends.iter().flatten() {
             let name = &alternative.name;
             let states = !alternative.given.is_empty() || !alternative.terms.is_empty();
@@ -533,6 +533,10 @@ impl Lattice {
                 let known = known.filter(|q| q.kind == Kind::Configuration);
                 let known: Vec<String> = known.map(|q| format!("`{}`", q.name.text)).collect();
                 let d = Diagnostic::new(name.place, message);
+                let d = match elsewhere(model, name) {
+                    Some(stated) => d.help(format!("write `{stated}`")),
+                    None => d,
+                };
                 errors.push(match known.is_empty() {
                     true => d,
                     false => d.help(format!("configurations on the line: {}", known.join(", "))),
@@ -540,6 +544,32 @@ impl Lattice {
             }
         }
     }
+}
+
+/// The statement at nodes of a configuration that is declared without sites; nothing of other names.
+fn elsewhere(model: &Model, name: &Name) -> Option<String> {
+    model.statements.iter().find_map(|s| match s {
+        Statement::Field {
+            names,
+            shape,
+            at: None,
+            ..
+        } if names.iter().any(|own| own.text == name.text) => {
+            Some(format!("field {}: {} at nodes;", name.text, shape.text()))
+        }
+        Statement::Group {
+            name: own,
+            group,
+            at: None,
+            velocity,
+        } if own.text == name.text => Some(format!(
+            "group {}: {} at nodes velocity {};",
+            own.text,
+            group.text(),
+            velocity.text
+        )),
+        _ => None,
+    })
 }
 
 /// Where a statement puts what it declares.

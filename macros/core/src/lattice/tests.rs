@@ -220,6 +220,63 @@ fn mistakes_are_told_in_the_words_of_the_statement() {
 }
 
 #[test]
+fn a_configuration_without_sites_is_told_how_to_be_put_on_the_line() {
+    let lagrangian = "lagrangian = m*dot(next(q) - q, next(q) - q)/(2*h);";
+    let of = |declared: &str| {
+        let source = format!(
+            "model M {{ label i in 0..N; param m: Real; {declared} end i = 0 {{ pinned {{ q = given; }} }} {lagrangian} }}"
+        );
+        let model = parse_source(&source).expect("it parses");
+        Lattice::read(&model)
+            .expect_err("`q` has no sites")
+            .to_string()
+    };
+    let found = of("field q: Vec<3>;");
+    assert!(
+        found.contains("write `field q: Vec<3> at nodes;`"),
+        "{found}"
+    );
+    let found = of("group q: SO<3> velocity W;");
+    assert!(
+        found.contains("write `group q: SO<3> at nodes velocity W;`"),
+        "{found}"
+    );
+}
+
+#[test]
+fn a_site_without_a_kinetic_term_is_told_in_the_words_of_the_statement() {
+    let of = |parameters: &str, terms: &str| {
+        let source = format!(
+            "model M {{ label i in 0..N; {parameters} field x: Real at nodes; lagrangian = {terms}; }}"
+        );
+        let model = parse_source(&source).expect("it parses");
+        let errors = crate::pipeline::derive_model(&model).expect_err("no kinetic energy");
+        let found = errors.to_string();
+        assert!(!found.contains("x_"), "{found}");
+        found
+    };
+    let found = of(
+        "param m: Real at segments;",
+        "m*(next(x) - x)^2/(2*h) - h*(next(x, i) - x)^2/2",
+    );
+    assert!(
+        found.contains("the last site i = N of `x` has no kinetic term"),
+        "{found}"
+    );
+    assert!(found.contains("declare `m` at nodes"), "{found}");
+    let found = of(
+        "param m: Real;",
+        "m*(next(x, i) - x)*(next(next(x), i) - next(x, i))/(2*h)",
+    );
+    assert!(
+        found.contains("the first site i = 0 of `x` has no kinetic term"),
+        "{found}"
+    );
+    let found = of("param m: Real;", "-h*m*x^2");
+    assert!(found.contains("`next(x)` does not appear"), "{found}");
+}
+
+#[test]
 fn a_mistake_in_an_end_block_is_the_only_one_told() {
     for end in [
         "end i = 0 { q = given; }",

@@ -5,6 +5,7 @@ mod definitions;
 mod holds;
 mod lagrangian;
 mod mesh;
+mod motionless;
 mod pinned;
 #[cfg(test)]
 mod pinned_tests;

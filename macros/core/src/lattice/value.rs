@@ -212,6 +212,34 @@ pub fn instead_of(name: &str) -> Option<String> {
     }
 }
 
+/// An expression of other languages, such as `2*np.pi**2`, as this one writes it; nothing of what is no expression.
+#[must_use]
+pub fn translated(text: &str) -> Option<String> {
+    let mut out = text.trim().replace("**", "^");
+    for module in unknown::MODULES {
+        out = without_module(&out, module);
+    }
+    SiteData::read(&out).ok().map(|_| out)
+}
+
+/// The text without a module before names: `sin(x)` of `np.sin(x)`.
+fn without_module(text: &str, module: &str) -> String {
+    let prefix = format!("{module}.");
+    let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+    let mut out = String::new();
+    for piece in text.split_inclusive(prefix.as_str()) {
+        let Some(before) = piece.strip_suffix(prefix.as_str()) else {
+            out.push_str(piece);
+            continue;
+        };
+        out.push_str(before);
+        if out.ends_with(is_part) {
+            out.push_str(&prefix);
+        }
+    }
+    out
+}
+
 /// Whether what a help tells to write can be written here.
 fn is_of_sites(help: &str) -> bool {
     let Some(Ok(data)) = help.split('`').nth(1).map(SiteData::read) else {
@@ -229,6 +257,20 @@ fn is_of_sites(help: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::SiteData;
+
+    #[test]
+    fn expressions_of_python_are_translated_or_told() {
+        let translated = super::translated;
+        assert_eq!(translated("2*np.pi**2").as_deref(), Some("2*pi^2"));
+        assert_eq!(translated("math.sin(2)").as_deref(), Some("sin(2)"));
+        for none in ["(3.0, 0.0)", "", "x.np.sin(1)", "[1, 2]"] {
+            assert_eq!(translated(none), None, "{none}");
+        }
+        let why = |text: &str| SiteData::read(text).expect_err("a module");
+        assert!(why("2*np.pi").contains("write `pi`"), "{}", why("2*np.pi"));
+        let sine = why("np.sin(i)");
+        assert!(sine.contains("write `sin(...)`"), "{sine}");
+    }
 
     #[test]
     fn names_and_slopes_are_listed_and_have_their_values() {

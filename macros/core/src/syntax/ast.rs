@@ -84,6 +84,19 @@ pub struct Kindred {
 }
 
 impl Kindred {
+    /// As it is written: `Vec<3>`.
+    pub fn text(&self) -> String {
+        let sizes = self.sizes.iter().map(|size| match size {
+            Size::Number(n, _) => n.to_string(),
+            Size::Name(name) => name.text.clone(),
+        });
+        let sizes: Vec<String> = sizes.collect();
+        match sizes.is_empty() {
+            true => self.name.text.clone(),
+            false => format!("{}<{}>", self.name.text, sizes.join(", ")),
+        }
+    }
+
     /// How many components a number or a vector of known size has; nothing of other shapes.
     pub fn components(&self) -> Option<usize> {
         match (self.name.text.as_str(), self.sizes.as_slice()) {

@@ -49,7 +49,12 @@ pub fn expression(source: &str) -> Result<ast::Expression, Errors> {
     let parsed = expression::expression(&mut cursor)?;
     match cursor.is_at_end() {
         true => Ok(parsed),
-        false => Err(cursor.unexpected("the end of the expression").into()),
+        false => {
+            let sign = unknown::ends_expression(&cursor);
+            Err(sign
+                .unwrap_or_else(|| cursor.unexpected("the end of the expression"))
+                .into())
+        }
     }
 }
 

@@ -98,7 +98,7 @@ impl Unfolded {
     }
 
     /// A text with the names of quantities in the place of those of copies.
-    fn without_sites(&self, text: &str) -> String {
+    pub(super) fn without_sites(&self, text: &str) -> String {
         let is_part = |c: char| c.is_alphanumeric() || c == '_';
         let mut out = String::new();
         let mut rest = text;

@@ -72,6 +72,9 @@ fn declaration(word: &str) -> Option<&'static str> {
         | "double" | "int" => {
             "a parameter is declared by `param m: Real;`, its value stands in the case; `let m = 2;` names a number"
         }
+        "lambda" | "define" | "val" | "auto" | "where" | "with" => {
+            "an expression is given a name by `let`, as in `let d = next(x) - x;`"
+        }
         "import" | "from" | "use" | "include" | "using" => {
             "functions need no import: write `sin(q)`, `sqrt(x)`, `dot(a, b)`"
         }

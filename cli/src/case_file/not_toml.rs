@@ -1,0 +1,100 @@
+//! Values of other languages in a case that is no TOML: `2*pi**2`, `(3.0, 0.0)`, `None`. Takes the text and where TOML stopped;
+//! gives what to write.
+
+use crate::plain::shown;
+use clebsch_core::lattice::value::translated;
+use std::ops::Range;
+use toml::de::DeValue;
+
+/// Words for no value at all.
+const NOTHING: [&str; 5] = ["None", "null", "nil", "NULL", "NaN"];
+
+/// What to write for the value at which TOML stopped; nothing if it is none of these.
+pub(super) fn instead(text: &str, span: &Range<usize>) -> Option<String> {
+    let start = text.get(..span.start)?.rfind('\n').map_or(0, |at| at + 1);
+    let line = text.get(start..)?.lines().next()?;
+    let (key, whole) = line.split_once('=')?;
+    let whole = without_remark(whole);
+    if let Some(list) = list(whole) {
+        return Some(format!("write {list}"));
+    }
+    // An entry of a list by itself, else the whole value.
+    let offset = start + key.len() + 1;
+    let entry = span
+        .start
+        .checked_sub(offset)
+        .and_then(|at| entry(whole, at));
+    [entry.unwrap_or(whole), whole].into_iter().find_map(one)
+}
+
+fn one(value: &str) -> Option<String> {
+    let value = value.trim();
+    if NOTHING.contains(&value) {
+        return Some(format!("expected a number, found `{value}`"));
+    }
+    let is_quoted = value.starts_with(['"', '\'']) || value.is_empty();
+    // Where the value itself is TOML, something else is wrong.
+    if is_quoted || DeValue::parse(value).is_ok() {
+        return None;
+    }
+    let written = translated(value)?;
+    Some(format!(
+        "put expressions in quotes: \"{}\"",
+        shown(&written)
+    ))
+}
+
+/// A value without the remark behind it.
+fn without_remark(value: &str) -> &str {
+    let is_quoted = value.contains(['"', '\'']);
+    let end = value.find('#').filter(|_| !is_quoted);
+    value
+        .get(..end.unwrap_or(value.len()))
+        .unwrap_or(value)
+        .trim_end()
+}
+
+/// A list in round brackets as one in square brackets.
+fn list(value: &str) -> Option<String> {
+    let inside = value.trim().strip_prefix('(')?.strip_suffix(')')?;
+    let is_list = inside.contains(',') && !inside.contains(['(', ')', '"', '\'']);
+    let inside = inside.trim_end().trim_end_matches(',');
+    is_list.then(|| format!("[{}]", shown(inside)))
+}
+
+/// The entry of a list that a place is in.
+fn entry(value: &str, at: usize) -> Option<&str> {
+    let separators = ['[', ']', ','];
+    let start = value.get(..at)?.rfind(separators).map_or(0, |at| at + 1);
+    let rest = value.get(start..)?;
+    let end = rest.find(separators).unwrap_or(rest.len());
+    rest.get(..end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::instead;
+
+    #[test]
+    fn values_of_other_languages_are_told_how_to_be_written() {
+        let of = |value: &str, stop: &str| {
+            let text = format!("h = 0.1\nG = {value}\n");
+            let at = text.find(stop).unwrap_or(0);
+            instead(&text, &(at..at + 1))
+        };
+        let told = |value: &str, stop: &str| of(value, stop).unwrap_or_default();
+        assert_eq!(
+            told("2*pi**2 # area", "*"),
+            "put expressions in quotes: \"2*pi^2\""
+        );
+        assert_eq!(
+            told("[0, 2*np.pi, 1]", "2*"),
+            "put expressions in quotes: \"2*pi\""
+        );
+        assert_eq!(told("(3.0, 0.0)", "("), "write [3.0, 0.0]");
+        assert_eq!(told("None", "N"), "expected a number, found `None`");
+        for (value, stop) in [("[1, 2,, 3]", ",,"), ("\"pi", "\""), ("", "\n")] {
+            assert_eq!(of(value, stop), None, "{value}");
+        }
+    }
+}
