@@ -60,7 +60,7 @@ fn velocities_of_neighbours_alone_are_found_for_every_number_of_sites() {
         let text = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
         let mut rows = text.lines().map(|l| l.split(',').collect::<Vec<_>>());
         let names = rows.next().expect("names");
-        let last = rows.last().expect("a node");
+        let last = rows.next_back().expect("a node");
         let of = |name: &str| -> Vec<f64> {
             let column = |i: usize| {
                 let wanted = format!("{name}_{i}");
