@@ -3,7 +3,7 @@
 use clap::error::{ContextKind, ContextValue};
 
 /// What options are called elsewhere, and here.
-const NAMES: [(&str, &str); 10] = [
+const NAMES: [(&str, &str); 9] = [
     ("--time", "--until"),
     ("--tmax", "--until"),
     ("--t-max", "--until"),
@@ -11,7 +11,6 @@ const NAMES: [(&str, &str); 10] = [
     ("--tend", "--until"),
     ("--duration", "--until"),
     ("--dt", "--h"),
-    ("--step", "--h"),
     ("--step-size", "--h"),
     ("--output", "--out"),
 ];

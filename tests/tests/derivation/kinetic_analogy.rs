@@ -13,12 +13,11 @@ fn top() -> String {
     let mut text = top.card.source.replace('Γ', "ν");
     for (letter, rod) in [
         ("param J: Sym<3>;", "param K1, K3: Real;"),
-        (
-            "param gU: Vec<3> as \"m g \\chi\";",
-            "let J = (K3/2)*Id + (K1 - K3)*E3*E3^T;",
-        ),
-        ("param z: Vec<3>;", "let gU = E3; param n: Vec<3>;"),
+        ("param gU: Vec<3> as \"m g \\chi\";", "param n: Vec<3>;"),
+        ("param z: Vec<3>;", "let B = (K3/2)*Id + (K1 - K3)*E3*E3^T;"),
         ("Λ^T*z", "Λ^T*n"),
+        ("gU", "E3"),
+        ("J", "B"),
     ] {
         assert!(text.contains(letter), "{letter} is not in\n{text}");
         text = text.replace(letter, rod);
