@@ -52,6 +52,21 @@ impl Here {
             ..self
         }
     }
+
+    /// Where the parts of an expression are evaluated that is evaluated here.
+    #[must_use]
+    pub fn within(self, e: &Expression) -> Self {
+        match &e.kind {
+            Kind::Call(f, list) => match (f.as_str(), list.len()) {
+                ("next", 1) => self.later(1),
+                ("prev", 1) => self.later(-1),
+                ("next", 2) => self.beside(1),
+                ("prev", 2) => self.beside(-1),
+                _ => self,
+            },
+            _ => self,
+        }
+    }
 }
 
 /// The result, or what is missing.
@@ -99,10 +114,7 @@ impl Scene<'_> {
                 component(&a, at).ok_or_else(|| misfit("component"))
             }
             Kind::Call(f, list) => match (f.as_str(), list.as_slice()) {
-                ("next", [inner]) => self.value(inner, here.later(1)),
-                ("prev", [inner]) => self.value(inner, here.later(-1)),
-                ("next", [inner, _]) => self.value(inner, here.beside(1)),
-                ("prev", [inner, _]) => self.value(inner, here.beside(-1)),
+                ("next" | "prev", [inner] | [inner, _]) => self.value(inner, here.within(e)),
                 ("sum", [inner, ..]) => self.summed(e, inner, here),
                 (name, list) => {
                     let values: Result<Vec<Value>, String> =

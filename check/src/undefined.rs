@@ -153,7 +153,7 @@ fn innermost(
     here: Here,
     wanted: Wanted<'_>,
 ) -> Option<Undefined> {
-    let inner = moved(e, here);
+    let inner = here.within(e);
     let mut parts = e.parts().into_iter();
     if let Some(found) = parts.find_map(|part| innermost(scene, part, inner, wanted)) {
         return Some(found);
@@ -181,20 +181,6 @@ fn innermost(
         arguments,
         length_of: length_of(e).map(text::of),
     })
-}
-
-/// Where the parts of an expression stand.
-fn moved(e: &Expression, here: Here) -> Here {
-    match &e.kind {
-        Kind::Call(f, list) => match (f.as_str(), list.len()) {
-            ("next", 1) => here.later(1),
-            ("prev", 1) => here.later(-1),
-            ("next", 2) => here.beside(1),
-            ("prev", 2) => here.beside(-1),
-            _ => here,
-        },
-        _ => here,
-    }
 }
 
 /// The vector of which an expression is the length.

@@ -36,9 +36,10 @@ pub(crate) fn quoted(text: &str) -> String {
 fn entry(word: &str, is_key: bool) -> String {
     let own = word.trim();
     let is_plain = own.is_empty() || is_key || own.starts_with(['"', '\'']);
-    let is_number =
-        || own.parse::<f64>().is_ok() && !own.starts_with(['+', '.']) && !own.ends_with('.');
-    match is_plain || (is_number() && own.starts_with(|c: char| c.is_ascii_digit() || c == '-')) {
+    let is_number = own.starts_with(|c: char| c.is_ascii_digit() || c == '-')
+        && !own.ends_with('.')
+        && own.parse::<f64>().is_ok();
+    match is_plain || is_number {
         true => word.to_owned(),
         false => word.replace(own, &format!("\"{own}\"")),
     }

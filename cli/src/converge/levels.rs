@@ -100,9 +100,7 @@ impl Measured {
             fitted,
         })
     }
-}
 
-impl Measured {
     /// Whether the order of a quantity has stopped changing: its last three are alike. Four step sizes give three.
     pub(super) fn is_settled(&self, at: usize) -> bool {
         let orders = self

@@ -141,8 +141,17 @@ impl<'a> Stated<'a> {
 
     /// The sum of these terms; a sum of none is nothing.
     pub(super) fn sum(&self, terms: &[(bool, Expression)], at: At<'_>) -> Option<Value> {
-        let mut each = terms.iter().map(|(minus, e)| {
-            let value = self.value(e, at)?;
+        self.sum_within(terms.iter(), at, DEEP)
+    }
+
+    fn sum_within<'e>(
+        &self,
+        terms: impl Iterator<Item = &'e (bool, Expression)>,
+        at: At<'_>,
+        deep: usize,
+    ) -> Option<Value> {
+        let mut each = terms.map(|(minus, e)| {
+            let value = self.within(e, at, deep)?;
             Some(if *minus { -value } else { value })
         });
         let first = each.next()??;
@@ -172,15 +181,7 @@ impl<'a> Stated<'a> {
             Kind::Transpose(inner) => Some(of(inner)?.transpose()),
             Kind::Sum(list) => {
                 let zero = |e: &Expression| matches!(&e.kind, Kind::Number(n) if n.is_zero());
-                let mut each = list.iter().filter(|(_, e)| !zero(e)).map(|(minus, e)| {
-                    let value = of(e)?;
-                    Some(if *minus { -value } else { value })
-                });
-                let first = each.next()??;
-                each.try_fold(first, |sum, next| {
-                    let next = next?;
-                    (sum.shape() == next.shape()).then(|| sum + next)
-                })
+                self.sum_within(list.iter().filter(|(_, e)| !zero(e)), at, deep)
             }
             Kind::Product(list) => {
                 let mut each = list.iter().map(of);

@@ -3,10 +3,8 @@
 use super::common::{Folder, shipped};
 use std::fs;
 
-#[test]
-fn columns_are_drawn_against_time_and_each_other() {
-    let folder = Folder::new("plot");
-    let out = folder.path("run");
+/// A run of the eccentric orbit, in this folder.
+fn orbit(out: &str) {
     let run = [
         "run",
         "kepler:eccentric",
@@ -14,9 +12,16 @@ fn columns_are_drawn_against_time_and_each_other() {
         "500",
         "--quiet",
         "--out",
-        &out,
+        out,
     ];
     assert_eq!(shipped(&run).code, 0);
+}
+
+#[test]
+fn columns_are_drawn_against_time_and_each_other() {
+    let folder = Folder::new("plot");
+    let out = folder.path("run");
+    orbit(&out);
     let listed = shipped(&["plot", &out]);
     for column in ["  X.1 to X.3\n", "  invariant_energy\n", "  time\n"] {
         assert!(listed.out.contains(column), "{}", listed.out);
@@ -203,16 +208,7 @@ fn a_multiplier_begins_where_a_step_has_found_it() {
 fn what_is_constant_to_rounding_is_drawn_flat() {
     let folder = Folder::new("plot-flat");
     let out = folder.path("run");
-    let run = [
-        "run",
-        "kepler:eccentric",
-        "--steps",
-        "500",
-        "--quiet",
-        "--out",
-        &out,
-    ];
-    assert_eq!(shipped(&run).code, 0);
+    orbit(&out);
     let height = |line: &[[f64; 2]]| {
         let heights = || line.iter().map(|point| point[1]);
         heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min)

@@ -5,6 +5,15 @@ use super::common::{Folder, program, shipped};
 use serde_json::Value;
 use std::process::Command;
 
+/// The data of the page of a shipped model after some steps.
+fn of_shipped(folder: &Folder, model: &str, steps: &str) -> Value {
+    let out = folder.path("out");
+    let all = ["run", model, "--steps", steps, "--out", &out];
+    let done = shipped(&[all.as_slice(), &["--stability-limit", "0"]].concat());
+    assert_eq!(done.code, 0, "{}", done.err);
+    data(&read(folder))
+}
+
 /// The page of a run of a model and a case, without a name for the sample.
 fn page(folder: &Folder, model: &str, case: &str) -> String {
     let model = folder.write("own.clebsch", model);
@@ -255,19 +264,7 @@ fn particles_have_colours_with_a_scale() {
         ("cells", "shallow-water-2d-regularised:geostrophic-vortex"),
     ] {
         let folder = Folder::new(&format!("scene-particles-{name}"));
-        let out = folder.path("out");
-        let done = shipped(&[
-            "run",
-            model,
-            "--steps",
-            "4",
-            "--out",
-            &out,
-            "--stability-limit",
-            "0",
-        ]);
-        assert_eq!(done.code, 0, "{}", done.err);
-        let scene = data(&read(&folder));
+        let scene = of_shipped(&folder, model, "4");
         let tints = &scene["chains"][0]["tints"];
         let values = numbers(&tints["frames"][2]);
         let count = numbers(&scene["chains"][0]["frames"][2]).len() / 2;
@@ -291,19 +288,7 @@ fn particles_have_colours_with_a_scale() {
 #[test]
 fn particles_on_a_line_are_at_the_height_of_their_depth() {
     let folder = Folder::new("scene-line-of-particles");
-    let out = folder.path("out");
-    let done = shipped(&[
-        "run",
-        "particle-mesh-1d",
-        "--steps",
-        "4",
-        "--out",
-        &out,
-        "--stability-limit",
-        "0",
-    ]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let scene = data(&read(&folder));
+    let scene = of_shipped(&folder, "particle-mesh-1d", "4");
     let chain = &scene["chains"][0];
     assert_eq!(
         (&chain["dim"], &chain["profile"]),
@@ -323,19 +308,7 @@ fn particles_on_a_line_are_at_the_height_of_their_depth() {
 #[test]
 fn many_bodies_without_places_stand_in_rows() {
     let folder = Folder::new("scene-rows");
-    let out = folder.path("out");
-    let done = shipped(&[
-        "run",
-        "uniform-tension-rod:closed",
-        "--steps",
-        "2",
-        "--out",
-        &out,
-        "--stability-limit",
-        "0",
-    ]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let scene = data(&read(&folder));
+    let scene = of_shipped(&folder, "uniform-tension-rod:closed", "2");
     let all = scene["bodies"].as_array().expect("bodies").iter();
     let mut places: Vec<Vec<f64>> = all.map(|b| numbers(&b["places"][0])).collect();
     let within = places.iter().all(|p| p[0] < 40.0);

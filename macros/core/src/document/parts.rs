@@ -133,16 +133,9 @@ fn paged(page: &mut Display, block: Block) -> Block {
             note,
             label,
         },
-        Block::Paragraph(parts) => Block::Paragraph(sentence(page, parts)),
-        Block::List(items) => Block::List(items.into_iter().map(|i| sentence(page, i)).collect()),
-        code @ Block::Code(_) => code,
+        block => block.with_parts(|part| match part {
+            Inline::Math(f) => Inline::Math(page.inline(&f)),
+            other => other,
+        }),
     }
-}
-
-fn sentence(page: &mut Display, parts: Vec<Inline>) -> Vec<Inline> {
-    let part = |part| match part {
-        Inline::Math(f) => Inline::Math(page.inline(&f)),
-        other => other,
-    };
-    parts.into_iter().map(part).collect()
 }

@@ -105,6 +105,20 @@ pub(super) fn plain(tag: &str) -> String {
     tag.replace('$', "")
 }
 
+impl Block {
+    /// The same block with every part of its sentences changed. Equations and code stay as they are.
+    #[must_use]
+    pub fn with_parts(self, mut change: impl FnMut(Inline) -> Inline) -> Block {
+        let mut sentence =
+            |parts: Vec<Inline>| -> Vec<Inline> { parts.into_iter().map(&mut change).collect() };
+        match self {
+            Block::Paragraph(parts) => Block::Paragraph(sentence(parts)),
+            Block::List(items) => Block::List(items.into_iter().map(sentence).collect()),
+            other => other,
+        }
+    }
+}
+
 impl From<&str> for Inline {
     fn from(text: &str) -> Self {
         Inline::Plain(text.to_owned())

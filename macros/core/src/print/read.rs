@@ -73,10 +73,6 @@ impl Names {
             return block;
         }
         match block {
-            Block::Paragraph(parts) => Block::Paragraph(self.sentence(parts)),
-            Block::List(items) => {
-                Block::List(items.into_iter().map(|item| self.sentence(item)).collect())
-            }
             Block::Equation {
                 formula,
                 tag,
@@ -88,16 +84,11 @@ impl Names {
                 note: note.map(|note| self.words(&note)),
                 label,
             },
-            code @ Block::Code(_) => code,
+            block => block.with_parts(|part| match part {
+                Inline::Plain(words) => Inline::Plain(self.words(&words)),
+                other => other,
+            }),
         }
-    }
-
-    fn sentence(&self, parts: Vec<Inline>) -> Vec<Inline> {
-        let part = |part| match part {
-            Inline::Plain(words) => Inline::Plain(self.words(&words)),
-            other => other,
-        };
-        parts.into_iter().map(part).collect()
     }
 
     /// Words with the names among them spelt as in equations.
