@@ -223,7 +223,7 @@ impl<T: Real> CayleyKleinSpatial<T> {
             * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
             - quaternion_imaginary(&(w_before * w_before)) * (t1 * c)
             + t4.cross(&t3) * (T::from_f64(4.0) * t1)
-            - quaternion_imaginary(&(w.tr_mul(&pure_quaternion(&t4))))
+            - quaternion_imaginary(&w.tr_mul(&pure_quaternion(&t4)))
                 * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
             + quaternion_imaginary(&(w * w)) * (t1 * c)
     }
@@ -272,10 +272,9 @@ impl<T: Real> CayleyKleinSpatial<T> {
         let I = self.I(before);
         let w_matrix = before.q.spatial_velocity(&after.q).matrix();
         let t1 = quaternion_imaginary(&w_matrix);
-        (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
+        T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1))
             / (h * h)
-            - (T::from_f64(4.0) * c * quaternion_real(&less_identity(&w_matrix)))
-                / (h * h)
+            - T::from_f64(4.0) * c * quaternion_real(&less_identity(&w_matrix)) / (h * h)
     }
 }
 impl CayleyKleinSpatial<f64> {

@@ -173,10 +173,10 @@ impl<T: Real> CayleyKlein<T> {
         let t2 = quaternion_imaginary(&W_before);
         let t3 = quaternion_imaginary(&W);
         quaternion_imaginary(
-            &(W_before.tr_mul(&pure_quaternion(&(diagonal_times(&I, &t2))))),
+            &W_before.tr_mul(&pure_quaternion(&diagonal_times(&I, &t2))),
         ) * (T::from_f64(2.0) * t1) + t2 * (T::from_f64(2.0) * t1 * c)
             - quaternion_imaginary(&(W_before * W_before)) * (t1 * c)
-            - quaternion_imaginary(&(W * pure_quaternion(&(diagonal_times(&I, &t3)))))
+            - quaternion_imaginary(&(W * pure_quaternion(&diagonal_times(&I, &t3))))
                 * (T::from_f64(2.0) * t1) - t3 * (T::from_f64(2.0) * t1 * c)
             + quaternion_imaginary(&(W * W)) * (t1 * c)
     }
@@ -214,10 +214,9 @@ impl<T: Real> CayleyKlein<T> {
         let CayleyKleinParameters { I, c, .. } = self.parameters;
         let W_matrix = before.q.body_velocity(&after.q).matrix();
         let t1 = quaternion_imaginary(&W_matrix);
-        (T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1)))
+        T::from_f64(2.0) * t1.dot(&((I - SMatrix::<T, 3, 3>::identity() * c) * t1))
             / (h * h)
-            - (T::from_f64(4.0) * c * quaternion_real(&less_identity(&W_matrix)))
-                / (h * h)
+            - T::from_f64(4.0) * c * quaternion_real(&less_identity(&W_matrix)) / (h * h)
     }
 }
 impl CayleyKlein<f64> {

@@ -223,7 +223,7 @@ impl<T: Real> CoupledBodies<T> {
         let momentum_Λ1_next = state.momentum_Λ1.0
             + Λ1 * ((R * (t2 * d2)).cross(&(t3 * d1)) * (eps * t1));
         let momentum_Λ2_next = state.momentum_Λ2.0
-            + Λ2 * (-((t2 * d2).cross(&(R.tr_mul(&(t3 * d1)))) * (eps * t1)));
+            + Λ2 * (-((t2 * d2).cross(&R.tr_mul(&(t3 * d1))) * (eps * t1)));
         if !(all_finite(&momentum_Λ1_next) && all_finite(&momentum_Λ2_next)) {
             return Err(StepCause::not_finite("momentum").at_node(state.node));
         }
@@ -346,12 +346,12 @@ impl<T: Real> CoupledBodies<T> {
         >(
             &[
                 [
-                    (trace_complement(&t2)) * Ω1 * t1,
+                    trace_complement(&t2) * Ω1 * t1,
                     crossed(&d1, &(R * crossing(&Ω2, &d2))) * (eps * t1),
                 ],
                 [
                     R.tr_mul(&crossed(&(R * d2), &crossing(&Ω1, &d1))) * (eps * t1),
-                    (trace_complement(&t3)) * Ω2 * t1,
+                    trace_complement(&t3) * Ω2 * t1,
                 ],
             ],
         )
@@ -497,26 +497,26 @@ impl<T: Real> CoupledBodies<T> {
         {
             let parts: [SVector<T, 3>; 2] = [
                 axial_of_difference(
-                    &(Ω1_before
+                    &Ω1_before
                         .tr_mul(
-                            &((-(J1 / h))
-                                - ((R_before
-                                    * ((Ω2_before - SMatrix::<T, 3, 3>::identity()) * d2))
-                                    * d1.transpose() * eps) / h),
-                        )),
+                            &(-(J1 / h)
+                                - R_before
+                                    * ((Ω2_before - SMatrix::<T, 3, 3>::identity()) * d2)
+                                    * d1.transpose() * eps / h),
+                        ),
                 ) + axial_of_difference(&(J1 * Ω1.transpose())) * t1 - t2 * (t1 * eps)
                     + d1.cross(&(R * (Ω2 * d2))) * (t1 * eps),
                 axial_of_difference(
-                    &(Ω2_before
+                    &Ω2_before
                         .tr_mul(
-                            &((-(J2 / h))
-                                - (R_before
+                            &(-(J2 / h)
+                                - R_before
                                     .tr_mul(
                                         &((Ω1_before - SMatrix::<T, 3, 3>::identity()) * d1),
-                                    ) * d2.transpose() * eps) / h),
-                        )),
+                                    ) * d2.transpose() * eps / h),
+                        ),
                 ) + axial_of_difference(&(J2 * Ω2.transpose())) * t1
-                    - R.tr_mul(&(Ω1 * d1.cross(&(Ω1.tr_mul(&(R * d2)))))) * (t1 * eps)
+                    - R.tr_mul(&(Ω1 * d1.cross(&Ω1.tr_mul(&(R * d2))))) * (t1 * eps)
                     + R.tr_mul(&t2) * (t1 * eps),
             ];
             SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
@@ -537,7 +537,7 @@ impl<T: Real> CoupledBodies<T> {
                 let parts: [SVector<T, 3>; 2] = [
                     R * d2 * (eps * d1.dot(&(R * t2))) - R * t2 * (eps * t1)
                         + t3 * J1.trace() - J1 * t3,
-                    R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))
+                    R.tr_mul(&d1) * (eps * d2.dot(&R.tr_mul(&t3)))
                         - R.tr_mul(&t3) * (eps * t1) + t2 * J2.trace() - J2 * t2,
                 ];
                 SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
@@ -554,7 +554,7 @@ impl<T: Real> CoupledBodies<T> {
                 let parts: [SVector<T, 3>; 2] = [
                     R * d2 * (eps * d1.dot(&(R * t2))) - R * t2 * (eps * t1)
                         + t3 * J1.trace() - J1 * t3,
-                    R.tr_mul(&d1) * (eps * d2.dot(&(R.tr_mul(&t3))))
+                    R.tr_mul(&d1) * (eps * d2.dot(&R.tr_mul(&t3)))
                         - R.tr_mul(&t3) * (eps * t1) + t2 * J2.trace() - J2 * t2,
                 ];
                 SVector::<T, 6>::from_fn(|i, _| parts[i / 3][i % 3])
@@ -605,8 +605,7 @@ impl<T: Real> CoupledBodies<T> {
         let Ω2_matrix = before.Λ2.body_velocity(&after.Λ2).matrix();
         let t1 = h.powi(-2);
         let t2 = less_identity(&Ω2_matrix);
-        (-(t1 * eps
-            * d1.dot(&(less_identity(&Ω1_matrix.transpose()) * (R * (t2 * d2))))))
+        -(t1 * eps * d1.dot(&(less_identity(&Ω1_matrix.transpose()) * (R * (t2 * d2)))))
             - t1 * (J1 * less_identity(&Ω1_matrix)).trace() - t1 * (J2 * t2).trace()
     }
     /// The state after a step of `h` that is tried, or none.
@@ -647,7 +646,7 @@ impl CoupledBodies<f64> {
             [
                 T::from_f64(2.0)
                     * (μ1.dot(&μ1).sqrt()
-                        + (R.tr_mul(&R)).trace().sqrt() * μ2.dot(&μ2).sqrt())
+                        + R.tr_mul(&R).trace().sqrt() * μ2.dot(&μ2).sqrt())
                     * t3.dot(&t3).sqrt(),
             ],
         );

@@ -113,7 +113,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
                 domain::Domain::Positive,
                 domain::Function::Log,
                 "det(C_k)",
-                determinant(&(C)),
+                determinant(&C),
             )?;
         }
         Ok(EllipsoidConvectiveWorkspace { h })
@@ -199,7 +199,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let Q = state.Q.matrix();
         let C = Q.tr_mul(&(C0 * Q));
         let _ = (state, h);
-        [determinant(&(C))]
+        [determinant(&C)]
     }
     /// One step, in place. Solved thus: the balance is linear: two small linear systems.
     ///
@@ -218,7 +218,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let momentum_leaving = state.momentum.0
             - (Q_seen * (h * a + h * b * Q_seen.trace()) - Q_seen * Q_seen * (h * b)
                 + SMatrix::<T, N, N>::identity()
-                    * (h * c * determinant(&(Q_seen)) - T::from_f64(0.5) * h * d));
+                    * (h * c * determinant(&Q_seen) - T::from_f64(0.5) * h * d));
         let Q_change = match displaced(
             &state.Q,
             &(self.inverse_1_left * h),
@@ -234,10 +234,10 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let Q_seen_next = C0 * (Q_next * Q_next.transpose());
         let momentum_next = momentum_leaving
             + C0 * (Q_change * (I0 * Q_change.transpose())) * (T::from_f64(1.0) / h)
-            + Q_seen_next * ((-(h * a)) - h * b * Q_seen_next.trace())
+            + Q_seen_next * (-(h * a) - h * b * Q_seen_next.trace())
             + Q_seen_next * Q_seen_next * (h * b)
             + SMatrix::<T, N, N>::identity()
-                * (T::from_f64(0.5) * h * d - h * c * determinant(&(Q_seen_next)));
+                * (T::from_f64(0.5) * h * d - h * c * determinant(&Q_seen_next));
         state.Q = Q_moved;
         state.momentum = SpatialMomentumMatrix(momentum_next);
         state.node += 1;
@@ -296,7 +296,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
                 C * C * (T::from_f64(2.0) * h * b) - C * (T::from_f64(2.0) * h * a)
                     - C * (T::from_f64(2.0) * h * b * C.trace())
                     - SMatrix::<T, N, N>::identity()
-                        * (T::from_f64(2.0) * h * c * determinant(&(C)))
+                        * (T::from_f64(2.0) * h * c * determinant(&C))
                     + SMatrix::<T, N, N>::identity() * (h * d)
                     + C_before * (t2 * I0) * t1
                     - C * ((G - SMatrix::<T, N, N>::identity()) * I0) * t1
@@ -345,8 +345,8 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         (
             momentum.dot(&velocity) * T::from_f64(0.5),
             a * C.trace() + T::from_f64(0.5) * b * (C.trace() * C.trace())
-                - T::from_f64(0.5) * b * (C * C).trace() + c * determinant(&(C))
-                - T::from_f64(0.5) * d * determinant(&(C)).ln(),
+                - T::from_f64(0.5) * b * (C * C).trace() + c * determinant(&C)
+                - T::from_f64(0.5) * d * determinant(&C).ln(),
         )
     }
     /// The physical energy at this node.
@@ -358,14 +358,14 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
     pub fn angular_momentum_C_2(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
         let C = self.C(state);
         let μ = state.body_momentum().0;
-        let t1 = skew_part(&(inverse_or_nan(&(C)) * μ));
+        let t1 = skew_part(&(inverse_or_nan(&C) * μ));
         (C * (t1 * (C * t1))).trace()
     }
     /// `tr(C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k) C_k skew(C_k⁻¹ μ_k))`: Casimir: the Kelvin-Noether quantity of the advected quantities.
     pub fn angular_momentum_C_4(&self, state: &EllipsoidConvectiveState<N, T>) -> T {
         let C = self.C(state);
         let μ = state.body_momentum().0;
-        let t1 = skew_part(&(inverse_or_nan(&(C)) * μ));
+        let t1 = skew_part(&(inverse_or_nan(&C) * μ));
         (C * (t1 * (C * (t1 * (C * (t1 * (C * t1))))))).trace()
     }
     /// `skew(C₀⁻¹ Q_k⁻ᵀ μ_k Q_kᵀ)`: Noether: the action is invariant under motions of space that fix the axis.
@@ -377,7 +377,7 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let Q = state.Q.matrix();
         let μ = state.body_momentum().0;
         skew_part(
-            &(inverse_or_nan(&(C0)) * inverse_or_nan(&(Q)).tr_mul(&(μ * Q.transpose()))),
+            &(inverse_or_nan(&C0) * inverse_or_nan(&Q).tr_mul(&(μ * Q.transpose()))),
         )
     }
     /// The discrete energy of the edge between two consecutive states, `2 tr(C_k (G_k - Id) I₀ (G_kᵀ - Id))/(2 h)² + ½ a tr(C_k) + ¼ b tr(C_k)² - ¼ b tr(C_k²) + ½ c det(C_k) - ¼ d log(det(C_k)) + ½ a tr(C_{k+1}) + ¼ b tr(C_{k+1})² - ¼ b tr(C_{k+1}²) + ½ c det(C_{k+1}) - ¼ d log(det(C_{k+1}))`: bounded, since the stepper is symplectic.
@@ -392,9 +392,9 @@ impl<const N: usize, T: Real> EllipsoidConvective<N, T> {
         let C_next = self.C(after);
         let G_matrix = before.Q.body_velocity(&after.Q).matrix();
         let t1 = C.trace();
-        let t2 = determinant(&(C));
+        let t2 = determinant(&C);
         let t3 = C_next.trace();
-        let t4 = determinant(&(C_next));
+        let t4 = determinant(&C_next);
         T::from_f64(0.5) * a * t1 + T::from_f64(0.25) * b * (t1 * t1)
             - T::from_f64(0.25) * b * (C * C).trace() + T::from_f64(0.5) * c * t2
             - T::from_f64(0.25) * d * t2.ln() + T::from_f64(0.5) * a * t3
@@ -430,7 +430,7 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
         let s1 = (h * h).sqrt();
         let s2 = (C * C).trace().sqrt();
         let s3 = (b * b).sqrt();
-        let s4 = determinant(&(C));
+        let s4 = determinant(&C);
         let impulse = s1 * (a * a).sqrt() * s2 + s1 * s3 * s2 * s2
             + s1 * s3 * SMatrix::<T, N, N>::identity().trace().sqrt() * s2 * s2
             + s1 * (c * c).sqrt() * (s4 * s4).sqrt()
@@ -443,11 +443,11 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
         let μ = state.body_momentum().0;
         let t1 = Q * μ.transpose();
         let t2 = (C * C).trace().sqrt();
-        let t3 = inverse_or_nan(&(C));
+        let t3 = inverse_or_nan(&C);
         let t4 = (t3 * t3).trace().sqrt();
-        let t5 = (μ.tr_mul(&μ)).trace().sqrt();
-        let t6 = inverse_or_nan(&(Q));
-        let t7 = inverse_or_nan(&(C0));
+        let t5 = μ.tr_mul(&μ).trace().sqrt();
+        let t6 = inverse_or_nan(&Q);
+        let t7 = inverse_or_nan(&C0);
         let out = put(
             out,
             [

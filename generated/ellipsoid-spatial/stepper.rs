@@ -113,7 +113,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
                 domain::Domain::Positive,
                 domain::Function::Log,
                 "det(S_k)",
-                determinant(&(S)),
+                determinant(&S),
             )?;
         }
         Ok(EllipsoidSpatialWorkspace { h })
@@ -198,7 +198,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let Q = state.Q.matrix();
         let S = Q * (I0 * Q.transpose());
         let _ = (state, h);
-        [determinant(&(S))]
+        [determinant(&S)]
     }
     /// One step, in place. Solved thus: the balance is linear: two small linear systems.
     ///
@@ -217,7 +217,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let momentum_leaving = state.momentum.0
             - (S * (h * a + h * b * S.trace()) - S * S * (h * b)
                 + SMatrix::<T, N, N>::identity()
-                    * (h * c * determinant(&(S)) - T::from_f64(0.5) * h * d));
+                    * (h * c * determinant(&S) - T::from_f64(0.5) * h * d));
         let Q_change = match displaced(
             &state.Q,
             &(self.inverse_1_left * h),
@@ -233,9 +233,9 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let S_next = Q_next * (I0 * Q_next.transpose());
         let momentum_next = momentum_leaving
             + C0 * (Q_change * (I0 * Q_change.transpose())) * (T::from_f64(1.0) / h)
-            + S_next * ((-(h * a)) - h * b * S_next.trace()) + S_next * S_next * (h * b)
+            + S_next * (-(h * a) - h * b * S_next.trace()) + S_next * S_next * (h * b)
             + SMatrix::<T, N, N>::identity()
-                * (T::from_f64(0.5) * h * d - h * c * determinant(&(S_next)));
+                * (T::from_f64(0.5) * h * d - h * c * determinant(&S_next));
         state.Q = Q_moved;
         state.momentum = SpatialMomentumMatrix(momentum_next);
         state.node += 1;
@@ -294,7 +294,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
                 S * S * (T::from_f64(2.0) * h * b) - S * (T::from_f64(2.0) * h * a)
                     - S * (T::from_f64(2.0) * h * b * S.trace())
                     - SMatrix::<T, N, N>::identity()
-                        * (T::from_f64(2.0) * h * c * determinant(&(S)))
+                        * (T::from_f64(2.0) * h * c * determinant(&S))
                     + SMatrix::<T, N, N>::identity() * (h * d)
                     + C0 * (t2 * S_before) * t1
                     + C0
@@ -345,8 +345,8 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         (
             momentum.dot(&velocity) * T::from_f64(0.5),
             a * S.trace() + T::from_f64(0.5) * b * (S.trace() * S.trace())
-                - T::from_f64(0.5) * b * (S * S).trace() + c * determinant(&(S))
-                - T::from_f64(0.5) * d * determinant(&(S)).ln(),
+                - T::from_f64(0.5) * b * (S * S).trace() + c * determinant(&S)
+                - T::from_f64(0.5) * d * determinant(&S).ln(),
         )
     }
     /// The physical energy at this node.
@@ -358,14 +358,14 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
     pub fn circulation_S_2(&self, state: &EllipsoidSpatialState<N, T>) -> T {
         let S = self.S(state);
         let m = state.spatial_momentum().0;
-        let t1 = skew_part(&(m * inverse_or_nan(&(S))));
+        let t1 = skew_part(&(m * inverse_or_nan(&S)));
         (t1 * (S * (t1 * S))).trace()
     }
     /// `tr(skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k skew(m_k S_k⁻¹) S_k)`: Casimir: the Kelvin-Noether quantity of the advected quantities.
     pub fn circulation_S_4(&self, state: &EllipsoidSpatialState<N, T>) -> T {
         let S = self.S(state);
         let m = state.spatial_momentum().0;
-        let t1 = skew_part(&(m * inverse_or_nan(&(S))));
+        let t1 = skew_part(&(m * inverse_or_nan(&S)));
         (t1 * (S * (t1 * (S * (t1 * (S * (t1 * S))))))).trace()
     }
     /// `skew(Q_kᵀ m_k Q_k⁻ᵀ I₀⁻¹)`: Noether: the action is invariant under motions of the body's frame that fix the axis.
@@ -376,9 +376,7 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let EllipsoidSpatialParameters { I0, .. } = self.parameters;
         let Q = state.Q.matrix();
         let m = state.spatial_momentum().0;
-        skew_part(
-            &(Q.tr_mul(&(m * inverse_or_nan(&(Q)).tr_mul(&inverse_or_nan(&(I0)))))),
-        )
+        skew_part(&Q.tr_mul(&(m * inverse_or_nan(&Q).tr_mul(&inverse_or_nan(&I0)))))
     }
     /// The discrete energy of the edge between two consecutive states, `2 tr(C₀ (g_k - Id) S_k (g_kᵀ - Id))/(2 h)² + ½ a tr(S_k) + ¼ b tr(S_k)² - ¼ b tr(S_k²) + ½ c det(S_k) - ¼ d log(det(S_k)) + ½ a tr(S_{k+1}) + ¼ b tr(S_{k+1})² - ¼ b tr(S_{k+1}²) + ½ c det(S_{k+1}) - ¼ d log(det(S_{k+1}))`: bounded, since the stepper is symplectic.
     pub fn discrete_energy(
@@ -392,9 +390,9 @@ impl<const N: usize, T: Real> EllipsoidSpatial<N, T> {
         let S_next = self.S(after);
         let g_matrix = before.Q.spatial_velocity(&after.Q).matrix();
         let t1 = S.trace();
-        let t2 = determinant(&(S));
+        let t2 = determinant(&S);
         let t3 = S_next.trace();
-        let t4 = determinant(&(S_next));
+        let t4 = determinant(&S_next);
         T::from_f64(0.5) * a * t1 + T::from_f64(0.25) * b * (t1 * t1)
             - T::from_f64(0.25) * b * (S * S).trace() + T::from_f64(0.5) * c * t2
             - T::from_f64(0.25) * d * t2.ln() + T::from_f64(0.5) * a * t3
@@ -430,7 +428,7 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
         let s1 = (h * h).sqrt();
         let s2 = (S * S).trace().sqrt();
         let s3 = (b * b).sqrt();
-        let s4 = determinant(&(S));
+        let s4 = determinant(&S);
         let impulse = s1 * (a * a).sqrt() * s2 + s1 * s3 * s2 * s2
             + s1 * s3 * SMatrix::<T, N, N>::identity().trace().sqrt() * s2 * s2
             + s1 * (c * c).sqrt() * (s4 * s4).sqrt()
@@ -442,12 +440,12 @@ impl<const N: usize> EllipsoidSpatial<N, f64> {
         let energy = size_of_energy(energies, self.energies(state));
         let m = state.spatial_momentum().0;
         let t1 = m.tr_mul(&Q);
-        let t2 = (m.tr_mul(&m)).trace().sqrt();
-        let t3 = inverse_or_nan(&(S));
+        let t2 = m.tr_mul(&m).trace().sqrt();
+        let t3 = inverse_or_nan(&S);
         let t4 = (t3 * t3).trace().sqrt();
         let t5 = (S * S).trace().sqrt();
-        let t6 = inverse_or_nan(&(Q));
-        let t7 = inverse_or_nan(&(I0));
+        let t6 = inverse_or_nan(&Q);
+        let t7 = inverse_or_nan(&I0);
         let out = put(
             out,
             [

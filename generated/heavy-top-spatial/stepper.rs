@@ -144,7 +144,7 @@ impl<T: Real> HeavyTopSpatial<T> {
         let χ_reference = state.χ;
         let χ_next = Λ_next * χ_reference;
         let space = edge.space();
-        let torque = (Λ_next.tr_mul(&z)).cross(&(χ_reference * (h * w)));
+        let torque = Λ_next.tr_mul(&z).cross(&(χ_reference * (h * w)));
         let kick = (z * (h * w)).cross(&χ_next);
         let left = space + kick;
         Moving {

@@ -113,7 +113,7 @@ impl<T: Real> Kepler<T> {
         let (momentum_next, momentum_rest) = added(
             &state.momentum.0,
             &state.momentum_rest,
-            &((-(X * (T::from_f64(0.5) * h * m * k / (b1 * b1.sqrt()))))
+            &(-(X * (T::from_f64(0.5) * h * m * k / (b1 * b1.sqrt())))
                 - X_next * (T::from_f64(0.5) * h * m * k / (t2 * t2.sqrt()))),
         );
         if !(all_finite(&momentum_next)) {

@@ -134,8 +134,8 @@ impl<T: Real> KirchhoffBody<T> {
             let V_pos_momentum = momenta[1];
             let k3 = self.inverse_1;
             let k1 = h.powi(-1);
-            let k2 = (rows_from::<T, 4, 3, 1>(&b, 0))
-                .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * (T::from_f64(0.5) * h);
+            let k2 = rows_from::<T, 4, 3, 1>(&b, 0)
+                .cross(&rows_from::<T, 4, 3, 1>(&P, 0)) * (T::from_f64(0.5) * h);
             let k4 = V_pos_momentum * (T::from_f64(4.0) * h)
                 - rows_from::<T, 4, 3, 1>(&P, 0) * (T::from_f64(2.0) * (h * h) * b[3]);
             let mut iteration = work.search.begin(state.node, []);
@@ -180,15 +180,14 @@ impl<T: Real> KirchhoffBody<T> {
                                     &(hat(&t1)
                                         - (t2 - V_rot.transpose()) * D * T::from_f64(0.25)),
                                     &V_pos,
-                                )
-                                    + V_rot * ((-(hat(&(D * V_pos_2)) * T::from_f64(0.25))) - J)
+                                ) + V_rot * (-(hat(&(D * V_pos_2)) * T::from_f64(0.25)) - J)
                                     + crossed(&V_pos, &t3) * T::from_f64(0.25)
                                     + SMatrix::<T, 3, 3>::identity()
                                         * (T::from_f64(0.25)
-                                            * (crossing(&V_rot, &(D * V_pos_2))).trace()
+                                            * crossing(&V_rot, &(D * V_pos_2)).trace()
                                             + (V_rot * J).trace())
                                     - (t3.transpose() * T::from_f64(0.25)
-                                        + ((-hat(&t1)) - crossed(&t1, &hat(&V_rot_turn)))
+                                        + (-hat(&t1) - crossed(&t1, &hat(&V_rot_turn)))
                                             * T::from_f64(0.5))
                                         * (k3
                                             * (t3 * T::from_f64(0.25)
@@ -229,13 +228,13 @@ impl<T: Real> KirchhoffBody<T> {
                 let leaving = state
                     .G
                     .covector_turned(
-                        &((-(into_rows::<
+                        &(-(into_rows::<
                             T,
                             6,
                             3,
                             1,
-                        >(&t1.cross(&(rows_from::<T, 4, 3, 1>(&P, 0))), 0)
-                            * (T::from_f64(0.5) * h)))
+                        >(&t1.cross(&rows_from::<T, 4, 3, 1>(&P, 0)), 0)
+                            * (T::from_f64(0.5) * h))
                             - into_rows::<T, 6, 3, 1>(&rows_from::<T, 4, 3, 1>(&P, 0), 3)
                                 * (T::from_f64(0.5) * h * t2)),
                     );
@@ -243,13 +242,13 @@ impl<T: Real> KirchhoffBody<T> {
                     + state.G.gained_along(&G_velocity, &(state.momentum.0 + leaving))
                     + G_moved
                         .covector_turned(
-                            &((-(into_rows::<
+                            &(-(into_rows::<
                                 T,
                                 6,
                                 3,
                                 1,
-                            >(&t1.cross(&(rows_from::<T, 4, 3, 1>(&P_next, 0))), 0)
-                                * (T::from_f64(0.5) * h)))
+                            >(&t1.cross(&rows_from::<T, 4, 3, 1>(&P_next, 0)), 0)
+                                * (T::from_f64(0.5) * h))
                                 - into_rows::<
                                     T,
                                     6,
@@ -359,7 +358,7 @@ impl<T: Real> KirchhoffBody<T> {
             (t1 + t2 - V_rot_turn.cross(&(t1 + t2))) * T::from_f64(0.5)
                 - D.tr_mul(&vee(&V_rot)) * T::from_f64(2.0)
         };
-        let V_pos_2 = inverse_or_nan(&(M)) * V_pos_1;
+        let V_pos_2 = inverse_or_nan(&M) * V_pos_1;
         let V_pos = (V_pos_2 + V_rot_turn.cross(&V_pos_2)) * T::from_f64(0.5);
         [rigid_motion(turned[0], V_pos)]
     }
@@ -393,9 +392,9 @@ impl<T: Real> KirchhoffBody<T> {
                         &(crossing(&V_rot, &(D * t2)) * T::from_f64(0.5)
                             + V_rot * J * T::from_f64(2.0)),
                     )) * t1
-                    + (rows_from::<T, 4, 3, 1>(&b, 0))
-                        .cross(&(rows_from::<T, 4, 3, 1>(&P, 0)))
-                        * (T::from_f64(0.5) * h)) - momenta[0],
+                    + rows_from::<T, 4, 3, 1>(&b, 0)
+                        .cross(&rows_from::<T, 4, 3, 1>(&P, 0)) * (T::from_f64(0.5) * h))
+                    - momenta[0],
                 ((V_rot * t5 + t3 + t4) * t1
                     + rows_from::<T, 4, 3, 1>(&P, 0) * (T::from_f64(0.5) * h * b[3]))
                     - momenta[1],
@@ -429,7 +428,7 @@ impl<T: Real> KirchhoffBody<T> {
         >(
             &[
                 [
-                    (((trace_complement(&t4)) * T::from_f64(0.25)
+                    ((trace_complement(&t4) * T::from_f64(0.25)
                         + SMatrix::<T, 3, 3>::identity() * t5.trace() - t5) * V_rot
                         + crossed(&V_pos, &t7) * T::from_f64(0.25)
                         + t6 * crossing(&D, &t2) * T::from_f64(0.25)) * t1,
@@ -600,8 +599,8 @@ impl<T: Real> KirchhoffBody<T> {
         let t4 = motion_translation(&V_before);
         let t5 = t3 * t4;
         let t6 = vee(&t2);
-        let t7 = (rows_from::<T, 4, 3, 1>(&b, 0))
-            .cross(&(rows_from::<T, 4, 3, 1>(&P, 0))) * (T::from_f64(0.5) * h);
+        let t7 = rows_from::<T, 4, 3, 1>(&b, 0).cross(&rows_from::<T, 4, 3, 1>(&P, 0))
+            * (T::from_f64(0.5) * h);
         let t8 = rows_from::<T, 4, 3, 1>(&P, 0) * (T::from_f64(0.5) * h * b[3]);
         let t9 = motion_rotation(&V);
         let t10 = t9.transpose();
@@ -615,11 +614,11 @@ impl<T: Real> KirchhoffBody<T> {
         >(
             &((M * (t3 * t4)).cross(&t5) * (T::from_f64(0.25) * t1)
                 + (M * t4).cross(&t5) * (T::from_f64(0.25) * t1)
-                + (D.tr_mul(&t6)).cross(&t5) * (T::from_f64(0.5) * t1)
+                + D.tr_mul(&t6).cross(&t5) * (T::from_f64(0.5) * t1)
                 + axial_of_difference(&(J * t2)) * t1
-                + axial_of_difference(&(crossing(&t3, &(D * (t3 * t4)))))
+                + axial_of_difference(&crossing(&t3, &(D * (t3 * t4))))
                     * (T::from_f64(0.25) * t1)
-                + axial_of_difference(&(crossing(&t3, &(D * t4))))
+                + axial_of_difference(&crossing(&t3, &(D * t4)))
                     * (T::from_f64(0.25) * t1) - t7),
             0,
         )
@@ -643,13 +642,13 @@ impl<T: Real> KirchhoffBody<T> {
                 3,
                 1,
             >(
-                &(axial_of_difference(&(crossing(&t9, &(D * (t10 * t11)))))
+                &(axial_of_difference(&crossing(&t9, &(D * (t10 * t11))))
                     * (T::from_f64(0.25) * t1)
                     - (M * (t10 * t11)).cross(&t11) * (T::from_f64(0.25) * t1)
                     - (M * t11).cross(&t11) * (T::from_f64(0.25) * t1)
-                    - (D.tr_mul(&t12)).cross(&t11) * (T::from_f64(0.5) * t1)
+                    - D.tr_mul(&t12).cross(&t11) * (T::from_f64(0.5) * t1)
                     - axial_of_difference(&(J * t10)) * t1
-                    + axial_of_difference(&(crossing(&t9, &(D * t11))))
+                    + axial_of_difference(&crossing(&t9, &(D * t11)))
                         * (T::from_f64(0.25) * t1) + t7),
                 0,
             )
@@ -706,8 +705,7 @@ impl<T: Real> KirchhoffBody<T> {
     ) -> T {
         let P = self.P(state);
         let μ = state.body_momentum().0;
-        let t1 = (rows_from::<T, 6, 3, 1>(&μ, 3))
-            .cross(&(rows_from::<T, 4, 3, 1>(&P, 0)));
+        let t1 = rows_from::<T, 6, 3, 1>(&μ, 3).cross(&rows_from::<T, 4, 3, 1>(&P, 0));
         t1.dot(&t1)
     }
     /// `Z[1:3] × (rot(G_k) lin(μ_k))`: Noether: the action is invariant under translations.
@@ -718,7 +716,7 @@ impl<T: Real> KirchhoffBody<T> {
         let KirchhoffBodyParameters { Z, .. } = self.parameters;
         let G = state.G.matrix();
         let μ = state.body_momentum().0;
-        (rows_from::<T, 4, 3, 1>(&Z, 0))
+        rows_from::<T, 4, 3, 1>(&Z, 0)
             .cross(&(motion_rotation(&G) * rows_from::<T, 6, 3, 1>(&μ, 3)))
     }
     /// `(rot(G_k) ang(μ_k) + pos(G_k) × (rot(G_k) lin(μ_k)))·Z[1:3]`: Noether: the action is invariant under rotations about the axis in space.
@@ -729,7 +727,7 @@ impl<T: Real> KirchhoffBody<T> {
         let t1 = motion_rotation(&G);
         (t1 * rows_from::<T, 6, 3, 1>(&μ, 0)
             + motion_translation(&G).cross(&(t1 * rows_from::<T, 6, 3, 1>(&μ, 3))))
-            .dot(&(rows_from::<T, 4, 3, 1>(&Z, 0)))
+            .dot(&rows_from::<T, 4, 3, 1>(&Z, 0))
     }
     /// The discrete energy of the edge between two consecutive states, `-tr(J rot(V_k))/h² + 2 (½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k)))/(2 h)² + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h² + ½ b·P_k + ½ b·P_{k+1} + tr(J)/h²`: bounded, since the stepper is symplectic.
     pub fn discrete_energy(
@@ -748,8 +746,8 @@ impl<T: Real> KirchhoffBody<T> {
         let t1 = motion_translation(&V_matrix);
         let t2 = motion_rotation(&V_matrix);
         let t3 = t1 + t2.tr_mul(&t1);
-        (T::from_f64(2.0) * (t3 * T::from_f64(0.5)).dot(&(M * t3 * T::from_f64(0.5))))
-            / ((T::from_f64(2.0) * h) * (T::from_f64(2.0) * h))
+        T::from_f64(2.0) * (t3 * T::from_f64(0.5)).dot(&(M * t3 * T::from_f64(0.5)))
+            / (T::from_f64(2.0) * h * (T::from_f64(2.0) * h))
             + vee(&t2).dot(&(D * t3 * T::from_f64(0.5))) / (h * h)
             + T::from_f64(0.5) * b.dot(&P) + T::from_f64(0.5) * b.dot(&P_next)
             - (J * less_identity(&motion_rotation(&V_matrix))).trace() / (h * h)

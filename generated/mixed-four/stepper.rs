@@ -409,14 +409,14 @@ impl<T: Real> MixedFour<T> {
                 let leaving = state
                     .G
                     .covector_turned(
-                        &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t4 * t6)), 0)))
+                        &((-into_rows::<T, 6, 3, 1>(&s.cross(&(t4 * t6)), 0)
                             - into_rows::<T, 6, 3, 1>(&(t4 * t6), 3))
                             * (T::from_f64(0.5) * h * k)),
                     );
                 leaving
                     + G_moved
                         .covector_turned(
-                            &(((-(into_rows::<T, 6, 3, 1>(&s.cross(&(t8 * t10)), 0)))
+                            &((-into_rows::<T, 6, 3, 1>(&s.cross(&(t8 * t10)), 0)
                                 - into_rows::<T, 6, 3, 1>(&(t8 * t10), 3))
                                 * (T::from_f64(0.5) * h * k)),
                         )
@@ -639,7 +639,7 @@ impl<T: Real> MixedFour<T> {
             6,
         >(
             &[
-                [(trace_complement(&t2)) * W_rot * t1, SMatrix::<T, 3, 3>::zeros()],
+                [trace_complement(&t2) * W_rot * t1, SMatrix::<T, 3, 3>::zeros()],
                 [SMatrix::<T, 3, 3>::zeros(), W_rot * (M * t1)],
             ],
         )
@@ -1049,7 +1049,7 @@ impl<T: Real> MixedFour<T> {
         let t8 = h.powi(-3);
         {
             let parts: (SVector<T, 3>, SVector<T, 6>, SVector<T, 3>, SVector<T, 3>) = (
-                p.cross(&(R.tr_mul(&X))) * (h * k) - t1 * (h * k)
+                p.cross(&R.tr_mul(&X)) * (h * k) - t1 * (h * k)
                     + axial_of_difference(&(J * less_identity(&V_before))) * t2
                     + axial_of_difference(&(J * less_identity(&V.transpose()))) * t2,
                 into_rows::<
@@ -1092,17 +1092,17 @@ impl<T: Real> MixedFour<T> {
                         1,
                     >(&(motion_translation(&W) * (t2 * M) + t7), 3),
                 quaternion_imaginary(
-                    &(Y_before
+                    &Y_before
                         .tr_mul(
                             &pure_quaternion(
-                                &(diagonal_times(&I, &quaternion_imaginary(&Y_before))),
+                                &diagonal_times(&I, &quaternion_imaginary(&Y_before)),
                             ),
-                        )),
+                        ),
                 ) * (T::from_f64(2.0) * t2) + relative_R_q.tr_mul(&t1) * (h * k)
                     - quaternion_imaginary(
                         &(Y
                             * pure_quaternion(
-                                &(diagonal_times(&I, &quaternion_imaginary(&Y))),
+                                &diagonal_times(&I, &quaternion_imaginary(&Y)),
                             )),
                     ) * (T::from_f64(2.0) * t2),
                 ΔX_before * (T::from_f64(4.0) * t8 * b * ΔX_before.dot(&ΔX_before))
@@ -1319,23 +1319,23 @@ impl<T: Real> MixedFour<T> {
         let G_next = after.G.matrix();
         let X_next = after.X.matrix();
         let t1 = motion_translation(&W_matrix);
-        let t2 = (T::from_f64(2.0) * h) * (T::from_f64(2.0) * h);
+        let t2 = T::from_f64(2.0) * h * (T::from_f64(2.0) * h);
         let t3 = quaternion_imaginary(&Y_matrix);
         let t4 = ΔX_matrix.dot(&ΔX_matrix);
         let t5 = X - R * p;
         let t6 = motion_translation(&G) + motion_rotation(&G) * s - X;
         let t7 = X_next - R_next * p;
         let t8 = motion_translation(&G_next) + motion_rotation(&G_next) * s - X_next;
-        (T::from_f64(2.0) * M * t1.dot(&t1)) / t2
-            + (T::from_f64(2.0) * t3.dot(&(diagonal_times(&I, &t3)))) / (h * h)
-            + (T::from_f64(2.0) * m * t4) / t2
-            + (T::from_f64(3.0) * b * (t4 * t4) * (h * h)) / h.powi(6)
+        T::from_f64(2.0) * M * t1.dot(&t1) / t2
+            + T::from_f64(2.0) * t3.dot(&diagonal_times(&I, &t3)) / (h * h)
+            + T::from_f64(2.0) * m * t4 / t2
+            + T::from_f64(3.0) * b * (t4 * t4) * (h * h) / h.powi(6)
             - T::from_f64(0.5) * m * g.dot(&X) + T::from_f64(0.25) * k * t5.dot(&t5)
             + T::from_f64(0.25) * k * t6.dot(&t6)
-            + T::from_f64(0.5) * k * e_.dot(&(relative_R_q.tr_mul(&p)))
+            + T::from_f64(0.5) * k * e_.dot(&relative_R_q.tr_mul(&p))
             - T::from_f64(0.5) * m * g.dot(&X_next) + T::from_f64(0.25) * k * t7.dot(&t7)
             + T::from_f64(0.25) * k * t8.dot(&t8)
-            + T::from_f64(0.5) * k * e_.dot(&(relative_R_q_next.tr_mul(&p)))
+            + T::from_f64(0.5) * k * e_.dot(&relative_R_q_next.tr_mul(&p))
             - (J * less_identity(&V_matrix)).trace() / (h * h)
             - (A * less_identity(&motion_rotation(&W_matrix))).trace() / (h * h)
     }
@@ -1372,13 +1372,13 @@ impl MixedFour<f64> {
         let s1 = (h * h).sqrt();
         let s2 = (k * k).sqrt();
         let s3 = p.dot(&p).sqrt();
-        let s4 = (R.tr_mul(&R)).trace().sqrt();
+        let s4 = R.tr_mul(&R).trace().sqrt();
         let s5 = X.dot(&X).sqrt();
-        let s6 = (relative_R_q.tr_mul(&relative_R_q)).trace().sqrt();
+        let s6 = relative_R_q.tr_mul(&relative_R_q).trace().sqrt();
         let s7 = e_.dot(&e_).sqrt();
         let s8 = s.dot(&s).sqrt();
         let s9 = motion_rotation(&G);
-        let s10 = (s9.tr_mul(&s9)).trace().sqrt();
+        let s10 = s9.tr_mul(&s9).trace().sqrt();
         let s11 = motion_translation(&G);
         let s12 = s11 + s9 * s - X;
         let s13 = s12.dot(&s12).sqrt();

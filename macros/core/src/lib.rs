@@ -13,6 +13,7 @@ pub mod groups;
 pub mod interpret;
 pub mod lattice;
 pub mod line;
+pub mod lower;
 pub mod pipeline;
 pub mod print;
 pub mod schedule;

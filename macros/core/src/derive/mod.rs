@@ -47,7 +47,6 @@ use crate::check::spec::Spec;
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
-use crate::schedule::Program;
 use crate::work::{self, Count, Work};
 use std::sync::OnceLock;
 
@@ -127,7 +126,7 @@ pub struct Derivation {
     /// What the derivation took.
     pub work: Work,
     /// The scheduled residual, once it has been asked for.
-    pub(crate) residual: OnceLock<Program>,
+    pub(crate) residual: OnceLock<crate::interpret::Evaluator>,
 }
 
 fn letters(spec: &Spec) -> Letters {

@@ -1,9 +1,9 @@
 //! Functionals with values: a table of functions by name, each asked for a value, a derivative along
 //! directions or a pull-back.
 
-use super::{Assignment, EvalError, Matrix, evaluate};
+use super::{Assignment, Matrix};
 use crate::expr::symbol::Symbols;
-use crate::expr::{Applied, Expr};
+use clebsch_program::{Array, Call};
 use std::sync::Arc;
 
 /// What a functional is asked for. Arguments are counted from 0.
@@ -45,37 +45,32 @@ impl Assignment {
     }
 }
 
-/// The value of a functional, of a derivative or of a pull-back.
-pub(super) fn called(
-    symbols: &Symbols,
-    e: &Expr,
-    a: &Applied,
-    back: Option<(u8, &Expr)>,
-    values: &Assignment,
-) -> Result<Matrix, EvalError> {
-    let name = &symbols.functional(a.functional).name;
-    let go = |x: &Expr| evaluate(symbols, x, values);
-    let arguments: Vec<Matrix> = a.arguments.iter().map(go).collect::<Result<_, _>>()?;
-    let along = a.along.iter().map(|(i, x)| Ok((usize::from(*i), go(x)?)));
-    let along: Vec<(usize, Matrix)> = along.collect::<Result<_, EvalError>>()?;
-    let back = match back {
-        Some((i, seed)) => Some((usize::from(i), go(seed)?)),
-        None => None,
-    };
-    let asked = Asked {
-        arguments: &arguments,
-        along: &along,
-        back: back.as_ref().map(|(i, seed)| (*i, seed)),
-    };
-    let found = values.functionals.0.iter().find(|(known, _)| known == name);
-    let value = found.and_then(|(_, f)| f(&asked));
-    let value = value.ok_or_else(|| EvalError::Functional(name.clone()))?;
-    let shape = e.shape();
-    let fits = values.dim(shape.rows)? == value.rows
-        && values.dim(shape.cols)? == value.cols
-        && value.data.len() == value.rows * value.cols;
-    match fits {
-        true => Ok(value),
-        false => Err(EvalError::Shape(name.clone())),
+impl Assignment {
+    /// The value of a functional, of a derivative or of a pull-back.
+    pub(super) fn functional(
+        &self,
+        symbols: &Symbols,
+        call: &Call,
+        given: &[&Array<f64>],
+    ) -> Option<Array<f64>> {
+        let name = &symbols.functionals()[call.functional].name;
+        let all: Vec<Matrix> = given.iter().map(|a| Matrix::of(a)).collect();
+        let (arguments, rest) = all.split_at_checked(call.arguments)?;
+        let along = call.along.iter().zip(rest);
+        let along: Vec<(usize, Matrix)> =
+            along.map(|(i, x)| (usize::from(*i), x.clone())).collect();
+        let seed = call.back.zip(rest.last());
+        let asked = Asked {
+            arguments,
+            along: &along,
+            back: seed.map(|(i, seed)| (usize::from(i), seed)),
+        };
+        let table = &self.functionals.0;
+        let (_, f) = table.iter().find(|(known, _)| known == name)?;
+        let value = f(&asked)?;
+        let fits = self.dim(call.shape.rows).ok()? == value.rows
+            && self.dim(call.shape.cols).ok()? == value.cols
+            && value.data.len() == value.rows * value.cols;
+        fits.then(|| value.array())
     }
 }

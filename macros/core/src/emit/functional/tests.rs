@@ -4,7 +4,7 @@ use crate::emit::expression::{Bindings, Writer, program};
 use crate::expr::functional::sample::at;
 use crate::expr::functional::tests::Table;
 use crate::expr::{self, Expr};
-use crate::interpret::{evaluate, run};
+use crate::interpret::{Evaluator, evaluate};
 use crate::schedule;
 use quote::quote;
 
@@ -70,7 +70,7 @@ fn a_functional_is_computed_once_for_its_arguments() {
         .iter()
         .filter(|(_, e)| matches!(e.node(), expr::Node::Given(_) | expr::Node::PullBack(..)));
     assert_eq!(stages.count(), 5);
-    let found = run(&p, &values).unwrap();
+    let found = Evaluator::of(&p).run(&values).unwrap();
     for (e, value) in list.iter().zip(found) {
         let wanted = evaluate(s, e, &values).unwrap();
         let pairs = wanted.data.iter().zip(&value.data);

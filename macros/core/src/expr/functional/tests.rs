@@ -6,7 +6,7 @@ use crate::algebra::{Algebra, Rational};
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Function, Node, Shift};
-use crate::interpret::{Assignment, Matrix, run};
+use crate::interpret::{Assignment, Evaluator, Matrix};
 use crate::schedule::program;
 
 /// A derivative of some order.
@@ -58,7 +58,9 @@ impl Table {
 
     pub(crate) fn value(&self, e: &Expr, values: &Assignment) -> Matrix {
         let p = program(&self.sample.symbols, std::slice::from_ref(e), "t");
-        let mut found = run(&p, values).unwrap_or_else(|error| panic!("{error}: {e:?}"));
+        let mut found = Evaluator::of(&p)
+            .run(values)
+            .unwrap_or_else(|error| panic!("{error}: {e:?}"));
         found.remove(0)
     }
 
