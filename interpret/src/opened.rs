@@ -202,7 +202,7 @@ impl Opened {
 }
 
 fn has_newton(d: &Derivation) -> bool {
-    use clebsch_core::derive::recognise::Method;
+    use clebsch_core::derive::select_solver::Method;
     matches!(d.solve.method, Method::Newton | Method::Blocks)
 }
 

@@ -4,7 +4,7 @@
 use super::labels::Stated;
 use clebsch::card::Field;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Kind, Lattice, Unfolded, unfold};
+use clebsch_core::lattice::{Choice, Kind, Lattice, ExpandedModel, unfold};
 use clebsch_core::syntax::ast::Statement;
 use std::collections::HashSet;
 
@@ -54,7 +54,7 @@ impl Copies {
         }
     }
 
-    fn of_unfolded(lattice: &Lattice, unfolded: &Unfolded) -> Self {
+    fn of_unfolded(lattice: &Lattice, unfolded: &ExpandedModel) -> Self {
         let given: HashSet<&str> = unfolded.given.iter().map(String::as_str).collect();
         let mut groups: Vec<Group> = Vec::new();
         for copy in &unfolded.copies {
@@ -193,7 +193,7 @@ pub(crate) fn base(copies: &Copies, field: &Field) -> Option<Base> {
 }
 
 /// The configuration of a lattice on which nothing else moves.
-fn the_only_one(lattice: &Lattice, unfolded: &Unfolded) -> Option<(String, usize, usize)> {
+fn the_only_one(lattice: &Lattice, unfolded: &ExpandedModel) -> Option<(String, usize, usize)> {
     let mut moving = unfolded.copies.iter().filter(|c| {
         let own = lattice.find(&c.of);
         own.is_some_and(|q| q.kind == Kind::Configuration) && !unfolded.given.contains(&c.name)

@@ -10,7 +10,7 @@ use crate::{Refused, text};
 use clebsch::card::{Card, Field, Invariant, Kind, Open};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Kind as QuantityKind, Lattice, Unfolded};
+use clebsch_core::lattice::{Choice, Kind as QuantityKind, Lattice, ExpandedModel};
 use clebsch_core::line::{Coordinates, totals_on};
 use clebsch_core::syntax::ast::Model;
 use clebsch_core::{document, pipeline};
@@ -48,7 +48,7 @@ pub struct Carded {
 /// The short line that the card is made of.
 struct Short<'a> {
     lattice: &'a Lattice,
-    unfolded: &'a Unfolded,
+    unfolded: &'a ExpandedModel,
     short: &'a Choice,
     whole: &'a Choice,
 }

@@ -27,7 +27,7 @@ pub use proof::proof;
 pub use source::source;
 
 use crate::derive::Derivation;
-use crate::derive::recognise::Riccati;
+use crate::derive::select_solver::StepEquation;
 use crate::expr::Expr;
 use crate::expr::symbol::Symbols;
 use crate::print::document::Document;
@@ -144,20 +144,20 @@ pub fn summary(d: &Derivation) -> String {
 }
 
 /// Which Riccati form a balance has.
-fn riccati_words(r: &Riccati, show: &mut dyn FnMut(&crate::expr::Expr) -> String) -> String {
+fn riccati_words(r: &StepEquation, show: &mut dyn FnMut(&crate::expr::Expr) -> String) -> String {
     match r {
-        Riccati::Exact(mv) => format!("exact, C = {}", show(&mv.factor)),
-        Riccati::Coupled(mv) => format!("coupled, C = {}", show(&mv.factor)),
-        Riccati::Quaternionic(q) => format!(
+        StepEquation::Exact(mv) => format!("exact, C = {}", show(&mv.factor)),
+        StepEquation::Coupled(mv) => format!("coupled, C = {}", show(&mv.factor)),
+        StepEquation::Quaternionic(q) => format!(
             "none; in unit quaternions, A = {}, β = {}",
             show(&q.edge.factor),
             show(&q.real)
         ),
-        Riccati::Linear(form) => format!(
+        StepEquation::Linear(form) => format!(
             "none; linear, L = {}, R = {}",
             show(&form.left),
             show(&form.right)
         ),
-        Riccati::None(why) => format!("none: {why}"),
+        StepEquation::None(why) => format!("none: {why}"),
     }
 }

@@ -7,7 +7,7 @@ use crate::check::{
 use crate::derive::{self, Derivation};
 use crate::diagnostic::{Diagnostic, Errors, Place};
 use crate::emit;
-use crate::lattice::{self, Choice, Lattice, Unfolded};
+use crate::lattice::{self, Choice, ExpandedModel, Lattice};
 use crate::line::{self, Line};
 use crate::syntax;
 use crate::syntax::ast::Model;
@@ -49,7 +49,7 @@ pub fn representative(model: &Model, line: &Lattice) -> Result<Choice, Errors> {
 
 /// How many times the work of an ordinary model a lattice is given: as many as it has copies, the work
 /// of each growing with their number.
-fn room(unfolded: &Unfolded) -> u64 {
+fn room(unfolded: &ExpandedModel) -> u64 {
     (unfolded.copies.len() as u64 / 4).max(4)
 }
 
@@ -58,7 +58,7 @@ pub fn derive_lattice(
     model: &Model,
     line: &Lattice,
     choice: &Choice,
-) -> Result<(Unfolded, Derivation), Errors> {
+) -> Result<(ExpandedModel, Derivation), Errors> {
     let unfolded = lattice::unfold(model, line, choice)?;
     let _room = work::room(room(&unfolded));
     let spec = written_out(&unfolded, line, choice)?;
@@ -67,7 +67,7 @@ pub fn derive_lattice(
 }
 
 /// A lattice that is written out, checked: its configurations know of what they are copies.
-fn written_out(unfolded: &Unfolded, line: &Lattice, choice: &Choice) -> Result<Spec, Errors> {
+fn written_out(unfolded: &ExpandedModel, line: &Lattice, choice: &Choice) -> Result<Spec, Errors> {
     let mut spec = check::check_written_out(&unfolded.model)?;
     let motionless = check::without_velocity(&spec);
     if let Some(first) = motionless.first() {
@@ -98,7 +98,7 @@ pub fn outline_lattice(
     model: &Model,
     line: &Lattice,
     choice: &Choice,
-) -> Result<(Unfolded, derive::Outline), Errors> {
+) -> Result<(ExpandedModel, derive::Outline), Errors> {
     let unfolded = lattice::unfold(model, line, choice)?;
     let _room = work::room(room(&unfolded));
     let spec = written_out(&unfolded, line, choice)?;

@@ -8,7 +8,7 @@ use clebsch::integrate::{Composition, CompositionOrder, Ensemble, Model, Stepper
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::solvers::unit_quaternions::QuaternionError;
 use clebsch::{BodyMomentum, Rotation, SpatialMomentum, StartError, StepCause, UnitQuaternion};
-use clebsch_core::derive::recognise::Method;
+use clebsch_core::derive::select_solver::Method;
 use clebsch_core::derive_source;
 use clebsch_models::cayley_klein::{
     CayleyKlein, CayleyKleinInitial, CayleyKleinParameters, CayleyKleinState,

@@ -93,7 +93,7 @@ pub struct Algebra<'a> {
 
 /// How an identity was decided.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Known {
+pub enum Decision {
     /// Both sides have the same normal form.
     NormalForm,
     /// The normal forms differ in identities of three dimensions, which hold at random points in
@@ -169,7 +169,7 @@ impl<'a> Algebra<'a> {
 
     /// How it is known that the expression vanishes identically, if it does. Nothing when it does
     /// not, or when the work ran out.
-    pub fn zero(&self, e: &Expr) -> Option<Known> {
+    pub fn zero(&self, e: &Expr) -> Option<Decision> {
         if self.exhausted() {
             return None;
         }
@@ -188,16 +188,17 @@ impl<'a> Algebra<'a> {
         if !self.exhausted() && in_blocks.is_some_and(|p| p.is_zero()) {
             return self.unless_contradicted(e);
         }
-        self.vanishes_at_points(e).then_some(Known::ExactEvaluation)
+        self.vanishes_at_points(e)
+            .then_some(Decision::ExactEvaluation)
     }
 
     /// `NormalForm`, unless exact evaluation at one random point says that the normal form is wrong.
-    fn unless_contradicted(&self, e: &Expr) -> Option<Known> {
+    fn unless_contradicted(&self, e: &Expr) -> Option<Decision> {
         if exact::differs_from_zero(self.symbols, e) {
             self.contradicted();
             return None;
         }
-        Some(Known::NormalForm)
+        Some(Decision::NormalForm)
     }
 
     /// Ends the derivation: a normal form is wrong, so nothing that follows from one can be trusted.

@@ -1,7 +1,7 @@
 //! Quaternions and rigid motions: identities that hold, and neighbours of them that do not.
 
 use super::rational::Rational;
-use super::{Algebra, Known};
+use super::{Algebra, Decision};
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr};
@@ -43,7 +43,7 @@ impl Letters {
         expr::inverse(&self.symbols, e)
     }
 
-    fn known(&self, left: Expr, right: Expr) -> Option<Known> {
+    fn known(&self, left: Expr, right: Expr) -> Option<Decision> {
         Algebra::new(&self.symbols).zero(&expr::sub(left, right))
     }
 }
@@ -56,13 +56,13 @@ fn quaternions_turn_vectors() {
     let conjugated = expr::product([q.clone(), expr::pure(v.clone()), l.t(q.clone())]);
     let turned = expr::mul(rot(q.clone()), v.clone());
     let found = l.known(expr::imaginary(conjugated.clone()), turned.clone());
-    assert_eq!(found, Some(Known::NormalForm));
+    assert_eq!(found, Some(Decision::NormalForm));
     let backward = expr::mul(l.t(rot(q.clone())), v.clone());
     assert_eq!(l.known(expr::imaginary(conjugated), backward), None);
     // A homomorphism, and one that orthogonality alone would not give.
     let both = expr::mul(q.clone(), p.clone());
     let product = expr::mul(rot(q.clone()), rot(p.clone()));
-    assert_eq!(l.known(rot(both), product), Some(Known::NormalForm));
+    assert_eq!(l.known(rot(both), product), Some(Decision::NormalForm));
     // R v = (w^2 - |x|^2) v + 2 (x.v) x + 2 w x × v, only by |q| = 1.
     let (w, x) = (expr::real(q.clone()), expr::imaginary(q.clone()));
     let two = || expr::integer(2);
@@ -85,7 +85,7 @@ fn quaternions_turn_vectors() {
         )
     };
     let found = l.known(turned.clone(), rodrigues(1));
-    assert_eq!(found, Some(Known::ExactEvaluation));
+    assert_eq!(found, Some(Decision::ExactEvaluation));
     assert_eq!(l.known(turned, rodrigues(-1)), None);
 }
 
@@ -100,7 +100,10 @@ fn imaginary_parts_are_projections_and_products_those_of_hamilton() {
         expr::identity(Dim::Fixed(4)),
     );
     let product = expr::sub(cross, dot);
-    assert_eq!(l.known(hamilton.clone(), product), Some(Known::NormalForm));
+    assert_eq!(
+        l.known(hamilton.clone(), product),
+        Some(Decision::NormalForm)
+    );
     let swapped = expr::mul(expr::pure(v.clone()), expr::pure(u.clone()));
     assert_eq!(l.known(hamilton, swapped), None);
     // im(g X g^T) = R im(X) and im(X^T) = -im(X) for any 4 x 4 matrix.
@@ -110,16 +113,16 @@ fn imaginary_parts_are_projections_and_products_those_of_hamilton() {
         expr::imaginary(k.clone()),
     );
     let found = l.known(expr::imaginary(conjugated), turned);
-    assert_eq!(found, Some(Known::NormalForm));
+    assert_eq!(found, Some(Decision::NormalForm));
     let minus = |e: Expr| expr::neg(expr::imaginary(e));
     let back = expr::imaginary(l.t(q.clone()));
-    assert_eq!(l.known(back, minus(q.clone())), Some(Known::NormalForm));
+    assert_eq!(l.known(back, minus(q.clone())), Some(Decision::NormalForm));
     let back = expr::imaginary(l.t(k.clone()));
-    assert_eq!(l.known(back, minus(k.clone())), Some(Known::NormalForm));
+    assert_eq!(l.known(back, minus(k.clone())), Some(Decision::NormalForm));
     // The skew part of a quaternion is made of its imaginary part, that of a matrix is not.
     let skew = |e: &Expr| expr::part(expr::Part::Skew, e.clone());
     let pure = |e: &Expr| expr::pure(expr::imaginary(e.clone()));
-    assert_eq!(l.known(skew(&q), pure(&q)), Some(Known::NormalForm));
+    assert_eq!(l.known(skew(&q), pure(&q)), Some(Decision::NormalForm));
     assert_eq!(l.known(skew(&k), pure(&k)), None);
 }
 
@@ -131,24 +134,30 @@ fn rigid_motions_are_decided_in_blocks() {
     let (rot, pos) = (|e: &Expr| expr::block(s, e), |e: &Expr| expr::column(s, e));
     let both = expr::mul(g.clone(), f.clone());
     let product = expr::mul(rot(&g), rot(&f));
-    assert_eq!(l.known(rot(&both), product), Some(Known::NormalForm));
+    assert_eq!(l.known(rot(&both), product), Some(Decision::NormalForm));
     let moved = expr::add(expr::mul(rot(&g), pos(&f)), pos(&g));
-    assert_eq!(l.known(pos(&both), moved.clone()), Some(Known::NormalForm));
+    assert_eq!(
+        l.known(pos(&both), moved.clone()),
+        Some(Decision::NormalForm)
+    );
     assert_eq!(l.known(pos(&expr::mul(f, g.clone())), moved), None);
     // The inverse: R^T and -R^T x.
     let back = l.inverse(g.clone());
-    assert_eq!(l.known(rot(&back), l.t(rot(&g))), Some(Known::NormalForm));
+    assert_eq!(
+        l.known(rot(&back), l.t(rot(&g))),
+        Some(Decision::NormalForm)
+    );
     let opposite = expr::neg(expr::mul(l.t(rot(&g)), pos(&g)));
-    assert_eq!(l.known(pos(&back), opposite), Some(Known::NormalForm));
+    assert_eq!(l.known(pos(&back), opposite), Some(Decision::NormalForm));
     // Not orthogonal as a whole, orthogonal in its block.
     let one = expr::identity(Dim::Fixed(4));
     assert_eq!(l.known(expr::mul(l.t(g.clone()), g.clone()), one), None);
     let energy = |r: Expr| expr::trace(expr::product([r.clone(), j.clone(), l.t(r)]));
     let found = l.known(energy(rot(&g)), expr::trace(j.clone()));
-    assert_eq!(found, Some(Known::NormalForm));
+    assert_eq!(found, Some(Decision::NormalForm));
     assert_eq!(
         l.known(expr::det(g), expr::integer(1)),
-        Some(Known::NormalForm)
+        Some(Decision::NormalForm)
     );
 }
 
@@ -190,7 +199,7 @@ fn products_of_quaternions_are_taken_apart() {
             expr::real(word.clone()),
             expr::trace(word.clone()),
         ] {
-            let parted = expr::parted(&l.symbols, &e);
+            let parted = expr::quaternion_components(&l.symbols, &e);
             assert!(l.known(parted.clone(), e.clone()).is_some(), "{e:?}");
             assert!(is_parted(&parted), "{parted:?}");
             if !e.is_zero() {
@@ -201,7 +210,7 @@ fn products_of_quaternions_are_taken_apart() {
     }
     // A rigid motion is none.
     let motion = expr::trace(l.at("G"));
-    assert_eq!(expr::parted(&l.symbols, &motion), motion);
+    assert_eq!(expr::quaternion_components(&l.symbols, &motion), motion);
 }
 
 fn parts_vanish(l: &Letters, e: &Expr) -> bool {
@@ -233,7 +242,7 @@ fn diagonals_are_those_of_the_entries() {
     for a in [k.clone(), v.clone()] {
         let d = diagonal(a.clone());
         let turned = diagonal(l.t(a.clone()));
-        assert_eq!(l.known(d.clone(), turned), Some(Known::NormalForm));
+        assert_eq!(l.known(d.clone(), turned), Some(Decision::NormalForm));
         agree(expr::trace(d.clone()), expr::trace(a.clone()));
         agree(diagonal(d.clone()), d.clone());
         let square = expr::mul(a.clone(), a.clone());
@@ -267,7 +276,7 @@ fn fractional_powers_multiply_to_whole_ones() {
             ]);
             let whole = expr::power(base.clone(), Rational::integer(n));
             let found = l.known(product.clone(), whole.clone());
-            assert_eq!(found, Some(Known::NormalForm), "{n}");
+            assert_eq!(found, Some(Decision::NormalForm), "{n}");
             let other = expr::scale(half, whole);
             assert_eq!(l.known(product, other), None, "{n}");
         }

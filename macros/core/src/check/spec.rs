@@ -143,7 +143,7 @@ pub struct Reduction {
     pub nodal: Expr,
     /// How the invariance was decided: the Lagrangian as stated is the reduced one, with every
     /// advected quantity put in by its definition.
-    pub known: crate::algebra::Known,
+    pub known: crate::algebra::Decision,
     /// Whether groups were stated by `next`, so that parameters were looked for that absorb them.
     pub carries: bool,
 }

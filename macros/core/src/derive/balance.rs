@@ -4,7 +4,7 @@
 
 use super::Letters;
 use super::action::Action;
-use super::far;
+use super::cancellation;
 use super::rounding::Rounding;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
@@ -142,8 +142,8 @@ fn balance(
     };
     let increment = match increment(s, c, &outgoing, &incoming, algebra) {
         // Expanded for what cancels, it may have lost what places have in common.
-        Some(added) if far::error(algebra, &added) > 0.0 => Some(match acting() {
-            Some(derived) => far::nearer(algebra, added, derived),
+        Some(added) if cancellation::error(algebra, &added) > 0.0 => Some(match acting() {
+            Some(derived) => cancellation::nearer(algebra, added, derived),
             None => added,
         }),
         Some(added) => Some(added),
@@ -270,14 +270,14 @@ pub fn shorter(algebra: &Algebra, e: Expr) -> Expr {
         // The angular and the linear part, each by itself.
         let [angular, linear] = rows.map(|(at, count)| {
             let part = expr::rows_of(algebra.symbols(), &e, at, count);
-            far::least(algebra, algebra.shortest(&part), &part)
+            cancellation::least(algebra, algebra.shortest(&part), &part)
         });
         return expr::stacked(angular, linear);
     }
     let reduced = algebra.shortest(&e);
     let preferred = reduced.size() <= e.size() || has_fewer_letters(&reduced, &e);
     match !algebra.exhausted() && preferred {
-        true => far::nearer(algebra, reduced, e),
+        true => cancellation::nearer(algebra, reduced, e),
         false => e,
     }
 }

@@ -4,10 +4,10 @@
 //! Takes the balances and their Riccati forms; gives the blocks and the method of each.
 
 use super::balance::{Balance, shorter};
-use super::explicit::Explicit;
 use super::holds;
-use super::recognise::{Method, Riccati, Solve, is_constant, is_of_space};
 use super::seen_from_body::outgoing;
+use super::select_solver::{Method, Solve, StepEquation, is_constant, is_of_space};
+use super::two_sided_linear::TwoSidedLinear;
 use super::variation::at;
 use super::{Derivation, Letters};
 use crate::algebra::Algebra;
@@ -57,7 +57,7 @@ pub fn blocks(
     spec: &Spec,
     letters: &Letters,
     balances: &[Balance],
-    riccati: &[Riccati],
+    riccati: &[StepEquation],
     algebra: &Algebra,
 ) -> Vec<Block> {
     let momenta = outgoing(spec, letters, balances);
@@ -150,25 +150,25 @@ fn linear_together(
     })
 }
 
-fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize>) -> Block {
+fn block(spec: &Spec, letters: &Letters, riccati: &[StepEquation], members: Vec<usize>) -> Block {
     let (method, reason) = match members.as_slice() {
         [i] => match &riccati[*i] {
-            Riccati::Exact(mv) if is_constant(letters, mv) => (
+            StepEquation::Exact(mv) if is_constant(letters, mv) => (
                 Method::LeftFactor,
                 "C is constant: Moser-Veselov".to_owned(),
             ),
-            Riccati::Exact(_) if is_of_space(&spec.configurations[*i]) => (
+            StepEquation::Exact(_) if is_of_space(&spec.configurations[*i]) => (
                 Method::Davenport,
                 "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
             ),
-            Riccati::Quaternionic(q)
+            StepEquation::Quaternionic(q)
                 if is_constant(letters, &q.edge) && spec.configurations[*i].side.is_body() =>
             {
                 let why = "A is constant and symmetric, β constant: one equation for one number";
                 (Method::UnitQuaternions, why.to_owned())
             }
-            Riccati::Linear(form) => (Method::Linear, linear(form)),
-            Riccati::None(why) => (Method::Newton, format!("{why}: Newton")),
+            StepEquation::Linear(form) => (Method::Linear, linear(form)),
+            StepEquation::None(why) => (Method::Newton, format!("{why}: Newton")),
             _ => (Method::Newton, "Newton on the derived residual".to_owned()),
         },
         _ => (
@@ -189,7 +189,7 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[Riccati], members: Vec<usize
 const LINEAR: &str = "the balance is linear: ";
 
 /// How a linear balance is solved.
-fn linear(form: &Explicit) -> String {
+fn linear(form: &TwoSidedLinear) -> String {
     let number = |e: &Expr| e.shape().is_scalar();
     let what = match (number(&form.left), number(&form.right)) {
         (true, true) => "one division",

@@ -12,7 +12,7 @@ use super::balance::{Balance, pairing};
 use super::clebsch::{Relation, constraint_terms};
 use super::momentum::Momentum;
 use super::variation::{Variation, at, on_shell, previous_elements};
-use crate::algebra::{Algebra, Known};
+use crate::algebra::{Algebra, Decision};
 use crate::check::spec::Spec;
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::expr::shape::Shape;
@@ -50,7 +50,7 @@ pub struct Step {
     /// Right side.
     pub right: Expr,
     /// How it was proved.
-    pub known: Known,
+    pub known: Decision,
 }
 
 /// A finished proof.
@@ -66,7 +66,7 @@ impl Certificate {
         let exact = self
             .steps
             .iter()
-            .filter(|s| s.known == Known::ExactEvaluation)
+            .filter(|s| s.known == Decision::ExactEvaluation)
             .count();
         let normal = self.steps.len() - exact;
         if exact == 0 {
@@ -159,7 +159,7 @@ fn constraint_steps(x: &Inputs, i: usize, earlier: &Back, steps: &mut Vec<Step>)
         let p_next = expr::letter(s, *p, Shift::NEXT);
         let change = expr::directional(s, update, &outgoing);
         steps.push(Step {
-            known: Known::NormalForm,
+            known: Decision::NormalForm,
             name: format!("the variation keeps the constraint of {name} on the outgoing edge"),
             left: pairing(x.letters, &p_next, &change),
             right: expr::integer(0),
@@ -172,7 +172,7 @@ fn constraint_steps(x: &Inputs, i: usize, earlier: &Back, steps: &mut Vec<Step>)
         let own = own.map_or_else(|| expr::zero(s.get(quantity).shape), |e| (*e).clone());
         let own = expr::substitute(s, &own, &earlier.shell);
         steps.push(Step {
-            known: Known::NormalForm,
+            known: Decision::NormalForm,
             name: format!("the variation keeps the constraint of {name} on the incoming edge"),
             left: pairing(x.letters, &p_here, &own),
             right: pairing(x.letters, &p_here, &change),
@@ -194,7 +194,7 @@ fn gradient_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
             continue;
         }
         steps.push(Step {
-            known: Known::NormalForm,
+            known: Decision::NormalForm,
             name: format!(
                 "⟨∇ℓ, δ{0}⟩ is the derivative of ℓ along δ{0}",
                 name_of(x, letter)
@@ -224,7 +224,7 @@ fn combination(x: &Inputs, i: usize, back: &Back, steps: &mut Vec<Step>) {
             expr::substitute(s, &e, &back.shell)
         };
         steps.push(Step {
-            known: Known::NormalForm,
+            known: Decision::NormalForm,
             name: format!(
                 "the balance of {name} is a combination of the Clebsch relations: {what}"
             ),
@@ -357,7 +357,7 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
     let mut block = |what: &str, left: Expr, right: Expr| {
         if !left.is_zero() || !right.is_zero() {
             steps.push(Step {
-                known: Known::NormalForm,
+                known: Decision::NormalForm,
                 name: format!("{what} of {name}"),
                 left,
                 right,

@@ -10,7 +10,7 @@ pub(crate) use solved::Solved;
 use super::action::Action;
 use super::balance::{Balance, pairing};
 use super::invariants::{Family, Integrability, Invariant, Kind, Known};
-use super::recognise::Riccati;
+use super::select_solver::StepEquation;
 use super::variation::{Variation, at};
 use super::{Derivation, Letters};
 use crate::algebra::Algebra;
@@ -269,7 +269,7 @@ impl Derivation {
             letters.node_momentum.push(node);
             own.solve
                 .riccati
-                .push(Riccati::None("a multiplier".to_owned()));
+                .push(StepEquation::None("a multiplier".to_owned()));
             if let Some(list) = &mut own.solve.seen_from_body {
                 list.push(seen_from_body(&self.spec, s, hold));
             }

@@ -4,7 +4,7 @@
 
 use super::Letters;
 use super::action::{Action, summands};
-use super::far;
+use super::cancellation;
 use super::lie;
 use super::variation::{Variation, at};
 use crate::algebra::{Algebra, Atom, Monomial, Poly, Rational, Term, assumed as points};
@@ -179,7 +179,7 @@ pub fn limit(
 fn as_stated(s: &Symbols, spec: &Spec, still: &Expr, expanded: Expr, algebra: &Algebra) -> Expr {
     let step = at(spec.step, Shift::HERE);
     let stated = expr::collect(s, &of_order(algebra, still, step, Rational::ONE));
-    match far::error(algebra, &stated) < far::error(algebra, &expanded)
+    match cancellation::error(algebra, &stated) < cancellation::error(algebra, &expanded)
         && algebra.equal(&stated, &expanded)
     {
         true => stated,

@@ -3,20 +3,17 @@
 //! certificate, what must be solved each step, invariants, time reversal, the continuous limit.
 
 pub mod action;
+pub mod advection_rule;
 mod assumptions;
 mod axial;
 pub mod balance;
 pub mod blocks;
 pub mod bracket;
-pub mod carry;
+pub(crate) mod cancellation;
 pub mod certificate;
 pub mod clebsch;
 pub mod continuous;
 pub mod convex;
-pub mod displaced;
-pub mod eliminated;
-pub mod explicit;
-pub(crate) mod far;
 mod first_order;
 #[cfg(test)]
 mod functionals;
@@ -26,17 +23,20 @@ pub mod kinetic;
 pub mod lie;
 pub mod limit;
 pub mod momentum;
+pub mod momentum_update;
 mod occurrence;
 mod outline;
 pub mod parts;
 pub mod quaternionic;
-pub mod recognise;
 pub mod reduction;
 pub mod reversal;
 pub mod rounding;
+pub mod schur_reduction;
 pub mod seen_from_body;
+pub mod select_solver;
+pub mod spatial_increment_form;
 pub mod tangent;
-pub mod transport;
+pub mod two_sided_linear;
 pub mod variation;
 pub mod warnings;
 
@@ -100,11 +100,11 @@ pub struct Derivation {
     /// Momentum maps and the named form of the balance.
     pub momenta: Vec<momentum::Momentum>,
     /// How the momentum of every configuration goes from one node to the next.
-    pub carries: Vec<carry::Carry>,
+    pub carries: Vec<momentum_update::MomentumUpdate>,
     /// What each step must solve.
-    pub solve: recognise::Solve,
+    pub solve: select_solver::Solve,
     /// How advected quantities follow from the configuration.
-    pub transports: Vec<transport::Transport>,
+    pub transports: Vec<advection_rule::AdvectionRule>,
     /// Whether the one-step action is symmetric under time reversal.
     pub reversible: bool,
     /// The same with what breaks it, or what it takes.
@@ -305,7 +305,7 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
     let variations = variation::variations(&spec, &letters, &algebra);
     bounded(&algebra)?;
     let variations = variations?;
-    let transports = transport::transports(&spec, &letters, &algebra);
+    let transports = advection_rule::transports(&spec, &letters, &algebra);
     bounded(&algebra)?;
     let transports = transports?;
     let balances = balance::balances(&spec, &letters, &action, &variations, &algebra);
@@ -327,8 +327,9 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
     });
     bounded(&algebra)?;
     let certificate = certificate?;
-    let solve = recognise::recognise(&stated, &spec, &letters, &balances, &transports, &algebra);
-    let carries = carry::carries(&carry::Inputs {
+    let solve =
+        select_solver::select_solver(&stated, &spec, &letters, &balances, &transports, &algebra);
+    let carries = momentum_update::carries(&momentum_update::Inputs {
         spec: &spec,
         letters: &letters,
         action: &action,

@@ -1,8 +1,8 @@
 //! The beginning of a derivation: how everything varies, and the equations. Takes a checked model; gives
 //! what neighbours and ends of a line are derived from, without proofs and what follows from them.
 
+use super::advection_rule::{self, AdvectionRule};
 use super::balance::{self, Balance};
-use super::transport::{self, Transport};
 use super::variation::{self, Variation, at};
 use super::{Derivation, Letters, action, letters, place_of_most, reduction, too_large};
 use crate::algebra::Algebra;
@@ -22,7 +22,7 @@ pub struct Outline {
     /// How every quantity varies, per configuration.
     pub variations: Vec<Variation>,
     /// How advected quantities follow from the configuration.
-    pub transports: Vec<Transport>,
+    pub transports: Vec<AdvectionRule>,
     /// The balance of every configuration.
     pub balances: Vec<Balance>,
 }
@@ -36,7 +36,7 @@ pub fn outline(spec: Spec) -> Result<Outline, Errors> {
     let algebra = Algebra::new(&letters.symbols);
     let action = action::action(&spec);
     let variations = variation::variations(&spec, &letters, &algebra)?;
-    let transports = transport::transports(&spec, &letters, &algebra)?;
+    let transports = advection_rule::transports(&spec, &letters, &algebra)?;
     let balances = balance::balances(&spec, &letters, &action, &variations, &algebra);
     if work::exhausted() {
         return Err(too_large(whole, work::excess()).into());
@@ -57,7 +57,7 @@ impl Outline {
         let s = &self.letters.symbols;
         let mut list: Vec<(Letter, Expr)> = Vec::new();
         for (a, t) in self.spec.advected.iter().zip(&self.transports) {
-            let Transport::Defined(value) = t else {
+            let AdvectionRule::Defined(value) = t else {
                 continue;
             };
             for shift in [Shift::HERE, Shift::NEXT] {

@@ -5,7 +5,7 @@
 use super::Letters;
 use super::balance::{Balance, shorter};
 use super::parts::{Parts, Velocity};
-use super::recognise::MoserVeselov;
+use super::select_solver::MoserVeselov;
 use super::tangent::Direction;
 use super::variation::at;
 use crate::algebra::{Algebra, Rational};

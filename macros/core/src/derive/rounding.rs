@@ -2,7 +2,7 @@
 //! and `(Ω - 1) a / h` keeps sixteen digits of what `Ω a / h - a / h` loses. Takes expressions; gives
 //! the power of the step that they are of, and that of their rounding.
 
-use super::far;
+use super::cancellation;
 use crate::algebra::Algebra;
 use crate::check::spec::Spec;
 use crate::expr::shape::Structure;
@@ -86,7 +86,7 @@ impl Rounding<'_> {
         let mut best: Option<((f64, f64), Expr)> = None;
         for form in forms {
             let small = self.error(&form).min(0.0);
-            let kept = (small, -far::error(self.algebra, &form));
+            let kept = (small, -cancellation::error(self.algebra, &form));
             let better = best.as_ref().is_none_or(|(least, known)| {
                 kept > *least || kept == *least && form.size() < known.size()
             });

@@ -6,14 +6,14 @@ use crate::derive::Derivation;
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::lattice::{Choice, Lattice, Unfolded};
+use crate::lattice::{Choice, ExpandedModel, Lattice};
 use crate::print::formula::Formula;
 use std::collections::BTreeMap;
 
 /// One choice of sites and ends, written out and derived.
 pub(super) struct Part {
     pub choice: Choice,
-    pub unfolded: Unfolded,
+    pub unfolded: ExpandedModel,
     pub d: Derivation,
     /// The same with more sites, by which what is printed is known for every number of them.
     pub longer: Option<Box<Part>>,
@@ -33,7 +33,7 @@ pub(super) enum From {
 }
 
 /// The letters of a document on a lattice.
-pub(super) struct Folded<'a> {
+pub(super) struct IndexedNotation<'a> {
     pub lattice: &'a Lattice,
     pub symbols: Symbols,
     known: BTreeMap<String, SymbolId>,
@@ -46,10 +46,10 @@ struct Origin {
     site: usize,
 }
 
-impl<'a> Folded<'a> {
+impl<'a> IndexedNotation<'a> {
     /// With the letters of this part, whose functionals are those of all.
-    pub(super) fn new(lattice: &'a Lattice, part: &Part) -> Folded<'a> {
-        Folded {
+    pub(super) fn new(lattice: &'a Lattice, part: &Part) -> IndexedNotation<'a> {
+        IndexedNotation {
             lattice,
             symbols: part.d.letters.symbols.clone(),
             known: BTreeMap::new(),

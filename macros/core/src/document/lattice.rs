@@ -11,7 +11,7 @@ mod sites;
 mod sums;
 
 use super::compose::without_remarks;
-use super::folded::{Folded, From, Part};
+use super::folded::{From, IndexedNotation, Part};
 use crate::derive::warnings::Warning;
 use crate::diagnostic::Errors;
 use crate::expr::{self, Expr, Node, Shift};
@@ -50,7 +50,7 @@ pub fn printed_lattice(
             warnings: Vec::new(),
         });
     };
-    let mut folded = Folded::new(&lattice, first);
+    let mut folded = IndexedNotation::new(&lattice, first);
     let mut doc = Document::titled(format!("{}: discrete equations of motion", model.name.text));
     statement(model, stated, &mut doc);
     let warnings = warnings(&parts, &mut doc);
@@ -248,7 +248,7 @@ fn ranged(lattice: &Lattice, range: Option<Range>, of: Formula) -> Formula {
     }
 }
 
-fn terms(folded: &mut Folded, part: &Part, doc: &mut Document) {
+fn terms(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     let terms = folded.terms(part);
     let scaled = part.d.spec.scale.is_some();
     let ring = part.choice.periodic;
@@ -302,7 +302,7 @@ fn terms(folded: &mut Folded, part: &Part, doc: &mut Document) {
     }
 }
 
-fn constraints(folded: &mut Folded, part: &Part, doc: &mut Document) {
+fn constraints(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     let section = doc.section("Constraints");
     for stated in stated_configurations(part) {
         let c = &part.d.spec.configurations[stated.shown];
@@ -401,7 +401,12 @@ pub(super) fn stated_configurations(part: &Part) -> Vec<Stated> {
 }
 
 /// The two equations of a copy, seen from its site or an end.
-pub(super) fn equations(folded: &mut Folded, part: &Part, i: usize, from: From) -> Vec<Formula> {
+pub(super) fn equations(
+    folded: &mut IndexedNotation,
+    part: &Part,
+    i: usize,
+    from: From,
+) -> Vec<Formula> {
     let (Some(b), Some(mu)) = (
         part.d.balances.get(i),
         part.d.letters.node_momentum.get(i).copied(),
@@ -419,7 +424,7 @@ pub(super) fn equations(folded: &mut Folded, part: &Part, i: usize, from: From) 
 }
 
 /// The equations of a copy as text: equal where the equations are.
-pub(super) fn reading(folded: &mut Folded, part: &Part, i: usize, site: usize) -> String {
+pub(super) fn reading(folded: &mut IndexedNotation, part: &Part, i: usize, site: usize) -> String {
     let Some(b) = part.d.balances.get(i) else {
         return String::new();
     };
@@ -434,7 +439,11 @@ pub(super) fn reading(folded: &mut Folded, part: &Part, i: usize, site: usize) -
 }
 
 /// Copies whose equations read as those of the middle site, from the first to the last.
-pub(super) fn like_the_middle(folded: &mut Folded, part: &Part, s: &Stated) -> (usize, usize) {
+pub(super) fn like_the_middle(
+    folded: &mut IndexedNotation,
+    part: &Part,
+    s: &Stated,
+) -> (usize, usize) {
     let wanted = reading(folded, part, s.shown, s.site);
     let at = s
         .copies
@@ -457,7 +466,7 @@ pub(super) fn like_the_middle(folded: &mut Folded, part: &Part, s: &Stated) -> (
     (first, last)
 }
 
-fn interior(folded: &mut Folded, part: &Part, doc: &mut Document) {
+fn interior(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     let section = doc.section("Equations of a site");
     section.text("In terms of the momentum at the node in time, the first equation is solved for the velocity, and the second gives the momentum at the next node.");
     for s in stated_configurations(part) {

@@ -1,7 +1,7 @@
 //! The certificate as text: every identity of the proof, in order, with its two sides.
 
 use super::style;
-use crate::algebra::Known;
+use crate::algebra::Decision;
 use crate::derive::Derivation;
 use crate::print::{Format, expression};
 
@@ -14,8 +14,8 @@ pub fn proof(d: &Derivation) -> String {
     );
     for (i, step) in d.certificate.steps.iter().enumerate() {
         let how = match step.known {
-            Known::NormalForm => "",
-            Known::ExactEvaluation => " (exact evaluation)",
+            Decision::NormalForm => "",
+            Decision::ExactEvaluation => " (exact evaluation)",
         };
         out.push_str(&format!("\n{:>3}. {}{how}\n", i + 1, step.name));
         out.push_str(&format!(

@@ -5,8 +5,8 @@ use super::citations::Place;
 use super::sheet::{Sheet, listed};
 use crate::check::spec::{Configuration, Spec};
 use crate::derive::convex::convexity;
-use crate::derive::explicit::Explicit;
-use crate::derive::recognise::{Method, MoserVeselov, Riccati};
+use crate::derive::select_solver::{Method, MoserVeselov, StepEquation};
+use crate::derive::two_sided_linear::TwoSidedLinear;
 use crate::emit;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Node};
@@ -30,7 +30,7 @@ pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
         .enumerate()
     {
         let (mv, coupled) = match r {
-            Riccati::None(_) if c.group.is_additive() => {
+            StepEquation::None(_) if c.group.is_additive() => {
                 section.paragraph([
                     "Equation ".into(),
                     Inline::reference(&format!("outgoing {i}")),
@@ -46,7 +46,7 @@ pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
                 ]);
                 continue;
             }
-            Riccati::None(why) => {
+            StepEquation::None(why) => {
                 section.paragraph([
                     "There is no Riccati form for ".into(),
                     sheet.here(c.velocity).into(),
@@ -54,16 +54,16 @@ pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
                 ]);
                 continue;
             }
-            Riccati::Quaternionic(q) => {
+            StepEquation::Quaternionic(q) => {
                 super::quaternionic::equation(sheet, section, c, q, i);
                 continue;
             }
-            Riccati::Linear(form) => {
+            StepEquation::Linear(form) => {
                 linear(sheet, section, c, form, i);
                 continue;
             }
-            Riccati::Exact(mv) => (mv, false),
-            Riccati::Coupled(mv) => (mv, true),
+            StepEquation::Exact(mv) => (mv, false),
+            StepEquation::Coupled(mv) => (mv, true),
         };
         equation(sheet, section, c, mv, i, coupled);
         if !explained {
@@ -77,7 +77,13 @@ pub fn moser_veselov(sheet: &Sheet, doc: &mut Document) {
 }
 
 /// A balance that is linear in the velocity, solved for it.
-fn linear(sheet: &Sheet, section: &mut Section, c: &Configuration, form: &Explicit, i: usize) {
+fn linear(
+    sheet: &Sheet,
+    section: &mut Section,
+    c: &Configuration,
+    form: &TwoSidedLinear,
+    i: usize,
+) {
     let d = sheet.d;
     let s = sheet.symbols();
     let mu = expr::here(s, d.letters.node_momentum[i]);
@@ -167,7 +173,7 @@ fn equation(
     let mirrored = Formula::Product(vec![letter.clone(), Formula::transpose(w.clone())]);
     section.sourced(
         Formula::equal(Formula::minus(product, mirrored), momentum(sheet, c, mv, i)),
-        sheet.source(Place::Riccati),
+        sheet.source(Place::StepEquation),
     );
     let mut with = Vec::new();
     if named {
@@ -371,8 +377,8 @@ fn method(sheet: &Sheet, section: &mut Section) {
         _ => why.split(": Newton on").next().unwrap_or(why),
     };
     let letter = d.solve.riccati.first().and_then(|r| match r {
-        Riccati::Exact(mv) | Riccati::Coupled(mv) => Some(factor(sheet, mv, 0).0),
-        Riccati::Quaternionic(_) | Riccati::Linear(_) | Riccati::None(_) => None,
+        StepEquation::Exact(mv) | StepEquation::Coupled(mv) => Some(factor(sheet, mv, 0).0),
+        StepEquation::Quaternionic(_) | StepEquation::Linear(_) | StepEquation::None(_) => None,
     });
     let degenerate = degenerate(sheet);
     if d.solve.needs_second_moments()
@@ -391,10 +397,10 @@ fn method(sheet: &Sheet, section: &mut Section) {
     }
     // What the motion carries stands still in the body.
     let carried = d.solve.riccati.iter().any(|r| match r {
-        Riccati::Exact(mv) | Riccati::Coupled(mv) => {
+        StepEquation::Exact(mv) | StepEquation::Coupled(mv) => {
             expr::contains_role(sheet.symbols(), &mv.factor, Role::Advected)
         }
-        Riccati::Quaternionic(_) | Riccati::Linear(_) | Riccati::None(_) => false,
+        StepEquation::Quaternionic(_) | StepEquation::Linear(_) | StepEquation::None(_) => false,
     });
     let constant = if carried {
         " is constant in the body, where it is solved"

@@ -7,7 +7,7 @@ use super::items::{advanced, letters_of, node_locals, parameter_locals, with_tra
 use super::names::{Names, own, tagged, variable};
 use super::step::at;
 use crate::derive::Derivation;
-use crate::derive::transport::Transport;
+use crate::derive::advection_rule::AdvectionRule;
 use crate::expr::{self, Expr, Shift};
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -34,7 +34,7 @@ pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr], asks:
     for (a, t) in d.spec.advected.iter().zip(&d.transports) {
         for (shift, state) in [(Shift::HERE, &before), (Shift::NEXT, &after)] {
             let letter = at(a.quantity, shift);
-            if !asks || !needed.contains(&letter) || matches!(t, Transport::Advanced) {
+            if !asks || !needed.contains(&letter) || matches!(t, AdvectionRule::Advanced) {
                 continue;
             }
             let function = own(d, a.quantity);

@@ -20,10 +20,10 @@ pub(super) use super::workspace::{trial, work, work_init};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::blocks::Block;
-use crate::derive::displaced::{Displaced, displaced};
-use crate::derive::explicit::Explicit;
 use crate::derive::quaternionic::Quaternionic;
-use crate::derive::recognise::{Method, MoserVeselov, Riccati};
+use crate::derive::select_solver::{Method, MoserVeselov, StepEquation};
+use crate::derive::spatial_increment_form::{SpatialIncrementForm, displaced};
+use crate::derive::two_sided_linear::TwoSidedLinear;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -44,7 +44,7 @@ pub(super) fn by_newton(d: &Derivation) -> impl Iterator<Item = (usize, &Block)>
 fn exact<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a MoserVeselov)> {
     match (&b.method, b.members.as_slice()) {
         (Method::LeftFactor | Method::Davenport, [i]) => match &d.solve.riccati[*i] {
-            Riccati::Exact(mv) => Some((*i, mv)),
+            StepEquation::Exact(mv) => Some((*i, mv)),
             _ => None,
         },
         _ => None,
@@ -65,11 +65,11 @@ fn alike(d: &Derivation, b: &Block) -> Vec<usize> {
 }
 
 /// The configuration and the form of a block whose balance is linear.
-fn linear<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a Explicit)> {
+fn linear<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a TwoSidedLinear)> {
     // Of what is held the balance is linear too, and has a multiplier in it.
     match (&b.method, b.members.as_slice()) {
         (Method::Linear, [i]) => match &d.solve.riccati[*i] {
-            Riccati::Linear(form) => Some((*i, form)),
+            StepEquation::Linear(form) => Some((*i, form)),
             _ => None,
         },
         _ => None,
@@ -77,7 +77,7 @@ fn linear<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a Explicit)> 
 }
 
 /// The form of the balance of a field that is solved by itself.
-pub(super) fn linear_field(d: &Derivation, i: usize) -> Option<&Explicit> {
+pub(super) fn linear_field(d: &Derivation, i: usize) -> Option<&TwoSidedLinear> {
     let of_field = matches!(family(&d.spec.configurations[i]), Family::Field(_));
     let all = numbered(d).filter_map(|(_, b)| linear(d, b));
     all.filter(|_| of_field)
@@ -86,7 +86,7 @@ pub(super) fn linear_field(d: &Derivation, i: usize) -> Option<&Explicit> {
 }
 
 /// The forms of all configurations in their changes, where they have one.
-fn all_displaced(d: &Derivation) -> Vec<Option<Displaced>> {
+fn all_displaced(d: &Derivation) -> Vec<Option<SpatialIncrementForm>> {
     let is_linear = |i: usize| numbered(d).any(|(_, b)| linear(d, b).is_some_and(|(j, _)| i == j));
     (0..d.spec.configurations.len())
         .map(|i| displaced(d, i).filter(|_| is_linear(i)))
@@ -139,7 +139,7 @@ pub(super) fn kept_inverses(d: &Derivation) -> Vec<Inverse> {
 fn quaternionic<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a Quaternionic)> {
     match (&b.method, b.members.as_slice()) {
         (Method::UnitQuaternions, [i]) => match &d.solve.riccati[*i] {
-            Riccati::Quaternionic(q) => Some((*i, q)),
+            StepEquation::Quaternionic(q) => Some((*i, q)),
             _ => None,
         },
         _ => None,
@@ -484,7 +484,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
 pub(super) fn from_space(
     d: &Derivation,
     names: &Names,
-    by_change: &[Option<Displaced>],
+    by_change: &[Option<SpatialIncrementForm>],
     shift: Shift,
     bindings: &mut Bindings,
 ) -> TokenStream {
@@ -514,7 +514,11 @@ pub(super) fn from_space(
 }
 
 /// The form of a block in the change of its configuration, where it is found by that.
-fn changed<'a>(d: &Derivation, b: &Block, forms: &'a [Option<Displaced>]) -> Option<&'a Displaced> {
+fn changed<'a>(
+    d: &Derivation,
+    b: &Block,
+    forms: &'a [Option<SpatialIncrementForm>],
+) -> Option<&'a SpatialIncrementForm> {
     let (i, _) = linear(d, b)?;
     forms[i].as_ref()
 }

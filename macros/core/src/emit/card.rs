@@ -9,7 +9,7 @@ use super::sizes::{Generics, size};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::kinetic::{self, Kinetic};
-use crate::derive::recognise::Method;
+use crate::derive::select_solver::Method;
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Symbol, SymbolId, Symbols};
 use proc_macro2::{Literal, TokenStream};

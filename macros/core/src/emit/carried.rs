@@ -5,8 +5,8 @@ use super::element::{self, Family, family};
 use super::names::{Names, own, per_configuration, tagged, variable};
 use crate::check::spec::Configuration;
 use crate::derive::Derivation;
-use crate::derive::carry::Carry;
-use crate::derive::displaced::Displaced;
+use crate::derive::momentum_update::MomentumUpdate;
+use crate::derive::spatial_increment_form::SpatialIncrementForm;
 use crate::expr::{self, Expr, Shift};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
@@ -109,7 +109,7 @@ pub(super) fn gained(
     d: &Derivation,
     names: &Names,
     i: usize,
-    form: &Displaced,
+    form: &SpatialIncrementForm,
     values: &mut impl Iterator<Item = Acting>,
 ) -> Carried {
     let field = per_configuration(d, "momentum", i);
@@ -126,7 +126,7 @@ pub(super) fn gained(
 
 impl Body<'_> {
     /// What is added to a momentum that is kept in two numbers. None where it is not a sum.
-    fn acting(&self, u: &Carry, parts: &[Option<Acting>]) -> Option<TokenStream> {
+    fn acting(&self, u: &MomentumUpdate, parts: &[Option<Acting>]) -> Option<TokenStream> {
         let values = parts.iter().map(|a| a.as_ref().map(|a| a.value.clone()));
         let values: Vec<Option<TokenStream>> = values.collect();
         let Body {
@@ -141,7 +141,8 @@ impl Body<'_> {
             let acts = quote!(#(#present)+*);
             return (!present.is_empty()).then(|| element::array(self.c, acts));
         }
-        let (Carry::Through { straight, .. }, [leave, arrive]) = (u, values.as_slice()) else {
+        let (MomentumUpdate::Through { straight, .. }, [leave, arrive]) = (u, values.as_slice())
+        else {
             return None;
         };
         let left = leave.is_some().then(|| quote!(leaving));
@@ -165,7 +166,7 @@ impl Body<'_> {
     }
 
     /// The momentum of the next node as a whole.
-    fn whole(&self, u: &Carry, parts: &[Option<Acting>]) -> TokenStream {
+    fn whole(&self, u: &MomentumUpdate, parts: &[Option<Acting>]) -> TokenStream {
         let Body {
             element,
             moved,
@@ -181,12 +182,12 @@ impl Body<'_> {
                 let (a, b) = (plus(part(0)), plus(part(1)));
                 quote!(#old #a #b)
             }
-            (true, Carry::Through { .. }) => {
+            (true, MomentumUpdate::Through { .. }) => {
                 let left = part(0).map(|e| self.turned(&quote!(state.#element), &self.here, e));
                 let arrived = part(1).map(|e| self.turned(&quote!(#moved), &self.next, e));
                 quote!(state.#field.0 #left #arrived)
             }
-            (true, Carry::Kept(_)) => {
+            (true, MomentumUpdate::Kept(_)) => {
                 let added = plus(part(0));
                 let (there, back) = match element::about_body(c) {
                     true => (quote!(covector_turned), quote!(covector_turned_back)),
@@ -194,11 +195,11 @@ impl Body<'_> {
                 };
                 quote!(#moved.#there(&(state.#element.#back(&state.#field.0) #added)))
             }
-            (false, Carry::Kept(_)) => {
+            (false, MomentumUpdate::Kept(_)) => {
                 let added = plus(part(0));
                 quote!(#old #added)
             }
-            (false, Carry::Through { .. }) => {
+            (false, MomentumUpdate::Through { .. }) => {
                 let (left, arrived) = (plus(part(0)), plus(part(1)));
                 quote! {
                     #moved.covector_to_space(

@@ -7,7 +7,7 @@ use super::items::text;
 use super::names::variable;
 use crate::algebra::Algebra;
 use crate::derive::Derivation;
-use crate::derive::explicit::Explicit;
+use crate::derive::two_sided_linear::TwoSidedLinear;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr};
 use proc_macro2::{Ident, TokenStream};
@@ -16,7 +16,7 @@ use quote::quote;
 /// The factors of `left ΔX right = known`, of parameters. A number in front of everything goes with the only
 /// matrix.
 pub(super) struct Constant<'a> {
-    form: &'a Explicit,
+    form: &'a TwoSidedLinear,
     /// The step times the left factor and the right one, or the step times both together on the side where a
     /// matrix stands.
     pub factors: [Option<Expr>; 2],
@@ -24,7 +24,7 @@ pub(super) struct Constant<'a> {
 
 impl<'a> Constant<'a> {
     /// Those of configuration `i`; none where numbers alone stand there, which divide, or what changes.
-    pub fn of(d: &'a Derivation, i: usize, form: &'a Explicit) -> Option<Self> {
+    pub fn of(d: &'a Derivation, i: usize, form: &'a TwoSidedLinear) -> Option<Self> {
         let Family::Field(_) = family(&d.spec.configurations[i]) else {
             return None;
         };
@@ -78,7 +78,7 @@ impl<'a> Constant<'a> {
 pub(super) fn linear_solution(
     d: &Derivation,
     i: usize,
-    form: &Explicit,
+    form: &TwoSidedLinear,
     left: TokenStream,
     known: TokenStream,
     right: TokenStream,

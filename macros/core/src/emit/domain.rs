@@ -11,7 +11,7 @@ use super::sizes::Generics;
 use super::step::at;
 use crate::algebra::Rational;
 use crate::derive::Derivation;
-use crate::derive::recognise::Method;
+use crate::derive::select_solver::Method;
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Function, Letter, Node, Shift};
 use crate::print::{Format, Style, expression};

@@ -4,7 +4,7 @@
 use super::sizes::size;
 use crate::check::spec::{Configuration, Side};
 use crate::derive::Derivation;
-use crate::derive::carry::Carry;
+use crate::derive::momentum_update::MomentumUpdate;
 use crate::expr::shape::Dim;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -262,7 +262,7 @@ pub fn about_body(c: &Configuration) -> bool {
 
 /// Whether the linear momentum of a rigid motion is along its way, so that it has no moment on it.
 pub fn is_straight(d: &Derivation, i: usize) -> bool {
-    matches!(d.carries[i], Carry::Through { straight: true, .. })
+    matches!(d.carries[i], MomentumUpdate::Through { straight: true, .. })
 }
 
 /// Whether the state keeps the place of the element in two numbers. A spatial velocity turns the

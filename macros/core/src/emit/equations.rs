@@ -9,8 +9,8 @@ use super::names::{Names, variable};
 use super::stated::{Stated, stated};
 use super::step::at;
 use crate::check::spec::Side;
-use crate::derive::eliminated::Eliminated;
 use crate::derive::parts::{Parts, Velocity};
+use crate::derive::schur_reduction::SchurReduction;
 use crate::derive::tangent::Direction;
 use crate::derive::{Derivation, lie};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
@@ -32,7 +32,7 @@ pub(super) struct Equations<'a> {
     /// The local that holds the momenta of the node.
     pub momenta: &'a Ident,
     /// What is solved for beforehand, and where the model keeps the inverses for it.
-    pub eliminated: Option<&'a (Eliminated, Vec<(Expr, Ident)>)>,
+    pub eliminated: Option<&'a (SchurReduction, Vec<(Expr, Ident)>)>,
 }
 
 /// The equations as code.
@@ -108,13 +108,13 @@ fn blocks_of(parts: &Parts, list: &[Expr], side: Side, unit: &Expr) -> Option<Ve
 
 /// What can be solved for before the rest of the equations `list`: where the tangent is the same at every
 /// node, so that a proof that the root is principal asks for no other.
-pub(super) fn eliminated(d: &Derivation, list: &[Expr]) -> Option<Eliminated> {
+pub(super) fn eliminated(d: &Derivation, list: &[Expr]) -> Option<SchurReduction> {
     let moves = |c: &crate::check::spec::Configuration| c.group.rigid().is_some();
     if !d.spec.configurations.iter().any(moves) {
         return None;
     }
     let (parts, list) = by_parts(d, list)?;
-    let found = Eliminated::of(&parts, &list)?;
+    let found = SchurReduction::of(&parts, &list)?;
     let blocks = blocks_of(&parts, &list, Side::Body, &expr::integer(1))?;
     at_the_node(&parts.symbols, &blocks)
         .is_empty()
@@ -266,11 +266,11 @@ impl Equations<'_> {
         let list: Vec<Expr> = left.iter().map(|i| written(&list[*i])).collect();
         let list = simpler(&list);
         let varies = |l| parts.varies(l) || eliminated.is_some_and(|found| found.varies(l));
-        let mut at_node = schedule::Known::new(s, &varies, "k");
+        let mut at_node = schedule::LoopInvariants::new(s, &varies, "k");
         let (side, times_step, blocks) = {
             // What is known before the loop costs little.
             let cost = |blocks: &[Expr]| {
-                let mut known = schedule::Known::new(s, &varies, "k");
+                let mut known = schedule::LoopInvariants::new(s, &varies, "k");
                 let all = list.iter().chain(blocks).map(|e| known.apart(e));
                 let all: Vec<Expr> = all.collect();
                 schedule::work(&schedule::program(&known.symbols, &all, "t"))
@@ -360,7 +360,7 @@ impl Equations<'_> {
     /// The translations of a trial of which the rotations are given; `others` ask for Rodrigues vectors too.
     fn completed(
         &self,
-        found: &Eliminated,
+        found: &SchurReduction,
         s: &Symbols,
         steps: &[(SymbolId, Expr)],
         others: &[Expr],
@@ -397,7 +397,7 @@ impl Equations<'_> {
     }
 
     /// The velocities of a trial, translations found.
-    fn wholes(&self, found: &Eliminated) -> Vec<TokenStream> {
+    fn wholes(&self, found: &SchurReduction) -> Vec<TokenStream> {
         let turned = Ident::new(TURNED, proc_macro2::Span::call_site());
         let each = (0..found.rotations.len()).map(|i| {
             let at = Literal::usize_unsuffixed(i);
@@ -503,11 +503,11 @@ impl Equations<'_> {
         let is_velocity = |l: Letter| d.spec.configurations.iter().any(|c| c.velocity == l.symbol);
         let along = |l: Letter| d.letters.direction.contains(&l.symbol);
         let varies = |l: Letter| is_velocity(l) || along(l);
-        let mut at_node = schedule::Known::new(s, &varies, "k");
+        let mut at_node = schedule::LoopInvariants::new(s, &varies, "k");
         let apart: Vec<Expr> = list.iter().map(|e| at_node.apart(e)).collect();
         let derived_apart = columns_apart(&mut at_node, &derived);
         let (symbols, values) = (at_node.symbols, at_node.values);
-        let mut at_trial = schedule::Known::new(&symbols, &along, "c");
+        let mut at_trial = schedule::LoopInvariants::new(&symbols, &along, "c");
         let of_columns = columns_apart(&mut at_trial, &derived_apart);
         let before = stated(&symbols, values, "s", self.bindings);
         let statements = before.statements;
@@ -517,7 +517,7 @@ impl Equations<'_> {
         let columns = tangent_of(&at_trial.symbols, &of_columns, &once.bindings);
         let once = once.statements;
         let tangent = quote!(#once #columns);
-        let mut at_trial = schedule::Known::new(s, &along, "c");
+        let mut at_trial = schedule::LoopInvariants::new(s, &along, "c");
         let of_columns = columns_apart(&mut at_trial, &derived);
         let once = stated(&at_trial.symbols, at_trial.values, "m", self.bindings);
         let columns = tangent_of(&at_trial.symbols, &of_columns, &once.bindings);
@@ -550,7 +550,7 @@ impl Equations<'_> {
 }
 
 /// The equations of every column with what is known under names.
-fn columns_apart(known: &mut schedule::Known, columns: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
+fn columns_apart(known: &mut schedule::LoopInvariants, columns: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
     let mut all = Vec::with_capacity(columns.len());
     for column in columns {
         all.push(column.iter().map(|e| known.apart(e)).collect());

@@ -10,7 +10,7 @@ use super::names::{Names, own};
 use super::step::at;
 use crate::algebra::Algebra;
 use crate::derive::Derivation;
-use crate::derive::carry::Carry;
+use crate::derive::momentum_update::MomentumUpdate;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
@@ -40,7 +40,7 @@ pub(super) fn at_nodes(d: &Derivation) -> Vec<AtNode> {
 impl AtNode {
     fn of(d: &Derivation, i: usize) -> Option<AtNode> {
         let form = linear_field(d, i)?;
-        let Carry::Kept(added) = &d.carries[i] else {
+        let MomentumUpdate::Kept(added) = &d.carries[i] else {
             return None;
         };
         let s = &d.letters.symbols;

@@ -10,8 +10,8 @@ use super::sizes::Generics;
 use super::step::{at, here, step_signature};
 use crate::algebra::Rational;
 use crate::derive::Derivation;
-use crate::derive::recognise::MoserVeselov;
-use crate::derive::transport::Transport;
+use crate::derive::advection_rule::AdvectionRule;
+use crate::derive::select_solver::MoserVeselov;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Map, Node, Shift};
 use crate::schedule;
@@ -173,8 +173,10 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         attitude.extend(quote!(let #next = #turn;));
         bindings.bind_rotation(onwards, next.clone());
         let carried = d.transports.iter().any(|t| match t {
-            Transport::Defined(e) | Transport::Carried { value: e, .. } => stands_alone(e, at_node),
-            Transport::Advanced => false,
+            AdvectionRule::Defined(e) | AdvectionRule::Carried { value: e, .. } => {
+                stands_alone(e, at_node)
+            }
+            AdvectionRule::Advanced => false,
         });
         if carried || wanted.iter().any(|e| stands_alone(e, onwards)) {
             attitude.extend(quote!(let #own = #moved.unit_quaternion().matrix();));

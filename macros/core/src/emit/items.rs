@@ -6,8 +6,8 @@ use super::names::{Names, field, item, own, tagged, variable};
 use super::sizes::Generics;
 use crate::check::spec::{Advected, Assumption};
 use crate::derive::Derivation;
-use crate::derive::recognise::{Method, Riccati};
-use crate::derive::transport::Transport;
+use crate::derive::advection_rule::AdvectionRule;
+use crate::derive::select_solver::{Method, StepEquation};
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
@@ -26,11 +26,11 @@ pub fn text(d: &Derivation, e: &Expr) -> String {
 /// there.
 pub fn factor(d: &Derivation) -> Option<&Expr> {
     match (&d.solve.method, d.solve.riccati.first()) {
-        (Method::FreeMoserVeselov | Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => {
+        (Method::FreeMoserVeselov | Method::ForcedMoserVeselov, Some(StepEquation::Exact(mv))) => {
             Some(mv.in_body.as_ref().unwrap_or(&mv.factor))
         }
-        (Method::UnitQuaternions, Some(Riccati::Quaternionic(q))) => q.edge.in_body.as_ref(),
-        (Method::LeftFactor, Some(Riccati::Exact(mv))) if d.solve.turned.is_none() => {
+        (Method::UnitQuaternions, Some(StepEquation::Quaternionic(q))) => q.edge.in_body.as_ref(),
+        (Method::LeftFactor, Some(StepEquation::Exact(mv))) if d.solve.turned.is_none() => {
             Some(&mv.factor)
         }
         _ => None,
@@ -40,7 +40,7 @@ pub fn factor(d: &Derivation) -> Option<&Expr> {
 /// The number that goes with the factor on SU(2); made of parameters.
 fn real(d: &Derivation) -> Option<&Expr> {
     match (&d.solve.method, d.solve.riccati.first()) {
-        (Method::UnitQuaternions, Some(Riccati::Quaternionic(q))) => Some(&q.real),
+        (Method::UnitQuaternions, Some(StepEquation::Quaternionic(q))) => Some(&q.real),
         _ => None,
     }
 }
@@ -127,7 +127,7 @@ pub fn factor_of_state(d: &Derivation) -> TokenStream {
 /// A quantity that the state keeps beside elements and momenta.
 pub fn kept(d: &Derivation) -> Vec<SymbolId> {
     let all = d.spec.advected.iter().zip(&d.transports);
-    all.filter(|(_, t)| !matches!(t, Transport::Defined(_)))
+    all.filter(|(_, t)| !matches!(t, AdvectionRule::Defined(_)))
         .map(|(a, _)| a.quantity)
         .collect()
 }
@@ -224,14 +224,14 @@ pub fn with_transports(d: &Derivation, needed: &[Letter], level: i8) -> Vec<Lett
             continue;
         }
         match t {
-            Transport::Defined(e) | Transport::Carried { value: e, .. } => {
+            AdvectionRule::Defined(e) | AdvectionRule::Carried { value: e, .. } => {
                 all.extend(expr::letters(&expr::shift_time(
                     &d.letters.symbols,
                     e,
                     level,
                 )));
             }
-            Transport::Advanced => {}
+            AdvectionRule::Advanced => {}
         }
     }
     all.sort();
@@ -244,7 +244,7 @@ pub fn with_transports(d: &Derivation, needed: &[Letter], level: i8) -> Vec<Lett
 pub fn advanced(d: &Derivation) -> impl Iterator<Item = &Advected> {
     let pairs = d.spec.advected.iter().zip(&d.transports);
     pairs
-        .filter(|(_, t)| matches!(t, Transport::Advanced))
+        .filter(|(_, t)| matches!(t, AdvectionRule::Advanced))
         .map(|(a, _)| a)
 }
 
@@ -321,7 +321,7 @@ pub fn advected_value(
     d: &Derivation,
     names: &Names,
     a: &Advected,
-    transport: &Transport,
+    transport: &AdvectionRule,
     level: i8,
     reference: &dyn Fn(SymbolId) -> TokenStream,
     bindings: &Bindings,
@@ -335,8 +335,8 @@ pub fn advected_value(
         writer.write(e)
     };
     let value = match transport {
-        Transport::Defined(e) => written(&expr::shift_time(s, e, level), bindings),
-        Transport::Carried { value, .. } => {
+        AdvectionRule::Defined(e) => written(&expr::shift_time(s, e, level), bindings),
+        AdvectionRule::Carried { value, .. } => {
             let start = tagged(d, names, a.quantity, "reference");
             let source = reference(a.quantity);
             let shift = Shift {
@@ -352,8 +352,8 @@ pub fn advected_value(
             let value = written(&expr::shift_time(s, value, level), &inner);
             return (quote!(let #start = #source;), value);
         }
-        Transport::Advanced if level == 1 => written(&a.update, bindings),
-        Transport::Advanced => reference(a.quantity),
+        AdvectionRule::Advanced if level == 1 => written(&a.update, bindings),
+        AdvectionRule::Advanced => reference(a.quantity),
     };
     (TokenStream::new(), value)
 }

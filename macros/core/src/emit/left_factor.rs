@@ -10,8 +10,8 @@ use super::sizes::{Generics, size};
 use super::step::{AtTheStart, at, finish, here, node_momentum, step_signature};
 use crate::derive::Derivation;
 use crate::derive::blocks::Block;
-use crate::derive::carry::Carry;
-use crate::derive::recognise::{Method, MoserVeselov};
+use crate::derive::momentum_update::MomentumUpdate;
+use crate::derive::select_solver::{Method, MoserVeselov};
 use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
@@ -304,12 +304,12 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
         }
     });
     let mut bindings = Bindings::new();
-    let list: Vec<&Expr> = d.carries.iter().flat_map(Carry::parts).collect();
+    let list: Vec<&Expr> = d.carries.iter().flat_map(MomentumUpdate::parts).collect();
     let velocity = at(c.velocity, Shift::HERE);
     let onwards = || list.iter().copied().chain(advanced(d).map(|a| &a.update));
     let uses_velocity = onwards().any(|e| expr::contains(e, velocity));
     let mut needed: Vec<Letter> = letters_of(onwards());
-    if let [Carry::Through { leave, .. }] = d.carries.as_slice()
+    if let [MomentumUpdate::Through { leave, .. }] = d.carries.as_slice()
         && c.side.is_body()
         && rotations
         && !leave.is_zero()

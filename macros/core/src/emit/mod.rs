@@ -45,7 +45,7 @@ mod workspace;
 pub(crate) use notes::notes;
 
 use crate::derive::Derivation;
-use crate::derive::recognise::Method;
+use crate::derive::select_solver::Method;
 use crate::diagnostic::{Diagnostic, Errors};
 pub use formula::formula;
 pub use line::{emit_line, refusal_of_line};

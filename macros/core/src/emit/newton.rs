@@ -14,9 +14,9 @@ use super::step::{AtTheStart, at, finish, here, node_momentum, step_signature};
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::convex::convexity;
-use crate::derive::displaced::Displaced;
-use crate::derive::eliminated::Eliminated;
+use crate::derive::schur_reduction::SchurReduction;
 use crate::derive::seen_from_body::outgoing;
+use crate::derive::spatial_increment_form::SpatialIncrementForm;
 use crate::expr::{Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -74,7 +74,7 @@ impl Together<'_> {
     }
 
     /// What is solved for beforehand, and where the model keeps the inverses for it.
-    pub fn eliminated(&self) -> Option<(Eliminated, Vec<(Expr, Ident)>)> {
+    pub fn eliminated(&self) -> Option<(SchurReduction, Vec<(Expr, Ident)>)> {
         let found = equations::eliminated(self.block, &self.momenta())?;
         let mut constants: Vec<Expr> = Vec::new();
         for a in found.places.iter().flat_map(|p| p.constants()) {
@@ -90,7 +90,7 @@ impl Together<'_> {
 
     /// The type of what Newton's method finds and of all velocities, with the numbers of their coordinates:
     /// what a search has behind its scalar.
-    fn kinds(&self, eliminated: Option<&Eliminated>) -> TokenStream {
+    fn kinds(&self, eliminated: Option<&SchurReduction>) -> TokenStream {
         let used = Generics::of(self.whole).used();
         let (elements, values) = (self.elements(), self.node_type_name());
         let dimension = element::total(self.block);
@@ -414,7 +414,7 @@ impl Together<'_> {
 }
 
 /// What the step needs of the node beside the equations: to go on from there.
-pub(super) fn onwards(d: &Derivation, by_change: &[Option<Displaced>]) -> Vec<Letter> {
+pub(super) fn onwards(d: &Derivation, by_change: &[Option<SpatialIncrementForm>]) -> Vec<Letter> {
     let carries = d.carries.iter().enumerate();
     let acting = carries.flat_map(|(i, carry)| match by_change.get(i) {
         Some(Some(form)) => vec![&form.added],

@@ -9,8 +9,8 @@ use super::names::{Names, field, item, own, per_configuration, tagged, variable}
 use super::sizes::Generics;
 use super::step::at;
 use crate::derive::Derivation;
-use crate::derive::recognise::Method;
-use crate::derive::transport::Transport;
+use crate::derive::advection_rule::AdvectionRule;
+use crate::derive::select_solver::Method;
 use crate::expr::{self, Shift};
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -169,7 +169,7 @@ fn state_of(d: &Derivation, names: &Names) -> TokenStream {
     for (a, t) in d.spec.advected.iter().zip(&d.transports) {
         let own_name = own(d, a.quantity);
         let label = &s.get(a.quantity).name;
-        if matches!(t, Transport::Defined(_)) {
+        if matches!(t, AdvectionRule::Defined(_)) {
             continue;
         }
         let shape = s.get(a.quantity).shape;
@@ -183,7 +183,7 @@ fn state_of(d: &Derivation, names: &Names) -> TokenStream {
         let local = variable(s, a.quantity);
         fields.push(field(d, a.quantity));
         let value = match t {
-            Transport::Carried { reference, .. } => {
+            AdvectionRule::Carried { reference, .. } => {
                 let mut bindings = Bindings::new();
                 let needed = expr::letters(reference);
                 let elements: TokenStream = d
@@ -207,7 +207,7 @@ fn state_of(d: &Derivation, names: &Names) -> TokenStream {
                 .write(reference);
                 quote!({ #parameters #elements let #source = initial.#own_name; #e })
             }
-            Transport::Defined(_) | Transport::Advanced => quote!(initial.#own_name),
+            AdvectionRule::Defined(_) | AdvectionRule::Advanced => quote!(initial.#own_name),
         };
         references.extend(quote!(let #local = #value;));
     }

@@ -8,7 +8,7 @@ use super::names::{Names, item, own, per_configuration};
 use super::sizes::Generics;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
-use crate::derive::recognise::Method;
+use crate::derive::select_solver::Method;
 use proc_macro2::{Ident, Spacing, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 

@@ -10,10 +10,10 @@ use super::names::{Names, item, own, per_configuration, tagged, variable};
 use super::sizes::Generics;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
-use crate::derive::carry::Carry;
-use crate::derive::displaced::Displaced;
-use crate::derive::recognise::{Method, Riccati};
-use crate::derive::transport::Transport;
+use crate::derive::advection_rule::AdvectionRule;
+use crate::derive::momentum_update::MomentumUpdate;
+use crate::derive::select_solver::{Method, StepEquation};
+use crate::derive::spatial_increment_form::SpatialIncrementForm;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::schedule;
 use proc_macro2::TokenStream;
@@ -33,11 +33,13 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     let mut beside = TokenStream::new();
     let step = match (&d.solve.method, d.solve.riccati.first()) {
         (Method::FreeMoserVeselov, _) => free_step(d, names),
-        (Method::ForcedMoserVeselov, Some(Riccati::Exact(mv))) => super::forced::step(d, names, mv),
-        (Method::UnitQuaternions, Some(Riccati::Quaternionic(q))) => {
+        (Method::ForcedMoserVeselov, Some(StepEquation::Exact(mv))) => {
+            super::forced::step(d, names, mv)
+        }
+        (Method::UnitQuaternions, Some(StepEquation::Quaternionic(q))) => {
             super::forced::step(d, names, &q.edge)
         }
-        (Method::LeftFactor | Method::Davenport, Some(Riccati::Exact(mv))) => {
+        (Method::LeftFactor | Method::Davenport, Some(StepEquation::Exact(mv))) => {
             super::left_factor::step(d, names, mv)
         }
         (Method::Blocks, _) => {
@@ -152,7 +154,7 @@ pub(super) fn seen(
     let (mut asked, mut others) = (TokenStream::new(), needed.to_vec());
     for (a, t) in d.spec.advected.iter().zip(&d.transports) {
         let letter = at(a.quantity, Shift::HERE);
-        if needed.contains(&letter) && !matches!(t, Transport::Advanced) {
+        if needed.contains(&letter) && !matches!(t, AdvectionRule::Advanced) {
             let (local, function) = (variable(s, a.quantity), own(d, a.quantity));
             asked.extend(quote!(let #local = self.#function(state);));
             bindings.bind(letter, local);
@@ -183,7 +185,7 @@ pub(super) fn node_momentum(d: &Derivation, i: usize, side: Side) -> TokenStream
 /// What has been computed at the node where a step starts.
 pub(super) struct AtTheStart<'a> {
     /// The forms in their changes of the configurations of which the change was solved for.
-    pub by_change: &'a [Option<Displaced>],
+    pub by_change: &'a [Option<SpatialIncrementForm>],
     /// What acts on fields at one node as at the next, kept from step to step.
     pub forces: &'a [AtNode],
     /// Everything else that has a name.
@@ -207,9 +209,9 @@ pub(super) fn finish(
     let parts = d.carries.iter().enumerate();
     let parts = parts.flat_map(|(i, carry)| match (by_change(i), carry) {
         (Some(form), _) => vec![(None, &form.added)],
-        (None, Carry::Kept(_)) if force_on(i).is_some() => Vec::new(),
-        (None, Carry::Kept(added)) => vec![(None, added)],
-        (None, Carry::Through { leave, arrive, .. }) => vec![
+        (None, MomentumUpdate::Kept(_)) if force_on(i).is_some() => Vec::new(),
+        (None, MomentumUpdate::Kept(added)) => vec![(None, added)],
+        (None, MomentumUpdate::Through { leave, arrive, .. }) => vec![
             (Some((i, Shift::HERE)), leave),
             (Some((i, Shift::NEXT)), arrive),
         ],
@@ -271,7 +273,7 @@ pub(super) fn finish(
     };
     // Rotated torques need the matrices of both nodes.
     for (c, u) in d.spec.configurations.iter().zip(&d.carries) {
-        if let (Carry::Through { leave, arrive, .. }, Family::Rotation) = (u, family(c))
+        if let (MomentumUpdate::Through { leave, arrive, .. }, Family::Rotation) = (u, family(c))
             && c.side.is_body()
         {
             if !leave.is_zero() {

@@ -10,7 +10,7 @@ use super::sizes::Generics;
 use crate::check::spec::Side;
 use crate::derive::Derivation;
 use crate::derive::invariants::{Invariant, Kind};
-use crate::derive::recognise::Method;
+use crate::derive::select_solver::Method;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 

@@ -6,7 +6,7 @@ use super::force_at_node;
 use super::left_factor::default_solver;
 use super::names::{Names, item};
 use crate::derive::Derivation;
-use crate::derive::recognise::Method;
+use crate::derive::select_solver::Method;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 

@@ -5,7 +5,7 @@
 use super::function::Parity;
 use super::functional;
 use super::hashed::{Hashed, Words};
-use super::presence::Marks;
+use super::letter_mask::Marks;
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{SymbolId, Symbols};
 use super::{Constant, Expr, Function, Inner, Letter, Map, Node, Part, Shift};

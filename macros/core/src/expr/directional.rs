@@ -1,7 +1,7 @@
 //! Directional derivatives: how an expression changes to first order when some letters change
 //! by given amounts. Linear in the amounts; one rule for each kind of node.
 
-use super::presence::{Marks, Memo};
+use super::letter_mask::{Marks, Memo};
 use super::*;
 use crate::expr::symbol::Symbols;
 

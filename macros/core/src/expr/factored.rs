@@ -24,7 +24,7 @@ pub fn factored(symbols: &Symbols, e: &Expr) -> Expr {
         Node::Sum(_) | Node::Product(_) | Node::Quotient(..) if !e.shape().is_scalar() => {
             let mut terms = Vec::new();
             flatten(symbols, &e, &mut terms);
-            places::first(symbols, of_terms(symbols, terms, e.shape()))
+            position_differences::first(symbols, of_terms(symbols, terms, e.shape()))
         }
         Node::Vee(a) => axial_of_outer(symbols, a).unwrap_or(e),
         _ => e,
@@ -83,7 +83,7 @@ fn flatten(symbols: &Symbols, e: &Expr, out: &mut Vec<Parts>) {
     if let [only] = term.matrices.as_slice()
         && matches!(only.node(), Node::Sum(_) | Node::Neg(_))
         && *only != *e
-        && !places::is_between(symbols, only)
+        && !position_differences::is_between(symbols, only)
     {
         let mut inner = Vec::new();
         flatten(symbols, only, &mut inner);

@@ -1,14 +1,14 @@
 //! How large the terms of an expression are: what its rounding is measured by. To first order this is a running error bound
 //! in units of rounding (Higham, Accuracy and Stability of Numerical Algorithms, section 3.3): the terms of a sum count, each
 //! by itself; those of a factor count times the *values* of the other factors, so that a power of what nearly vanishes is
-//! as small as it is. A difference of stored places is as uncertain as they are.
+//! as small as it is. A difference of stored position_differences is as uncertain as they are.
 //! Takes an expression; gives one without cancellation.
 
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::Symbols;
 use super::{
     Expr, Function, Letter, Map, Node, Rational, add, call, dot, identity, integer, mul, number,
-    places, power, quotient, substitute, sum, trace, transpose,
+    position_differences, power, quotient, substitute, sum, trace, transpose,
 };
 
 /// How large the terms of an expression are.
@@ -21,8 +21,8 @@ pub(crate) fn magnitude(s: &Symbols, e: &Expr) -> Expr {
     .terms
 }
 
-/// How large the terms of an expression at a node are, differences of places by their own lengths, with what the rounding of
-/// the places themselves changes, to first order and in units of rounding.
+/// How large the terms of an expression at a node are, differences of position_differences by their own lengths, with what the rounding of
+/// the position_differences themselves changes, to first order and in units of rounding.
 pub(crate) fn magnitude_by_differences(s: &Symbols, e: &Expr) -> Expr {
     let plain = |e: &Expr| magnitude(s, e);
     in_differences(s, e, plain, |named| {
@@ -37,20 +37,20 @@ pub(crate) fn magnitude_by_differences(s: &Symbols, e: &Expr) -> Expr {
     })
 }
 
-/// The same without the rounding of places.
+/// The same without the rounding of position_differences.
 pub(crate) fn lengths_of_differences(s: &Symbols, e: &Expr) -> Expr {
     let plain = |e: &Expr| magnitude(s, e);
     in_differences(s, e, plain, |named| magnitude(&named.symbols, &named.whole))
 }
 
-/// A size that is taken with letters for differences of places; the plain one where there are none.
+/// A size that is taken with letters for differences of position_differences; the plain one where there are none.
 fn in_differences(
     s: &Symbols,
     e: &Expr,
     plain: impl Fn(&Expr) -> Expr,
-    size: impl Fn(&places::Named) -> Expr,
+    size: impl Fn(&position_differences::Named) -> Expr,
 ) -> Expr {
-    match places::named(s, e) {
+    match position_differences::named(s, e) {
         Some(named) => substitute(&named.symbols, &size(&named), &named.definitions),
         None => plain(e),
     }
@@ -159,7 +159,7 @@ impl Size {
 
 struct Terms<'a> {
     symbols: &'a Symbols,
-    /// The sizes of the places of which letters of differences are made, where their rounding is asked for.
+    /// The sizes of the position_differences of which letters of differences are made, where their rounding is asked for.
     differences: Option<&'a [(Letter, Expr)]>,
 }
 

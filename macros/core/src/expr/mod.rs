@@ -8,18 +8,19 @@ mod determinant;
 mod diagonal;
 mod directional;
 mod factored;
+mod factored_inverse;
 mod function;
 pub(crate) mod functional;
 mod gradient;
 mod hashed;
+mod letter_mask;
 mod magnitude;
 #[cfg(test)]
 mod magnitude_tests;
-mod parted;
-pub(crate) mod places;
-mod presence;
+pub(crate) mod position_differences;
 mod projection;
 mod quaternion;
+mod quaternion_components;
 pub(crate) mod range;
 mod rigid;
 pub mod shape;
@@ -32,7 +33,6 @@ mod terms;
 #[cfg(test)]
 mod tests;
 mod turned;
-mod undone;
 
 use crate::algebra::Rational;
 use shape::{Dim, Shape};
@@ -46,6 +46,7 @@ pub use determinant::{adjugate, adjugate_polynomial, det, with_plain_determinant
 pub use diagonal::{diagonal, diagonal_of};
 pub use directional::directional;
 pub use factored::{axial_of_outer, factored};
+pub use factored_inverse::Undone;
 pub use function::{Function, Parity};
 pub use functional::{
     Applied, BY_CASE, Functional, FunctionalId, Kind, Reach, derived, given, pull_back,
@@ -53,11 +54,11 @@ pub use functional::{
 pub(crate) use functional::{kind, pairing};
 pub use gradient::gradient;
 pub(crate) use hashed::{Exprs, Hashed};
+pub(crate) use letter_mask::{may_contain, may_hold};
 pub(crate) use magnitude::{lengths_of_differences, magnitude, magnitude_by_differences};
-pub use parted::parted;
-pub(crate) use presence::{may_contain, may_hold};
 pub use projection::projected;
 pub use quaternion::{imaginary, pure, real, rotation};
+pub use quaternion_components::quaternion_components;
 pub use rigid::{
     block, column, inclusion, is_motion, last_axis, paired_with_twists, part_of_six, quarter_turn,
     rows_in_parts, rows_of, stacked, taken_rows, twist, within,
@@ -69,7 +70,6 @@ pub use substitute::{
 };
 pub use terms::{Change, changes};
 pub use turned::turned;
-pub use undone::Undone;
 
 /// Offset of a letter from the node or edge of an equation, in time and along the labels.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug, Default)]
@@ -207,7 +207,7 @@ struct Inner {
     shape: Shape,
     size: u32,
     hash: u64,
-    marks: presence::Marks,
+    marks: letter_mask::Marks,
 }
 
 impl Expr {

@@ -2,7 +2,7 @@
 //! expressions in their place. All other rewriting happens on normal forms.
 
 use super::build::letter_of_shape;
-use super::presence::{Marks, Memo};
+use super::letter_mask::{Marks, Memo};
 use super::symbol::{Role, Symbols};
 use super::*;
 

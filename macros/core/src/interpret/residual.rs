@@ -3,7 +3,7 @@
 use super::{Assignment, EvalError, Evaluator, Matrix, evaluate};
 use crate::check::spec::Group;
 use crate::derive::Derivation;
-use crate::derive::transport::Transport;
+use crate::derive::advection_rule::AdvectionRule;
 use crate::expr::shape::Structure;
 use crate::expr::{self, Expr, Shift};
 use crate::schedule::{Program, program};
@@ -69,7 +69,7 @@ impl Derivation {
         };
         let mut all = values.clone();
         for (a, t) in self.spec.advected.iter().zip(&self.transports) {
-            if let Transport::Defined(definition) = t {
+            if let AdvectionRule::Defined(definition) = t {
                 let value = evaluate(s, definition, &all)?;
                 let name = &s.get(a.quantity).name;
                 all.set(name, 0, value.rows, value.cols, &value.data);
@@ -104,7 +104,7 @@ impl Derivation {
             }
         }
         for (a, t) in self.spec.advected.iter().zip(&self.transports) {
-            let Transport::Defined(definition) = t else {
+            let AdvectionRule::Defined(definition) = t else {
                 continue;
             };
             for level in [-1, 0, 1] {

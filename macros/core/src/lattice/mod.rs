@@ -23,8 +23,8 @@ pub use names::{Copied, copy_name};
 pub(crate) use parts::holds_sums;
 pub(crate) use put::any_name;
 pub use range::Range;
+pub use unfold::{ExpandedModel, StatedHold, StatedTotal, Summand, Summed, unfold};
 pub(crate) use unfold::{LARGEST, definitions, inlined};
-pub use unfold::{StatedHold, StatedTotal, Summand, Summed, Unfolded, unfold};
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::ast::{Model, Statement};

@@ -25,7 +25,7 @@ pub(super) enum Still {
 pub(super) type Pinned = BTreeMap<String, Still>;
 
 /// Where an expression is put.
-pub(super) struct Put<'a> {
+pub(super) struct SiteSubstitution<'a> {
     /// The lattice.
     pub lattice: &'a Lattice,
     /// Its sites and ends.
@@ -42,7 +42,7 @@ pub(super) struct Put<'a> {
 
 type Placed = Result<Expression, Box<Diagnostic>>;
 
-impl Put<'_> {
+impl SiteSubstitution<'_> {
     /// The expression at the site.
     pub(super) fn put(&self, e: &Expression) -> Placed {
         self.at(e, 0)
@@ -158,7 +158,7 @@ impl Put<'_> {
         let Some(mesh) = meshes.find(|m| m.name.text == n) else {
             return Ok(e.clone());
         };
-        let at_first = Put {
+        let at_first = SiteSubstitution {
             lattice: self.lattice,
             choice: self.choice,
             pinned: self.pinned,

@@ -17,7 +17,7 @@ mod warned_tests;
 use super::choice::Choice;
 use super::declared::{Lattice, Quantity, Sites};
 use super::names::{Copied, copy, copy_name};
-use super::put::{Pinned, Put, Still, any_name};
+use super::put::{Pinned, SiteSubstitution, Still, any_name};
 use super::range::{Range, reach};
 use crate::check::circular_definitions;
 use crate::derive::warnings::Warning;
@@ -69,7 +69,7 @@ pub struct StatedHold {
 
 /// A model written out.
 #[derive(Clone, Debug)]
-pub struct Unfolded {
+pub struct ExpandedModel {
     /// The model of as many bodies.
     pub model: Model,
     /// The names of all copies.
@@ -94,7 +94,7 @@ pub struct Unfolded {
 ///
 /// # Errors
 /// Mistakes of the statement, on its tokens.
-pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfolded, Errors> {
+pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<ExpandedModel, Errors> {
     let mut errors = Errors::new();
     circular_definitions(model, &mut errors);
     errors.propagate()?;
@@ -116,7 +116,7 @@ pub fn unfold(model: &Model, lattice: &Lattice, choice: &Choice) -> Result<Unfol
         lets: &lets,
         pinned: Pinned::new(),
         errors: Errors::new(),
-        out: Unfolded {
+        out: ExpandedModel {
             model: Model {
                 statements: Vec::new(),
                 remarks: Vec::new(),
@@ -159,12 +159,12 @@ struct Writer<'a> {
     lets: &'a BTreeMap<String, Expression>,
     pinned: Pinned,
     errors: Errors,
-    out: Unfolded,
+    out: ExpandedModel,
 }
 
 impl<'a> Writer<'a> {
-    fn put(&self, site: isize) -> Put<'_> {
-        Put {
+    fn put(&self, site: isize) -> SiteSubstitution<'_> {
+        SiteSubstitution {
             lattice: self.lattice,
             choice: self.choice,
             pinned: &self.pinned,
@@ -532,7 +532,7 @@ fn velocity_of<'a>(model: &'a Model, element: &str) -> Option<&'a Name> {
     })
 }
 
-impl Unfolded {
+impl ExpandedModel {
     /// The farthest that letters of one term stand apart.
     pub fn width(&self) -> usize {
         self.summands.iter().map(|s| s.width).max().unwrap_or(0)

@@ -2,7 +2,7 @@
 //! velocities, of sites by themselves and of those terms. Takes limits; gives the derivatives that are inverted for all sites
 //! together.
 
-use super::{Lone, Tie, Written, velocity};
+use super::{RepresentativeChain, SiteModel, VelocityCoupling, velocity};
 use crate::algebra::Algebra;
 use crate::check::spec::Spec;
 use crate::derive::Letters;
@@ -49,13 +49,13 @@ fn of(spec: &Spec, letters: &Letters, limit: &Limit, members: &[usize]) -> Inert
 }
 
 /// That of configurations of a site by itself, if there is a limit.
-pub fn of_site(lone: &Lone, members: &[usize]) -> Option<Inertia> {
+pub fn of_site(lone: &SiteModel, members: &[usize]) -> Option<Inertia> {
     let limit = lone.d.limit.as_ref().ok()?;
     Some(of(&lone.d.spec, &lone.d.letters, limit, members))
 }
 
 /// That of a term of neighbours, its parts in order; none where it has no limit or one with more than velocities.
-pub(super) fn of_tie(part: &Written, tie: &Tie) -> Option<Inertia> {
+pub(super) fn of_tie(part: &RepresentativeChain, tie: &VelocityCoupling) -> Option<Inertia> {
     let d = &part.d;
     let algebra = Algebra::new(&d.letters.symbols);
     let none = || expr::zero(Shape::SCALAR);

@@ -3,38 +3,38 @@
 //! proves that these are all of its equations. Takes a model with labels; gives the parts that a
 //! stepper with loops over sites is made of, or why it has to be written out.
 
+mod chain_constraint;
 mod coordinates;
-mod held;
+mod functional_force;
 mod inertia;
-mod lone;
-mod meshed;
+mod neighbour_force;
 mod proof;
-mod pull;
 mod signs;
 mod site;
+mod site_model;
 #[cfg(test)]
 mod tests;
-mod tie;
 mod total;
 mod velocity;
+mod velocity_coupling;
 
+pub use chain_constraint::{ChainConstraint, ConstraintResponse, Matrix, Reach};
 pub use coordinates::{By, Coordinates, restated};
-pub use held::{Held, Matrix, Reach, Unit};
+pub use functional_force::FunctionalForce;
 pub use inertia::{Inertia, of_site as inertia_of_site};
-pub use lone::{How, Lone, Mover};
-pub use meshed::Meshed;
-pub use pull::{EndTerm, Force, Pull};
+pub use neighbour_force::{EndTerm, Force, NeighbourForce};
 pub use signs::{Signs, Wall, signs};
 pub use site::{BASE, Sited};
-pub use tie::{Part, Tie};
+pub use site_model::{SiteModel, SiteSolve, SiteUnknown};
 pub use total::{Density, Total, totals_on};
+pub use velocity_coupling::{Part, VelocityCoupling};
 
 use crate::algebra::Rational;
 use crate::derive::Outline;
 use crate::diagnostic::Errors;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr};
-use crate::lattice::{Choice, Lattice, Unfolded, any_name};
+use crate::lattice::{Choice, ExpandedModel, Lattice, any_name};
 use crate::pipeline;
 use crate::syntax::ast::{Model, NodeRule, Statement};
 
@@ -46,24 +46,24 @@ pub struct Line {
     pub coordinates: Vec<Coordinates>,
     /// Its labels.
     pub lattice: Lattice,
-    /// The lattice that is written out: letters of [`Pull`] are those of its copies.
-    pub representative: Written,
+    /// The lattice that is written out: letters of [`NeighbourForce`] are those of its copies.
+    pub representative: RepresentativeChain,
     /// What moves at a site, for each kind of sites.
-    pub lone: Vec<Lone>,
+    pub lone: Vec<SiteModel>,
     /// What neighbours add to momenta, terms of equal ranges together.
-    pub pulls: Vec<Pull>,
+    pub pulls: Vec<NeighbourForce>,
     /// What terms of neighbours in which velocities stand add to momenta.
-    pub ties: Vec<Tie>,
+    pub ties: Vec<VelocityCoupling>,
     /// Constraints that are held.
-    pub holds: Vec<Held>,
+    pub holds: Vec<ChainConstraint>,
     /// What impulses do to what is held, for each kind of sites.
-    pub units: Vec<Vec<Unit>>,
+    pub units: Vec<Vec<ConstraintResponse>>,
     /// What end conditions add.
     pub ends: Vec<EndTerm>,
     /// Unit quaternions that meet their neighbours.
     pub signs: Vec<Signs>,
     /// What terms with functionals of all sites add.
-    pub meshed: Option<Meshed>,
+    pub meshed: Option<FunctionalForce>,
     /// Conserved totals.
     pub totals: Vec<Total>,
     /// What of a nodal term acts at the end of the edge that comes to its node, and what of it at the
@@ -72,11 +72,11 @@ pub struct Line {
 }
 
 /// One choice of sites and ends, written out.
-pub struct Written {
+pub struct RepresentativeChain {
     /// The choice.
     pub choice: Choice,
     /// The model of as many bodies.
-    pub unfolded: Unfolded,
+    pub unfolded: ExpandedModel,
     /// How its copies vary, and their equations.
     pub d: Outline,
 }
@@ -119,17 +119,17 @@ impl Line {
         let choice = pipeline::representative(model, &lattice)?;
         let representative = written(model, &lattice, choice)?;
         without_clocks(&representative)?;
-        let (pulls, ties) = pull::pulls(&lattice, &representative)?;
-        let lone = lone::lone(model, &lattice, &representative, &ties)?;
-        let meshed = meshed::meshed(&lattice, &representative)?;
-        let holds = held::held(&lattice, &representative, &lone)?;
-        let units = lone.iter().map(|l| held::units(l, &holds));
+        let (pulls, ties) = neighbour_force::pulls(&lattice, &representative)?;
+        let lone = site_model::lone(model, &lattice, &representative, &ties)?;
+        let meshed = functional_force::meshed(&lattice, &representative)?;
+        let holds = chain_constraint::held(&lattice, &representative, &lone)?;
+        let units = lone.iter().map(|l| chain_constraint::units(l, &holds));
         let units = units.collect::<Result<Vec<_>, Refused>>()?;
-        let ends = pull::ends(model, &lattice, &representative.choice)?;
+        let ends = neighbour_force::ends(model, &lattice, &representative.choice)?;
         let signs = signs::of_parts(&lattice, &representative, &ends)?;
         let mut pulls = pulls;
         if !holds.is_empty() {
-            pulls.extend(pull::collecting(&lattice, &pulls, &ends));
+            pulls.extend(neighbour_force::collecting(&lattice, &pulls, &ends));
         }
         let mut totals = total::totals(model, &lattice, &representative)?;
         if let Some(m) = &meshed {
@@ -236,7 +236,7 @@ impl Line {
     }
 
     /// What moves, by name.
-    pub fn mover(&self, name: &str) -> Option<(&Lone, &Mover)> {
+    pub fn mover(&self, name: &str) -> Option<(&SiteModel, &SiteUnknown)> {
         self.lone
             .iter()
             .find_map(|l| Some((l, l.movers.iter().find(|m| m.name == name)?)))
@@ -251,7 +251,7 @@ impl Line {
     }
 }
 
-impl Written {
+impl RepresentativeChain {
     /// What of a nodal term acts at the end of the edge that comes to its node, and what of it at the start
     /// of the edge that leaves.
     fn shares(&self) -> [Rational; 2] {
@@ -264,9 +264,13 @@ impl Written {
     }
 }
 
-fn written(model: &Model, lattice: &Lattice, choice: Choice) -> Result<Written, Errors> {
+fn written(
+    model: &Model,
+    lattice: &Lattice,
+    choice: Choice,
+) -> Result<RepresentativeChain, Errors> {
     let (unfolded, d) = pipeline::outline_lattice(model, lattice, &choice)?;
-    Ok(Written {
+    Ok(RepresentativeChain {
         choice,
         unfolded,
         d,
@@ -301,7 +305,7 @@ fn stands_alone(model: &Model, lattice: &Lattice) -> Result<(), Refused> {
 }
 
 /// Refuses what goes on with the step by itself: loops over sites keep no time.
-fn without_clocks(representative: &Written) -> Result<(), Refused> {
+fn without_clocks(representative: &RepresentativeChain) -> Result<(), Refused> {
     let spec = &representative.d.spec;
     match spec.clocks().first() {
         None => Ok(()),

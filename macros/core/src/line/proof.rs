@@ -1,7 +1,7 @@
 //! The proof that a site by itself and what neighbours add are the whole equation of a site: shown on
 //! the lattice that is written out, at a site with all its neighbours.
 
-use super::{Line, Lone, Mover, Refused};
+use super::{Line, Refused, SiteModel, SiteUnknown};
 use crate::algebra::Algebra;
 use crate::expr::shape::Shape;
 use crate::expr::{self, Expr, Shift};
@@ -21,7 +21,7 @@ impl Line {
         Ok(())
     }
 
-    fn prove_one(&self, lone: &Lone, mover: &Mover) -> Result<(), Refused> {
+    fn prove_one(&self, lone: &SiteModel, mover: &SiteUnknown) -> Result<(), Refused> {
         let refused = || {
             Refused::Form(format!(
                 "the equation of `{name}` at a site was not shown to be what the site alone and its neighbours give: of terms that \
@@ -69,7 +69,7 @@ impl Line {
         );
         let (out, into) = (without(out, 0), without(into, 1));
         let reacted = self.reacted(&mover.name, site).ok_or_else(refused)?;
-        let mut written = super::held::written_out(part, i);
+        let mut written = super::chain_constraint::written_out(part, i);
         written.push(expr::neg(reacted));
         let reactions = expr::sum(written, whole.outgoing.shape());
         let equal = zero(expr::add(out, expr::scale(leaving, pulled)))

@@ -2,8 +2,8 @@
 //! which sign, and at which ends they meet a quaternion that is given. Takes the lattice that is written out; gives
 //! what is made to agree where a trajectory starts, since `q` and `-q` are one attitude and two states.
 
-use super::pull::{self, EndTerm};
-use super::{Refused, Written, written};
+use super::neighbour_force::{self, EndTerm};
+use super::{Refused, RepresentativeChain, written};
 use crate::algebra::Algebra;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId};
@@ -50,12 +50,12 @@ pub fn signs(model: &Model, lattice: &Lattice) -> Result<Vec<Signs>, Refused> {
     if of_line(lattice, &part).is_empty() {
         return Ok(Vec::new());
     }
-    let ends = pull::ends(model, lattice, &part.choice)?;
+    let ends = neighbour_force::ends(model, lattice, &part.choice)?;
     of_parts(lattice, &part, &ends)
 }
 
 /// The unit quaternions along the line, as stated.
-fn of_line(lattice: &Lattice, part: &Written) -> Vec<String> {
+fn of_line(lattice: &Lattice, part: &RepresentativeChain) -> Vec<String> {
     let own = lattice.quantities.iter().filter(|q| {
         let group = part.copy(&q.name.text, 0).map(|id| is_unit(part, id));
         q.kind == Kind::Configuration && lattice.line == Some(q.label) && group == Some(true)
@@ -63,7 +63,7 @@ fn of_line(lattice: &Lattice, part: &Written) -> Vec<String> {
     own.map(|q| q.name.text.clone()).collect()
 }
 
-fn is_unit(part: &Written, id: SymbolId) -> bool {
+fn is_unit(part: &RepresentativeChain, id: SymbolId) -> bool {
     let symbol = part.d.letters.symbols.get(id);
     symbol.structure == Structure::UnitQuaternion && symbol.role == Role::Element
 }
@@ -71,7 +71,7 @@ fn is_unit(part: &Written, id: SymbolId) -> bool {
 /// The same of a lattice that is written out already, with its end conditions.
 pub(super) fn of_parts(
     lattice: &Lattice,
-    part: &Written,
+    part: &RepresentativeChain,
     ends: &[EndTerm],
 ) -> Result<Vec<Signs>, Refused> {
     let names = of_line(lattice, part);
@@ -81,8 +81,8 @@ pub(super) fn of_parts(
     let inner = part.unfolded.summands.iter();
     let inner = inner.filter(|t| t.end.is_none() && !t.of_functionals);
     let mut terms: Vec<Expr> = Vec::new();
-    for summand in inner.filter(|t| pull::lone_at(t).is_none()) {
-        terms.extend(pull::in_two(part, summand)?);
+    for summand in inner.filter(|t| neighbour_force::lone_at(t).is_none()) {
+        terms.extend(neighbour_force::in_two(part, summand)?);
     }
     let algebra = Algebra::new(&part.d.letters.symbols);
     let each = names.into_iter().filter_map(|of| {
@@ -103,7 +103,7 @@ pub(super) fn of_parts(
 
 /// Whether a term in which two sites of a quantity stand changes with the sign of one of them; none where there
 /// are no two.
-fn sees(part: &Written, algebra: &Algebra, term: &Expr, of: &str) -> Option<bool> {
+fn sees(part: &RepresentativeChain, algebra: &Algebra, term: &Expr, of: &str) -> Option<bool> {
     let s = &part.d.letters.symbols;
     let letters = expr::letters(term).into_iter();
     let own: Vec<(Letter, usize)> = letters

@@ -1,6 +1,6 @@
 //! Letters of a lattice that is written out, by the quantity and the site they are copies of.
 
-use super::{Lone, Written};
+use super::{RepresentativeChain, SiteModel};
 use crate::check::spec::Configuration;
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter};
@@ -43,7 +43,7 @@ impl Sited {
     }
 }
 
-impl Written {
+impl RepresentativeChain {
     /// The quantity and the site of a letter, where it is a copy.
     pub fn sited(&self, symbol: SymbolId) -> Option<Sited> {
         let name = &self.d.letters.symbols.get(symbol).name;
@@ -86,7 +86,7 @@ impl Written {
     }
 
     /// An expression of one site by itself in the letters of a copy of it, momenta among them.
-    pub fn of_site(&self, lone: &Lone, e: &Expr, site: usize) -> Option<Expr> {
+    pub fn of_site(&self, lone: &SiteModel, e: &Expr, site: usize) -> Option<Expr> {
         let s = &self.d.letters.symbols;
         let own = &lone.d.letters;
         let mut list: Vec<(Letter, Expr)> = Vec::new();

@@ -1,6 +1,6 @@
 //! Lines as programs: the shipped models and what is refused.
 
-use super::{How, Line, Refused};
+use super::{Line, Refused, SiteSolve};
 use crate::pipeline;
 
 fn line(text: &str) -> Result<Line, Refused> {
@@ -44,7 +44,10 @@ fn velocities_of_neighbours_are_found_together() {
     match line(text) {
         Ok(line) => {
             assert_eq!((line.ties.len(), line.pulls.len()), (1, 0));
-            assert!(matches!(line.lone[0].movers[0].how, How::Newton { .. }));
+            assert!(matches!(
+                line.lone[0].movers[0].how,
+                SiteSolve::Newton { .. }
+            ));
         }
         Err(refused) => panic!("{refused:?}"),
     }
@@ -67,7 +70,10 @@ fn a_charge_at_a_site_is_one_system() {
         lagrangian = m*dot(next(X) - X, next(X) - X)/(2*h) + (f/2)*dot(perp(X), next(X))
             - h*k*dot(next(X, i) - X, next(X, i) - X)/2; }";
     match line(text) {
-        Ok(line) => assert!(matches!(line.lone[0].movers[0].how, How::System { .. })),
+        Ok(line) => assert!(matches!(
+            line.lone[0].movers[0].how,
+            SiteSolve::System { .. }
+        )),
         Err(refused) => panic!("{refused:?}"),
     }
 }
@@ -228,7 +234,7 @@ fn rotations_are_found_together_with_their_neighbours() {
                 let mut movers = line.lone.iter().flat_map(|l| &l.movers);
                 assert!(movers.any(|m| matches!(
                     m.how,
-                    How::Newton {
+                    SiteSolve::Newton {
                         arriving: Some(_),
                         ..
                     }
@@ -255,7 +261,7 @@ fn rotations_whose_equation_is_another_are_found_by_newtons_method_at_their_site
                 assert!(
                     movers.any(|m| matches!(
                         m.how,
-                        How::Newton {
+                        SiteSolve::Newton {
                             arriving: Some(_),
                             ..
                         }

@@ -2,7 +2,7 @@
 //! that ends hold may stand in it. Found on the lattice that is written out; a quantity that is no such sum is left to it.
 
 use super::site::BASE;
-use super::{Lone, Meshed, Refused, Written};
+use super::{FunctionalForce, Refused, RepresentativeChain, SiteModel};
 use crate::algebra::Algebra;
 use crate::derive::Derivation;
 use crate::derive::invariants::{Family, Invariant};
@@ -10,7 +10,7 @@ use crate::document::default_choice;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
-use crate::lattice::{Choice, Known, Lattice, Mesh, Sites, Source, Unfolded, holds_sums};
+use crate::lattice::{Choice, ExpandedModel, Known, Lattice, Mesh, Sites, Source, holds_sums};
 use crate::pipeline;
 use crate::print::{Format, Style, expression};
 use crate::syntax::ast::{Extent, Model};
@@ -55,7 +55,7 @@ impl Total {
     }
 
     /// What is summed, as text, by which a total of another lattice is known to be this one; letters are of `part`.
-    pub fn text(&self, part: &Written) -> String {
+    pub fn text(&self, part: &RepresentativeChain) -> String {
         let style = Style::new(&part.d.spec.time_index);
         let each = self.densities.iter().map(|density| {
             let (label, sites, e) = (density.label, density.sites, &density.value);
@@ -97,11 +97,11 @@ impl Total {
 pub(super) fn totals(
     model: &Model,
     lattice: &Lattice,
-    part: &Written,
+    part: &RepresentativeChain,
 ) -> Result<Vec<Total>, Refused> {
     let written = |choice: Choice| -> Result<Vec<Total>, Refused> {
         let (unfolded, d) = pipeline::derive_lattice(model, lattice, &choice)?;
-        let whole = Written {
+        let whole = RepresentativeChain {
             choice,
             unfolded,
             d: d.outline(),
@@ -208,9 +208,9 @@ fn holding_alike(lattice: &Lattice, choice: &Choice) -> [Vec<usize>; 2] {
 /// as it is adds nothing to such a sum; the step is made of the step of each site alone and of what is added.
 pub(super) fn beside_functionals(
     lattice: &Lattice,
-    part: &Written,
-    lone: &[Lone],
-    meshed: &Meshed,
+    part: &RepresentativeChain,
+    lone: &[SiteModel],
+    meshed: &FunctionalForce,
 ) -> Vec<Total> {
     let mut out = Vec::new();
     for one in lone {
@@ -273,7 +273,12 @@ pub(super) fn name_apart(lattice: &Lattice, totals: &mut [Total]) {
 
 /// Whether everything that functionals add to the momenta of this field has sum zero: they are made of it alike,
 /// and no term holds a place itself.
-fn is_pushed_evenly(lattice: &Lattice, part: &Written, meshed: &Meshed, field: &str) -> bool {
+fn is_pushed_evenly(
+    lattice: &Lattice,
+    part: &RepresentativeChain,
+    meshed: &FunctionalForce,
+    field: &str,
+) -> bool {
     let of_field = |m: &Mesh| m.of == Source::Field(field.to_owned());
     let even = lattice
         .meshes
@@ -313,9 +318,9 @@ fn has_constant_factor(s: &Symbols, value: &Expr, momentum: Letter) -> bool {
 /// The totals of one lattice in the letters of another.
 fn of_part(
     lattice: &Lattice,
-    part: &Written,
+    part: &RepresentativeChain,
     invariants: &[Invariant],
-    base: &Written,
+    base: &RepresentativeChain,
 ) -> Vec<Total> {
     let on = match part.choice.periodic {
         true => "along a ring".to_owned(),
@@ -361,10 +366,10 @@ fn of_part(
 pub fn totals_on(
     lattice: &Lattice,
     choice: &Choice,
-    unfolded: &Unfolded,
+    unfolded: &ExpandedModel,
     d: &Derivation,
 ) -> Vec<(String, String)> {
-    let part = Written {
+    let part = RepresentativeChain {
         choice: choice.clone(),
         unfolded: unfolded.clone(),
         d: d.outline(),
@@ -376,7 +381,10 @@ pub fn totals_on(
 }
 
 /// The values of invariants. What single sites keep is added up, one for all of them.
-fn summed<'v>(part: &Written, invariants: Vec<&'v Invariant>) -> Vec<(&'v Invariant, Expr)> {
+fn summed<'v>(
+    part: &RepresentativeChain,
+    invariants: Vec<&'v Invariant>,
+) -> Vec<(&'v Invariant, Expr)> {
     let site = |v: &Invariant| {
         let letters = expr::letters(v.value.as_ref()?).into_iter();
         let mut sites = letters
@@ -409,7 +417,7 @@ fn summed<'v>(part: &Written, invariants: Vec<&'v Invariant>) -> Vec<(&'v Invari
 }
 
 /// The densities of a sum over all sites of each kind that no end holds, at the base.
-fn densities(lattice: &Lattice, part: &Written, e: &Expr) -> Option<Vec<Density>> {
+fn densities(lattice: &Lattice, part: &RepresentativeChain, e: &Expr) -> Option<Vec<Density>> {
     let mut by_site: BTreeMap<(usize, Sites), BTreeMap<usize, Vec<Expr>>> = BTreeMap::new();
     for term in terms(part, e) {
         let (kind, site) = only_site(lattice, part, &term)?;
@@ -454,7 +462,7 @@ fn densities(lattice: &Lattice, part: &Written, e: &Expr) -> Option<Vec<Density>
 }
 
 /// Whether an end holds a configuration at this site.
-fn holds(lattice: &Lattice, part: &Written, kind: (usize, Sites), site: usize) -> bool {
+fn holds(lattice: &Lattice, part: &RepresentativeChain, kind: (usize, Sites), site: usize) -> bool {
     let mut held = part
         .unfolded
         .given
@@ -467,14 +475,14 @@ fn holds(lattice: &Lattice, part: &Written, kind: (usize, Sites), site: usize) -
 }
 
 /// Whether a letter is of what an end holds, which is the same for all sites.
-fn is_held(part: &Written, l: &Letter) -> bool {
+fn is_held(part: &RepresentativeChain, l: &Letter) -> bool {
     part.unfolded
         .given
         .contains(&part.d.letters.symbols.get(l.symbol).name)
 }
 
 /// A summand of one site at the base; what ends hold stays where it is.
-fn at_base(part: &Written, e: &Expr, site: usize) -> Option<Expr> {
+fn at_base(part: &RepresentativeChain, e: &Expr, site: usize) -> Option<Expr> {
     let by = isize::try_from(BASE).ok()? - isize::try_from(site).ok()?;
     let s = &part.d.letters.symbols;
     let mut list: Vec<(Letter, Expr)> = Vec::new();
@@ -488,7 +496,7 @@ fn at_base(part: &Written, e: &Expr, site: usize) -> Option<Expr> {
 }
 
 /// Whether something of one site stands beside what an end holds.
-fn is_from_held(part: &Written, e: &Expr) -> bool {
+fn is_from_held(part: &RepresentativeChain, e: &Expr) -> bool {
     let letters = expr::letters(e).into_iter();
     let (held, others): (Vec<Letter>, Vec<Letter>) = letters.partition(|l| is_held(part, l));
     let mut sites = others
@@ -500,7 +508,11 @@ fn is_from_held(part: &Written, e: &Expr) -> bool {
 }
 
 /// The only site of a term, besides those that ends hold.
-fn only_site(lattice: &Lattice, part: &Written, e: &Expr) -> Option<((usize, Sites), usize)> {
+fn only_site(
+    lattice: &Lattice,
+    part: &RepresentativeChain,
+    e: &Expr,
+) -> Option<((usize, Sites), usize)> {
     let mut found = None;
     for l in expr::letters(e).iter().filter(|l| !is_held(part, l)) {
         let Some(at) = part.sited(l.symbol) else {
@@ -519,7 +531,7 @@ fn only_site(lattice: &Lattice, part: &Written, e: &Expr) -> Option<((usize, Sit
 
 /// The terms of a sum, with what multiplies a sum as a whole multiplied in. Distances from what an end holds stay as they
 /// are: multiplied out they round more far from the origin.
-fn terms(part: &Written, e: &Expr) -> Vec<Expr> {
+fn terms(part: &RepresentativeChain, e: &Expr) -> Vec<Expr> {
     if is_from_held(part, e) {
         return vec![e.clone()];
     }
@@ -564,7 +576,7 @@ fn terms(part: &Written, e: &Expr) -> Vec<Expr> {
     }
 }
 
-impl Written {
+impl RepresentativeChain {
     /// Whether walls change a value: it holds the momentum of places in a box.
     pub(crate) fn is_turned_by_walls(&self, lattice: &Lattice, e: &Expr) -> bool {
         let mut letters = expr::letters(e).into_iter();
@@ -578,7 +590,7 @@ impl Written {
     }
 
     /// An expression in the letters of another lattice of the same model, copies of equal sites.
-    pub(crate) fn in_letters_of(&self, other: &Written, e: &Expr) -> Option<Expr> {
+    pub(crate) fn in_letters_of(&self, other: &RepresentativeChain, e: &Expr) -> Option<Expr> {
         let (own, s) = (&self.d.letters.symbols, &other.d.letters.symbols);
         let there = |id: SymbolId| match self.sited(id) {
             Some(at) => other.copy(&at.of, at.site),

@@ -34,7 +34,7 @@ impl Like<'_> {
         if let Some(known) = self.done.get(e) {
             return known.clone();
         }
-        let inner = super::rest::rebuilt(self.symbols, e, &mut |c| self.collect(c));
+        let inner = super::increment_form::rebuilt(self.symbols, e, &mut |c| self.collect(c));
         let out = match inner.node() {
             Node::Sum(terms) => self.sum(&inner, terms),
             _ => inner,

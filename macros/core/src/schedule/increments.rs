@@ -7,8 +7,8 @@ use crate::algebra::Algebra;
 use crate::expr::shape::{Dim, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{
-    Expr, Letter, Map, Node, add, identity, letters, places, quotient, rebuild, sub, substitute,
-    sum,
+    Expr, Letter, Map, Node, add, identity, letters, position_differences, quotient, rebuild, sub,
+    substitute, sum,
 };
 
 /// What has more terms, multiplied out, stays as it is: a program of a step is read and compiled.
@@ -42,7 +42,7 @@ pub(super) fn is_increment(symbols: &Symbols, e: &Expr) -> bool {
     }
 }
 
-/// The same expression, multiplied out in the differences of such velocities from the identity; differences of places and
+/// The same expression, multiplied out in the differences of such velocities from the identity; differences of position_differences and
 /// terms with which nothing cancels stay as they are.
 pub(super) fn by_increments(symbols: &Symbols, e: &Expr) -> Expr {
     let mut velocities = letters(e);
@@ -50,7 +50,7 @@ pub(super) fn by_increments(symbols: &Symbols, e: &Expr) -> Expr {
     if velocities.is_empty() || count(symbols, e) > MOST_TERMS {
         return e.clone();
     }
-    let (mut open, named, definitions) = match places::named(symbols, e) {
+    let (mut open, named, definitions) = match position_differences::named(symbols, e) {
         Some(named) => (named.symbols, named.whole, named.definitions),
         None => (symbols.clone(), e.clone(), Vec::new()),
     };

@@ -17,7 +17,7 @@ pub fn by_adjugates(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
     if adjugates.is_empty() {
         return results.to_vec();
     }
-    let mut all = Known {
+    let mut all = Adjugates {
         symbols,
         adjugates,
         done: Hashed::default(),
@@ -38,19 +38,19 @@ fn collect(e: &Expr, all: &mut Exprs, seen: &mut Exprs) {
     }
 }
 
-struct Known<'a> {
+struct Adjugates<'a> {
     symbols: &'a Symbols,
     adjugates: Exprs,
     done: Hashed<Expr>,
 }
 
-impl Known<'_> {
+impl Adjugates<'_> {
     fn rewrite(&mut self, e: &Expr) -> Expr {
         if let Some(known) = self.done.get(e) {
             return known.clone();
         }
         let s = self.symbols;
-        let inner = super::rest::rebuilt(s, e, &mut |c| self.rewrite(c));
+        let inner = super::increment_form::rebuilt(s, e, &mut |c| self.rewrite(c));
         let adjugate = match inner.node() {
             Node::Inverse(a) => self.adjugate_of(a).map(|found| (a.clone(), found)),
             _ => None,

@@ -3,19 +3,19 @@
 
 mod chain;
 mod collected;
+mod increment_form;
 mod increments;
 mod inverses;
-mod known;
+mod loop_invariants;
 mod pairs;
 mod program;
-mod rest;
 mod transposed;
 mod work;
 
 pub use chain::{Bracketed, associate};
-pub use known::Known;
-pub use program::{Program, program, program_after};
-pub use rest::{
+pub use increment_form::{
     at_rest, by_imaginary, displaced, divides_twice, is_difference, varies_with_rotations,
 };
+pub use loop_invariants::LoopInvariants;
+pub use program::{Program, program, program_after};
 pub use work::work;

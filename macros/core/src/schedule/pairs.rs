@@ -125,7 +125,7 @@ struct Found<'a> {
 
 impl Found<'_> {
     fn visit(&mut self, e: &Expr) {
-        if super::rest::stays_whole(self.symbols, e) || !self.met.insert(e.clone()) {
+        if super::increment_form::stays_whole(self.symbols, e) || !self.met.insert(e.clone()) {
             return;
         }
         e.children().into_iter().for_each(|c| self.visit(c));
@@ -177,7 +177,7 @@ impl Put<'_> {
         if let Some(known) = self.done.get(e) {
             return known.clone();
         }
-        let inner = super::rest::rebuilt(self.symbols, e, &mut |c| self.put(c));
+        let inner = super::increment_form::rebuilt(self.symbols, e, &mut |c| self.put(c));
         let out = match inner.node() {
             Node::Product(factors) => expr::product(self.replaced(factors)),
             _ => inner,

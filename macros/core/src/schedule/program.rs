@@ -31,7 +31,9 @@ pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
     // What is computed has its digits where nothing moves, and determinants of products are those of their factors.
     let results: Vec<Expr> = results
         .iter()
-        .map(|r| super::rest::displaced(symbols, &expr::with_plain_determinants(symbols, r)))
+        .map(|r| {
+            super::increment_form::displaced(symbols, &expr::with_plain_determinants(symbols, r))
+        })
         .collect();
     let results = super::inverses::by_adjugates(symbols, &results);
     let results = super::collected::collected(symbols, &results);
@@ -111,7 +113,7 @@ pub(super) fn scheduled(
 fn count(symbols: &Symbols, e: &Expr, uses: &mut Hashed<usize>) {
     let n = uses.entry(e.clone()).or_insert(0);
     *n += 1;
-    if *n == 1 && !super::rest::stays_whole(symbols, e) {
+    if *n == 1 && !super::increment_form::stays_whole(symbols, e) {
         e.children()
             .into_iter()
             .for_each(|c| count(symbols, c, uses));
@@ -171,7 +173,7 @@ impl Build<'_> {
             return known.clone();
         }
         // Children first: they may add temporaries, which the rebuilding must know.
-        let inner = match super::rest::stays_whole(&self.symbols, e) {
+        let inner = match super::increment_form::stays_whole(&self.symbols, e) {
             true => e.clone(),
             false => {
                 for c in e.children() {

@@ -31,7 +31,7 @@ impl Met<'_> {
         if let Some(known) = self.done.get(e) {
             return known.clone();
         }
-        let inner = super::rest::rebuilt(self.symbols, e, &mut |c| self.align(c));
+        let inner = super::increment_form::rebuilt(self.symbols, e, &mut |c| self.align(c));
         let out = match (inner.node(), multiplies(&inner)) {
             // That of a transpose is the transpose of that which is used elsewhere.
             (Node::Inverse(a), _) => match a.node() {

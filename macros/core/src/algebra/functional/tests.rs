@@ -1,7 +1,7 @@
 //! Values of functionals are letters: the same for equal arguments, others for others, and nothing but
 //! linearity is known of their derivatives.
 
-use crate::algebra::{Algebra, Known, Rational};
+use crate::algebra::{Algebra, Decision, Rational};
 use crate::expr::functional::tests::Table;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::Role;
@@ -34,7 +34,7 @@ fn equal_arguments_give_equal_values_and_others_do_not() {
         ),
         (expr::mul(f(&x), m.clone()), expr::mul(m.clone(), f(&x))),
     ] {
-        assert_eq!(algebra.zero(&expr::sub(a, b)), Some(Known::NormalForm));
+        assert_eq!(algebra.zero(&expr::sub(a, b)), Some(Decision::NormalForm));
     }
     assert!(algebra.is_zero(&expr::det(g_outer(&t))));
     // An identity of three dimensions in the argument.
@@ -107,7 +107,7 @@ fn derivatives_are_linear_symmetric_and_transposed() {
     let both = expr::sub(u.clone(), expr::mul(m.clone(), v.clone()));
     let scaled = |a: Expr, b: Expr| expr::sub(a, expr::mul(m.clone(), b));
     let normal = |a: Expr, b: Expr| {
-        assert_eq!(algebra.zero(&expr::sub(a, b)), Some(Known::NormalForm));
+        assert_eq!(algebra.zero(&expr::sub(a, b)), Some(Decision::NormalForm));
     };
     normal(back(&both), scaled(back(&u), back(&v)));
     normal(
@@ -208,7 +208,7 @@ fn structures_of_values_and_sizes_with_names_hold_at_points() {
     let (left, right) = (expr::dot(c.clone(), change), expr::dot(back, b.clone()));
     assert_eq!(
         algebra.zero(&expr::sub(left.clone(), right)),
-        Some(Known::ExactEvaluation)
+        Some(Decision::ExactEvaluation)
     );
     assert!(!algebra.is_zero(&left));
     // What sees other sites has no value at a point, and no number of a site comes out of it.
@@ -230,6 +230,6 @@ fn structures_of_values_and_sizes_with_names_hold_at_points() {
     let apart = expr::add(expr::scale(Rational::integer(3), seed), own);
     assert_eq!(
         algebra.zero(&expr::sub(more, apart)),
-        Some(Known::NormalForm)
+        Some(Decision::NormalForm)
     );
 }

@@ -3,7 +3,7 @@
 //! and exact steps; gives invariants that hold for every Lagrangian.
 
 use super::independence::tangents;
-use super::passage::Passage;
+use super::passage::RandomStep;
 use super::{Family, Inputs, Invariant, Kind, here, is_conserved, words};
 use crate::algebra::assumed::{self, Independent, rank};
 use crate::algebra::exact::{ATTEMPTS, Matrix, Point, add, mul, negate, paired};
@@ -51,7 +51,7 @@ struct General<'a> {
 }
 
 /// The Casimirs.
-pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[Passage]) -> Casimirs {
+pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[RandomStep]) -> Casimirs {
     // Odd attempts take the largest size for a dimension that has only a name.
     let attempts = (0..ATTEMPTS).filter(|a| a % 2 == 1);
     let found = attempts.filter_map(|attempt| general(x, equations, attempt));
@@ -196,7 +196,12 @@ fn differential(x: &Inputs, point: &Point, value: &Expr) -> Option<Vec<u64>> {
 }
 
 /// Whether a function of the reduced space is independent of the Casimirs found.
-pub(super) fn is_new(x: &Inputs, passages: &[Passage], found: &[Invariant], v: &Invariant) -> bool {
+pub(super) fn is_new(
+    x: &Inputs,
+    passages: &[RandomStep],
+    found: &[Invariant],
+    v: &Invariant,
+) -> bool {
     let (Some(p), Some(value)) = (passages.first(), &v.value) else {
         return true;
     };

@@ -6,7 +6,7 @@ use super::Inputs;
 use super::mixed::Component;
 use super::motions::{Motion, Sort, Way};
 use super::noether::components;
-use super::passage::Passage;
+use super::passage::RandomStep;
 use crate::check::spec::CopyOf;
 
 /// Most configurations whose momenta are combined one by one; of more, all that the action couples.
@@ -42,7 +42,7 @@ struct OfSort<'s> {
 
 impl<'s> Columns<'s> {
     /// Of these motions.
-    pub(super) fn new(x: &Inputs, motions: &'s [Motion], passages: &[Passage]) -> Self {
+    pub(super) fn new(x: &Inputs, motions: &'s [Motion], passages: &[RandomStep]) -> Self {
         let is_lattice = x.spec.configurations.iter().any(|c| c.copy.is_some());
         let coupled = Coupled {
             x,
@@ -93,7 +93,7 @@ impl<'s> Columns<'s> {
 /// What says which motions are made together.
 struct Coupled<'x, 'a> {
     x: &'x Inputs<'a>,
-    passages: &'x [Passage<'a>],
+    passages: &'x [RandomStep<'a>],
     /// Whether a lattice is written out.
     is_lattice: bool,
     /// Sets of configurations that the action couples; none where each is moved by itself.

@@ -4,7 +4,7 @@
 
 use super::motions::Motion;
 use super::noether::{Term, combined};
-use super::passage::Passage;
+use super::passage::RandomStep;
 use super::{Inputs, here};
 use crate::check::spec::Configuration;
 use crate::derive::action::summands;
@@ -21,7 +21,7 @@ type Kind = (Shape, Structure);
 const LARGEST: u32 = 5_000;
 
 /// What the momentum of a combination of motions must be lessened by, constants left out.
-pub(super) fn difference(x: &Inputs, passages: &[Passage], terms: &[Term]) -> Option<Expr> {
+pub(super) fn difference(x: &Inputs, passages: &[RandomStep], terms: &[Term]) -> Option<Expr> {
     // One table with a direction of each kind: copying it for every term is most of the work of a lattice.
     let mut symbols = x.letters.symbols.clone();
     let mut kinds: Vec<(Kind, Letter)> = Vec::new();
@@ -48,7 +48,7 @@ pub(super) fn difference(x: &Inputs, passages: &[Passage], terms: &[Term]) -> Op
             return None;
         }
         // Invariant terms, the kinetic energy among them, add nothing.
-        let nothing = |p: &Passage| p.before.value(&change).is_some_and(|v| v.vanishes());
+        let nothing = |p: &RandomStep| p.before.value(&change).is_some_and(|v| v.vanishes());
         if !passages.iter().all(nothing) {
             parts.push(change);
         }

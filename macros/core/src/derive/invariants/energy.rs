@@ -2,7 +2,7 @@
 //! the momentum, plus the potential. The discrete one on an edge: how the action of the step falls
 //! when the step grows. Both are bounded, as for every symplectic step, or exact where that is proved.
 
-use super::passage::Passage;
+use super::passage::RandomStep;
 use super::{Family, Inputs, Invariant, Kind, Lax, here, is_conserved};
 use crate::algebra::Rational;
 use crate::algebra::assumed::eliminate;
@@ -14,7 +14,7 @@ use crate::derive::limit::DRIVEN;
 use crate::expr::{self, Expr, Shift};
 
 /// The energy, if the limit of small steps exists.
-pub(super) fn energy(x: &Inputs, passages: &[Passage]) -> Option<Invariant> {
+pub(super) fn energy(x: &Inputs, passages: &[RandomStep]) -> Option<Invariant> {
     x.limit?;
     let exact = !passages.is_empty()
         && passages.iter().all(|p| {
@@ -73,7 +73,7 @@ impl Derivation {
 }
 
 /// The discrete energy.
-pub(super) fn discrete(x: &Inputs, passages: &[Passage], lax: Option<&Lax>) -> DiscreteEnergy {
+pub(super) fn discrete(x: &Inputs, passages: &[RandomStep], lax: Option<&Lax>) -> DiscreteEnergy {
     let s = &x.letters.symbols;
     let h = here(x.spec.step);
     // A constant of the action would weigh h^-2: what the edge has at rest is taken off if the

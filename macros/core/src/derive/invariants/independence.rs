@@ -1,7 +1,7 @@
 //! Whether a momentum is independent of others as a function on the phase space. Takes invariants and
 //! a general point; compares ranks of differentials in exact arithmetic.
 
-use super::passage::Passage;
+use super::passage::RandomStep;
 use super::{Family, Inputs, Invariant, here};
 use crate::algebra::assumed::rank;
 use crate::algebra::exact::{Matrix, Point};
@@ -11,7 +11,12 @@ use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
 
 /// Whether a momentum is independent of those found, all read on the phase space.
-pub(super) fn is_new(x: &Inputs, passages: &[Passage], found: &[Invariant], v: &Invariant) -> bool {
+pub(super) fn is_new(
+    x: &Inputs,
+    passages: &[RandomStep],
+    found: &[Invariant],
+    v: &Invariant,
+) -> bool {
     let Some(p) = passages.first() else {
         return false;
     };
@@ -53,12 +58,12 @@ fn is_linear(x: &Inputs, e: &Expr) -> bool {
 /// Whether a Casimir is the same number for every state and all parameters: zero, or made of several carried
 /// quantities as `tr(A B)` is where `B` is the inverse of `A`. The length of one that has always the same is kept, as a
 /// Casimir that is checked by its drift.
-pub(super) fn is_same_for_all(x: &Inputs, passages: &[Passage], v: &Invariant) -> bool {
+pub(super) fn is_same_for_all(x: &Inputs, passages: &[RandomStep], v: &Invariant) -> bool {
     let Some(value) = &v.value else {
         return false;
     };
     let rows = x.spec.configurations.first().map(|c| c.group.size());
-    let size = |p: &Passage| rows.map(|n| p.before.dim(n));
+    let size = |p: &RandomStep| rows.map(|n| p.before.dim(n));
     let Some(first) = passages.first() else {
         return false;
     };

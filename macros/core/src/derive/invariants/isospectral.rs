@@ -2,11 +2,11 @@
 //! eigenvalues are Manakov's integrals, the coefficients of `det(ν + M + λ C²)`. Takes the Riccati
 //! factor and the balance; gives the Lax pair and the integrals.
 
-use super::passage::Passage;
+use super::passage::RandomStep;
 use super::{Family, Inputs, Invariant, Kind, here, is_conserved, length};
 use crate::algebra::Rational;
 use crate::algebra::exact::{Matrix, Point};
-use crate::derive::recognise::Riccati;
+use crate::derive::select_solver::StepEquation;
 use crate::expr::shape::Dim;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter};
@@ -25,7 +25,7 @@ pub struct Lax {
 /// The Lax form of the step, if it is that of a free body.
 pub(super) fn lax(x: &Inputs) -> Option<Lax> {
     let s = &x.letters.symbols;
-    let ([c], [Riccati::Exact(mv)], [b]) = (
+    let ([c], [StepEquation::Exact(mv)], [b]) = (
         x.spec.configurations.as_slice(),
         x.solve.riccati.as_slice(),
         x.balances,
@@ -94,7 +94,7 @@ pub(super) fn lax(x: &Inputs) -> Option<Lax> {
 }
 
 /// Manakov's integrals.
-pub(super) fn integrals(x: &Inputs, lax: Option<&Lax>, passages: &[Passage]) -> Vec<Invariant> {
+pub(super) fn integrals(x: &Inputs, lax: Option<&Lax>, passages: &[RandomStep]) -> Vec<Invariant> {
     let Some(lax) = lax else {
         return Vec::new();
     };
@@ -127,7 +127,7 @@ pub(super) fn integrals(x: &Inputs, lax: Option<&Lax>, passages: &[Passage]) -> 
             .collect();
     }
     // The determinant agrees for general ν and λ, hence every coefficient.
-    let agree = |p: &Passage| {
+    let agree = |p: &RandomStep| {
         (1..=3).all(|k| {
             let (a, b) = (
                 determinant(x, factor, &p.before, k),

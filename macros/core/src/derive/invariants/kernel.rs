@@ -5,7 +5,7 @@
 use super::columns::Columns;
 use super::draws::Roots;
 use super::motions::{Motion, Sort};
-use super::passage::{Passage, completed, start};
+use super::passage::{RandomStep, completed, start};
 use super::{Inputs, here};
 use crate::algebra::assumed::{Independent, eliminate, rank};
 use crate::algebra::exact::{Matrix, Point, add, mul, negate, rational};
@@ -24,7 +24,7 @@ const LARGEST: u64 = 1000;
 const WORK: usize = 40_000_000;
 
 /// Steps whose differences are added with signs.
-pub(super) struct Sample<'a>(Vec<(bool, Passage<'a>)>);
+pub(super) struct Sample<'a>(Vec<(bool, RandomStep<'a>)>);
 
 impl Sample<'_> {
     /// The change of a quantity, added up.
@@ -58,7 +58,11 @@ pub(super) struct Samples<'a, 'x> {
 
 impl<'a, 'x> Samples<'a, 'x> {
     /// Samples of steps, these first.
-    pub(super) fn of_steps(x: &'x Inputs<'a>, roots: &'x Roots, passages: &[Passage<'a>]) -> Self {
+    pub(super) fn of_steps(
+        x: &'x Inputs<'a>,
+        roots: &'x Roots,
+        passages: &[RandomStep<'a>],
+    ) -> Self {
         let list = passages.iter().map(|p| Sample(vec![(false, p.clone())]));
         Samples {
             x,
@@ -327,7 +331,7 @@ fn chain<'a>(
         }
     }
     let mut out = Vec::new();
-    let mut from: Option<Passage> = None;
+    let mut from: Option<RandomStep> = None;
     // Roots that do not exist cost a part of the draws.
     for attempt in 0..8 * (count as u64 + 10) {
         if out.len() == count {
@@ -359,7 +363,7 @@ fn from_origin<'a>(
     roots: &Roots,
     origin: &Point<'a>,
     attempt: u64,
-) -> Option<Passage<'a>> {
+) -> Option<RandomStep<'a>> {
     let draw = origin.redrawn(attempt);
     let mut p = origin.clone();
     let velocities = x.spec.configurations.iter().map(|c| c.velocity);
@@ -375,9 +379,9 @@ fn from_origin<'a>(
 fn between<'a>(
     x: &Inputs<'a>,
     origin: &Point<'a>,
-    from: &Passage<'a>,
-    to: &Passage<'a>,
-) -> Option<Passage<'a>> {
+    from: &RandomStep<'a>,
+    to: &RandomStep<'a>,
+) -> Option<RandomStep<'a>> {
     let mut p = origin.clone();
     for c in &x.spec.configurations {
         let element = here(c.element);

@@ -28,14 +28,14 @@ use super::action::Action;
 use super::balance::Balance;
 use super::bracket::Bracket;
 use super::limit::Limit;
-use super::recognise::Solve;
+use super::select_solver::Solve;
 use super::variation::Variation;
 use crate::algebra::{Algebra, Rational};
 use crate::check::spec::Spec;
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::work;
-use passage::Passage;
+use passage::RandomStep;
 
 pub use casimirs::Count;
 pub use energy::DiscreteEnergy;
@@ -283,7 +283,7 @@ fn here(symbol: crate::expr::symbol::SymbolId) -> Letter {
 }
 
 /// Whether a value is the same before and after every step.
-fn is_conserved(passages: &[Passage], value: &Expr) -> bool {
+fn is_conserved(passages: &[RandomStep], value: &Expr) -> bool {
     !passages.is_empty() && passages.iter().all(|p| p.keeps(value))
 }
 

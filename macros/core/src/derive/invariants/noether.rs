@@ -8,8 +8,8 @@ use super::difference;
 use super::draws::Roots;
 use super::kernel::{Kernel, Samples};
 use super::motions::{Motion, Sort, Way, motions};
-use super::passage::Passage;
-use super::readings::{Reading, readings};
+use super::passage::RandomStep;
+use super::readings::{MomentumComponent, readings};
 use super::told::{name, reason};
 use super::{Family, Inputs, Invariant, Kind, is_conserved, length};
 use crate::algebra::exact::Matrix;
@@ -92,7 +92,7 @@ pub(super) struct Momenta {
 }
 
 /// All that are found.
-pub(super) fn momenta(x: &Inputs, roots: &Roots, passages: &[Passage]) -> Momenta {
+pub(super) fn momenta(x: &Inputs, roots: &Roots, passages: &[RandomStep]) -> Momenta {
     if passages.is_empty() {
         return Momenta::default();
     }
@@ -145,16 +145,16 @@ fn kernels<'a>(x: &Inputs<'a>, roots: &Roots, columns: &Columns) -> Vec<Kernel<'
 /// What a reading gives of a motion, so many times.
 #[derive(Clone, Copy)]
 pub(super) struct Term<'s> {
-    pub(super) reading: &'s Reading,
+    pub(super) reading: &'s MomentumComponent,
     pub(super) motion: &'s Motion,
     pub(super) times: i64,
 }
 
 struct Search<'a, 's> {
     x: &'s Inputs<'a>,
-    passages: &'s [Passage<'a>],
+    passages: &'s [RandomStep<'a>],
     columns: &'s Columns<'s>,
-    readings: &'s [Reading],
+    readings: &'s [MomentumComponent],
     kernels: &'s [Kernel<'a>],
     /// Each with whether it is one of space alone.
     found: Vec<(bool, Invariant)>,
@@ -186,7 +186,11 @@ impl<'a, 's> Search<'a, 's> {
 
     /// Takes out what vanishes and what is the same as one before: a moment about a place, read along
     /// the axis through it.
-    fn distinct(&self, columns: Vec<Column<'s>>, reading: &'s Reading) -> Vec<Column<'s>> {
+    fn distinct(
+        &self,
+        columns: Vec<Column<'s>>,
+        reading: &'s MomentumComponent,
+    ) -> Vec<Column<'s>> {
         let placed = |c: &Column| c.iter().any(|m| matches!(m.way, Way::About(_)));
         if !columns.iter().any(placed) {
             return columns;
@@ -234,7 +238,12 @@ impl<'a, 's> Search<'a, 's> {
     }
 
     /// Combinations of one reading of these.
-    fn combine(&mut self, columns: Vec<Column<'s>>, reading: &'s Reading, samples: &mut Samples) {
+    fn combine(
+        &mut self,
+        columns: Vec<Column<'s>>,
+        reading: &'s MomentumComponent,
+        samples: &mut Samples,
+    ) {
         let columns = self.distinct(columns, reading);
         let values: Vec<Expr> = columns.iter().map(|c| self.value(reading, c)).collect();
         let mut combinations = samples.combinations(&values);
@@ -299,7 +308,7 @@ impl<'a, 's> Search<'a, 's> {
         }
     }
 
-    fn value(&self, reading: &'s Reading, column: &[&'s Motion]) -> Expr {
+    fn value(&self, reading: &'s MomentumComponent, column: &[&'s Motion]) -> Expr {
         sum(self.x, &terms_of(reading, column, 1))
     }
 
@@ -307,7 +316,7 @@ impl<'a, 's> Search<'a, 's> {
     fn accept(&mut self, terms: &[Term]) {
         let x = self.x;
         let mut value = sum(x, terms);
-        let nothing = |p: &Passage| p.before.value(&value).is_none_or(|v| v.vanishes());
+        let nothing = |p: &RandomStep| p.before.value(&value).is_none_or(|v| v.vanishes());
         if self.passages.iter().all(nothing) {
             return;
         }
@@ -363,7 +372,11 @@ impl<'a, 's> Search<'a, 's> {
 }
 
 /// What a reading gives of each motion of a column, so many times.
-fn terms_of<'s>(reading: &'s Reading, column: &[&'s Motion], times: i64) -> Vec<Term<'s>> {
+fn terms_of<'s>(
+    reading: &'s MomentumComponent,
+    column: &[&'s Motion],
+    times: i64,
+) -> Vec<Term<'s>> {
     let term = |motion: &&'s Motion| Term {
         reading,
         motion,
@@ -387,7 +400,7 @@ fn sum(x: &Inputs, terms: &[Term]) -> Expr {
 /// What the readings give of something that each motion has.
 pub(super) fn combined(x: &Inputs, terms: &[Term], of: impl Fn(&Motion) -> Expr) -> Expr {
     // Readings are linear: of what one reads, the sum is taken first, terms that motions share once.
-    let mut groups: Vec<(&Reading, Vec<(Expr, i64)>)> = Vec::new();
+    let mut groups: Vec<(&MomentumComponent, Vec<(Expr, i64)>)> = Vec::new();
     for t in terms {
         let at = groups
             .iter()

@@ -16,14 +16,14 @@ const STEPS_ASSUMED: usize = 8;
 
 /// Both ends of one step.
 #[derive(Clone)]
-pub(crate) struct Passage<'a> {
+pub(crate) struct RandomStep<'a> {
     /// Letters at the node where the step starts, the node momentum among them.
     pub(crate) before: Point<'a>,
     /// The same letters at the node where it ends.
     pub(crate) after: Point<'a>,
 }
 
-impl Passage<'_> {
+impl RandomStep<'_> {
     /// Whether the value is the same at both ends.
     pub(crate) fn keeps(&self, value: &Expr) -> bool {
         match (self.before.value(value), self.after.value(value)) {
@@ -34,7 +34,7 @@ impl Passage<'_> {
 }
 
 /// A few steps, as far as there are points at which everything has a value.
-pub(crate) fn passages<'a>(x: &Inputs<'a>, roots: &Roots, assumed: &[Expr]) -> Vec<Passage<'a>> {
+pub(crate) fn passages<'a>(x: &Inputs<'a>, roots: &Roots, assumed: &[Expr]) -> Vec<RandomStep<'a>> {
     let wanted = if assumed.is_empty() {
         STEPS
     } else {
@@ -49,7 +49,7 @@ fn passage<'a>(
     roots: &Roots,
     equations: &[Expr],
     attempt: u64,
-) -> Option<Passage<'a>> {
+) -> Option<RandomStep<'a>> {
     let mut before = start(x, roots, equations, attempt)?;
     roots.led(x, &mut before, attempt)?;
     completed(x, before)
@@ -82,7 +82,7 @@ pub(super) fn start<'a>(
 }
 
 /// The step from there.
-pub(super) fn completed<'a>(x: &Inputs<'a>, mut before: Point<'a>) -> Option<Passage<'a>> {
+pub(super) fn completed<'a>(x: &Inputs<'a>, mut before: Point<'a>) -> Option<RandomStep<'a>> {
     let next = |l: Letter| Letter {
         symbol: l.symbol,
         shift: Shift::NEXT,
@@ -109,5 +109,5 @@ pub(super) fn completed<'a>(x: &Inputs<'a>, mut before: Point<'a>) -> Option<Pas
     for (l, value) in moved {
         after.set(l, value);
     }
-    Some(Passage { before, after })
+    Some(RandomStep { before, after })
 }

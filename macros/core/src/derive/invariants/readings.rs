@@ -19,7 +19,7 @@ const AXES: usize = 12;
 const PAIRED: usize = 4;
 
 /// A linear map of momenta of one sort.
-pub(super) struct Reading {
+pub(super) struct MomentumComponent {
     pub(super) sort: Sort,
     /// What it adds to the name of a momentum; nothing for the whole.
     pub(super) name: String,
@@ -50,7 +50,7 @@ enum What {
     AcrossRows(Expr),
 }
 
-impl Reading {
+impl MomentumComponent {
     /// What it gives of a momentum.
     pub(super) fn of(&self, x: &Inputs, m: &Expr) -> Expr {
         let s = &x.letters.symbols;
@@ -117,7 +117,7 @@ struct Axis {
 }
 
 /// All readings of the sorts that occur, whole momenta first.
-pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
+pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<MomentumComponent> {
     let mut out = Vec::new();
     let order = |sort: &Sort| match sort {
         Sort::Rigid(_) => 0,
@@ -131,7 +131,7 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<Reading> {
     sorts.dedup();
     for sort in sorts {
         let mut push = |name: String, what: What, size: Expr| {
-            out.push(Reading {
+            out.push(MomentumComponent {
                 sort,
                 name,
                 what,

@@ -4,7 +4,7 @@
 
 use super::Inputs;
 use super::noether::components;
-use super::passage::Passage;
+use super::passage::RandomStep;
 use super::words::Piece;
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
@@ -31,7 +31,7 @@ struct Carried {
 }
 
 /// The sums, in the frame of every body of every set.
-pub(super) fn totals(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
+pub(super) fn totals(x: &Inputs, passages: &[RandomStep]) -> Vec<Piece> {
     let s = &x.letters.symbols;
     let carriers = carriers(x, passages);
     let mut sets = joined(x, &carriers);
@@ -102,7 +102,7 @@ fn turn(x: &Inputs, body: usize) -> Option<Expr> {
 
 /// All advected rotations that join two frames, both ways: only bodies that the constraint of one
 /// names can be joined by it.
-fn carriers(x: &Inputs, passages: &[Passage]) -> Vec<Carrier> {
+fn carriers(x: &Inputs, passages: &[RandomStep]) -> Vec<Carrier> {
     let s = &x.letters.symbols;
     let mut out = Vec::new();
     for a in &x.spec.advected {

@@ -3,7 +3,7 @@
 //! numbers that may or may not be Casimirs.
 
 use super::homogeneous;
-use super::passage::Passage;
+use super::passage::RandomStep;
 use super::{Candidate, Inputs, here, totals};
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};
@@ -21,7 +21,7 @@ pub(super) struct Piece {
 }
 
 /// All candidates, simple ones first.
-pub(super) fn candidates(x: &Inputs, passages: &[Passage]) -> Vec<Candidate> {
+pub(super) fn candidates(x: &Inputs, passages: &[RandomStep]) -> Vec<Candidate> {
     let vectors = vectors(x, passages);
     let matrices = matrices(x);
     let mut out: Vec<Candidate> = Vec::new();
@@ -199,7 +199,7 @@ fn words(letters: &[Piece], length: usize) -> Vec<Vec<&Piece>> {
 }
 
 /// Vectors of the reduced space: momenta, their sums brought to one frame, advected vectors.
-fn vectors(x: &Inputs, passages: &[Passage]) -> Vec<Piece> {
+fn vectors(x: &Inputs, passages: &[RandomStep]) -> Vec<Piece> {
     let s = &x.letters.symbols;
     let mut out = Vec::new();
     let several = x.spec.configurations.len() > 1;

@@ -13,7 +13,7 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
-use crate::algebra::{Algebra, Known};
+use crate::algebra::{Algebra, Decision};
 use crate::check::spec::{Advected, Reduction, Spec};
 use crate::derive::action;
 use crate::derive::balance::shorter;
@@ -44,7 +44,7 @@ pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
         spec.reduction = Some(Reduction {
             edge,
             nodal,
-            known: Known::NormalForm,
+            known: Decision::NormalForm,
             carries: false,
         });
         velocities_remain(&spec)?;

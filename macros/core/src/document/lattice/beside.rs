@@ -2,14 +2,18 @@
 //! out, and one with more sites; gives sums over them where both read alike.
 
 use super::{Stated, stated_configurations, sums};
-use crate::document::folded::{Folded, From, Part};
+use crate::document::folded::{From, IndexedNotation, Part};
 use crate::expr::Shift;
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, formula};
 
 /// The two equations of what belongs to no site, with what all sites do to it as sums over them; `None` where these
 /// read otherwise on a lattice with more sites.
-pub(super) fn equations(folded: &mut Folded, part: &Part, s: &Stated) -> Option<Vec<Formula>> {
+pub(super) fn equations(
+    folded: &mut IndexedNotation,
+    part: &Part,
+    s: &Stated,
+) -> Option<Vec<Formula>> {
     let longer = part.longer.as_deref()?;
     let mut told = |part: &Part| {
         let all = stated_configurations(part);

@@ -5,10 +5,10 @@ use super::invariants::total;
 use super::{ranged, sites, stated_configurations};
 use crate::derive::Derivation;
 use crate::derive::invariants::{Invariant, Kind as InvariantKind};
-use crate::document::folded::{Folded, From, Part};
+use crate::document::folded::{From, IndexedNotation, Part};
 use crate::document::riccati_words;
 use crate::expr::{self, Expr, Node};
-use crate::lattice::{Choice, Lattice, Unfolded};
+use crate::lattice::{Choice, ExpandedModel, Lattice};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression, formula};
 
@@ -36,7 +36,7 @@ pub struct InvariantWords {
 pub fn card_words(
     lattice: &Lattice,
     choice: &Choice,
-    unfolded: Unfolded,
+    unfolded: ExpandedModel,
     d: &Derivation,
     solver: &str,
 ) -> CardWords {
@@ -46,11 +46,12 @@ pub fn card_words(
         d: d.clone(),
         longer: None,
     };
-    let mut folded = Folded::new(lattice, &part);
+    let mut folded = IndexedNotation::new(lattice, &part);
     let style = Style::new(&d.spec.time_index);
     let mut lines = vec![format!("lattice              {}", choice.words(lattice))];
     let terms = terms(&mut folded, &part);
-    let text = |folded: &Folded, f: &Formula| formula(f, &folded.symbols, &style, Format::Text);
+    let text =
+        |folded: &IndexedNotation, f: &Formula| formula(f, &folded.symbols, &style, Format::Text);
     lines.push(format!("Lagrangian           {}", text(&folded, &terms)));
     for s in stated_configurations(&part) {
         let from = From::Site(s.site);
@@ -130,7 +131,7 @@ pub fn card_words(
 }
 
 /// A total of this lattice, as sums over sites or site by site; with it whether it is such sums.
-fn explicit(folded: &mut Folded, part: &Part, e: &Expr) -> (Formula, bool) {
+fn explicit(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> (Formula, bool) {
     match total(folded, part, e) {
         Some(sum) => (sum, true),
         None => (folded.derived(part, e, From::First), false),
@@ -159,7 +160,7 @@ fn numbered(told: Vec<(InvariantWords, bool)>) -> Vec<InvariantWords> {
     each.collect()
 }
 
-fn terms(folded: &mut Folded, part: &Part) -> Formula {
+fn terms(folded: &mut IndexedNotation, part: &Part) -> Formula {
     let all = folded.terms(part).into_iter().zip(&part.unfolded.summands);
     let all: Vec<_> = all.filter_map(|(e, s)| Some((e?, s.range))).collect();
     let each = all.into_iter().map(|(e, range)| {

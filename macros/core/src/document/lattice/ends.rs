@@ -2,13 +2,13 @@
 //! interior.
 
 use super::{equations, like_the_middle, say, stated_configurations};
-use crate::document::folded::{Folded, From, Part};
+use crate::document::folded::{From, IndexedNotation, Part};
 use crate::lattice::Lattice;
 use crate::print::document::{Document, Inline};
 use crate::print::formula::Formula;
 
 /// Sections on the ends of an open line.
-pub(super) fn ends(folded: &mut Folded, parts: &[Part], doc: &mut Document) {
+pub(super) fn ends(folded: &mut IndexedNotation, parts: &[Part], doc: &mut Document) {
     let lattice = folded.lattice;
     let Some(line) = lattice.line_label() else {
         return;
@@ -34,7 +34,7 @@ fn part_of(parts: &[Part], last: bool, which: usize) -> Option<&Part> {
 }
 
 fn end(
-    folded: &mut Folded,
+    folded: &mut IndexedNotation,
     part: &Part,
     last: bool,
     which: usize,

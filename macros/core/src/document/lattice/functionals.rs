@@ -1,7 +1,7 @@
 //! Functionals of all sites in a paper section: their values by the index of a site, `A_{a,k}`, their pull-backs
 //! as transposed derivatives at what they are made of, without one.
 
-use super::super::folded::{Folded, From, Part};
+use super::super::folded::{From, IndexedNotation, Part};
 use crate::check;
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, Symbols};
@@ -10,7 +10,7 @@ use crate::print::document::{Document, Inline};
 use crate::print::formula::Formula;
 use crate::syntax::ast::Extent;
 
-impl Folded<'_> {
+impl IndexedNotation<'_> {
     /// An expression with the values of functionals as letters of their sites.
     pub(in crate::document) fn with_functionals(
         &mut self,
@@ -126,7 +126,7 @@ fn given_of(s: &Symbols, e: &Expr, name: &str) -> Option<Expr> {
 }
 
 /// The functionals, and what their pull-backs are.
-pub(super) fn functionals(folded: &mut Folded, part: &Part, doc: &mut Document) {
+pub(super) fn functionals(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     let meshes = folded.lattice.meshes.clone();
     if meshes.is_empty() {
         return;

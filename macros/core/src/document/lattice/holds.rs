@@ -3,7 +3,7 @@
 
 use super::{beyond, stated_configurations, sums};
 use crate::check::spec::Hold;
-use crate::document::folded::{Folded, From, Part};
+use crate::document::folded::{From, IndexedNotation, Part};
 use crate::document::holds::{
     ALONG, MIDDLE, ON_ARRIVAL, no_change, projected, rate_on_arrival, told,
 };
@@ -13,7 +13,7 @@ use crate::print::document::{Document, Inline, Section};
 use crate::print::formula::Formula;
 
 /// The constraints that are held at every site, each seen from the middle one.
-pub(super) fn holds(folded: &mut Folded, part: &Part, section: &mut Section) {
+pub(super) fn holds(folded: &mut IndexedNotation, part: &Part, section: &mut Section) {
     for stated in stated_holds(part) {
         let Some(hold) = part.d.spec.holds.get(stated.shown) else {
             continue;
@@ -59,7 +59,7 @@ pub(super) fn holds(folded: &mut Folded, part: &Part, section: &mut Section) {
 }
 
 /// How they are held in a step, and what the state tells of their multipliers; seen from a middle site.
-pub(super) fn held(folded: &mut Folded, part: &Part, doc: &mut Document) {
+pub(super) fn held(folded: &mut IndexedNotation, part: &Part, doc: &mut Document) {
     let d = &part.d;
     if d.spec.holds.is_empty() {
         return;

@@ -2,22 +2,27 @@
 //! sites.
 
 use crate::derive::invariants::{Family, Invariant, Kind as InvariantKind};
-use crate::document::folded::{Folded, From, Part};
+use crate::document::folded::{From, IndexedNotation, Part};
 use crate::document::lattice::{holds::stated_holds, sites, sums};
 use crate::expr::{self, Expr};
 use crate::lattice::Lattice;
-use crate::line::{Line, Written};
+use crate::line::{Line, RepresentativeChain};
 use crate::print::document::{Document, Inline};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, formula};
 use crate::syntax::ast::Model;
 
 /// The section on invariants.
-pub(super) fn invariants(folded: &mut Folded, model: &Model, parts: &[Part], doc: &mut Document) {
+pub(super) fn invariants(
+    folded: &mut IndexedNotation,
+    model: &Model,
+    parts: &[Part],
+    doc: &mut Document,
+) {
     let section = doc.section("Invariants");
     for part in parts {
         let mut items: Vec<Vec<Inline>> = Vec::new();
-        let written = Written {
+        let written = RepresentativeChain {
             choice: part.choice.clone(),
             unfolded: part.unfolded.clone(),
             d: part.d.outline(),
@@ -81,9 +86,9 @@ pub(super) fn invariants(folded: &mut Folded, model: &Model, parts: &[Part], doc
 
 /// Totals that functionals of all sites leave as they are.
 fn beside_functionals(
-    folded: &mut Folded,
+    folded: &mut IndexedNotation,
     part: &Part,
-    written: &Written,
+    written: &RepresentativeChain,
     model: &Model,
 ) -> Vec<Vec<Inline>> {
     let Ok(line) = Line::of(model) else {
@@ -153,7 +158,7 @@ impl Known {
 
 /// The invariants of a part that are the same for every number of sites: those that read alike on a longer lattice.
 /// With them whether there are others.
-fn known(folded: &mut Folded, part: &Part, kept: &[&Invariant]) -> (Vec<Known>, bool) {
+fn known(folded: &mut IndexedNotation, part: &Part, kept: &[&Invariant]) -> (Vec<Known>, bool) {
     let (own, others) = of_part(folded, part, kept);
     // Where the search found nothing on the longer lattice, its draws were too few for so many sites, and nothing is
     // learnt from it: ranges from end to end stand as they are.
@@ -189,11 +194,14 @@ fn numbered(mut list: Vec<Known>) -> Vec<Known> {
 
 /// The invariants of one lattice that are sums over sites, and the sum of those that are not where it is one; with them
 /// whether some are no such sums by themselves.
-fn of_part(folded: &mut Folded, part: &Part, kept: &[&Invariant]) -> (Vec<Known>, bool) {
+fn of_part(folded: &mut IndexedNotation, part: &Part, kept: &[&Invariant]) -> (Vec<Known>, bool) {
     let style = Style::new(&part.d.spec.time_index);
     let mut out: Vec<Known> = Vec::new();
     let mut untold: Vec<&Invariant> = Vec::new();
-    let told = |folded: &Folded, v: &Invariant, [before, after]: [&str; 2], f: Option<Formula>| {
+    let told = |folded: &IndexedNotation,
+                v: &Invariant,
+                [before, after]: [&str; 2],
+                f: Option<Formula>| {
         let shown = |f: &Formula| formula(f, &folded.symbols, &style, Format::Text);
         let text = f.as_ref().map_or_else(String::new, shown);
         let mut value: Vec<Inline> = vec![before.into()];
@@ -258,7 +266,7 @@ fn of_part(folded: &mut Folded, part: &Part, kept: &[&Invariant]) -> (Vec<Known>
 }
 
 /// A total as sums over sites; `None` where it is none that is known for every number of sites.
-pub(super) fn total(folded: &mut Folded, part: &Part, e: &Expr) -> Option<Formula> {
+pub(super) fn total(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> Option<Formula> {
     let lattice = folded.lattice;
     let of_line = lattice.line.is_some() && lattice.labels.len() == 1;
     match sums::told(folded, part, e).filter(|_| lattice.labels.len() == 1) {

@@ -3,7 +3,7 @@
 
 use super::beyond;
 use crate::derive::invariants::{Family, Invariant};
-use crate::document::folded::{Folded, From, Part};
+use crate::document::folded::{From, IndexedNotation, Part};
 use crate::expr::{self, Expr};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression};
@@ -35,7 +35,11 @@ impl OfSites {
 }
 
 /// Invariants of the list that are one quantity at several sites each.
-pub(super) fn of_sites(folded: &mut Folded, part: &Part, list: &[&Invariant]) -> Vec<OfSites> {
+pub(super) fn of_sites(
+    folded: &mut IndexedNotation,
+    part: &Part,
+    list: &[&Invariant],
+) -> Vec<OfSites> {
     let style = Style::new(&part.d.spec.time_index);
     let mut out: Vec<OfSites> = Vec::new();
     for (i, v) in list.iter().enumerate() {
@@ -80,7 +84,7 @@ pub(super) fn of_sites(folded: &mut Folded, part: &Part, list: &[&Invariant]) ->
 }
 
 /// At which sites, where they are neighbours.
-fn words(folded: &Folded, part: &Part, o: &mut OfSites) -> Option<String> {
+fn words(folded: &IndexedNotation, part: &Part, o: &mut OfSites) -> Option<String> {
     o.sites.sort_unstable();
     let neighbours = o.sites.windows(2).all(|w| w[0] + 1 == w[1]);
     let label = folded.lattice.labels.get(o.label)?;
@@ -104,7 +108,7 @@ fn words(folded: &Folded, part: &Part, o: &mut OfSites) -> Option<String> {
 }
 
 /// The label and the site of all letters of an expression that have one.
-fn only_site(folded: &Folded, part: &Part, e: &Expr) -> Option<(usize, usize)> {
+fn only_site(folded: &IndexedNotation, part: &Part, e: &Expr) -> Option<(usize, usize)> {
     let letters = expr::letters(e).into_iter();
     let mut sites = letters.filter_map(|l| folded.site(part, l.symbol));
     let first = sites.next()?;

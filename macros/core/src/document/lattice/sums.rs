@@ -3,7 +3,7 @@
 //! as nothing: on another lattice it is another expression.
 
 use crate::algebra::Rational;
-use crate::document::folded::{Folded, From, Part};
+use crate::document::folded::{From, IndexedNotation, Part};
 use crate::expr::{self, Expr, Node};
 use crate::print::formula::Formula;
 use crate::print::{Format, Style, expression};
@@ -15,7 +15,7 @@ mod tests;
 const FEWEST: usize = 3;
 
 /// The same in sums over sites; `None` where it is none that is known for every number of sites.
-pub(super) fn told(folded: &mut Folded, part: &Part, e: &Expr) -> Option<Formula> {
+pub(super) fn told(folded: &mut IndexedNotation, part: &Part, e: &Expr) -> Option<Formula> {
     match e.node() {
         Node::Neg(a) => Some(Formula::neg(told(folded, part, a)?)),
         // What is read of a total along or across something that no site has.
@@ -43,7 +43,7 @@ pub(super) fn told(folded: &mut Folded, part: &Part, e: &Expr) -> Option<Formula
 }
 
 /// A sum of totals that are read along axes, each by itself, and of other terms.
-fn apart(folded: &mut Folded, part: &Part, list: &[Expr]) -> Option<Formula> {
+fn apart(folded: &mut IndexedNotation, part: &Part, list: &[Expr]) -> Option<Formula> {
     let read = |e: &&Expr| match e.node() {
         Node::Dot(a, b) | Node::Cross(a, b) => {
             let fixed = !varies(folded, part, a) || !varies(folded, part, b);
@@ -70,7 +70,7 @@ fn apart(folded: &mut Folded, part: &Part, list: &[Expr]) -> Option<Formula> {
 }
 
 /// Whether an expression holds a letter of a site.
-fn varies(folded: &Folded, part: &Part, e: &Expr) -> bool {
+fn varies(folded: &IndexedNotation, part: &Part, e: &Expr) -> bool {
     let letters = expr::letters(e).into_iter();
     let mut sites = letters.filter_map(|l| folded.site(part, l.symbol));
     sites.next().is_some()
@@ -78,7 +78,12 @@ fn varies(folded: &Folded, part: &Part, e: &Expr) -> bool {
 
 /// As it was found or multiplied out, whichever has fewer sums: what cancels is seen where all is multiplied out.
 /// `axis` is what the sum is read along.
-fn shortest(folded: &mut Folded, part: &Part, e: &Expr, axis: Option<&Expr>) -> Option<Formula> {
+fn shortest(
+    folded: &mut IndexedNotation,
+    part: &Part,
+    e: &Expr,
+    axis: Option<&Expr>,
+) -> Option<Formula> {
     let ways = [false, true].map(|out| {
         let terms = terms(e, out, axis);
         summed(folded, part, terms)
@@ -102,7 +107,11 @@ struct Form {
 }
 
 /// Sums of terms; `None` where some are of no range.
-fn summed(folded: &mut Folded, part: &Part, terms: Vec<(Rational, Expr)>) -> Option<Vec<Formula>> {
+fn summed(
+    folded: &mut IndexedNotation,
+    part: &Part,
+    terms: Vec<(Rational, Expr)>,
+) -> Option<Vec<Formula>> {
     let forms = forms(folded, part, terms)?;
     let line = folded.summed()?;
     let label = folded.lattice.labels.get(line)?;
@@ -149,7 +158,11 @@ fn summed(folded: &mut Folded, part: &Part, terms: Vec<(Rational, Expr)>) -> Opt
 }
 
 /// Terms of equal form collected, those that cancel left out.
-fn forms(folded: &mut Folded, part: &Part, terms: Vec<(Rational, Expr)>) -> Option<Vec<Form>> {
+fn forms(
+    folded: &mut IndexedNotation,
+    part: &Part,
+    terms: Vec<(Rational, Expr)>,
+) -> Option<Vec<Form>> {
     let style = Style::new(&part.d.spec.time_index);
     // Each term at its site, equal ones added.
     let mut single: Vec<(String, Option<usize>, Rational, Expr)> = Vec::new();
@@ -189,7 +202,7 @@ fn forms(folded: &mut Folded, part: &Part, terms: Vec<(Rational, Expr)>) -> Opti
 
 /// The site a term is seen from, the first of those that it holds; on a ring the one that has the others next to it.
 /// Outer `None`: it holds sites of something that is no line.
-fn base(folded: &Folded, part: &Part, term: &Expr) -> Option<Option<usize>> {
+fn base(folded: &IndexedNotation, part: &Part, term: &Expr) -> Option<Option<usize>> {
     let line = folded.summed()?;
     let mut sites = Vec::new();
     for l in expr::letters(term) {

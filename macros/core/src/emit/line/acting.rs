@@ -9,7 +9,7 @@ use super::velocities::taken_apart;
 use super::{Lines, Moving, number};
 use crate::algebra::Rational;
 use crate::expr::{self, Expr};
-use crate::line::How;
+use crate::line::SiteSolve;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -28,9 +28,11 @@ fn own(m: &Moving) -> [Expr; 2] {
     let s = &d.letters.symbols;
     let at_node = |e: &Expr| d.defined(&expr::shift_time(s, e, -1));
     match &m.mover.how {
-        How::Rotation { leave, arrive, .. } => [at_node(arrive), d.defined(leave)],
-        How::Field { form, arrive } => [at_node(arrive), d.defined(&expr::neg(form.rest.clone()))],
-        How::System { .. } | How::Newton { .. } => {
+        SiteSolve::Rotation { leave, arrive, .. } => [at_node(arrive), d.defined(leave)],
+        SiteSolve::Field { form, arrive } => {
+            [at_node(arrive), d.defined(&expr::neg(form.rest.clone()))]
+        }
+        SiteSolve::System { .. } | SiteSolve::Newton { .. } => {
             let shape = d.balances[m.mover.index].outgoing.shape();
             [expr::zero(shape), expr::zero(shape)]
         }
@@ -146,7 +148,10 @@ fn wanted(l: &Lines, m: &Moving) -> Vec<Expr> {
         Acting::Halves => vec![crate::emit::forced::doubled(s, &leave)],
         Acting::Both => vec![arrive, leave],
     };
-    wanted.iter().map(|e| expr::parted(s, e)).collect()
+    wanted
+        .iter()
+        .map(|e| expr::quaternion_components(s, e))
+        .collect()
 }
 
 /// What the kernel reads of its site.
@@ -250,7 +255,7 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
     let (kernel, places, t) = (edge_kernel(&m), l.item("Places"), m.covector());
     let h = step(d);
     let wanted: Vec<Expr> = match &m.mover.how {
-        How::Newton {
+        SiteSolve::Newton {
             arriving: Some(arriving),
             ..
         } => vec![d.defined(added), d.defined(arriving)],

@@ -3,7 +3,7 @@
 use super::reactions::{count, count_of, none_moving, none_reached, ring, sides};
 use super::step::range_name;
 use super::{Lines, number};
-use crate::line::Held;
+use crate::line::ChainConstraint;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -116,7 +116,7 @@ pub(super) fn told(l: &Lines) -> TokenStream {
 }
 
 /// The sum of the sizes of the terms of a rate of change.
-fn sizes(l: &Lines, k: usize, h: &Held) -> TokenStream {
+fn sizes(l: &Lines, k: usize, h: &ChainConstraint) -> TokenStream {
     let bodies = l.bodies();
     let list = format_ident!("held_{k}");
     let each = h.reaches.iter().filter_map(|reach| {

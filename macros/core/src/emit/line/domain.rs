@@ -8,7 +8,7 @@ use crate::derive::{Derivation, Outline};
 use crate::emit::domain::{Tested, tested};
 use crate::emit::expression::Bindings;
 use crate::expr::Expr;
-use crate::line::{By, EndTerm, Line, Lone};
+use crate::line::{By, EndTerm, Line, SiteModel};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -56,7 +56,7 @@ pub(in crate::emit) fn refusal(line: &Line) -> Option<String> {
     refused.then(|| "a function in a term of an end has a domain".to_owned())
 }
 
-fn lone_terms(lone: &Lone) -> Vec<Expr> {
+fn lone_terms(lone: &SiteModel) -> Vec<Expr> {
     let d: &Derivation = &lone.d;
     let definitions = d.spec.advected.iter().filter_map(|a| a.definition.clone());
     let terms = [d.action.edge.clone(), d.action.nodal.clone()];

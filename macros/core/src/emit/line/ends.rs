@@ -114,7 +114,10 @@ pub(super) fn place(l: &Lines, last: bool, of: &str, from_end: usize) -> TokenSt
 /// Expressions of an end: what stands before them, and their values.
 fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenStream>) {
     let s = &end.symbols;
-    let values: Vec<Expr> = values.iter().map(|e| expr::parted(s, e)).collect();
+    let values: Vec<Expr> = values
+        .iter()
+        .map(|e| expr::quaternion_components(s, e))
+        .collect();
     let values = values.as_slice();
     let mut locals = TokenStream::new();
     let mut bindings = Bindings::new();

@@ -5,13 +5,13 @@ use super::locals::Places;
 use super::pulls::{known, range_of};
 use super::{Lines, Moving, OfMeshes};
 use crate::algebra::{Algebra, Rational};
-use crate::derive::far;
+use crate::derive::cancellation;
 use crate::derive::limit::{Limit, of_order};
 use crate::emit::element;
 use crate::emit::energy::twice_kinetic_of;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::line::Lone;
+use crate::line::SiteModel;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -51,7 +51,7 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
         if !limit.potential.is_zero() {
             let kernel = format_ident!("own_potential_{}", n + 1);
             let (d, s) = (&lone.outline, &lone.outline.letters.symbols);
-            let values = [expr::parted(s, &d.defined(&limit.potential))];
+            let values = [expr::quaternion_components(s, &d.defined(&limit.potential))];
             let (lets, results) = l.computed(s, &l.of_site(d, &values), &values);
             kernels.extend(quote! {
                 /// The potential energy of one site by itself.
@@ -76,7 +76,7 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
         let energy = expr::neg(expr::quotient(pull.terms.clone(), h.clone()));
         let energy = without_step(&algebra, &energy, &h)?;
         let kernel = format_ident!("potential_{}", n + 1);
-        let values = [expr::parted(s, &energy)];
+        let values = [expr::quaternion_components(s, &energy)];
         let (lets, results) = l.computed(s, &known(l, &values), &values);
         kernels.extend(quote! {
             /// The potential energy of one term of neighbours.
@@ -133,7 +133,9 @@ pub(super) fn without_step(algebra: &Algebra, e: &Expr, h: &Expr) -> Option<Expr
     let shortest = Some(algebra.shortest(e)).filter(free);
     // Multiplied out it may round more far from the origin.
     let stated = of_order(algebra, e, step, Rational::ZERO);
-    let is_nearer = |expanded: &Expr| far::error(algebra, &stated) < far::error(algebra, expanded);
+    let is_nearer = |expanded: &Expr| {
+        cancellation::error(algebra, &stated) < cancellation::error(algebra, expanded)
+    };
     match shortest.as_ref().is_none_or(is_nearer) && algebra.equal(&stated, e) {
         true => Some(stated),
         false => shortest,
@@ -142,7 +144,7 @@ pub(super) fn without_step(algebra: &Algebra, e: &Expr, h: &Expr) -> Option<Expr
 
 /// The kinetic energy of one site, that of the limit inverted for its momenta; what is found together along the line
 /// is left out.
-fn kinetic_of_site(l: &Lines, lone: &Lone, limit: &Limit) -> Option<TokenStream> {
+fn kinetic_of_site(l: &Lines, lone: &SiteModel, limit: &Limit) -> Option<TokenStream> {
     let is_apart = |i: usize| {
         let own = lone.blocks.iter().find(|b| b.contains(&i));
         let mut names = lone.movers.iter();

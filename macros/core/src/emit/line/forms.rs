@@ -44,7 +44,7 @@ pub(super) fn forms(s: &Symbols, values: &[Expr], prefix: &str) -> Forms {
     let values = match names.is_empty() {
         true => values,
         false => {
-            let put = |e: &Expr| expr::parted(&symbols, &put(&symbols, e, &names));
+            let put = |e: &Expr| expr::quaternion_components(&symbols, &put(&symbols, e, &names));
             values.iter().map(put).collect()
         }
     };

@@ -7,14 +7,14 @@ use super::{Lines, Moving, number, responses, rows, totals};
 use crate::emit::expression::Bindings;
 use crate::expr::symbol::Role;
 use crate::expr::{Expr, Letter};
-use crate::line::{Held, Matrix, Reach, Unit};
+use crate::line::{ChainConstraint, ConstraintResponse, Matrix, Reach};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 /// Configurations of a site whose velocities are found together.
 pub(super) struct Bodies<'a> {
     pub members: Vec<Moving<'a>>,
-    pub unit: &'a Unit,
+    pub unit: &'a ConstraintResponse,
     /// How many components their velocities have.
     pub n: usize,
     /// Whether they answer to an impulse by a multiple of it.
@@ -134,13 +134,13 @@ impl Lines<'_> {
     }
 
     /// Where those of a constraint begin among them.
-    pub(super) fn held_row(&self, held: &Held) -> usize {
+    pub(super) fn held_row(&self, held: &ChainConstraint) -> usize {
         let before = self.line.holds.iter().take_while(|h| h.name != held.name);
         before.map(|h| h.components).sum()
     }
 
     /// Constraints with their numbers.
-    pub(super) fn holds(&self) -> impl Iterator<Item = (usize, &Held)> {
+    pub(super) fn holds(&self) -> impl Iterator<Item = (usize, &ChainConstraint)> {
         (1..).zip(&self.line.holds)
     }
 }
@@ -265,7 +265,7 @@ pub(super) fn held(l: &Lines) -> TokenStream {
 }
 
 /// What is held at one index and its derivatives.
-fn of_hold(l: &Lines, k: usize, h: &Held) -> (TokenStream, TokenStream) {
+fn of_hold(l: &Lines, k: usize, h: &ChainConstraint) -> (TokenStream, TokenStream) {
     let part = &l.line.representative;
     let s = &part.d.letters.symbols;
     let (ty, places) = (l.item(&format!("Held{k}")), l.item("Places"));
@@ -346,7 +346,7 @@ fn of_hold(l: &Lines, k: usize, h: &Held) -> (TokenStream, TokenStream) {
 }
 
 /// What is held as an array.
-fn array(h: &Held, value: TokenStream) -> TokenStream {
+fn array(h: &ChainConstraint, value: TokenStream) -> TokenStream {
     match h.value.shape().is_scalar() {
         true => quote!(SMatrix::<T, 1, 1>::new(#value)),
         false => value,

@@ -41,7 +41,7 @@ fn of_mover(l: &Lines, m: &Moving) -> Option<TokenStream> {
         .map(|b| at_node(s, &[], b))
         .into_iter()
         .flatten()
-        .map(|e| expr::magnitude_by_differences(s, &expr::parted(s, &d.defined(&e))))
+        .map(|e| expr::magnitude_by_differences(s, &expr::quaternion_components(s, &d.defined(&e))))
         .collect();
     let (lets, results) = l.computed(s, &l.of_site(d, &own), &own);
     let pulled = l.collected(&m.mover.name).into_iter();

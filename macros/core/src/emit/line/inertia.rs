@@ -148,8 +148,8 @@ fn filled(
 ) -> TokenStream {
     let mut values = Vec::new();
     for (rest, columns) in inertia.at_rest.iter().zip(&inertia.columns) {
-        values.push(expr::parted(s, rest));
-        values.extend(columns.iter().map(|e| expr::parted(s, e)));
+        values.push(expr::quaternion_components(s, rest));
+        values.extend(columns.iter().map(|e| expr::quaternion_components(s, e)));
     }
     let (locals, bindings) = l.locals(s, &known(&values), &Places::of_node(), &quote!(site));
     let (lets, results) = l.program(s, &values, &bindings);

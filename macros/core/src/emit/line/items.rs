@@ -7,7 +7,7 @@ use crate::emit::items::admitted;
 use crate::expr::shape::{Shape, Structure};
 use crate::expr::symbol::{Role, Symbol};
 use crate::lattice::{Kind, Sites};
-use crate::line::How;
+use crate::line::SiteSolve;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -410,7 +410,7 @@ pub(super) fn model(l: &Lines) -> TokenStream {
 /// The factors of rotations and of unit quaternions: one, or one for each site where a parameter of sites stands in it.
 fn factors(l: &Lines, fields: &mut TokenStream, init: &mut TokenStream, made: &mut TokenStream) {
     for m in l.moving() {
-        let How::Rotation { factor, real, .. } = &m.mover.how else {
+        let SiteSolve::Rotation { factor, real, .. } = &m.mover.how else {
             continue;
         };
         let d = m.d();

@@ -11,7 +11,7 @@ use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Node, Reach};
 use crate::lattice::{Known, Mesh, Sites, Source};
-use crate::line::Meshed;
+use crate::line::FunctionalForce;
 use crate::syntax::ast::Extent;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -298,7 +298,7 @@ pub(super) fn meshes(l: &Lines) -> Option<Emitted> {
 
 fn written(
     plan: &Plan,
-    meshed: &Meshed,
+    meshed: &FunctionalForce,
     forces: &[Expr],
     energies: Option<Vec<(usize, Expr)>>,
 ) -> Emitted {

@@ -36,7 +36,7 @@ mod walls;
 use crate::derive::{Derivation, Outline};
 use crate::groups::Kept;
 use crate::lattice::{Kind, Sites};
-use crate::line::{How, Line, Lone, Mover};
+use crate::line::{Line, SiteModel, SiteSolve, SiteUnknown};
 use meshes::Emitted as OfMeshes;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -105,8 +105,8 @@ pub fn refusal_of_line(line: &Line) -> Option<String> {
 /// A configuration with the derivation of its site.
 #[derive(Clone, Copy)]
 struct Moving<'a> {
-    lone: &'a Lone,
-    mover: &'a Mover,
+    lone: &'a SiteModel,
+    mover: &'a SiteUnknown,
 }
 
 impl Moving<'_> {
@@ -130,7 +130,7 @@ impl Moving<'_> {
 
     /// Whether it is a unit quaternion.
     fn is_quaternion(&self) -> bool {
-        matches!(self.mover.how, How::Rotation { real: Some(_), .. })
+        matches!(self.mover.how, SiteSolve::Rotation { real: Some(_), .. })
     }
 
     /// Rows and columns of a field; of a rotation those of its momentum.

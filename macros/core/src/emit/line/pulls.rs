@@ -11,7 +11,7 @@ use crate::emit::items::letters_of;
 use crate::emit::names::variable;
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Letter, Shift};
-use crate::line::Pull;
+use crate::line::NeighbourForce;
 use crate::print::{Format, Style, expression};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -22,7 +22,7 @@ pub(super) fn field(on: &str, site: usize) -> Ident {
 }
 
 /// The farthest site that a term adds to: so many places stand before the first term.
-pub(super) fn front(pull: &Pull) -> usize {
+pub(super) fn front(pull: &NeighbourForce) -> usize {
     pull.forces.iter().map(|f| f.site).max().unwrap_or(0)
 }
 
@@ -65,7 +65,7 @@ pub(super) fn pulls(l: &Lines) -> TokenStream {
 }
 
 /// The structure of a term, its kernel, and the loop over all such terms.
-fn of_pull(l: &Lines, n: usize, pull: &Pull) -> [TokenStream; 3] {
+fn of_pull(l: &Lines, n: usize, pull: &NeighbourForce) -> [TokenStream; 3] {
     let part = &l.line.representative;
     let s = &part.d.letters.symbols;
     let t = l.item(&format!("Pull{n}"));
@@ -84,7 +84,10 @@ fn of_pull(l: &Lines, n: usize, pull: &Pull) -> [TokenStream; 3] {
         }));
         zeros.extend(quote!(#name: SMatrix::zeros(),));
     }
-    let values = pull.forces.iter().map(|f| expr::parted(s, &f.value));
+    let values = pull
+        .forces
+        .iter()
+        .map(|f| expr::quaternion_components(s, &f.value));
     let values: Vec<_> = values.collect();
     let letters = known(l, &values);
     let read = l.read(s, &letters);
@@ -128,7 +131,7 @@ fn of_pull(l: &Lines, n: usize, pull: &Pull) -> [TokenStream; 3] {
 }
 
 /// How many numbers a term adds.
-pub(super) fn numbers(l: &Lines, pull: &Pull) -> TokenStream {
+pub(super) fn numbers(l: &Lines, pull: &NeighbourForce) -> TokenStream {
     let moving: Vec<_> = l.moving().collect();
     let counts = pull.forces.iter().filter_map(|f| {
         let (rows, cols) = moving.iter().find(|m| m.mover.name == f.on)?.dims();
@@ -188,7 +191,7 @@ pub(super) fn computed(
 }
 
 /// The terms of a pull, letters seen from their first site.
-fn term_text(l: &Lines, pull: &Pull) -> String {
+fn term_text(l: &Lines, pull: &NeighbourForce) -> String {
     let d = &l.line.representative.d;
     let style = Style::new(&d.spec.time_index);
     expression(&pull.terms, &d.letters.symbols, &style, Format::Text)
@@ -253,7 +256,7 @@ pub(super) fn range_of(l: &Lines, label: usize, from: usize, to: isize) -> Token
 fn over_sites(
     l: &Lines,
     n: usize,
-    pull: &Pull,
+    pull: &NeighbourForce,
     arguments: &[Argument],
     together: bool,
 ) -> TokenStream {

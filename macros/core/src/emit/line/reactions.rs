@@ -5,7 +5,7 @@ use super::held::Bodies;
 use super::pulls::range_of;
 use super::step::range_name;
 use super::{Lines, Moving, number, totals};
-use crate::line::Held;
+use crate::line::ChainConstraint;
 use crate::print::{Format, Style, formula};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -36,7 +36,7 @@ pub(super) fn fields(l: &Lines) -> Option<TokenStream> {
 }
 
 /// How many indices a constraint has; on a sum it is one.
-pub(super) fn count(l: &Lines, h: &Held) -> TokenStream {
+pub(super) fn count(l: &Lines, h: &ChainConstraint) -> TokenStream {
     if h.beside.is_some() {
         return quote!(1);
     }
@@ -186,7 +186,7 @@ pub(super) fn state(l: &Lines) -> (TokenStream, TokenStream) {
     (structure, access)
 }
 
-pub(super) fn sides(l: &Lines, h: &Held) -> [String; 2] {
+pub(super) fn sides(l: &Lines, h: &ChainConstraint) -> [String; 2] {
     let d = &l.line.representative.d;
     let style = Style::new(&d.spec.time_index);
     let shown = |side| formula(side, &h.symbols, &style, Format::Text);
@@ -194,7 +194,7 @@ pub(super) fn sides(l: &Lines, h: &Held) -> [String; 2] {
 }
 
 /// The equation as text.
-pub(super) fn equation(l: &Lines, h: &Held) -> String {
+pub(super) fn equation(l: &Lines, h: &ChainConstraint) -> String {
     let [left, right] = sides(l, h);
     format!("{left} = {right}")
 }
@@ -492,7 +492,7 @@ pub(super) fn project(l: &Lines) -> TokenStream {
 }
 
 /// The refusal of a state at a site, or for what a sum over sites holds.
-fn refused_at(l: &Lines, h: &Held) -> TokenStream {
+fn refused_at(l: &Lines, h: &ChainConstraint) -> TokenStream {
     let label = &h.name;
     match l.holds_sums() {
         true => quote!(LineError::Parameter(error)),

@@ -6,11 +6,11 @@ use super::lanes::Windows;
 use super::locals::{Places, step};
 use super::velocities::{as_array, taken_apart, width};
 use super::{Lines, Moving, number};
-use crate::derive::explicit::Explicit;
+use crate::derive::two_sided_linear::TwoSidedLinear;
 use crate::emit::blocks::linear_solution;
 use crate::emit::element;
 use crate::expr::{self, Expr};
-use crate::line::How;
+use crate::line::SiteSolve;
 use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -56,9 +56,9 @@ impl Moving<'_> {
 pub(super) fn solved(l: &Lines) -> TokenStream {
     let name = l.item("");
     let each = l.moving().map(|m| match &m.mover.how {
-        How::Rotation { .. } => rotation(l, m),
-        How::Field { .. } => field(l, m),
-        How::System { .. } | How::Newton { .. } => TokenStream::new(),
+        SiteSolve::Rotation { .. } => rotation(l, m),
+        SiteSolve::Field { .. } => field(l, m),
+        SiteSolve::System { .. } | SiteSolve::Newton { .. } => TokenStream::new(),
     });
     let each: Vec<TokenStream> = each.collect();
     let stages = l.moving().filter_map(|m| stage(l, &m));
@@ -67,7 +67,7 @@ pub(super) fn solved(l: &Lines) -> TokenStream {
     let systems = systems.iter().map(|(_, n, members)| {
         let by_newton = members
             .first()
-            .map(|m| matches!(m.mover.how, How::Newton { .. }));
+            .map(|m| matches!(m.mover.how, SiteSolve::Newton { .. }));
         match by_newton {
             Some(true) => newton(l, *n, members),
             _ => system(l, *n, members),
@@ -109,7 +109,7 @@ fn rotation(l: &Lines, m: Moving) -> TokenStream {
 }
 
 fn field(l: &Lines, m: Moving) -> TokenStream {
-    let How::Field { form, .. } = &m.mover.how else {
+    let SiteSolve::Field { form, .. } = &m.mover.how else {
         return TokenStream::new();
     };
     let factors = [&form.left, &form.right];
@@ -165,7 +165,7 @@ fn field(l: &Lines, m: Moving) -> TokenStream {
 }
 
 /// Whether the momentum is a number times the velocity.
-fn is_divided(form: &Explicit) -> bool {
+fn is_divided(form: &TwoSidedLinear) -> bool {
     [&form.left, &form.right].map(|e| e.shape().is_scalar()) == [true; 2]
 }
 
@@ -175,7 +175,7 @@ fn at_once(m: &Moving) -> Ident {
 
 /// What the kernel of a field reads of its site beside place and edge.
 fn reads_of_field(l: &Lines, m: &Moving) -> Option<Vec<Argument>> {
-    let How::Field { form, .. } = &m.mover.how else {
+    let SiteSolve::Field { form, .. } = &m.mover.how else {
         return None;
     };
     let d = m.outline();
@@ -195,7 +195,7 @@ fn stage(l: &Lines, m: &Moving) -> Option<TokenStream> {
     let (windows, place) = (windows.stated(), own.seen());
     let values: Vec<TokenStream> = arguments.iter().map(Argument::seen).collect();
     let reached = match &m.mover.how {
-        How::Field { form, .. } if is_divided(form) => {
+        SiteSolve::Field { form, .. } if is_divided(form) => {
             let kernel = at_once(m);
             quote!(model.#kernel(*h, #place, leaving.at(site), #(#values),*))
         }
@@ -263,7 +263,7 @@ fn system(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     let h = step(d);
     let mut values: Vec<Expr> = Vec::new();
     for m in members {
-        if let How::System { columns, rest, .. } = &m.mover.how {
+        if let SiteSolve::System { columns, rest, .. } = &m.mover.how {
             values.extend(columns.iter().chain([rest]).map(|e| d.defined(e)));
         }
     }
@@ -324,7 +324,7 @@ fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     let h = step(d);
     let mut values: Vec<Expr> = Vec::new();
     for m in members {
-        if let How::Newton {
+        if let SiteSolve::Newton {
             columns, momentum, ..
         } = &m.mover.how
         {

@@ -9,7 +9,7 @@ use super::{Lines, Moving, number};
 use crate::emit::expression::Bindings;
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr};
-use crate::line::{How, Tie};
+use crate::line::{SiteSolve, VelocityCoupling};
 use crate::schedule;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -93,7 +93,7 @@ fn is_constant(l: &Lines, members: &[Moving]) -> bool {
         letters.all(|x| matches!(role(&x), Role::Parameter | Role::Step))
     };
     let own = members.iter().all(|m| match &m.mover.how {
-        How::Newton { columns, .. } => {
+        SiteSolve::Newton { columns, .. } => {
             let d = m.outline();
             columns
                 .iter()
@@ -102,7 +102,7 @@ fn is_constant(l: &Lines, members: &[Moving]) -> bool {
         _ => false,
     });
     let s = &part.d.letters.symbols;
-    let of_tie = |tie: &Tie| {
+    let of_tie = |tie: &VelocityCoupling| {
         let mut pairs = tie
             .parts
             .iter()
@@ -120,7 +120,7 @@ pub(super) fn ring(l: &Lines) -> TokenStream {
 }
 
 /// The sites that the term of an index touches, the ring closed.
-pub(super) fn touched(l: &Lines, tie: &Tie, count: &TokenStream) -> TokenStream {
+pub(super) fn touched(l: &Lines, tie: &VelocityCoupling, count: &TokenStream) -> TokenStream {
     match (tie.width, l.line.lattice.periodic.is_some()) {
         (0, _) => quote!([site]),
         (_, false) => quote!([site, site + 1]),
@@ -312,7 +312,13 @@ pub(super) fn rows_of(members: &[Moving], on: &str) -> (usize, usize) {
     )
 }
 
-fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> TokenStream {
+fn of_tie(
+    l: &Lines,
+    k: usize,
+    tie: &VelocityCoupling,
+    n: usize,
+    members: &[Moving],
+) -> TokenStream {
     let part = &l.line.representative;
     let s = &part.d.letters.symbols;
     let (places, h) = (l.item("Places"), step(&part.d));
@@ -372,7 +378,7 @@ fn of_tie(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> Token
 /// Values in places and velocities of the sites of a term; rotations may be known beside those.
 fn computed(
     l: &Lines,
-    tie: &Tie,
+    tie: &VelocityCoupling,
     members: &[Moving],
     values: &[Expr],
     known_turns: bool,
@@ -402,7 +408,13 @@ fn computed(
     (lets, results)
 }
 
-fn added_kernel(l: &Lines, k: usize, tie: &Tie, n: usize, members: &[Moving]) -> TokenStream {
+fn added_kernel(
+    l: &Lines,
+    k: usize,
+    tie: &VelocityCoupling,
+    n: usize,
+    members: &[Moving],
+) -> TokenStream {
     let part = &l.line.representative;
     let (places, h) = (l.item("Places"), step(&part.d));
     let values: Vec<Expr> = tie.parts.iter().map(|p| p.added.clone()).collect();

@@ -5,7 +5,7 @@ use super::warned::one_neighbour;
 use super::{LARGEST, Summand, Writer};
 use crate::diagnostic::Diagnostic;
 use crate::lattice::names::copy_name;
-use crate::lattice::put::Put;
+use crate::lattice::put::SiteSubstitution;
 use crate::lattice::range::{beside_sum, of_one_neighbour, reach};
 use crate::lattice::summands::summands;
 use crate::syntax::ast::{Alternative, Expression, Kind, Statement};
@@ -75,7 +75,7 @@ impl Writer<'_> {
                 let stated = inlined(stated, self.lets);
                 let site = self.last_site(last);
                 let locals = self.locals(last, alternative);
-                let put = Put {
+                let put = SiteSubstitution {
                     locals: &locals,
                     at_last: last,
                     ..self.put(isize::try_from(site).unwrap_or(0))

@@ -1,14 +1,14 @@
 //! Sites of a configuration that no kinetic term reaches, in the words of the statement. Takes the model written out; gives
 //! which sites those are, and what to declare.
 
-use super::Unfolded;
+use super::ExpandedModel;
 use crate::check::spec::{Configuration, Spec};
 use crate::check::unused_velocity;
 use crate::diagnostic::Diagnostic;
 use crate::lattice::{Choice, Lattice, Sites, any_name};
 use crate::syntax::ast::{Expression, Kind};
 
-impl Unfolded {
+impl ExpandedModel {
     /// The message for configurations whose velocities no term of the Lagrangian contains, the first of them at least.
     pub fn motionless(
         &self,

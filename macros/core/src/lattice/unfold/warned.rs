@@ -1,6 +1,6 @@
 //! What derives on a lattice and is hardly meant, in the words of the statement.
 
-use super::Unfolded;
+use super::ExpandedModel;
 use crate::derive::warnings::{Topic, Warning, unused_let};
 use crate::diagnostic::Diagnostic;
 use crate::lattice::{Choice, any_name};
@@ -38,7 +38,7 @@ pub(super) fn without_a_ring(offset: &Name) -> Warning {
     )
 }
 
-impl Unfolded {
+impl ExpandedModel {
     /// What is hardly meant, in the words of the statement: of terms first, then what the derivation
     /// finds. Of a line that is held or short, what is unused or constant there may be neither on others.
     pub fn told(&self, choice: &Choice, found: &[Warning]) -> Vec<Warning> {

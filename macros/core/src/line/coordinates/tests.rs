@@ -1,7 +1,7 @@
 //! What is kept in which coordinates, how its velocities are found then, and what is refused.
 
 use super::By;
-use crate::line::{How, Line, Refused};
+use crate::line::{Line, Refused, SiteSolve};
 use crate::pipeline;
 
 fn line(text: &str) -> Result<Line, Refused> {
@@ -35,7 +35,7 @@ fn linear_maps_with_a_constant_inertia_step_explicitly_on_either_side() {
         let line = taken(&ellipsoids(constraint, kinetic));
         assert_eq!(line.coordinates[0].by, By::Entries(3), "{constraint}");
         let mover = &line.lone[0].movers[0];
-        assert!(matches!(mover.how, How::Field { .. }), "{constraint}");
+        assert!(matches!(mover.how, SiteSolve::Field { .. }), "{constraint}");
         assert_eq!(crate::emit::refusal_of_line(&line), None);
     }
 }
@@ -67,13 +67,17 @@ fn rigid_motions_are_rotations_and_places() {
     let hows: Vec<bool> = line.lone[0]
         .movers
         .iter()
-        .map(|m| matches!(m.how, How::Rotation { .. } | How::Field { .. }))
+        .map(|m| matches!(m.how, SiteSolve::Rotation { .. } | SiteSolve::Field { .. }))
         .collect();
     assert_eq!(hows, [true, true]);
     // Added masses join both.
     let line = taken(&frames("dot(u, M*u)"));
     let movers = &line.lone[0].movers;
-    assert!(movers.iter().all(|m| matches!(m.how, How::Newton { .. })));
+    assert!(
+        movers
+            .iter()
+            .all(|m| matches!(m.how, SiteSolve::Newton { .. }))
+    );
     assert_eq!(line.lone[0].blocks, [[0, 1]]);
 }
 

@@ -20,8 +20,8 @@ const MOST_WORDS: usize = 16;
 
 /// The same expression, real and imaginary parts taken of single quaternions and of quaternions from one to
 /// another, `re(q^T p)`, alone.
-pub fn parted(symbols: &Symbols, e: &Expr) -> Expr {
-    let e = rebuild(symbols, e, &mut |x| parted(symbols, x));
+pub fn quaternion_components(symbols: &Symbols, e: &Expr) -> Expr {
+    let e = rebuild(symbols, e, &mut |x| quaternion_components(symbols, x));
     let taken = match e.node() {
         Node::Map(Map::Imaginary, a) => both(symbols, a).map(|b| b.im),
         Node::Map(Map::Real, a) => both(symbols, a).map(|b| b.re),

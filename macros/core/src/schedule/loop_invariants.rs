@@ -8,7 +8,7 @@ use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node};
 
 /// Names and values of what is known, in the order in which they were met.
-pub struct Known<'a> {
+pub struct LoopInvariants<'a> {
     /// The symbols, those of the names included.
     pub symbols: Symbols,
     /// The names and their values.
@@ -17,10 +17,10 @@ pub struct Known<'a> {
     prefix: &'a str,
 }
 
-impl<'a> Known<'a> {
+impl<'a> LoopInvariants<'a> {
     /// Nothing yet. `prefix` starts the names.
     pub fn new(symbols: &Symbols, varies: &'a dyn Fn(Letter) -> bool, prefix: &'a str) -> Self {
-        Known {
+        LoopInvariants {
             symbols: symbols.clone(),
             values: Vec::new(),
             varies,

@@ -4,10 +4,10 @@
 //! Takes a derivation; gives the factors, the rest and what the edge adds.
 
 use super::Derivation;
-use super::carry::Carry;
-use super::explicit::Explicit;
-use super::recognise::Riccati;
-use super::transport::Transport;
+use super::advection_rule::AdvectionRule;
+use super::momentum_update::MomentumUpdate;
+use super::select_solver::StepEquation;
+use super::two_sided_linear::TwoSidedLinear;
 use super::variation::at;
 use crate::algebra::Algebra;
 use crate::expr::symbol::{Role, SymbolId};
@@ -15,7 +15,7 @@ use crate::expr::{self, Expr, Letter, Node, Shift};
 
 /// `h (m - rest) = left ΔQ right Q^T` with the momentum `m` of the node in space, and `m' = m - rest + added`.
 #[derive(Clone, Debug)]
-pub struct Displaced {
+pub struct SpatialIncrementForm {
     /// The factor to the left of the change, of parameters.
     pub left: Expr,
     /// The factor to its right, of parameters.
@@ -32,9 +32,9 @@ pub struct Displaced {
 }
 
 /// The form of configuration `i`, where it has one; `form` is that in its velocity.
-pub fn displaced(d: &Derivation, i: usize) -> Option<Displaced> {
+pub fn displaced(d: &Derivation, i: usize) -> Option<SpatialIncrementForm> {
     let c = &d.spec.configurations[i];
-    let Riccati::Linear(form) = &d.solve.riccati[i] else {
+    let StepEquation::Linear(form) = &d.solve.riccati[i] else {
         return None;
     };
     if !c.group.is_linear() || velocity_is_asked(d, i) {
@@ -61,7 +61,7 @@ fn velocity_is_asked(d: &Derivation, i: usize) -> bool {
     let carries = d.carries.iter().enumerate().filter(|(j, _)| *j != i);
     let others = carries.flat_map(|(_, carry)| carry.parts());
     let advanced = d.spec.advected.iter().zip(&d.transports);
-    let advanced = advanced.filter(|(_, t)| matches!(t, Transport::Advanced));
+    let advanced = advanced.filter(|(_, t)| matches!(t, AdvectionRule::Advanced));
     let mut all = others.chain(advanced.map(|(a, _)| &a.update));
     all.any(|e| expr::contains(e, velocity))
 }
@@ -75,7 +75,7 @@ struct Space<'a> {
 }
 
 impl Space<'_> {
-    fn form(&self, form: &Explicit) -> Option<Displaced> {
+    fn form(&self, form: &TwoSidedLinear) -> Option<SpatialIncrementForm> {
         let (d, s) = (self.d, &self.d.letters.symbols);
         let c = &d.spec.configurations[self.i];
         let placement = expr::here(s, c.element);
@@ -96,11 +96,11 @@ impl Space<'_> {
         let left = self.constant(&expr::mul(step, left))?;
         let right = self.constant(&right)?;
         let (leave, arrive) = match &d.carries[self.i] {
-            Carry::Through { leave, arrive, .. } if c.side.is_body() => (
+            MomentumUpdate::Through { leave, arrive, .. } if c.side.is_body() => (
                 self.in_space(leave, Shift::HERE.time)?,
                 self.in_space(arrive, Shift::NEXT.time)?,
             ),
-            Carry::Kept(added) if c.side.is_spatial() => {
+            MomentumUpdate::Kept(added) if c.side.is_spatial() => {
                 (self.in_space(added, Shift::HERE.time)?, (None, None))
             }
             _ => return None,
@@ -126,7 +126,7 @@ impl Space<'_> {
         let acting = self
             .algebra
             .shortest(&sum([leave.0, arrive.0, rest.clone()]));
-        Some(Displaced {
+        Some(SpatialIncrementForm {
             left,
             right,
             added: expr::add(gained, acting),
@@ -240,7 +240,7 @@ impl Space<'_> {
     fn only_quantity(&self) -> Option<Expr> {
         let d = self.d;
         let c = &d.spec.configurations[self.i];
-        let ([quantity], [Transport::Defined(value)]) =
+        let ([quantity], [AdvectionRule::Defined(value)]) =
             (d.spec.advected.as_slice(), d.transports.as_slice())
         else {
             return None;
@@ -260,11 +260,11 @@ impl Space<'_> {
         let s = &self.d.letters.symbols;
         let advected = self.d.spec.advected.iter().zip(&self.d.transports);
         let values = advected.flat_map(|(a, t)| match t {
-            Transport::Defined(value) => vec![
+            AdvectionRule::Defined(value) => vec![
                 (at(a.quantity, Shift::HERE), value.clone()),
                 (at(a.quantity, Shift::NEXT), expr::shift_time(s, value, 1)),
             ],
-            Transport::Carried { .. } | Transport::Advanced => Vec::new(),
+            AdvectionRule::Carried { .. } | AdvectionRule::Advanced => Vec::new(),
         });
         expr::substitute(s, e, &values.collect::<Vec<_>>())
     }

@@ -5,7 +5,7 @@
 
 use super::Letters;
 use super::balance::{Balance, shorter};
-use super::far;
+use super::cancellation;
 use super::occurrence::{Occurrence, occurrence};
 use super::variation::at;
 use crate::algebra::{Algebra, Atom, Factor, Poly, Rational, Term};
@@ -18,7 +18,7 @@ use crate::expr::{self, Expr, Letter, Shift};
 /// the step is. The factors are square matrices, or numbers that stand for multiples of the identity,
 /// made of parameters and of quantities at the node.
 #[derive(Clone, Debug)]
-pub struct Explicit {
+pub struct TwoSidedLinear {
     /// The factor to the left of the velocity, the step in it.
     pub left: Expr,
     /// The factor to its right.
@@ -37,7 +37,7 @@ pub fn form(
     b: &Balance,
     i: usize,
     algebra: &Algebra,
-) -> Result<Explicit, String> {
+) -> Result<TwoSidedLinear, String> {
     let s = &letters.symbols;
     let velocity = spec.configurations[i].velocity;
     let refused = || format!("the balance is not linear in {}", s.get(velocity).name);
@@ -65,8 +65,8 @@ pub fn form(
     // As it was derived, where the expanded one would round more far from the origin.
     let still_there = [(at(velocity, Shift::HERE), still.clone())];
     let derived = expr::substitute(s, &outgoing, &still_there);
-    let found = Explicit {
-        rest: far::nearer(algebra, at_rest, derived),
+    let found = TwoSidedLinear {
+        rest: cancellation::nearer(algebra, at_rest, derived),
         left,
         right,
     };

@@ -1,8 +1,8 @@
 //! Terms of neighbours in which velocities stand: what they add to the momenta of the sites that they touch,
 //! whose velocities are then found together. Letters are those of the lattice that is written out.
 
-use super::pull::{Placed, defined};
-use super::{Inertia, Refused, Written, inertia, velocity};
+use super::neighbour_force::{Placed, defined};
+use super::{Inertia, Refused, RepresentativeChain, inertia, velocity};
 use crate::derive::balance::{pairing, shorter};
 use crate::expr::shape::Shape;
 use crate::expr::{self, Expr, Letter, Shift};
@@ -11,7 +11,7 @@ use crate::{algebra::Algebra, line::BASE};
 
 /// Terms of one range of sites.
 #[derive(Clone, Debug)]
-pub struct Tie {
+pub struct VelocityCoupling {
     /// The label.
     pub label: usize,
     /// The first index of an open line.
@@ -46,7 +46,7 @@ pub struct Part {
 }
 
 /// Puts a term beside those of its range.
-pub(super) fn put(ties: &mut Vec<Tie>, part: &Written, placed: Placed) {
+pub(super) fn put(ties: &mut Vec<VelocityCoupling>, part: &RepresentativeChain, placed: Placed) {
     let s = &part.d.letters.symbols;
     let term = expr::substitute(s, &placed.term, &part.d.spec.end_of_edge());
     let mut known = ties.iter_mut();
@@ -55,7 +55,7 @@ pub(super) fn put(ties: &mut Vec<Tie>, part: &Written, placed: Placed) {
             tie.width = tie.width.max(placed.width);
             tie.terms = expr::add(tie.terms.clone(), term);
         }
-        None => ties.push(Tie {
+        None => ties.push(VelocityCoupling {
             label: placed.label,
             from: placed.from,
             to: placed.to,
@@ -69,7 +69,11 @@ pub(super) fn put(ties: &mut Vec<Tie>, part: &Written, placed: Placed) {
 
 /// Terms of neighbours, with those of the same range that stand at a node: what of all of them vanishes where
 /// nothing moves is the tie, what is left there stands at a node. So differences are not taken apart.
-pub(super) fn settle(part: &Written, tie: &mut Tie, nodal: Option<&Expr>) -> Expr {
+pub(super) fn settle(
+    part: &RepresentativeChain,
+    tie: &mut VelocityCoupling,
+    nodal: Option<&Expr>,
+) -> Expr {
     let d = &part.d;
     let s = &d.letters.symbols;
     let algebra = Algebra::new(s);
@@ -99,7 +103,11 @@ pub(super) fn settle(part: &Written, tie: &mut Tie, nodal: Option<&Expr>) -> Exp
 }
 
 /// Finds what the terms add, which must be to fields and rotations of one kind of sites, next to one another.
-pub(super) fn finish(lattice: &Lattice, part: &Written, ties: &mut [Tie]) -> Result<(), Refused> {
+pub(super) fn finish(
+    lattice: &Lattice,
+    part: &RepresentativeChain,
+    ties: &mut [VelocityCoupling],
+) -> Result<(), Refused> {
     let d = &part.d;
     let s = &d.letters.symbols;
     let algebra = Algebra::new(s);
@@ -191,9 +199,9 @@ pub(super) fn finish(lattice: &Lattice, part: &Written, ties: &mut [Tie]) -> Res
     Ok(())
 }
 
-impl Tie {
+impl VelocityCoupling {
     /// The derivative of the momentum of one part by the velocity of another, columns side by side.
-    pub fn columns(&self, part: &Written, of: &Part, by: &Part) -> Vec<Expr> {
+    pub fn columns(&self, part: &RepresentativeChain, of: &Part, by: &Part) -> Vec<Expr> {
         let s = &part.d.letters.symbols;
         let mut all = part.d.spec.configurations.iter();
         let c = all.find(|c| c.velocity == by.velocity.symbol);

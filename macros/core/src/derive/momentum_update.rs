@@ -4,10 +4,10 @@
 
 use super::Letters;
 use super::action::Action;
+use super::advection_rule::AdvectionRule;
 use super::axial::Axial;
 use super::balance::{Balance, shorter};
 use super::rounding::{Displacements, Rounding};
-use super::transport::Transport;
 use super::variation::{Variation, at};
 use crate::algebra::Algebra;
 use crate::check::spec::{Configuration, Spec};
@@ -17,7 +17,7 @@ use crate::expr::{self, Expr, Letter, Node, Shift};
 
 /// How the node momentum of one configuration is carried, covectors in the frame of its side.
 #[derive(Clone, Debug)]
-pub enum Carry {
+pub enum MomentumUpdate {
     /// In this frame: `m' = m + added`. Exact where the action is invariant under what moves both
     /// ends of the edge alike in this frame.
     Kept(Expr),
@@ -35,12 +35,12 @@ pub enum Carry {
     },
 }
 
-impl Carry {
+impl MomentumUpdate {
     /// The expressions it is made of.
     pub fn parts(&self) -> Vec<&Expr> {
         match self {
-            Carry::Kept(added) => vec![added],
-            Carry::Through { leave, arrive, .. } => vec![leave, arrive],
+            MomentumUpdate::Kept(added) => vec![added],
+            MomentumUpdate::Through { leave, arrive, .. } => vec![leave, arrive],
         }
     }
 
@@ -65,11 +65,11 @@ pub struct Inputs<'a> {
     /// The balances.
     pub balances: &'a [Balance],
     /// How advected quantities follow from the configuration.
-    pub transports: &'a [Transport],
+    pub transports: &'a [AdvectionRule],
 }
 
 /// How every momentum is carried.
-pub fn carries(inputs: &Inputs) -> Vec<Carry> {
+pub fn carries(inputs: &Inputs) -> Vec<MomentumUpdate> {
     let displacements = Displacements::of(inputs.spec, &inputs.letters.symbols);
     let symbols = &displacements.symbols;
     let algebra = Algebra::new(symbols);
@@ -90,34 +90,34 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    fn carry(&self, i: usize) -> Carry {
+    fn carry(&self, i: usize) -> MomentumUpdate {
         let (c, b) = (
             &self.inputs.spec.configurations[i],
             &self.inputs.balances[i],
         );
-        let through = Carry::Through {
+        let through = MomentumUpdate::Through {
             leave: expr::neg(b.node_out.clone()),
             arrive: b.node_in.clone(),
             straight: self.is_straight(c, b),
         };
         // What is free of velocities is a force, and of the step's own size.
         match &b.increment {
-            Some(added) if c.side.is_spatial() => return Carry::Kept(added.clone()),
+            Some(added) if c.side.is_spatial() => return MomentumUpdate::Kept(added.clone()),
             _ if c.side.is_body() && !self.moving(&through) => return through,
             _ => {}
         }
         let through = self.rounded_least(i, c, through);
-        let kept = Carry::Kept(self.added(i, c));
+        let kept = MomentumUpdate::Kept(self.added(i, c));
         if self.algebra.exhausted() {
             // A model at the limit of the engine: the plain difference is as right, if less exact.
             return if c.side.is_body() {
                 through
             } else {
-                Carry::Kept(expr::sub(b.incoming.clone(), b.outgoing.clone()))
+                MomentumUpdate::Kept(expr::sub(b.incoming.clone(), b.outgoing.clone()))
             };
         }
         let (first, second) = c.side.ordered(through, kept);
-        let loss = |carry: &Carry| match carry.is_zero() {
+        let loss = |carry: &MomentumUpdate| match carry.is_zero() {
             true => f64::INFINITY,
             false => {
                 let parts = carry.parts().into_iter();
@@ -132,8 +132,8 @@ impl Work<'_> {
 
     /// What acts at the ends of the edge, in the form that rounds least: what is divided by the step
     /// may cancel in it.
-    fn rounded_least(&self, i: usize, c: &Configuration, carry: Carry) -> Carry {
-        let Carry::Through {
+    fn rounded_least(&self, i: usize, c: &Configuration, carry: MomentumUpdate) -> MomentumUpdate {
+        let MomentumUpdate::Through {
             leave,
             arrive,
             straight,
@@ -156,7 +156,7 @@ impl Work<'_> {
             let all = [e, derived].into_iter().flat_map(|e| self.forms(&e));
             self.rounding().best(all.collect())
         };
-        Carry::Through {
+        MomentumUpdate::Through {
             leave: least(leave, Shift::HERE.time),
             arrive: least(arrive, Shift::NEXT.time),
             straight,
@@ -182,7 +182,7 @@ impl Work<'_> {
         }
     }
 
-    fn moving(&self, carry: &Carry) -> bool {
+    fn moving(&self, carry: &MomentumUpdate) -> bool {
         let parts = carry.parts().into_iter();
         parts
             .into_iter()
@@ -245,10 +245,10 @@ impl Work<'_> {
         let defined: Vec<(Letter, Expr)> = advected
             .zip(self.inputs.transports)
             .filter_map(|(a, t)| match t {
-                Transport::Defined(value) | Transport::Carried { value, .. } => {
+                AdvectionRule::Defined(value) | AdvectionRule::Carried { value, .. } => {
                     Some((at(a.quantity, Shift::HERE), value.clone()))
                 }
-                Transport::Advanced => None,
+                AdvectionRule::Advanced => None,
             })
             .collect();
         !defined.is_empty()

@@ -11,7 +11,7 @@ use crate::expr::{self, Expr, Letter, Shift};
 
 /// The value of one advected quantity at a node.
 #[derive(Clone, Debug)]
-pub enum Transport {
+pub enum AdvectionRule {
     /// Its definition: group elements and parameters.
     Defined(Expr),
     /// The action on a constant reference value, which the quantity's own letter stands for.
@@ -31,14 +31,14 @@ pub fn transports(
     spec: &Spec,
     letters: &Letters,
     algebra: &Algebra,
-) -> Result<Vec<Transport>, Errors> {
+) -> Result<Vec<AdvectionRule>, Errors> {
     let mut errors = Errors::new();
     let mut out = Vec::new();
     for a in &spec.advected {
         match &a.definition {
             Some(d) => {
                 check_definition(spec, letters, algebra, a, d, &mut errors);
-                out.push(Transport::Defined(d.clone()));
+                out.push(AdvectionRule::Defined(d.clone()));
             }
             None => out.push(carried(spec, letters, algebra, a)),
         }
@@ -94,14 +94,14 @@ fn check_definition(
 
 /// Reads the constraint as a group action and checks that it is one: acting by `Λ` and then by
 /// `Ω` is acting by `next(Λ)`.
-fn carried(spec: &Spec, letters: &Letters, algebra: &Algebra, a: &Advected) -> Transport {
+fn carried(spec: &Spec, letters: &Letters, algebra: &Algebra, a: &Advected) -> AdvectionRule {
     let s = &letters.symbols;
     let others = expr::letters(&a.update).iter().any(|l| {
         let advected = spec.advected.iter().any(|b| b.quantity == l.symbol);
         advected && l.symbol != a.quantity
     });
     if others {
-        return Transport::Advanced;
+        return AdvectionRule::Advanced;
     }
     let by = |f: &dyn Fn(&crate::check::spec::Configuration) -> Expr| {
         let list: Vec<(Letter, Expr)> = spec
@@ -129,8 +129,8 @@ fn carried(spec: &Spec, letters: &Letters, algebra: &Algebra, a: &Advected) -> T
     );
     let own = expr::here(s, a.quantity);
     if algebra.equal(&twice, &once) && algebra.equal(&back, &own) {
-        Transport::Carried { value, reference }
+        AdvectionRule::Carried { value, reference }
     } else {
-        Transport::Advanced
+        AdvectionRule::Advanced
     }
 }

@@ -1,15 +1,15 @@
 //! What moves at one site by itself: the model of one site without its neighbours, derived as any
 //! other, and how its velocities are found when neighbours add to its momentum.
 
-use super::pull::lone_at;
-use super::tie::Tie;
-use super::{Refused, Written, velocity};
+use super::neighbour_force::lone_at;
+use super::velocity_coupling::VelocityCoupling;
+use super::{Refused, RepresentativeChain, velocity};
 use crate::algebra::{Algebra, Rational};
 use crate::check::{self, spec::Side};
-use crate::derive::carry::Carry;
-use crate::derive::explicit::Explicit;
-use crate::derive::recognise::{MoserVeselov, Riccati};
-use crate::derive::transport::Transport;
+use crate::derive::advection_rule::AdvectionRule;
+use crate::derive::momentum_update::MomentumUpdate;
+use crate::derive::select_solver::{MoserVeselov, StepEquation};
+use crate::derive::two_sided_linear::TwoSidedLinear;
 use crate::derive::{self, Derivation, Outline};
 use crate::diagnostic::Errors;
 use crate::expr::symbol::Role;
@@ -19,7 +19,7 @@ use crate::lattice::{Kind as Standing, Lattice, Sites, definitions, inlined};
 use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Statement};
 
 /// The model of one site.
-pub struct Lone {
+pub struct SiteModel {
     /// Its label.
     pub label: usize,
     /// At which of its sites it stands.
@@ -29,23 +29,23 @@ pub struct Lone {
     /// What that began with.
     pub outline: Outline,
     /// Its configurations.
-    pub movers: Vec<Mover>,
+    pub movers: Vec<SiteUnknown>,
     /// Configurations whose velocities are found together, each by its number.
     pub blocks: Vec<Vec<usize>>,
 }
 
 /// A configuration of a site.
-pub struct Mover {
+pub struct SiteUnknown {
     /// Its name.
     pub name: String,
     /// Its number in the derivation.
     pub index: usize,
     /// How its velocity is found.
-    pub how: How,
+    pub how: SiteSolve,
 }
 
 /// How a velocity is found from the momentum that leaves the node.
-pub enum How {
+pub enum SiteSolve {
     /// A rotation by the Moser-Veselov equation with a factor of parameters, or a unit quaternion by its
     /// like on SU(2).
     Rotation {
@@ -61,7 +61,7 @@ pub enum How {
     /// A field on which only potentials act: `p = L ΔX R + rest`.
     Field {
         /// The factors.
-        form: Explicit,
+        form: TwoSidedLinear,
         /// What acts at the end of the edge.
         arrive: Expr,
     },
@@ -88,12 +88,12 @@ pub enum How {
     },
 }
 
-impl How {
+impl SiteSolve {
     /// What the edge adds to the momentum, where velocities are found together.
     pub fn added(&self) -> Option<&Expr> {
         match self {
-            How::System { added, .. } | How::Newton { added, .. } => Some(added),
-            How::Rotation { .. } | How::Field { .. } => None,
+            SiteSolve::System { added, .. } | SiteSolve::Newton { added, .. } => Some(added),
+            SiteSolve::Rotation { .. } | SiteSolve::Field { .. } => None,
         }
     }
 }
@@ -102,9 +102,9 @@ impl How {
 pub(super) fn lone(
     model: &Model,
     lattice: &Lattice,
-    part: &Written,
-    ties: &[Tie],
-) -> Result<Vec<Lone>, Refused> {
+    part: &RepresentativeChain,
+    ties: &[VelocityCoupling],
+) -> Result<Vec<SiteModel>, Refused> {
     let mut kinds: Vec<(usize, Sites)> = Vec::new();
     for q in &lattice.quantities {
         let at = (q.label, q.sites);
@@ -121,9 +121,9 @@ pub(super) fn lone(
 fn one(
     model: &Model,
     lattice: &Lattice,
-    (part, ties): (&Written, &[Tie]),
+    (part, ties): (&RepresentativeChain, &[VelocityCoupling]),
     (label, sites): (usize, Sites),
-) -> Result<Lone, Refused> {
+) -> Result<SiteModel, Refused> {
     let terms = part.unfolded.summands.iter().filter(|t| {
         let range = t.range.map(|r| r.label);
         lone_at(t) == Some(sites) && range == Some(label) && !t.of_functionals
@@ -153,7 +153,7 @@ fn one(
     together.sort_unstable();
     if !together.is_empty() {
         for i in &together {
-            movers.push(Mover {
+            movers.push(SiteUnknown {
                 how: by_newton(&d, *i, &together)?,
                 name: name(*i).to_owned(),
                 index: *i,
@@ -168,7 +168,7 @@ fn one(
                 .get(d.spec.configurations[*i].element)
                 .name
                 .clone();
-            movers.push(Mover {
+            movers.push(SiteUnknown {
                 how: how(&d, *i, block, &name, &algebra)?,
                 name,
                 index: *i,
@@ -179,7 +179,7 @@ fn one(
     if !together.is_empty() {
         blocks.push(together);
     }
-    Ok(Lone {
+    Ok(SiteModel {
         label,
         sites,
         outline: d.outline(),
@@ -195,7 +195,7 @@ fn without_carried(d: &Derivation) -> Result<(), Refused> {
     let stated = expr::letters(&d.spec.lagrangian);
     for (a, transport) in d.spec.advected.iter().zip(&d.transports) {
         let is_used = stated.iter().any(|l| l.symbol == a.quantity);
-        if is_used && !matches!(transport, Transport::Defined(_)) {
+        if is_used && !matches!(transport, AdvectionRule::Defined(_)) {
             return Err(Refused::Form(format!(
                 "`{}` is carried from its value at the start: loops over sites take what its definition gives",
                 s.get(a.quantity).name
@@ -336,7 +336,7 @@ fn how(
     block: &[usize],
     name: &str,
     algebra: &Algebra,
-) -> Result<How, Refused> {
+) -> Result<SiteSolve, Refused> {
     let s = &d.letters.symbols;
     let c = &d.spec.configurations[i];
     let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
@@ -361,14 +361,14 @@ fn how(
         }))
     };
     let turning = |mv: &MoserVeselov, real: Option<&Expr>| {
-        let Carry::Through { leave, arrive, .. } = &d.carries[i] else {
+        let MomentumUpdate::Through { leave, arrive, .. } = &d.carries[i] else {
             return together();
         };
         let constant = |l: &Letter| s.get(l.symbol).role == Role::Parameter;
         let free = !moving(leave) && !moving(arrive);
         let known = mv.symmetric && expr::letters(&mv.factor).iter().all(constant);
         match free && known {
-            true => Ok(How::Rotation {
+            true => Ok(SiteSolve::Rotation {
                 factor: mv.factor.clone(),
                 real: real.cloned(),
                 leave: leave.clone(),
@@ -379,14 +379,16 @@ fn how(
     };
     let alone = c.side.is_body() && block.len() == 1;
     match (c.group.kept(), &d.solve.riccati[i]) {
-        (Kept::Rotation, Riccati::Exact(mv)) if alone => turning(mv, None),
-        (Kept::Quaternion, Riccati::Quaternionic(q)) if alone => turning(&q.edge, Some(&q.real)),
-        (Kept::Field(_), Riccati::Linear(form)) if block.len() == 1 => {
+        (Kept::Rotation, StepEquation::Exact(mv)) if alone => turning(mv, None),
+        (Kept::Quaternion, StepEquation::Quaternionic(q)) if alone => {
+            turning(&q.edge, Some(&q.real))
+        }
+        (Kept::Field(_), StepEquation::Linear(form)) if block.len() == 1 => {
             let b = &d.balances[i];
             let straight = expr::sub(b.edge_in.clone(), b.edge_out.clone());
             let free = !moving(&b.node_in) && !moving(&b.node_out);
             match free && algebra.is_zero(&straight) {
-                true => Ok(How::Field {
+                true => Ok(SiteSolve::Field {
                     form: form.clone(),
                     arrive: b.node_in.clone(),
                 }),
@@ -399,7 +401,7 @@ fn how(
 }
 
 /// The momentum of a field as a function of the velocities of its block, linear or not.
-fn system(d: &Derivation, i: usize, block: &[usize]) -> Result<How, Refused> {
+fn system(d: &Derivation, i: usize, block: &[usize]) -> Result<SiteSolve, Refused> {
     let s = &d.letters.symbols;
     let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
     // All of a block are solved for in one way.
@@ -417,7 +419,7 @@ fn system(d: &Derivation, i: usize, block: &[usize]) -> Result<How, Refused> {
             (velocity::letter(c), expr::zero(c.group.shape()))
         })
         .collect();
-    Ok(How::System {
+    Ok(SiteSolve::System {
         rest: expr::substitute(s, &momentum, &still),
         columns,
         added: added(d, i),
@@ -425,18 +427,20 @@ fn system(d: &Derivation, i: usize, block: &[usize]) -> Result<How, Refused> {
 }
 
 /// The same as a function whose derivative may depend on the velocities.
-fn by_newton(d: &Derivation, i: usize, block: &[usize]) -> Result<How, Refused> {
+fn by_newton(d: &Derivation, i: usize, block: &[usize]) -> Result<SiteSolve, Refused> {
     let (momentum, columns) = momentum(d, i, block)?;
     let c = &d.spec.configurations[i];
     let (added, arriving) = match (velocity::turns(c), &d.carries[i]) {
         (false, _) => (added(d, i), None),
-        (true, Carry::Through { leave, arrive, .. }) => (leave.clone(), Some(arrive.clone())),
-        (true, Carry::Kept(_)) => {
+        (true, MomentumUpdate::Through { leave, arrive, .. }) => {
+            (leave.clone(), Some(arrive.clone()))
+        }
+        (true, MomentumUpdate::Kept(_)) => {
             let b = &d.balances[i];
             (expr::neg(b.node_out.clone()), Some(b.node_in.clone()))
         }
     };
-    Ok(How::Newton {
+    Ok(SiteSolve::Newton {
         momentum,
         columns,
         added,
@@ -447,8 +451,8 @@ fn by_newton(d: &Derivation, i: usize, block: &[usize]) -> Result<How, Refused> 
 /// What the edge adds to a momentum.
 fn added(d: &Derivation, i: usize) -> Expr {
     match &d.carries[i] {
-        Carry::Kept(added) => added.clone(),
-        Carry::Through { leave, arrive, .. } => expr::add(leave.clone(), arrive.clone()),
+        MomentumUpdate::Kept(added) => added.clone(),
+        MomentumUpdate::Through { leave, arrive, .. } => expr::add(leave.clone(), arrive.clone()),
     }
 }
 

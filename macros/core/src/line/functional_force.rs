@@ -3,8 +3,8 @@
 //! stand for those of all: `A(X)` are the values at all sites, and the pull-back of a seed is what all sites
 //! of the functional add to one site of what it is made of.
 
-use super::pull::{Force, elaborated, forces};
-use super::{Refused, Written};
+use super::neighbour_force::{Force, elaborated, forces};
+use super::{Refused, RepresentativeChain};
 use crate::algebra::Rational;
 use crate::derive::action::summands;
 use crate::expr::shape::Shape;
@@ -13,7 +13,7 @@ use crate::lattice::Lattice;
 
 /// Terms with functionals.
 #[derive(Clone, Debug)]
-pub struct Meshed {
+pub struct FunctionalForce {
     /// The terms of the Lagrangian, with the label over whose sites each is summed.
     pub terms: Vec<(usize, Expr)>,
     /// What they add, the whole of it at one node.
@@ -21,7 +21,10 @@ pub struct Meshed {
 }
 
 /// The terms with functionals, if there are any.
-pub(super) fn meshed(lattice: &Lattice, part: &Written) -> Result<Option<Meshed>, Refused> {
+pub(super) fn meshed(
+    lattice: &Lattice,
+    part: &RepresentativeChain,
+) -> Result<Option<FunctionalForce>, Refused> {
     let mut terms: Vec<(usize, Expr)> = Vec::new();
     for summand in part.unfolded.summands.iter().filter(|t| t.of_functionals) {
         let Some(range) = summand.range else { continue };
@@ -50,14 +53,14 @@ pub(super) fn meshed(lattice: &Lattice, part: &Written) -> Result<Option<Meshed>
         value: gathered(part, &f.value),
         ..f
     });
-    Ok(Some(Meshed {
+    Ok(Some(FunctionalForce {
         terms,
         forces: forces.collect(),
     }))
 }
 
 /// A pull-back of a sum of seeds in the place of a sum of pull-backs: each is computed over all sites.
-fn gathered(part: &Written, e: &Expr) -> Expr {
+fn gathered(part: &RepresentativeChain, e: &Expr) -> Expr {
     let s = &part.d.letters.symbols;
     let mut rest: Vec<Expr> = Vec::new();
     let mut backs: Vec<(Applied, u8, Vec<Expr>)> = Vec::new();

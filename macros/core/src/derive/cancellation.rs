@@ -4,7 +4,7 @@
 
 use crate::algebra::Algebra;
 use crate::algebra::exact::{ATTEMPTS, Point};
-use crate::expr::places;
+use crate::expr::position_differences;
 use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Map, Node};
@@ -29,7 +29,7 @@ pub(crate) fn error(algebra: &Algebra, e: &Expr) -> f64 {
         return 0.0;
     }
     let mut centres = Vec::new();
-    places::centres(symbols, e, &mut centres);
+    position_differences::centres(symbols, e, &mut centres);
     Far { symbols, centres }.order(e).error.max(0.0)
 }
 
@@ -57,7 +57,7 @@ pub(super) fn least(algebra: &Algebra, reduced: Expr, e: &Expr) -> Expr {
 
 /// The shortest form in which differences of places are letters of their own.
 fn between(algebra: &Algebra, e: &Expr) -> Option<Expr> {
-    let named = places::named(algebra.symbols(), e)?;
+    let named = position_differences::named(algebra.symbols(), e)?;
     let inner = Algebra::new(&named.symbols);
     let reduced = inner.shortest(&named.whole);
     let whole = expr::substitute(&named.symbols, &reduced, &named.definitions);
@@ -96,7 +96,7 @@ impl Far<'_> {
                 // Partial sums of more than two terms are rounded before the last one cancels; places,
                 // which are emitted first, are not.
                 let size = self.size(e, inside.size);
-                let paired = terms.len() == 2 || places::is_between(self.symbols, e);
+                let paired = terms.len() == 2 || position_differences::is_between(self.symbols, e);
                 let rounded = if paired { size } else { inside.size };
                 Order {
                     size,
@@ -152,7 +152,7 @@ impl Far<'_> {
     fn size(&self, e: &Expr, largest: f64) -> f64 {
         // Places with weights stay where they are moved together, not each of a shape alike.
         let weighted = match e.node() {
-            Node::Sum(terms) => places::are_weighted(self.symbols, e, terms),
+            Node::Sum(terms) => position_differences::are_weighted(self.symbols, e, terms),
             _ => false,
         };
         let stays = largest > 0.0 && e.size() <= LARGEST && (weighted || self.stays(e));

@@ -3,12 +3,12 @@
 //! node in time, on covectors of the side of each configuration.
 
 use super::site::BASE;
-use super::tie::{self, Tie};
-use super::{Refused, Written, written};
+use super::velocity_coupling::{self, VelocityCoupling};
+use super::{Refused, RepresentativeChain, written};
 use crate::derive::action;
+use crate::derive::advection_rule::AdvectionRule;
 use crate::derive::balance::{pairing, shorter};
 use crate::derive::reduction::is_singular;
-use crate::derive::transport::Transport;
 use crate::expr::shape::Shape;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Shift};
@@ -29,7 +29,7 @@ pub struct Force {
 
 /// Terms of one range of sites.
 #[derive(Clone, Debug)]
-pub struct Pull {
+pub struct NeighbourForce {
     /// The label.
     pub label: usize,
     /// The first index of an open line.
@@ -92,7 +92,7 @@ pub(super) struct Placed {
 /// The term of a summand in its range; none where it holds no letter of a site, and is constant.
 fn placed(
     lattice: &Lattice,
-    part: &Written,
+    part: &RepresentativeChain,
     summand: &Summand,
     term: &Expr,
 ) -> Result<Option<Placed>, Refused> {
@@ -124,16 +124,19 @@ fn placed(
 }
 
 /// The terms of neighbours: those at a node, and those in which velocities stand.
-pub(super) fn pulls(lattice: &Lattice, part: &Written) -> Result<(Vec<Pull>, Vec<Tie>), Refused> {
-    let mut out: Vec<Pull> = Vec::new();
-    let mut ties: Vec<Tie> = Vec::new();
+pub(super) fn pulls(
+    lattice: &Lattice,
+    part: &RepresentativeChain,
+) -> Result<(Vec<NeighbourForce>, Vec<VelocityCoupling>), Refused> {
+    let mut out: Vec<NeighbourForce> = Vec::new();
+    let mut ties: Vec<VelocityCoupling> = Vec::new();
     let inner = part.unfolded.summands.iter().filter(|t| t.end.is_none());
     for summand in inner.filter(|t| lone_at(t).is_none() && !t.of_functionals) {
         let [edge, nodal] = gathered(part, summand)?;
         if !edge.is_zero()
             && let Some(placed) = placed(lattice, part, summand, &edge)?
         {
-            tie::put(&mut ties, part, placed);
+            velocity_coupling::put(&mut ties, part, placed);
         }
         if nodal.is_zero() {
             continue;
@@ -149,7 +152,7 @@ pub(super) fn pulls(lattice: &Lattice, part: &Written) -> Result<(Vec<Pull>, Vec
                 pull.width = pull.width.max(placed.width);
                 pull.terms = expr::add(pull.terms.clone(), placed.term);
             }
-            None => out.push(Pull {
+            None => out.push(NeighbourForce {
                 label: placed.label,
                 from: placed.from,
                 to: placed.to,
@@ -160,16 +163,17 @@ pub(super) fn pulls(lattice: &Lattice, part: &Written) -> Result<(Vec<Pull>, Vec
         }
     }
     for tie in &mut ties {
-        let same = |p: &Pull| (p.label, p.from, p.to) == (tie.label, tie.from, tie.to);
+        let same = |p: &NeighbourForce| (p.label, p.from, p.to) == (tie.label, tie.from, tie.to);
         let known = out.iter().position(same);
-        let at_node = tie::settle(part, tie, known.and_then(|i| out.get(i)).map(|p| &p.terms));
+        let at_node =
+            velocity_coupling::settle(part, tie, known.and_then(|i| out.get(i)).map(|p| &p.terms));
         match known {
             Some(i) if at_node.is_zero() => {
                 out.remove(i);
             }
             Some(i) => out[i].terms = at_node,
             None if at_node.is_zero() => {}
-            None => out.push(Pull {
+            None => out.push(NeighbourForce {
                 label: tie.label,
                 from: tie.from,
                 to: tie.to,
@@ -180,7 +184,7 @@ pub(super) fn pulls(lattice: &Lattice, part: &Written) -> Result<(Vec<Pull>, Vec
         }
     }
     ties.retain(|tie| !tie.terms.is_zero());
-    tie::finish(lattice, part, &mut ties)?;
+    velocity_coupling::finish(lattice, part, &mut ties)?;
     for pull in &mut out {
         pull.terms = defined(part, &pull.terms)?;
         pull.forces = forces(part, &pull.terms)
@@ -195,7 +199,7 @@ pub(super) fn pulls(lattice: &Lattice, part: &Written) -> Result<(Vec<Pull>, Vec
 }
 
 /// Whether a term stays as it is when all copies of a field grow alike, as they do once around a ring.
-fn keeps(lattice: &Lattice, part: &Written, term: &Expr) -> bool {
+fn keeps(lattice: &Lattice, part: &RepresentativeChain, term: &Expr) -> bool {
     let s = &part.d.letters.symbols;
     let algebra = Algebra::new(s);
     let mut grown = lattice.quantities.iter().filter(|q| q.offset.is_some());
@@ -214,7 +218,7 @@ fn keeps(lattice: &Lattice, part: &Written, term: &Expr) -> bool {
 }
 
 /// A summand as it is shown.
-fn read(part: &Written, summand: &Summand) -> Result<Expr, Refused> {
+fn read(part: &RepresentativeChain, summand: &Summand) -> Result<Expr, Refused> {
     let found = check::numbers(&part.unfolded.model, &[&summand.shown]);
     match found.into_iter().next() {
         Some(Some(term)) => Ok(term),
@@ -223,14 +227,14 @@ fn read(part: &Written, summand: &Summand) -> Result<Expr, Refused> {
 }
 
 /// Its part that stands on the edge, and the one at a node.
-pub(super) fn in_two(part: &Written, summand: &Summand) -> Result<[Expr; 2], Refused> {
+pub(super) fn in_two(part: &RepresentativeChain, summand: &Summand) -> Result<[Expr; 2], Refused> {
     let (edge, nodal) = action::split(&part.d.letters.symbols, &read(part, summand)?);
     Ok([edge, nodal])
 }
 
 /// The same where the derivation takes terms of negative powers of the step together: what of a difference over the step
 /// stands at a node is then a part of the edge, at the end at which it is stated.
-fn gathered(part: &Written, summand: &Summand) -> Result<[Expr; 2], Refused> {
+fn gathered(part: &RepresentativeChain, summand: &Summand) -> Result<[Expr; 2], Refused> {
     let s = &part.d.letters.symbols;
     let reduction = part.d.spec.reduction.as_ref();
     let nodal = reduction.map(|r| action::summands(s, &r.nodal));
@@ -254,7 +258,7 @@ fn gathered(part: &Written, summand: &Summand) -> Result<[Expr; 2], Refused> {
 }
 
 /// A summand as it is shown, which must stand at one node in time.
-pub(super) fn elaborated(part: &Written, summand: &Summand) -> Result<Expr, Refused> {
+pub(super) fn elaborated(part: &RepresentativeChain, summand: &Summand) -> Result<Expr, Refused> {
     let [edge, nodal] = in_two(part, summand)?;
     match edge.is_zero() {
         true => Ok(nodal),
@@ -267,7 +271,7 @@ pub(super) fn elaborated(part: &Written, summand: &Summand) -> Result<Expr, Refu
 }
 
 /// Advected quantities by the configurations that carry them.
-pub(super) fn defined(part: &Written, term: &Expr) -> Result<Expr, Refused> {
+pub(super) fn defined(part: &RepresentativeChain, term: &Expr) -> Result<Expr, Refused> {
     let d = &part.d;
     let s = &d.letters.symbols;
     let mut list: Vec<(Letter, Expr)> = Vec::new();
@@ -280,8 +284,8 @@ pub(super) fn defined(part: &Written, term: &Expr) -> Result<Expr, Refused> {
             continue;
         }
         match t {
-            Transport::Defined(e) => list.push((here, e.clone())),
-            Transport::Carried { .. } | Transport::Advanced => {
+            AdvectionRule::Defined(e) => list.push((here, e.clone())),
+            AdvectionRule::Carried { .. } | AdvectionRule::Advanced => {
                 return Err(Refused::Form(format!(
                     "`{}` is carried from its value at the start, and neighbours see it",
                     s.get(a.quantity).name
@@ -293,7 +297,7 @@ pub(super) fn defined(part: &Written, term: &Expr) -> Result<Expr, Refused> {
 }
 
 /// The derivative of a term at one node along every variation, as covectors, by configuration.
-pub(super) fn forces(part: &Written, term: &Expr) -> Vec<Force> {
+pub(super) fn forces(part: &RepresentativeChain, term: &Expr) -> Vec<Force> {
     let d = &part.d;
     let s = &d.letters.symbols;
     let algebra = Algebra::new(s);
@@ -327,10 +331,15 @@ pub(super) fn forces(part: &Written, term: &Expr) -> Vec<Force> {
 }
 
 /// What ends add is put beside what neighbours add: of what no neighbour acts on, places where nothing is added else.
-pub(super) fn collecting(lattice: &Lattice, pulls: &[Pull], ends: &[EndTerm]) -> Vec<Pull> {
-    let mut out: Vec<Pull> = Vec::new();
+pub(super) fn collecting(
+    lattice: &Lattice,
+    pulls: &[NeighbourForce],
+    ends: &[EndTerm],
+) -> Vec<NeighbourForce> {
+    let mut out: Vec<NeighbourForce> = Vec::new();
     for f in ends.iter().flat_map(|e| &e.forces) {
-        let collected = |all: &[Pull]| all.iter().flat_map(|p| &p.forces).any(|x| x.on == f.on);
+        let collected =
+            |all: &[NeighbourForce]| all.iter().flat_map(|p| &p.forces).any(|x| x.on == f.on);
         if collected(pulls) || collected(&out) {
             continue;
         }
@@ -342,7 +351,7 @@ pub(super) fn collecting(lattice: &Lattice, pulls: &[Pull], ends: &[EndTerm]) ->
             site: 0,
             value: expr::zero(f.value.shape()),
         };
-        out.push(Pull {
+        out.push(NeighbourForce {
             label: q.label,
             from: 0,
             to: match q.sites {
@@ -381,7 +390,7 @@ pub(super) fn ends(
 
 fn end(
     lattice: &Lattice,
-    part: &Written,
+    part: &RepresentativeChain,
     last: bool,
     which: usize,
 ) -> Result<Option<EndTerm>, Refused> {

@@ -2,9 +2,9 @@
 //! impulse, in a step and at a node. Takes the lattice that is written out and the models of its sites; gives what a
 //! block-tridiagonal system for the multipliers of all sites is made of.
 
-use super::pull::{defined, forces};
+use super::neighbour_force::{defined, forces};
 use super::site::BASE;
-use super::{How, Lone, Mover, Refused, Written, velocity};
+use super::{Refused, RepresentativeChain, SiteModel, SiteSolve, SiteUnknown, velocity};
 use crate::algebra::Algebra;
 use crate::check::{self, spec::Hold};
 use crate::derive::balance::{pairing, shorter};
@@ -19,7 +19,7 @@ use std::cmp::Ordering;
 
 /// A constraint as stated: one at every index of a range, from the first site on, or one on the sum over them.
 #[derive(Clone, Debug)]
-pub struct Held {
+pub struct ChainConstraint {
     /// The name of its multiplier.
     pub name: String,
     /// The label.
@@ -72,7 +72,7 @@ pub enum Matrix {
 
 /// Configurations of a site whose velocities are found together, and what an impulse does to them.
 #[derive(Clone, Debug)]
-pub struct Unit {
+pub struct ConstraintResponse {
     /// Their numbers in the model of the site.
     pub members: Vec<usize>,
     /// The derivative of the momenta of an edge by the velocities, member after member; none for a rotation.
@@ -129,13 +129,17 @@ fn refused<T>(words: String) -> Result<T, Refused> {
 }
 
 /// The constraints of a line.
-pub(super) fn held(lattice: &Lattice, part: &Written, lone: &[Lone]) -> Result<Vec<Held>, Refused> {
-    let mut out: Vec<Held> = Vec::new();
+pub(super) fn held(
+    lattice: &Lattice,
+    part: &RepresentativeChain,
+    lone: &[SiteModel],
+) -> Result<Vec<ChainConstraint>, Refused> {
+    let mut out: Vec<ChainConstraint> = Vec::new();
     let movers = lone.iter().flat_map(|l| l.movers.iter());
     let mut turning = movers.filter(|m| {
         matches!(
             m.how,
-            How::Newton {
+            SiteSolve::Newton {
                 arriving: Some(_),
                 ..
             }
@@ -183,7 +187,12 @@ pub(super) fn held(lattice: &Lattice, part: &Written, lone: &[Lone]) -> Result<V
 }
 
 /// What is reached stands on the line, and moves in a way that impulses are put into.
-fn admitted(lattice: &Lattice, lone: &[Lone], held: &Held, reach: &Reach) -> Result<(), Refused> {
+fn admitted(
+    lattice: &Lattice,
+    lone: &[SiteModel],
+    held: &ChainConstraint,
+    reach: &Reach,
+) -> Result<(), Refused> {
     let name = &held.name;
     if lattice.find(&reach.on).map(|q| q.label) != Some(held.label) {
         return refused(format!(
@@ -225,7 +234,11 @@ fn width(name: &str, from: isize, letters: &[(Sites, isize)]) -> Result<usize, R
     }
 }
 
-fn one(lattice: &Lattice, part: &Written, stated: &StatedHold) -> Result<Held, Refused> {
+fn one(
+    lattice: &Lattice,
+    part: &RepresentativeChain,
+    stated: &StatedHold,
+) -> Result<ChainConstraint, Refused> {
     let (d, name) = (&part.d, &stated.name);
     let width = width(name, stated.range.from, &stated.letters)?;
     let multiplier = part.copy(name, BASE);
@@ -240,7 +253,7 @@ fn one(lattice: &Lattice, part: &Written, stated: &StatedHold) -> Result<Held, R
     let index = label.map_or("", |l| l.index.text.as_str());
     let sides = [&hold.left, &hold.right];
     let sides = sides.map(|e| Formula::Expr(seen_from(part, e, index, &mut symbols)));
-    let held = Held {
+    let held = ChainConstraint {
         name: name.clone(),
         label: stated.range.label,
         to: stated.range.to,
@@ -261,7 +274,11 @@ fn one(lattice: &Lattice, part: &Written, stated: &StatedHold) -> Result<Held, R
 }
 
 /// A constraint on a sum over sites.
-fn total(lattice: &Lattice, part: &Written, stated: &StatedTotal) -> Result<Held, Refused> {
+fn total(
+    lattice: &Lattice,
+    part: &RepresentativeChain,
+    stated: &StatedTotal,
+) -> Result<ChainConstraint, Refused> {
     let (d, name) = (&part.d, &stated.name);
     let Some(summed) = &stated.summed else {
         return refused(format!("`{name}` is not linear in the sums that it holds"));
@@ -313,7 +330,7 @@ fn total(lattice: &Lattice, part: &Written, stated: &StatedTotal) -> Result<Held
         of: Box::new(Formula::Expr(seen)),
     };
     let right = Formula::Expr(expr::neg(beside.clone()));
-    let held = Held {
+    let held = ChainConstraint {
         name: name.clone(),
         label: first.range.label,
         to: first.range.to,
@@ -334,7 +351,7 @@ fn total(lattice: &Lattice, part: &Written, stated: &StatedTotal) -> Result<Held
 }
 
 /// An expression of the base with its letters as those of the site `i`, for print.
-fn seen_from(part: &Written, e: &Expr, index: &str, symbols: &mut Symbols) -> Expr {
+fn seen_from(part: &RepresentativeChain, e: &Expr, index: &str, symbols: &mut Symbols) -> Expr {
     let mut list = Vec::new();
     for l in expr::letters(e) {
         let Some(at) = part.sited(l.symbol) else {
@@ -354,7 +371,11 @@ fn seen_from(part: &Written, e: &Expr, index: &str, symbols: &mut Symbols) -> Ex
 }
 
 /// A constraint with its derivatives and the size of its terms.
-fn with_derivatives(part: &Written, hold: &Hold, held: Held) -> Result<Held, Refused> {
+fn with_derivatives(
+    part: &RepresentativeChain,
+    hold: &Hold,
+    held: ChainConstraint,
+) -> Result<ChainConstraint, Refused> {
     let d = &part.d;
     let s = &d.letters.symbols;
     let algebra = Algebra::new(s);
@@ -390,7 +411,7 @@ fn with_derivatives(part: &Written, hold: &Hold, held: Held) -> Result<Held, Ref
         value: value.clone(),
         ..hold.clone()
     };
-    Ok(Held {
+    Ok(ChainConstraint {
         components: axes.len(),
         scale: holds::scale(s, &by_definition),
         value,
@@ -400,12 +421,15 @@ fn with_derivatives(part: &Written, hold: &Hold, held: Held) -> Result<Held, Ref
 }
 
 /// What impulses do to the configurations that constraints reach, in the models of their sites.
-pub(super) fn units(lone: &Lone, held: &[Held]) -> Result<Vec<Unit>, Refused> {
-    let reached = |m: &Mover| held.iter().flat_map(|h| &h.reaches).any(|r| r.on == m.name);
+pub(super) fn units(
+    lone: &SiteModel,
+    held: &[ChainConstraint],
+) -> Result<Vec<ConstraintResponse>, Refused> {
+    let reached = |m: &SiteUnknown| held.iter().flat_map(|h| &h.reaches).any(|r| r.on == m.name);
     let mut out = Vec::new();
     for members in &lone.blocks {
         let own = |i: &usize| lone.movers.iter().find(|m| m.index == *i);
-        let movers: Vec<&Mover> = members.iter().filter_map(own).collect();
+        let movers: Vec<&SiteUnknown> = members.iter().filter_map(own).collect();
         // A block that is held in part moves as a whole.
         if movers.iter().any(|m| reached(m)) {
             out.push(unit(lone, members, &movers)?);
@@ -414,7 +438,11 @@ pub(super) fn units(lone: &Lone, held: &[Held]) -> Result<Vec<Unit>, Refused> {
     Ok(out)
 }
 
-fn unit(lone: &Lone, members: &[usize], movers: &[&Mover]) -> Result<Unit, Refused> {
+fn unit(
+    lone: &SiteModel,
+    members: &[usize],
+    movers: &[&SiteUnknown],
+) -> Result<ConstraintResponse, Refused> {
     let d = &lone.d;
     let s = &d.letters.symbols;
     let algebra = Algebra::new(s);
@@ -451,15 +479,18 @@ fn unit(lone: &Lone, members: &[usize], movers: &[&Mover]) -> Result<Unit, Refus
         of_node.push(Matrix::of(&algebra, columns.collect()));
     }
     let mut of_edge = None;
-    if !movers.iter().any(|m| matches!(m.how, How::Rotation { .. })) {
+    if !movers
+        .iter()
+        .any(|m| matches!(m.how, SiteSolve::Rotation { .. }))
+    {
         let mut all = Vec::new();
         for i in members {
-            let (_, columns) = super::lone::momentum(d, *i, members)?;
+            let (_, columns) = super::site_model::momentum(d, *i, members)?;
             all.push(Matrix::of(&algebra, columns));
         }
         of_edge = Some(all);
     }
-    Ok(Unit {
+    Ok(ConstraintResponse {
         members: members.to_vec(),
         of_edge,
         of_node,
@@ -472,7 +503,7 @@ fn unit(lone: &Lone, members: &[usize], movers: &[&Mover]) -> Result<Unit, Refus
 
 /// The reactions of all copies of all constraints on a configuration of the lattice that is written out, per unit
 /// time: what a line must give.
-pub(super) fn written_out(part: &Written, i: usize) -> Vec<Expr> {
+pub(super) fn written_out(part: &RepresentativeChain, i: usize) -> Vec<Expr> {
     let d = &part.d;
     let each = d.spec.holds.iter();
     let each = each.map(|h| holds::reaction(&d.spec, &d.letters, &d.variations, i, h));

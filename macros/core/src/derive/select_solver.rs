@@ -3,13 +3,13 @@
 //! (an exact matrix Riccati equation), else Newton on the derived residual and tangent.
 
 use super::Letters;
+use super::advection_rule::AdvectionRule;
 use super::balance::{Balance, shorter};
 use super::blocks::{self, Block};
-use super::explicit::{self, Explicit};
 use super::occurrence::{Occurrence, occurrence};
 use super::quaternionic::{self, Quaternionic};
 use super::seen_from_body::seen_from_body;
-use super::transport::Transport;
+use super::two_sided_linear::{self, TwoSidedLinear};
 use super::variation::at;
 use crate::algebra::{Algebra, Poly, Rational};
 use crate::check::spec::{Configuration, Spec};
@@ -19,7 +19,7 @@ use crate::expr::{self, Expr, Letter, Node, Shift};
 
 /// The Riccati form of one balance.
 #[derive(Clone, Debug)]
-pub enum Riccati {
+pub enum StepEquation {
     /// `Ω C^T - C Ω^T = h N` with `C` made of parameters and node quantities.
     Exact(MoserVeselov),
     /// The same with a `C` that contains other velocities.
@@ -27,7 +27,7 @@ pub enum Riccati {
     /// None, but the equation of SU(2) that takes its place.
     Quaternionic(Quaternionic),
     /// None, but a balance that is linear in the velocity; GL(n) and fields.
-    Linear(Explicit),
+    Linear(TwoSidedLinear),
     /// None, with the reason.
     None(String),
 }
@@ -81,7 +81,7 @@ pub enum Method {
 #[derive(Clone, Debug)]
 pub struct Solve {
     /// The Riccati form of each balance.
-    pub riccati: Vec<Riccati>,
+    pub riccati: Vec<StepEquation>,
     /// The method of the emitted stepper.
     pub method: Method,
     /// Why this method, in one sentence.
@@ -104,7 +104,7 @@ impl Solve {
     /// tests them where it is given them: the Moser-Veselov equation of others does not determine
     /// the velocity. A model whose kinetic energy is degenerate then takes no parameters at all.
     pub fn needs_second_moments(&self) -> bool {
-        let symmetric = |r: &Riccati| matches!(r, Riccati::Exact(mv) if mv.symmetric);
+        let symmetric = |r: &StepEquation| matches!(r, StepEquation::Exact(mv) if mv.symmetric);
         match self.method {
             Method::FreeMoserVeselov | Method::ForcedMoserVeselov => true,
             Method::LeftFactor => self.riccati.iter().all(symmetric),
@@ -132,15 +132,15 @@ impl Solve {
 }
 
 /// Recognises; `stated` is the model before its reduction.
-pub fn recognise(
+pub fn select_solver(
     stated: &Spec,
     spec: &Spec,
     letters: &Letters,
     balances: &[Balance],
-    transports: &[Transport],
+    transports: &[AdvectionRule],
     algebra: &Algebra,
 ) -> Solve {
-    let riccati: Vec<Riccati> = balances
+    let riccati: Vec<StepEquation> = balances
         .iter()
         .enumerate()
         .map(|(i, b)| riccati(spec, letters, b, i, transports, algebra))
@@ -166,8 +166,10 @@ pub fn recognise(
     let turned = match riccati.as_slice() {
         _ if !spec.holds.is_empty() => None,
         // Symmetric factors in three dimensions have steppers of their own.
-        [Riccati::Exact(mv)] if three(0) && mv.symmetric && keeps_edge(mv) => None,
-        [Riccati::Exact(mv)] if !is_constant(letters, mv) && balances[0].increment.is_some() => {
+        [StepEquation::Exact(mv)] if three(0) && mv.symmetric && keeps_edge(mv) => None,
+        [StepEquation::Exact(mv)]
+            if !is_constant(letters, mv) && balances[0].increment.is_some() =>
+        {
             turned(spec, letters, transports, mv, algebra)
         }
         _ => None,
@@ -179,54 +181,54 @@ pub fn recognise(
         _ if !one_system.is_empty() || !spec.holds.is_empty() => {
             (Method::Newton, blocks::reasons(letters, spec, &blocks))
         }
-        [Riccati::Exact(mv)] if three(0) && mv.symmetric && is_free(mv) => (
+        [StepEquation::Exact(mv)] if three(0) && mv.symmetric && is_free(mv) => (
             Method::FreeMoserVeselov,
             format!(
                 "C is {} and no node term acts, so κ is conserved: solved once, every step explicit",
                 constancy(letters, mv)
             ),
         ),
-        [Riccati::Exact(mv)] if three(0) && mv.symmetric && keeps_edge(mv) => (
+        [StepEquation::Exact(mv)] if three(0) && mv.symmetric && keeps_edge(mv) => (
             Method::ForcedMoserVeselov,
             format!("C is {} and symmetric: {kappa}", constancy(letters, mv)),
         ),
-        [Riccati::Quaternionic(q)] if keeps_edge(&q.edge) => (
+        [StepEquation::Quaternionic(q)] if keeps_edge(&q.edge) => (
             Method::UnitQuaternions,
             format!(
                 "A is {} and symmetric, β constant: one equation for one number a step",
                 constancy(letters, &q.edge)
             ),
         ),
-        [Riccati::Quaternionic(_)] => (
+        [StepEquation::Quaternionic(_)] => (
             Method::Newton,
             "A depends on the step or changes along the motion: Newton on the derived residual"
                 .to_owned(),
         ),
-        [Riccati::Exact(_)] if turned.is_some() => (
+        [StepEquation::Exact(_)] if turned.is_some() => (
             Method::LeftFactor,
             format!("C is constant seen from the body, where the equation is solved: {solver}"),
         ),
-        [Riccati::Exact(mv)] if three(0) && !is_constant(letters, mv) => (
+        [StepEquation::Exact(mv)] if three(0) && !is_constant(letters, mv) => (
             Method::Davenport,
             "C is known at each node: the largest real eigenvalue of a 4 x 4 matrix".to_owned(),
         ),
-        [Riccati::Exact(mv)] if three(0) && mv.symmetric => (
+        [StepEquation::Exact(mv)] if three(0) && mv.symmetric => (
             Method::LeftFactor,
             format!("C is constant and symmetric: {kappa}"),
         ),
-        [Riccati::Exact(_)] if three(0) => (
+        [StepEquation::Exact(_)] if three(0) => (
             Method::LeftFactor,
             format!("C is constant, a rotation times a symmetric matrix: {kappa}"),
         ),
-        [Riccati::Exact(mv)] if is_constant(letters, mv) => {
+        [StepEquation::Exact(mv)] if is_constant(letters, mv) => {
             (Method::LeftFactor, format!("C is constant: {iterated}"))
         }
-        [Riccati::Exact(_)] => (
+        [StepEquation::Exact(_)] => (
             Method::Newton,
             "C depends on the step or changes along the motion: Newton on the derived residual"
                 .to_owned(),
         ),
-        [Riccati::None(why)] => (
+        [StepEquation::None(why)] => (
             Method::Newton,
             format!("{why}: Newton on the derived residual"),
         ),
@@ -260,7 +262,7 @@ pub(super) fn is_of_space(c: &Configuration) -> bool {
 fn turned(
     spec: &Spec,
     letters: &Letters,
-    transports: &[Transport],
+    transports: &[AdvectionRule],
     mv: &MoserVeselov,
     algebra: &Algebra,
 ) -> Option<Expr> {
@@ -277,7 +279,7 @@ fn turned(
     let advanced = |q: SymbolId| {
         let list = spec.advected.iter().zip(transports);
         list.clone()
-            .any(|(a, t)| a.quantity == q && matches!(t, Transport::Advanced))
+            .any(|(a, t)| a.quantity == q && matches!(t, AdvectionRule::Advanced))
     };
     let constant = expr::letters(&seen).iter().all(|l| {
         let role = s.get(l.symbol).role;
@@ -327,7 +329,7 @@ fn torque(
     i: usize,
     rest: &Expr,
     arrive: &Expr,
-    transports: &[Transport],
+    transports: &[AdvectionRule],
     algebra: &Algebra,
 ) -> Option<Expr> {
     let s = &letters.symbols;
@@ -379,13 +381,13 @@ fn turned_back(s: &Symbols, algebra: &Algebra, element: &Expr, e: &Expr) -> Expr
 }
 
 /// Advected quantities by what acts on their reference values, for which their letters stand.
-fn carried(spec: &Spec, transports: &[Transport]) -> Vec<(Letter, Expr)> {
+fn carried(spec: &Spec, transports: &[AdvectionRule]) -> Vec<(Letter, Expr)> {
     let list = spec.advected.iter().zip(transports);
     list.filter_map(|(a, t)| match t {
-        Transport::Defined(value) | Transport::Carried { value, .. } => {
+        AdvectionRule::Defined(value) | AdvectionRule::Carried { value, .. } => {
             Some((at(a.quantity, Shift::HERE), value.clone()))
         }
-        Transport::Advanced => None,
+        AdvectionRule::Advanced => None,
     })
     .collect()
 }
@@ -396,7 +398,7 @@ fn in_body(
     letters: &Letters,
     i: usize,
     factor: &Expr,
-    transports: &[Transport],
+    transports: &[AdvectionRule],
     algebra: &Algebra,
 ) -> Option<Expr> {
     let s = &letters.symbols;
@@ -429,11 +431,14 @@ fn arrive(
     i: usize,
     b: &Balance,
     rest: &Expr,
-    transports: &[Transport],
+    transports: &[AdvectionRule],
     algebra: &Algebra,
 ) -> Option<Expr> {
     let s = &letters.symbols;
-    if transports.iter().any(|t| matches!(t, Transport::Advanced)) {
+    if transports
+        .iter()
+        .any(|t| matches!(t, AdvectionRule::Advanced))
+    {
         return None;
     }
     let value = if spec.configurations[i].side.is_body() {
@@ -459,28 +464,28 @@ fn riccati(
     letters: &Letters,
     b: &Balance,
     i: usize,
-    transports: &[Transport],
+    transports: &[AdvectionRule],
     algebra: &Algebra,
-) -> Riccati {
+) -> StepEquation {
     let s = &letters.symbols;
     let c = &spec.configurations[i];
     if c.group.is_quaternionic() {
         return match quaternionic::form(spec, letters, b, i, algebra) {
             Ok((factor, real, rest)) => {
                 let edge = with_node(spec, letters, b, i, factor, rest, transports, algebra);
-                Riccati::Quaternionic(Quaternionic { edge, real })
+                StepEquation::Quaternionic(Quaternionic { edge, real })
             }
-            Err(why) => Riccati::None(why),
+            Err(why) => StepEquation::None(why),
         };
     }
     if c.group.is_linear() || c.group.is_additive() {
-        return match explicit::form(spec, letters, b, i, algebra) {
-            Ok(form) => Riccati::Linear(form),
-            Err(why) => Riccati::None(why),
+        return match two_sided_linear::form(spec, letters, b, i, algebra) {
+            Ok(form) => StepEquation::Linear(form),
+            Err(why) => StepEquation::None(why),
         };
     }
     if !c.group.is_orthogonal() {
-        return Riccati::None("the group is not SO(n)".to_owned());
+        return StepEquation::None("the group is not SO(n)".to_owned());
     }
     let n = c.group.size();
     let outgoing = expr::substitute(s, &b.outgoing, &spec.end_of_edge());
@@ -492,7 +497,7 @@ fn riccati(
     let poly = algebra.lower(&matrix);
     let Some((factor, rest)) = split(algebra, &poly, c.velocity, s) else {
         let name = &s.get(c.velocity).name;
-        return Riccati::None(format!("the momentum is not linear in {name} on the left"));
+        return StepEquation::None(format!("the momentum is not linear in {name} on the left"));
     };
     let step = expr::here(s, spec.step);
     // h N = Ω C^T - C Ω^T, and the balance carries 1/h.
@@ -515,13 +520,13 @@ fn riccati(
     let own = at(c.velocity, Shift::HERE);
     if expr::contains(&mv.factor, own) || expr::contains(&mv.rest, own) {
         let name = &s.get(c.velocity).name;
-        return Riccati::None(format!("the momentum is not linear in {name} on the left"));
+        return StepEquation::None(format!("the momentum is not linear in {name} on the left"));
     }
     let moving = |e: &Expr| expr::contains_role(s, e, Role::Velocity);
     if moving(&mv.factor) || moving(&mv.rest) {
-        return Riccati::Coupled(mv);
+        return StepEquation::Coupled(mv);
     }
-    Riccati::Exact(mv)
+    StepEquation::Exact(mv)
 }
 
 /// The equation with what acts at the nodes.
@@ -533,7 +538,7 @@ fn with_node(
     i: usize,
     factor: Expr,
     rest: Expr,
-    transports: &[Transport],
+    transports: &[AdvectionRule],
     algebra: &Algebra,
 ) -> MoserVeselov {
     let flipped = expr::transpose(&letters.symbols, factor.clone());

@@ -15,7 +15,7 @@ const THREE: Dim = Dim::Fixed(3);
 
 /// What is solved for beforehand.
 #[derive(Clone, Debug)]
-pub struct Eliminated {
+pub struct SchurReduction {
     /// The letters of the parts, and those below.
     pub symbols: Symbols,
     /// The rotation of every velocity.
@@ -72,9 +72,9 @@ fn at(symbol: SymbolId) -> Letter {
     }
 }
 
-impl Eliminated {
+impl SchurReduction {
     /// Of equations by parts, if the velocities are rotations and rigid motions.
-    pub fn of(parts: &Parts, list: &[Expr]) -> Option<Eliminated> {
+    pub fn of(parts: &Parts, list: &[Expr]) -> Option<SchurReduction> {
         let mut symbols = parts.symbols.clone();
         let vector = Shape::vector(THREE);
         let mut add = |name: &str| {
@@ -160,7 +160,7 @@ impl Eliminated {
                 factors,
             });
         }
-        (!places.is_empty()).then_some(Eliminated {
+        (!places.is_empty()).then_some(SchurReduction {
             symbols,
             rotations,
             turns,
