@@ -13,6 +13,7 @@ mod free;
 mod groups;
 mod integrate;
 mod kept_force;
+mod kernels;
 mod left_factor;
 mod linear_group;
 mod newton;
