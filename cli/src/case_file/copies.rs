@@ -4,7 +4,7 @@
 use super::labels::Stated;
 use clebsch::card::Field;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Kind, Lattice, ExpandedModel, unfold};
+use clebsch_core::lattice::{Choice, ExpandedModel, Kind, Lattice, unfold};
 use clebsch_core::syntax::ast::Statement;
 use std::collections::HashSet;
 

@@ -1,7 +1,7 @@
 //! Points that a page shows: a line of them, single ones, particles, or numbers along a line as a profile.
 //! Takes the fields of a card; gives their places in a sample, those that ends hold among them.
 
-use super::position_differences::Point;
+use super::places::Point;
 use super::tints::Tints;
 use super::value::Stated;
 use crate::case_file::space::Space;

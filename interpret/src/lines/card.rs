@@ -10,7 +10,7 @@ use crate::{Refused, text};
 use clebsch::card::{Card, Field, Invariant, Kind, Open};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::{Choice, Kind as QuantityKind, Lattice, ExpandedModel};
+use clebsch_core::lattice::{Choice, ExpandedModel, Kind as QuantityKind, Lattice};
 use clebsch_core::line::{Coordinates, totals_on};
 use clebsch_core::syntax::ast::Model;
 use clebsch_core::{document, pipeline};

@@ -27,7 +27,7 @@ pub enum Place<'a> {
     /// The discrete Euler-Poincaré equation.
     Balance,
     /// The Moser-Veselov equation, which a Riccati equation solves.
-    StepEquation,
+    Riccati,
     /// The continuous equation of motion.
     Continuous,
 }

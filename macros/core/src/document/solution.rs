@@ -173,7 +173,7 @@ fn equation(
     let mirrored = Formula::Product(vec![letter.clone(), Formula::transpose(w.clone())]);
     section.sourced(
         Formula::equal(Formula::minus(product, mirrored), momentum(sheet, c, mv, i)),
-        sheet.source(Place::StepEquation),
+        sheet.source(Place::Riccati),
     );
     let mut with = Vec::new();
     if named {

@@ -141,7 +141,7 @@ const CITED: Citations = Citations {
         (Place::AtStart, "(10)"),
         (Place::AtEnd, "(11)"),
         (Place::Balance, "(12)"),
-        (Place::StepEquation, "(13)"),
+        (Place::Riccati, "(13)"),
         (Place::Continuous, "(14)"),
         (Place::Rule("J"), "(15)"),
     ],
