@@ -6,6 +6,7 @@ use super::expression::{Bindings, program};
 use super::names::{Names, item, per_configuration, variable};
 use super::sizes::size;
 use super::step::at;
+use crate::check::spec::{Configuration, Hold};
 use crate::derive::Derivation;
 use crate::derive::balance::Balance;
 use crate::expr::symbol::{Role, Symbols};
@@ -47,7 +48,45 @@ pub(super) fn at_node(s: &Symbols, rest: &[(Letter, Expr)], b: &Balance) -> Vec<
         .collect()
 }
 
-/// The impulses that what stands at a node gives, where they depend on nothing else.
+/// A place that a constraint holds is known to its rounding, and what a step corrects of that is a momentum: that of a step
+/// from the origin to the place, in parts of so many. A bound of 1e-12 then lies at a few roundings of the place.
+const CORRECTED: i64 = 1000;
+
+/// The momentum of an edge that leads from the origin to the place, of a body that a constraint holds.
+fn correction(
+    d: &Derivation,
+    configuration: usize,
+    multipliers: &[(Letter, Expr)],
+    edge: &Expr,
+) -> Option<Expr> {
+    let s = &d.letters.symbols;
+    let c = &d.spec.configurations[configuration];
+    let is_held = |hold: &Hold| {
+        let mut letters = expr::letters(&hold.value).into_iter();
+        letters.any(|l| l.symbol == c.element)
+    };
+    if !d.spec.holds.iter().any(is_held) {
+        return None;
+    }
+    let size = expr::magnitude(s, &expr::substitute(s, edge, multipliers));
+    // At rest: places are those of the node, attitudes do not turn.
+    let at_rest = expr::letters(&size).into_iter().filter_map(|l| {
+        let own = |c: &&Configuration| c.velocity == l.symbol;
+        match d.spec.configurations.iter().find(own) {
+            Some(c) if c.group.is_additive() => Some((l, expr::here(s, c.element))),
+            Some(_) => Some((l, expr::identity(s.get(l.symbol).shape.rows))),
+            None => (l.shift == Shift::NEXT).then(|| (l, expr::here(s, l.symbol))),
+        }
+    });
+    let at_rest: Vec<(Letter, Expr)> = at_rest.collect();
+    let size = expr::substitute(s, &size, &at_rest);
+    let stands = expr::letters(&size)
+        .iter()
+        .all(|l| l.shift == Shift::HERE && stands(s.get(l.symbol).role));
+    stands.then(|| expr::quotient(size, expr::integer(CORRECTED)))
+}
+
+/// The impulses that what stands at a node gives, where they depend on nothing else, and what constraints correct.
 pub(super) fn impulses(d: &Derivation) -> Vec<Impulse> {
     let s = &d.letters.symbols;
     // Reactions of what is held balance the rest: they are as large.
@@ -66,7 +105,8 @@ pub(super) fn impulses(d: &Derivation) -> Vec<Impulse> {
             let sizes = parts
                 .iter()
                 .map(|e| expr::magnitude_by_differences(s, &of(e)));
-            let sizes: Vec<Expr> = sizes.filter(|e| !e.is_zero()).collect();
+            let corrections = correction(d, configuration, &multipliers, &of(&b.edge_out));
+            let sizes: Vec<Expr> = sizes.chain(corrections).filter(|e| !e.is_zero()).collect();
             if !sizes.is_empty() {
                 all.push(Impulse {
                     configuration,
