@@ -11,7 +11,7 @@ use super::scope::Scope;
 use super::space::Space;
 use super::start::places;
 use super::value::names_a_file;
-use crate::failure::Failure;
+use crate::terminal::failure::Failure;
 use clebsch::card::Field;
 use clebsch::mesh::{Domain, Voronoi};
 use clebsch::nalgebra::SVector;

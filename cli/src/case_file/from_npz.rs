@@ -4,8 +4,8 @@
 use super::archive::{Archive, Array};
 use super::location::File;
 use super::sites::spelt;
-use crate::plain::shown;
-use crate::suggestion::did_you_mean;
+use crate::words::plain::shown;
+use crate::words::suggestion::did_you_mean;
 use clebsch::card::{Field, Kind};
 use std::cell::RefCell;
 use std::collections::BTreeMap;

@@ -4,9 +4,9 @@
 use super::labels::{Stated, table};
 use super::location::File;
 use super::space::Space;
-use crate::failure::Failure;
-use crate::plain::shown;
-use crate::suggestion::did_you_mean;
+use crate::terminal::failure::Failure;
+use crate::words::plain::shown;
+use crate::words::suggestion::did_you_mean;
 use clebsch_core::diagnostic::Errors;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::{Model, Name, Statement};

@@ -2,7 +2,7 @@
 //! I in the place of J. Takes a table of a case file; gives J with `I = tr(J) Id - J`.
 
 use super::value::{Numbers, numbers};
-use crate::plots::axis;
+use crate::words::number;
 use clebsch::card::{Field, Kind};
 use std::collections::HashSet;
 use toml::Spanned;
@@ -120,7 +120,7 @@ fn impossible(entries: &[f64], n: usize) -> Option<String> {
             format!(
                 "moments of inertia obey I{} <= I{first} + I{second}; {own} > {}",
                 i + 1,
-                axis::short(sum)
+                number::short(sum)
             )
         })
     })

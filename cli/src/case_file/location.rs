@@ -3,9 +3,9 @@
 
 use super::motion::Motion;
 use super::not_toml;
-use crate::failure::Failure;
-use crate::gallery::Case;
-use crate::plain::shown;
+use crate::models::gallery::Case;
+use crate::terminal::failure::Failure;
+use crate::words::plain::shown;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;

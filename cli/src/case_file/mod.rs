@@ -36,4 +36,5 @@ pub use location::Located;
 pub(crate) use motion::{Motion, is_velocity, undefined};
 pub use read::read;
 pub(crate) use read::{no_steps, read_without_steps, read_written_out};
+pub(crate) use write::DEFAULT_BOUND;
 pub use write::write;

@@ -3,8 +3,8 @@
 
 use super::beside::at_site;
 use super::velocity::{Way, momentum_of, suffix};
-use crate::gallery::Case;
-use crate::model_file::is_momentum;
+use crate::models::fields::is_momentum;
+use crate::models::gallery::Case;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_check::{
     Legendre, NoMomentum, Setup, Undefined, Velocities, Velocity, onto_constraints,

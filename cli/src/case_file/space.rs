@@ -4,7 +4,7 @@
 use super::labels::Stated;
 use super::location::File;
 use super::scope::Scope;
-use crate::failure::Failure;
+use crate::terminal::failure::Failure;
 use clebsch::mesh::{Domain, Nodes, Setting, Wall};
 use clebsch_core::syntax::ast::Extent;
 use toml::Spanned;

@@ -11,8 +11,8 @@ mod sites;
 
 use super::samples::Rows;
 use super::staging::Staging;
-use crate::failure::Failure;
 use crate::plan::Plan;
+use crate::terminal::failure::Failure;
 use clebsch::card::Card;
 use clebsch::record::Rows as _;
 use clebsch::record::vtk::{ImageData, Member, PolyData, write_collection};
@@ -73,7 +73,7 @@ pub(crate) fn drawn(card: &Card, plan: &Plan) -> Result<Vec<Drawn>, Failure> {
 ///
 /// # Errors
 /// Failed: the file system refuses.
-pub(super) fn write(
+pub(crate) fn write(
     staging: &Staging,
     plan: &Plan,
     rows: &Rows,
