@@ -1,10 +1,10 @@
 //! How many sites a case has and how its line ends: its tables `[labels]` and `[ends]`. Takes the text; gives the choice, or what
 //! is wrong with it.
 
-use super::labels::{SITES, Stated, table};
 use super::location::File;
 use super::scope::Scope;
 use super::space::Space;
+use super::stated::{SITES, Stated};
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
 use clebsch_core::expr::symbol::ascii;
@@ -19,13 +19,21 @@ use toml::de::{DeTable, DeValue};
 /// Usage: no TOML, an unknown label or end condition, a number of sites that is none.
 pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<Choice>, Failure> {
     let file = File::new(name, text);
+    let document = file.document()?;
+    of_case(&file, document.get_ref(), stated)
+}
+
+/// The same of a case that is being read.
+pub(super) fn of_case(
+    file: &File<'_>,
+    top: &DeTable<'_>,
+    stated: &Stated,
+) -> Result<Option<Choice>, Failure> {
     let lattice = &stated.lattice;
     let Some(mut choice) = stated.default_choice() else {
         return Ok(None);
     };
-    let document = file.document()?;
-    let top = document.get_ref();
-    let Some(labels) = table(&file, top, "labels")? else {
+    let Some(labels) = file.table(top, "labels")? else {
         let keys: Vec<String> = lattice
             .labels
             .iter()
@@ -37,7 +45,7 @@ pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<C
         );
         return Err(file.wrong(None, &message));
     };
-    let space = Space::read(&file, top, stated)?;
+    let space = Space::read(file, top, stated)?;
     let scope = Scope::of(top);
     for (key, value) in labels {
         let asked = key.get_ref().as_ref();
@@ -68,13 +76,13 @@ pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<C
         let message = format!("missing key `labels.{index}`: how many sites there are");
         return Err(file.wrong(None, &message));
     }
-    let ends = table(&file, top, "ends")?;
+    let ends = file.table(top, "ends")?;
     for (key, value) in ends.into_iter().flatten() {
-        choice = ended(&file, lattice, choice, key.get_ref().as_ref(), value)?;
+        choice = ended(file, lattice, choice, key.get_ref().as_ref(), value)?;
     }
     if ends.is_none_or(DeTable::is_empty) {
-        let parameters = table(&file, top, "parameters")?;
-        ends_unchosen(&file, stated, &choice, parameters)?;
+        let parameters = file.table(top, "parameters")?;
+        ends_unchosen(file, stated, &choice, parameters)?;
     }
     Ok(Some(choice))
 }

@@ -1,7 +1,7 @@
 //! The motion with which a case starts, where it is not given by momenta: velocities, or nothing, which is rest. Takes them by the
 //! fields of a card; puts the momenta that the action gives to them into the case.
 
-use super::beside::at_site;
+use super::keys::at_site;
 use super::velocity::{Way, momentum_of, suffix};
 use crate::models::fields::is_momentum;
 use crate::models::gallery::Case;

@@ -1,13 +1,37 @@
 //! The numbers that expressions of a case may hold: its step `h`, and its parameters that are one number. Takes the tables of a
 //! case; gives the values of names, whatever order they are given in.
 
-use super::value::{Numbers, number};
+use super::value::number;
 use clebsch_core::lattice::value::SiteData;
 use std::collections::{BTreeMap, HashMap};
+use std::rc::Rc;
 use toml::de::{DeTable, DeValue};
 
 /// Most names that a message lists.
 const LISTED: usize = 12;
+
+/// What expressions hold.
+pub(super) trait Names {
+    /// The value of a name.
+    fn number(&self, name: &str) -> Option<f64>;
+
+    /// The expression of a text. If one is evaluated at many sites, it is read once.
+    fn expression(&self, text: &str) -> Result<Rc<SiteData>, String> {
+        SiteData::read(text).map(Rc::new)
+    }
+}
+
+/// The values of names in expressions.
+pub(super) type Numbers<'a> = dyn Names + 'a;
+
+/// Expressions without names.
+pub(super) struct Nameless;
+
+impl Names for Nameless {
+    fn number(&self, _: &str) -> Option<f64> {
+        None
+    }
+}
 
 /// The numbers of a case by name.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +41,12 @@ pub(super) struct Scope {
     open: BTreeMap<String, String>,
     /// Names with a value.
     names: Vec<String>,
+}
+
+impl Names for Scope {
+    fn number(&self, name: &str) -> Option<f64> {
+        self.known.get(name).copied()
+    }
 }
 
 impl Scope {
@@ -35,7 +65,7 @@ impl Scope {
                     rest.extend(SiteData::read(text).ok().map(|data| (key, data)));
                 }
                 plain => {
-                    if let Ok(x) = number(plain, &|_| None) {
+                    if let Ok(x) = number(plain, &Nameless) {
                         out.names.push(key.clone());
                         out.known.insert(key, x);
                     }
@@ -59,11 +89,6 @@ impl Scope {
                 return out;
             }
         }
-    }
-
-    /// The value of a name.
-    pub(super) fn number(&self, name: &str) -> Option<f64> {
-        self.known.get(name).copied()
     }
 
     /// What is wrong with an expression, with what a reader needs to mend it.
@@ -114,7 +139,7 @@ impl Scope {
 
     /// A number, or an expression that has one.
     pub(super) fn read(&self, value: &DeValue<'_>) -> Result<f64, String> {
-        number(value, &|name| self.number(name)).map_err(|why| self.explained(why))
+        number(value, self).map_err(|why| self.explained(why))
     }
 
     /// A whole number, or an expression that has one to rounding.
@@ -145,7 +170,8 @@ pub(super) fn rounded(x: f64) -> Option<u64> {
 
 /// The value of an expression, whatever number it is.
 pub(super) fn value(text: &str, of: &Numbers<'_>) -> Result<f64, String> {
-    let value = SiteData::read(text).and_then(|data| data.value(of));
+    let data = of.expression(text);
+    let value = data.and_then(|data| data.value(&|name| of.number(name)));
     value.map_err(|why| format!("\"{text}\": {why}"))
 }
 
@@ -159,7 +185,7 @@ pub(super) fn evaluated(text: &str, of: &Numbers<'_>) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Scope, rounded};
+    use super::{Names as _, Scope, rounded};
     use toml::de::DeTable;
 
     #[test]

@@ -1,7 +1,7 @@
 //! `clebsch show` and `clebsch case`: the statement of a model, and a case as TOML to start your own from.
 //! Takes what the command line names; gives the texts as they would be in files.
 
-use crate::case_file::{self, labels::Stated};
+use crate::case_file::{self, stated::Stated};
 use crate::models::gallery::{self, Gallery};
 use crate::named::cases::WhichCase;
 use crate::named::resolve::{ModelText, Named, asked, case_of, entry};

@@ -2,7 +2,7 @@
 //! Takes a path; gives the model with a case of sample values, to start one's own from.
 
 use crate::case_file;
-use crate::case_file::labels::{self, Stated};
+use crate::case_file::stated::Stated;
 use crate::models::fields::{is_momentum, sample_values, turns};
 use crate::models::gallery::{Case, Citations, Entry};
 use crate::models::held::is_held;
@@ -75,8 +75,7 @@ fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>,
 
 /// The sample case of a model with labels.
 fn sample_on_lattice(text: &str, stated: &Stated, card: &Card) -> Result<Case, Failure> {
-    let out = labels::written_out("sample", text, stated, card)?;
-    let located = case_file::read_written_out("sample", &out, card)?;
+    let located = case_file::read_of("sample", text, card, Some(stated))?;
     Ok(located.case)
 }
 

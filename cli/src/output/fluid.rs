@@ -1,8 +1,8 @@
 //! Fluids among the runs: where their particles live, and what colours them. Takes a card and a plan.
 
 use super::sites::AtSites;
-use crate::case_file::labels::Stated;
 use crate::case_file::space::Space;
+use crate::case_file::stated::Stated;
 use crate::plan::Plan;
 use clebsch::card::Card;
 use clebsch_core::expr::symbol::ascii;

@@ -1,7 +1,7 @@
 //! A number of a case by its name on the command line: `gU.z`, `q_3`, `h`.
 //! Takes a name and a card; gives the entries of parameters, initial values or the step that the name stands for.
 
-use crate::case_file::labels::Stated;
+use crate::case_file::stated::Stated;
 use crate::case_file::{Motion, at_site, is_key_of_rotation, is_velocity};
 use crate::models::gallery::Case;
 use crate::overrides::substitute::is_within_a_table;

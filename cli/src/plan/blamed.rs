@@ -1,7 +1,7 @@
 //! A value that a model computes from parameters and cannot work with, told by the parameters that make it: their sites, lines
 //! and what the case gives. Takes the formula of the value; gives the beginning of a message.
 
-use crate::case_file::labels::Stated;
+use crate::case_file::stated::Stated;
 use crate::case_file::{at_site, line_of, quantity_of};
 use crate::models::gallery::Case;
 use crate::words::number;

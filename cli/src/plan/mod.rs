@@ -3,7 +3,7 @@
 
 mod blamed;
 
-use crate::case_file::labels::{self, Stated};
+use crate::case_file::stated::Stated;
 use crate::case_file::{self, Located, Motion, undefined};
 use crate::models::gallery::{self, Case, Entry};
 use crate::named::cases::{CaseText, WhichCase};
@@ -90,9 +90,9 @@ impl Plan {
         let cards = of_size(entry, size)?;
         let (mut case, origin, choice, mut motion) = match &resolved.case {
             WhichCase::Text(text) => {
-                let (located, choice) = read(text, &cards)?;
+                let located = read(text, &cards)?;
                 let origin = Some((located.file, located.lines));
-                (located.case, origin, choice, located.motion)
+                (located.case, origin, located.choice, located.motion)
             }
             named => {
                 let asked = match named {
@@ -314,19 +314,12 @@ fn start(
 }
 
 /// The case of a file, by the first card whose fields it fits; the message is that of the first.
-fn read(case: &CaseText, cards: &[Card]) -> Result<(Located, Option<Choice>), Failure> {
+fn read(case: &CaseText, cards: &[Card]) -> Result<Located, Failure> {
     let CaseText { file, text } = case;
     let mut first = None;
     for card in cards {
-        let located = match Stated::read(card.source) {
-            None => case_file::read_without_steps(file, text, card).map(|located| (located, None)),
-            Some(stated) => {
-                let out = labels::written_out(file, text, &stated, card)?;
-                case_file::read_written_out(file, &out, card)
-                    .map(|located| (located, Some(out.choice)))
-            }
-        };
-        match located {
+        let stated = Stated::read(card.source);
+        match case_file::read_of(file, text, card, stated.as_ref()) {
             Ok(located) => return Ok(located),
             Err(error) => first = first.or(Some(error)),
         }
