@@ -1,8 +1,8 @@
 //! The commands that run cases: `run`, `compare`, `converge`, `sweep` and `collect`.
 
-use super::Shard;
 use super::of_a_case::{of_a_case, planned};
 use super::option::{flag, json, option, positive_number, seconds};
+use super::shard::Shard;
 use clap::{Arg, ArgAction, Command, value_parser};
 
 pub(super) fn run() -> Command {

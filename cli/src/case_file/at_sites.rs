@@ -5,7 +5,8 @@ use super::chosen;
 use super::copies::{Base, Copies, Group, base};
 use super::fluid::Fluid;
 use super::location::File;
-use super::scope::{Names, Scope};
+use super::names::Names;
+use super::scope::Scope;
 use super::sites::Site;
 use super::stated::Stated;
 use crate::terminal::failure::Failure;
@@ -35,7 +36,9 @@ impl<'a> AtSites<'a> {
         stated: &'a Stated,
     ) -> Result<Self, Failure> {
         let choice = chosen::of_case(file, top, stated)?;
-        let copies = choice.as_ref().and_then(|choice| stated.copies(choice));
+        let copies = choice
+            .as_ref()
+            .and_then(|choice| Copies::of(stated, choice));
         let wrong = || file.wrong(None, "the model's lattice cannot be written out");
         let (choice, copies) = (choice.ok_or_else(wrong)?, copies.ok_or_else(wrong)?);
         Ok(Self {

@@ -4,13 +4,35 @@
 use super::location::File;
 use super::scope::Scope;
 use super::space::Space;
-use super::stated::{SITES, Stated};
+use super::stated::Stated;
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::{document, pipeline};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+
+/// Number of sites where no case says one.
+const SITES: usize = 8;
+
+/// Number of particles of a fluid where no case says one.
+const PARTICLES: usize = 64;
+
+/// What holds where no case says otherwise.
+pub(crate) fn default_choice(stated: &Stated) -> Option<Choice> {
+    let shortest = pipeline::representative(&stated.model, &stated.lattice).ok()?;
+    let mut choice = document::default_choice(&stated.lattice, shortest);
+    for count in &mut choice.counts {
+        *count = SITES;
+    }
+    if let Some(space) = Space::sample(stated) {
+        for (count, label) in choice.counts.iter_mut().zip(&stated.lattice.labels) {
+            *count = if label.grid { space.count() } else { PARTICLES };
+        }
+    }
+    Some(choice)
+}
 
 /// The choice that a case makes in its tables `[labels]` and `[ends]`; none for a model that cannot be written out, which its
 /// derivation tells of, with the place in its text.
@@ -30,7 +52,7 @@ pub(super) fn of_case(
     stated: &Stated,
 ) -> Result<Option<Choice>, Failure> {
     let lattice = &stated.lattice;
-    let Some(mut choice) = stated.default_choice() else {
+    let Some(mut choice) = default_choice(stated) else {
         return Ok(None);
     };
     let Some(labels) = file.table(top, "labels")? else {

@@ -8,7 +8,6 @@ use super::inertia;
 use super::keys::quantity_of;
 use super::location::File;
 use super::motion::{Motion, Start};
-use super::read::known_keys;
 use super::scope::Scope;
 use super::sites;
 use super::table::{Found, Key, Table};
@@ -105,6 +104,10 @@ impl<'a> Fields<'a> {
             if is_momentum(field) && table.elements.contains_key(&index) {
                 self.velocities(table, index, base)?;
                 return Ok(vec![0.0; field.count()]);
+            }
+            // A slip of the keyboard comes first.
+            if base.is_none() {
+                self.known(table)?;
             }
             return Err(self.missing(table, field, base));
         };
@@ -296,7 +299,8 @@ impl<'a> Fields<'a> {
                     return wrong(&format!("{own}{dot}"), &self.scope.explained(why), &span);
                 };
                 // What is wrong at every site alike is a matter of the key as it was written.
-                let is_whole = is_element(field) || value.get_ref().is_table();
+                let other = |table: &DeTable<'_>| !table.contains_key("I");
+                let is_whole = is_element(field) || value.get_ref().as_table().is_some_and(other);
                 let unvalued = match is_whole {
                     true => Some(why.clone()),
                     false => sites::unvalued(value.get_ref(), &here),
@@ -397,7 +401,7 @@ impl<'a> Fields<'a> {
             let listed = known.clone();
             known.extend(left);
             let otherwise = |asked: &str| Some(did_you_mean(asked, listed.iter().copied()));
-            return known_keys(self.file, values, &known, &place, &otherwise);
+            return self.file.known_keys(values, &known, &place, &otherwise);
         }
         let otherwise = |asked: &str| {
             // `"Λ"` is how the model writes it, but files use the ASCII name.
@@ -410,7 +414,7 @@ impl<'a> Fields<'a> {
                 .then(|| table.how_to_move())
                 .flatten()
         };
-        known_keys(self.file, values, &known, &place, &otherwise)
+        self.file.known_keys(values, &known, &place, &otherwise)
     }
 
     /// The keys that the fields of a table may have, in their order.

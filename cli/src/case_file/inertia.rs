@@ -27,16 +27,6 @@ pub(super) fn inside<'a, 'i>(
     inner.get("I").filter(|_| inner.len() == 1)
 }
 
-/// What to write for a matrix of second moments besides itself.
-pub(super) fn words(field: &Field) -> &'static str {
-    match field.kind {
-        Kind::SecondMoments => {
-            ", or the inertia: { I = [a, b, c] } for principal moments, { I = [[..], ..] } for a matrix"
-        }
-        _ => "",
-    }
-}
-
 /// The inertia in the place of a field of second moments: a matrix, or its diagonal.
 pub(super) fn field(field: &Field) -> Field {
     Field {

@@ -1,7 +1,7 @@
 //! The sample case of a model with labels: a key for each quantity as stated, expressions in the label.
 //! Takes a card and the choice it was made for; gives the text of a case file.
 
-use super::copies::{Base, base};
+use super::copies::{Base, Copies, base};
 use super::motion::elements;
 use super::remarks::remark;
 use super::sample as fluid;
@@ -68,7 +68,7 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
         fluid::tables(&mut text, card, stated, space);
         return text;
     }
-    let Some(copies) = stated.copies(choice) else {
+    let Some(copies) = Copies::of(stated, choice) else {
         return text;
     };
     let elements = elements(card.initial);

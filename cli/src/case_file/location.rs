@@ -6,8 +6,9 @@ use super::not_toml;
 use crate::models::gallery::Case;
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
+use crate::words::suggestion::did_you_mean;
 use clebsch_core::lattice::Choice;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeTable;
@@ -87,6 +88,32 @@ impl<'a> File<'a> {
                 ),
             )),
         }
+    }
+
+    /// Refuses a key of a table that is not among those that are known; `otherwise` may say what is meant.
+    ///
+    /// # Errors
+    /// Usage: the first such key.
+    pub fn known_keys(
+        &self,
+        table: &DeTable<'_>,
+        known: &[&str],
+        place: &str,
+        otherwise: &dyn Fn(&str) -> Option<String>,
+    ) -> Result<(), Failure> {
+        let all: HashSet<&str> = known.iter().copied().collect();
+        for key in table.keys() {
+            let name = key.get_ref().as_ref();
+            if all.contains(name) {
+                continue;
+            }
+            let hint = otherwise(name).unwrap_or_else(|| did_you_mean(name, known.iter().copied()));
+            return Err(self.wrong(
+                Some(&key.span()),
+                &format!("unknown key `{}` {place}{hint}", shown(name)),
+            ));
+        }
+        Ok(())
     }
 
     /// A usage failure at a line.

@@ -16,6 +16,7 @@ mod keys;
 mod lattice;
 mod location;
 mod motion;
+mod names;
 mod not_toml;
 mod read;
 mod remarks;
@@ -32,7 +33,7 @@ mod velocity;
 mod write;
 
 pub(crate) use attitude::is_key_of_rotation;
-pub(crate) use chosen::choice;
+pub(crate) use chosen::{choice, default_choice};
 pub(crate) use keys::{at_site, line_of, quantity_of};
 pub(crate) use lattice::write_lattice;
 pub use location::Located;

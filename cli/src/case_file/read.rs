@@ -12,7 +12,6 @@ use crate::models::gallery::Case;
 use crate::terminal::failure::Failure;
 use crate::words::number::whole;
 use crate::words::plain::shown;
-use crate::words::suggestion::did_you_mean;
 use clebsch::card::Card;
 use clebsch::validate::positive_step;
 use clebsch_core::pipeline;
@@ -77,7 +76,7 @@ pub(crate) fn read_of(
     if matches!(&model, Some(Ok(model)) if super::functions::are_given(model)) {
         known.push(functions);
     }
-    known_keys(file, top, &known, "at the top level", &|_| None)?;
+    file.known_keys(top, &known, "at the top level", &|_| None)?;
     let model = required(
         file,
         top,
@@ -150,28 +149,6 @@ fn stem(name: &str) -> String {
         || name.to_owned(),
         |stem| stem.to_string_lossy().into_owned(),
     )
-}
-
-pub(super) fn known_keys(
-    file: &File<'_>,
-    table: &DeTable<'_>,
-    known: &[&str],
-    place: &str,
-    otherwise: &dyn Fn(&str) -> Option<String>,
-) -> Result<(), Failure> {
-    let all: HashSet<&str> = known.iter().copied().collect();
-    for key in table.keys() {
-        let name = key.get_ref().as_ref();
-        if all.contains(name) {
-            continue;
-        }
-        let hint = otherwise(name).unwrap_or_else(|| did_you_mean(name, known.iter().copied()));
-        return Err(file.wrong(
-            Some(&key.span()),
-            &format!("unknown key `{}` {place}{hint}", shown(name)),
-        ));
-    }
-    Ok(())
 }
 
 fn required<'a, 'i>(
@@ -259,7 +236,7 @@ fn bounds(
         .iter()
         .map(|invariant| invariant.name)
         .collect();
-    known_keys(file, table, &known, "in [bounds]", &|_| None)?;
+    file.known_keys(table, &known, "in [bounds]", &|_| None)?;
     let mut bounds = Vec::new();
     // In the order of the card, so that the order in the file does not matter.
     for name in known {

@@ -1,37 +1,14 @@
 //! The numbers that expressions of a case may hold: its step `h`, and its parameters that are one number. Takes the tables of a
 //! case; gives the values of names, whatever order they are given in.
 
+use super::names::{Nameless, Names};
 use super::value::number;
 use clebsch_core::lattice::value::SiteData;
 use std::collections::{BTreeMap, HashMap};
-use std::rc::Rc;
 use toml::de::{DeTable, DeValue};
 
 /// Most names that a message lists.
 const LISTED: usize = 12;
-
-/// What expressions hold.
-pub(super) trait Names {
-    /// The value of a name.
-    fn number(&self, name: &str) -> Option<f64>;
-
-    /// The expression of a text. If one is evaluated at many sites, it is read once.
-    fn expression(&self, text: &str) -> Result<Rc<SiteData>, String> {
-        SiteData::read(text).map(Rc::new)
-    }
-}
-
-/// The values of names in expressions.
-pub(super) type Numbers<'a> = dyn Names + 'a;
-
-/// Expressions without names.
-pub(super) struct Nameless;
-
-impl Names for Nameless {
-    fn number(&self, _: &str) -> Option<f64> {
-        None
-    }
-}
 
 /// The numbers of a case by name.
 #[derive(Clone, Debug, Default)]
@@ -166,21 +143,6 @@ pub(super) fn rounded(x: f64) -> Option<u64> {
     let whole = x.round();
     let is_whole = (x - whole).abs() <= ROUNDING * whole.abs();
     (is_whole && (0.0..MOST).contains(&whole)).then_some(whole as u64)
-}
-
-/// The value of an expression, whatever number it is.
-pub(super) fn value(text: &str, of: &Numbers<'_>) -> Result<f64, String> {
-    let data = of.expression(text);
-    let value = data.and_then(|data| data.value(&|name| of.number(name)));
-    value.map_err(|why| format!("\"{text}\": {why}"))
-}
-
-/// The value of an expression, if it is a finite number.
-pub(super) fn evaluated(text: &str, of: &Numbers<'_>) -> Result<f64, String> {
-    match value(text, of)? {
-        x if x.is_finite() => Ok(x),
-        x => Err(format!("\"{text}\": {x} is not a finite number")),
-    }
 }
 
 #[cfg(test)]

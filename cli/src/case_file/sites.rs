@@ -3,7 +3,7 @@
 //! element for each site.
 
 use super::attitude;
-use super::scope;
+use super::names;
 use super::value::{Numbers, number};
 use clebsch::card::{Field, Kind};
 use toml::Spanned;
@@ -24,7 +24,7 @@ pub(super) struct Site<'a> {
 pub(super) fn unvalued(value: &DeValue<'_>, of: &Numbers<'_>) -> Option<String> {
     match value {
         // A number that is not finite belongs to its site.
-        DeValue::String(text) => scope::value(text, of).err(),
+        DeValue::String(text) => names::value(text, of).err(),
         DeValue::Array(list) => list.iter().find_map(|v| unvalued(v.get_ref(), of)),
         DeValue::Table(table) => table.iter().find_map(|(_, v)| unvalued(v.get_ref(), of)),
         other => number(other, of).err(),

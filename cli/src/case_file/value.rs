@@ -4,8 +4,8 @@
 //! Shapes are checked here; symmetry, orthogonality and the like by the model that is opened with them.
 
 use super::attitude;
-use super::scope::evaluated;
-pub(super) use super::scope::{Nameless, Numbers};
+use super::names::evaluated;
+pub(super) use super::names::{Nameless, Numbers};
 use clebsch::card::{Field, Kind};
 use toml::Spanned;
 use toml::de::DeValue;
@@ -18,8 +18,8 @@ pub(super) fn expected(field: &Field) -> String {
         Kind::Rotation | Kind::UnitQuaternion | Kind::RigidMotion => attitude::expected(field),
         Kind::Diagonal => format!("the {rows} diagonal entries [a, ..] or a {rows}x{cols} matrix"),
         Kind::SecondMoments => format!(
-            "a symmetric {rows}x{cols} matrix [[..], ..], written in full{}",
-            super::inertia::words(field)
+            "a symmetric {rows}x{cols} matrix [[..], ..], written in full, or the inertia: {{ I = [a, b, c] }} for principal \
+             moments, {{ I = [[..], ..] }} for a matrix"
         ),
         Kind::Symmetric => format!("a symmetric {rows}x{cols} matrix [[..], ..], written in full"),
         Kind::Skew => format!("a skew {rows}x{cols} matrix [[..], ..], written in full"),

@@ -77,7 +77,7 @@ pub(crate) fn case_text(
 fn placeholder(text: &ModelText, streams: &mut Streams<'_>) -> Result<String, Failure> {
     let sample = WhichCase::Named("sample".to_owned());
     if let Some(stated) = Stated::read(&text.text)
-        && let Some(choice) = stated.default_choice()
+        && let Some(choice) = case_file::default_choice(&stated)
     {
         let entry = entry(text, &WhichCase::First, streams)?;
         return Ok(case_file::write_lattice(

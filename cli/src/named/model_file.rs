@@ -68,7 +68,7 @@ pub(crate) fn read(
 /// How many sites there are and how the line ends: as the case says, if one is given by a file.
 fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>, Failure> {
     match case {
-        None => Ok(stated.default_choice()),
+        None => Ok(case_file::default_choice(stated)),
         Some((file, text)) => case_file::choice(file, text, stated),
     }
 }

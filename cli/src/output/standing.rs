@@ -1,7 +1,6 @@
 //! What stands where results are to go: nothing, the folder of an earlier run, or something else.
 //! Takes a path; gives what `--force` may replace, or why nothing may be.
 
-use super::vtk;
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
 use std::ffi::OsString;
@@ -12,6 +11,9 @@ use std::time::SystemTime;
 
 /// What tells a picture of `clebsch plot` from any other file.
 pub(crate) const MARK: &str = "clebsch plot: time ";
+
+/// The endings of files for ParaView.
+const ENDINGS: [&str; 3] = ["pvd", "vtp", "vti"];
 
 /// One file as it stood: name, size, time of its last change.
 type Entry = (OsString, u64, Option<SystemTime>);
@@ -90,7 +92,7 @@ fn within(path: &Path, name: &OsString) -> io::Result<Result<Vec<Entry>, OsStrin
         let found = entry.metadata()?;
         let own = Path::new(name).join(entry.file_name());
         let ending = own.extension().and_then(|e| e.to_str());
-        if !found.is_file() || !ending.is_some_and(|e| vtk::ENDINGS.contains(&e)) {
+        if !found.is_file() || !ending.is_some_and(|e| ENDINGS.contains(&e)) {
             return Ok(Err(own.into_os_string()));
         }
         files.push((own.into_os_string(), found.len(), found.modified().ok()));

@@ -100,7 +100,7 @@ impl Plan {
                     _ => None,
                 };
                 let stated = Stated::read(entry.card.source);
-                let choice = stated.and_then(|stated| stated.default_choice());
+                let choice = stated.as_ref().and_then(case_file::default_choice);
                 let case = case_of_size(entry, asked, size)?.clone();
                 (case, None, choice, Motion::default())
             }

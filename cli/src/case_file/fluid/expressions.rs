@@ -4,7 +4,7 @@
 use super::meshes::Meshes;
 use super::{Reader, Wrong, size};
 use crate::case_file::from_npz::{self, Wanted};
-use crate::case_file::scope::{Nameless, Names as _};
+use crate::case_file::names::{Nameless, Names as _};
 use crate::case_file::space::Space;
 use crate::case_file::value::{number, shape};
 use clebsch_core::expr::symbol::ascii;

@@ -1,12 +1,13 @@
 //! `clebsch run`: from a case to a checked trajectory.
 //! Takes the gallery and the options; gives files, a table of what was conserved, and the exit code.
 
+mod complete;
 mod files;
 mod follow;
+mod listener;
 mod pdf;
 mod summary;
 
-use crate::commands::run::follow::{End, Kept, Run};
 use crate::models::gallery::Gallery;
 use crate::named::resolve::resolved;
 use crate::output::samples::{self, Stream};
@@ -27,9 +28,12 @@ use clebsch::card::{Card, Trajectory as _};
 use clebsch::integrate::{self, Halved, RunError, Watch};
 use clebsch::record::Record;
 use clebsch_check::Which;
+use complete::already;
+use follow::{End, Kept, Run};
+use listener::Listener;
 use serde_json::json;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use summary::Told;
 
 /// Steps whose every node is kept for the plots: all the swings there is room for, of 150 steps each.
@@ -336,120 +340,6 @@ fn interrupted(signal: u8) -> String {
         other => format!("signal {other}"),
     };
     format!("interrupted by {by}; a run with --out goes on by --resume")
-}
-
-/// Asked to go on with a run that has come to its end.
-fn already(
-    card: &Card,
-    plan: &Plan,
-    target: &Path,
-    (as_json, vtk): (bool, bool),
-    streams: &mut Streams<'_>,
-) -> Result<u8, Failure> {
-    let wrong = |words: &str| Failure::Usage(format!("--resume: {}: {words}", shown(target)));
-    let text = std::fs::read_to_string(target.join("run.json")).unwrap_or_default();
-    let Ok(there) = text.parse::<serde_json::Value>() else {
-        return Err(wrong("this is no folder of a run"));
-    };
-    let own = run_json::plan_json(card, plan)
-        .to_string()
-        .parse::<serde_json::Value>();
-    let own = own.unwrap_or_default();
-    let mut different = Vec::new();
-    for (key, value) in own.as_object().into_iter().flatten() {
-        if there.get(key) != Some(value) {
-            different.push(key.as_str());
-        }
-    }
-    for key in ["order", "solver", "compensated", "halve"] {
-        if there["arguments"][key] != plan.arguments[key] {
-            different.push(key);
-        }
-    }
-    match different.as_slice() {
-        [] => {}
-        keys if keys.contains(&"steps") && keys.iter().all(|k| ["steps", "every"].contains(k)) => {
-            return Err(wrong(&format!(
-                "this run is complete, with steps = {}; to go on from its end, start a new run whose values in [initial] are taken from it, \
-                 such as x = {{ npz = \"{}\", sample = -1 }}",
-                there["steps"],
-                shown(target.join("trajectory.npz").as_path())
-            )));
-        }
-        [key, ..] => {
-            return Err(wrong(&format!(
-                "it holds another run, with another `{key}`; choose another folder by --out"
-            )));
-        }
-    }
-    let there_files = there["results"]["files"].as_array();
-    let has_vtk = there_files.is_some_and(|all| {
-        all.iter().any(|f| {
-            f.as_str()
-                .is_some_and(|f| f.starts_with(output::vtk::FOLDER))
-        })
-    });
-    if vtk && !has_vtk {
-        return Err(wrong(
-            "the run there is complete and was written without --vtk; give --force instead to run it again",
-        ));
-    }
-    if there["results"]["complete"] != json!(true) {
-        let why = there["results"]["stopped"]["why"].as_str().unwrap_or("?");
-        return Err(wrong(&format!(
-            "the run there cannot be gone on with: {why}"
-        )));
-    }
-    output::remove_what_resumes(target);
-    match as_json {
-        true => writeln!(streams.out, "{there}")?,
-        false => writeln!(streams.out, "complete already: {}", shown(target))?,
-    }
-    // What was wrong with the run still is.
-    let results = &there["results"];
-    let refuted = results["action_as_stated"]["holds"] == json!(false);
-    if results["kept"] == json!(false) {
-        let _ = writeln!(streams.err, "clebsch: a bound was exceeded, see run.json");
-    }
-    if refuted {
-        let _ = writeln!(
-            streams.err,
-            "clebsch: steps do not solve the equations of the action as stated, see run.json"
-        );
-    }
-    match refuted || results["kept"] == json!(false) {
-        true => Ok(BOUND_LEFT),
-        false => Ok(DONE),
-    }
-}
-
-/// Standard output of a run whose results are written to files: they are worth the work when nobody reads it.
-struct Listener<'a, 'b> {
-    out: &'a mut (dyn Write + 'b),
-    may_go: bool,
-    gone: bool,
-}
-
-impl Write for Listener<'_, '_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.gone {
-            return Ok(bytes.len());
-        }
-        match self.out.write(bytes) {
-            Err(error) if self.may_go && error.kind() == io::ErrorKind::BrokenPipe => {
-                self.gone = true;
-                Ok(bytes.len())
-            }
-            other => other,
-        }
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        match self.gone {
-            true => Ok(()),
-            false => self.out.flush(),
-        }
-    }
 }
 
 /// The beginning of the run once more with every node kept, when the record is sparser than that.

@@ -21,9 +21,6 @@ use std::io::{self, Write};
 /// The folder, by its name among the files that a run can write.
 pub(crate) const FOLDER: &str = "vtk/";
 
-/// The endings of what is in it.
-pub(crate) const ENDINGS: [&str; 3] = ["pvd", "vtp", "vti"];
-
 /// Most samples that are written where nobody says how many.
 const FRAMES: u64 = 1000;
 
