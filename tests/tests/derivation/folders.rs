@@ -72,7 +72,7 @@ fn wrong_imports_are_seen() {
     assert_eq!(of("page/a.rs", tests), 0);
 }
 
-/// What the paths of a file begin with: the module of the crate after `crate::`, also where `super::` climbs up to the crate.
+/// The modules of the crate that a file names, after `crate::` or where `super::` climbs up to the crate.
 fn imported(file: &str, text: &str) -> Vec<String> {
     let names = file.strip_suffix(".rs").unwrap_or(file).split('/');
     let depth = names.filter(|name| *name != "mod").count();
