@@ -5,73 +5,32 @@
 //! Results go to standard output, progress and messages to standard error. Exit codes: [`failure`].
 
 pub mod arguments;
-mod blamed;
-mod bounded;
 pub mod case_file;
-mod check;
-mod checkpoint;
-mod columns;
-pub mod compare;
-mod converge;
-pub mod derive;
-pub mod failure;
-mod figures;
-mod follow;
-mod foreign_option;
-pub mod gallery;
-pub mod generated;
-mod lines;
-mod list;
-mod model_file;
-mod named_cases;
-mod new;
-mod number;
+mod commands;
+mod models;
+mod named;
 mod output;
 mod overrides;
 mod page;
-mod plain;
 mod plan;
-mod plot;
 pub mod plots;
-mod quantity;
-mod record;
-mod resolve_model;
-mod run;
-mod sample;
-mod show;
-mod stated;
-mod step_limit;
-mod substitute;
-mod suggestion;
-mod summary;
-mod sweep;
-mod toml_value;
-mod verdict;
-mod waiting;
-mod width;
+mod terminal;
+mod trajectory;
+mod words;
+
+pub use commands::derive::generated;
+pub use models::gallery;
+pub use terminal::{Streams, failure};
 
 use clap::ArgMatches;
+use commands::{check, compare, converge, derive, figures, list, new, plot, run, show, sweep};
 use failure::{DONE, FAILED, Failure, USAGE};
 use gallery::Gallery;
-use plain::Plain;
 use std::ffi::OsString;
-use std::io::{self, IsTerminal, Read, Write};
+use std::io::{self, IsTerminal};
 use std::process::ExitCode;
-
-/// Where a command reads and writes.
-pub struct Streams<'a> {
-    /// What `-` stands for where a file is asked for.
-    pub input: &'a mut dyn Read,
-    /// Results.
-    pub out: &'a mut dyn Write,
-    /// Messages.
-    pub err: &'a mut dyn Write,
-    /// Whether to draw progress on the process's standard error.
-    pub progress: bool,
-    /// How many letters a line of help or of a table may have; `None` where nothing limits them, as in
-    /// a file.
-    pub width: Option<usize>,
-}
+use words::plain::Plain;
+use words::{lines, width};
 
 /// Runs the process's own arguments on the shipped models.
 #[must_use]
@@ -117,7 +76,7 @@ pub fn execute(
     let matches = match command.try_get_matches_from_mut(arguments) {
         Ok(matches) => matches,
         Err(error) => {
-            let error = foreign_option::explained(error, &command, name.as_deref());
+            let error = arguments::explained(error, &command, name.as_deref());
             return answer_clap(&error, streams);
         }
     };
@@ -140,7 +99,7 @@ pub fn execute(
                 None => writeln!(streams.err, "clebsch: {text}"),
             };
             if as_json {
-                let _ = writeln!(streams.out, "{}", run::failure_json(&failure));
+                let _ = writeln!(streams.out, "{}", failure.json());
             }
         }
         failure.code()

@@ -1,8 +1,8 @@
 //! Arrays of an npz: a zip of npy files, as `numpy.savez` and a run's trajectory.npz are. Takes the file; gives its arrays by
 //! name, with shapes and numbers. Formats: PKWARE APPNOTE 6.3 (4.3.7, 4.3.12, 4.3.16), NEP 1. Members are read as they are stored.
 
-use crate::plain::shown;
-use crate::suggestion::did_you_mean;
+use crate::words::plain::shown;
+use crate::words::suggestion::did_you_mean;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;

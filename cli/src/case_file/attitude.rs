@@ -3,7 +3,7 @@
 
 mod tables;
 
-use super::value::{Numbers, Shape, entries, number, row, shape};
+use super::value::{Nameless, Numbers, Shape, entries, number, row, shape};
 use clebsch::card::{Field, Kind};
 use clebsch::groups::Rotation;
 use clebsch::nalgebra::{DMatrix, Matrix3};
@@ -52,6 +52,21 @@ pub(super) fn numbers(
     }
 }
 
+/// The same from the numbers of an array: a matrix, or a quaternion.
+pub(super) fn of_array(
+    field: &Field,
+    numbers: &[f64],
+    shape: &[usize],
+) -> Result<Vec<f64>, String> {
+    match (field.kind, shape) {
+        (Kind::UnitQuaternion, [4, 4]) => Ok(numbers.to_vec()),
+        (Kind::UnitQuaternion, _) => of_quaternion(field, numbers),
+        (Kind::Rotation, [4]) => unit(numbers).map(|r| by_rows(&r.matrix())),
+        (Kind::RigidMotion, _) => Ok(homogeneous(numbers, field.rows - 1)),
+        _ => Ok(orthonormal(numbers.to_vec(), field.rows)),
+    }
+}
+
 /// Whether a key is one of the tables that state a rotation.
 pub(crate) fn is_key_of_rotation(key: &str) -> bool {
     tables::keys().any(|known| known == key)
@@ -68,7 +83,7 @@ pub(super) fn is_table(value: &DeValue<'_>) -> bool {
 /// Whether a 4 x 4 matrix is that of the left multiplication by a quaternion, rather than a list of four quaternions.
 pub(super) fn is_left_factor(value: &DeValue<'_>) -> bool {
     let matrix = Kind::Matrix.field("", [4, 4], "");
-    let Ok(all) = entries(&matrix, value, &|_| None) else {
+    let Ok(all) = entries(&matrix, value, &Nameless) else {
         return false;
     };
     let at = |i: usize, j: usize| all.get(4 * i + j).copied().unwrap_or_default();
@@ -134,38 +149,36 @@ fn quaternion(field: &Field, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Ve
             return entries(&matrix, value, of);
         }
     }
-    let q = match shape(value) {
-        // The sign is that of the case: a quaternion and its opposite are two states.
-        Shape::Vector(4) => {
-            let own = row(value, of)?;
-            unit(&own)?;
-            let norm = own.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let by = if (norm - 1.0).abs() <= ROUNDING {
-                1.0
-            } else {
-                norm
-            };
-            own.into_iter().map(|x| x / by).collect()
-        }
-        _ => {
-            let as_matrix = Kind::Rotation.field("", [3, 3], "");
-            let turn = rotation(&as_matrix, value, of).map_err(|why| {
-                match why.split_once(", found ") {
-                    Some((_, found)) => format!("expected {}, found {found}", expected(field)),
-                    None => why,
-                }
-            })?;
-            let turn = Rotation::from_matrix(&turn).map_err(|error| error.to_string())?;
-            turn.quaternion().to_vec()
-        }
+    if let Shape::Vector(4) = shape(value) {
+        return of_quaternion(field, &row(value, of)?);
+    }
+    let as_matrix = Kind::Rotation.field("", [3, 3], "");
+    let turn = rotation(&as_matrix, value, of).map_err(|why| match why.split_once(", found ") {
+        Some((_, found)) => format!("expected {}, found {found}", expected(field)),
+        None => why,
+    })?;
+    let turn = Rotation::from_matrix(&turn).map_err(|error| error.to_string())?;
+    Ok(as_asked(field, turn.quaternion().to_vec()))
+}
+
+/// A unit quaternion with the sign that the case gives: a quaternion and its opposite are two states.
+fn of_quaternion(field: &Field, own: &[f64]) -> Result<Vec<f64>, String> {
+    unit(own)?;
+    let norm = own.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let by = if (norm - 1.0).abs() <= ROUNDING {
+        1.0
+    } else {
+        norm
     };
-    let &[w, x, y, z] = q.as_slice() else {
-        return Ok(q);
-    };
-    Ok(match field.cols {
-        4 => vec![w, -x, -y, -z, x, w, -z, y, y, z, w, -x, z, -y, x, w],
+    Ok(as_asked(field, own.iter().map(|x| x / by).collect()))
+}
+
+/// A quaternion by its numbers, or by the matrix of its left multiplication.
+fn as_asked(field: &Field, q: Vec<f64>) -> Vec<f64> {
+    match (field.cols, q.as_slice()) {
+        (4, &[w, x, y, z]) => vec![w, -x, -y, -z, x, w, -z, y, y, z, w, -x, z, -y, x, w],
         _ => q,
-    })
+    }
 }
 
 /// A rigid motion of `n` dimensions: its homogeneous matrix, or its rotation and its position.
@@ -204,19 +217,20 @@ fn motion(
             )
         }
         _ => {
-            let all = entries(field, value, of)?;
-            let at = |i: usize, j: usize| all.get(i * (n + 1) + j).copied().unwrap_or_default();
-            let block = (0..n * n).map(|k| at(k / n, k % n)).collect();
-            let last: Vec<f64> = (0..=n).map(|j| at(n, j)).collect();
-            let own = assembled(
-                &orthonormal(block, n),
-                &(0..n).map(|i| at(i, n)).collect::<Vec<_>>(),
-            );
-            // What is wrong with the last row the model says.
-            return Ok(own.into_iter().take(n * (n + 1)).chain(last).collect());
+            return Ok(homogeneous(&entries(field, value, of)?, n));
         }
     };
     Ok(assembled(&turn, &place))
+}
+
+/// The homogeneous matrix of `n` dimensions whose rotation was rounded. What is wrong with its last row the model says.
+fn homogeneous(all: &[f64], n: usize) -> Vec<f64> {
+    let at = |i: usize, j: usize| all.get(i * (n + 1) + j).copied().unwrap_or_default();
+    let block = (0..n * n).map(|k| at(k / n, k % n)).collect();
+    let place: Vec<f64> = (0..n).map(|i| at(i, n)).collect();
+    let own = assembled(&orthonormal(block, n), &place);
+    let last = (0..=n).map(|j| at(n, j));
+    own.into_iter().take(n * (n + 1)).chain(last).collect()
 }
 
 fn numbers_of(field: &Field, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Vec<f64>, String> {

@@ -1,16 +1,38 @@
 //! How many sites a case has and how its line ends: its tables `[labels]` and `[ends]`. Takes the text; gives the choice, or what
 //! is wrong with it.
 
-use super::labels::{SITES, Stated, table};
 use super::location::File;
 use super::scope::Scope;
 use super::space::Space;
-use crate::failure::Failure;
-use crate::plain::shown;
+use super::stated::Stated;
+use crate::terminal::failure::Failure;
+use crate::words::plain::shown;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Choice, Lattice};
+use clebsch_core::{document, pipeline};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+
+/// Number of sites where no case says one.
+const SITES: usize = 8;
+
+/// Number of particles of a fluid where no case says one.
+const PARTICLES: usize = 64;
+
+/// What holds where no case says otherwise.
+pub(crate) fn default_choice(stated: &Stated) -> Option<Choice> {
+    let shortest = pipeline::representative(&stated.model, &stated.lattice).ok()?;
+    let mut choice = document::default_choice(&stated.lattice, shortest);
+    for count in &mut choice.counts {
+        *count = SITES;
+    }
+    if let Some(space) = Space::sample(stated) {
+        for (count, label) in choice.counts.iter_mut().zip(&stated.lattice.labels) {
+            *count = if label.grid { space.count() } else { PARTICLES };
+        }
+    }
+    Some(choice)
+}
 
 /// The choice that a case makes in its tables `[labels]` and `[ends]`; none for a model that cannot be written out, which its
 /// derivation tells of, with the place in its text.
@@ -19,13 +41,21 @@ use toml::de::{DeTable, DeValue};
 /// Usage: no TOML, an unknown label or end condition, a number of sites that is none.
 pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<Choice>, Failure> {
     let file = File::new(name, text);
+    let document = file.document()?;
+    of_case(&file, document.get_ref(), stated)
+}
+
+/// The same of a case that is being read.
+pub(super) fn of_case(
+    file: &File<'_>,
+    top: &DeTable<'_>,
+    stated: &Stated,
+) -> Result<Option<Choice>, Failure> {
     let lattice = &stated.lattice;
-    let Some(mut choice) = stated.default_choice() else {
+    let Some(mut choice) = default_choice(stated) else {
         return Ok(None);
     };
-    let document = file.document()?;
-    let top = document.get_ref();
-    let Some(labels) = table(&file, top, "labels")? else {
+    let Some(labels) = file.table(top, "labels")? else {
         let keys: Vec<String> = lattice
             .labels
             .iter()
@@ -37,7 +67,7 @@ pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<C
         );
         return Err(file.wrong(None, &message));
     };
-    let space = Space::read(&file, top, stated)?;
+    let space = Space::read(file, top, stated)?;
     let scope = Scope::of(top);
     for (key, value) in labels {
         let asked = key.get_ref().as_ref();
@@ -68,13 +98,13 @@ pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<C
         let message = format!("missing key `labels.{index}`: how many sites there are");
         return Err(file.wrong(None, &message));
     }
-    let ends = table(&file, top, "ends")?;
+    let ends = file.table(top, "ends")?;
     for (key, value) in ends.into_iter().flatten() {
-        choice = ended(&file, lattice, choice, key.get_ref().as_ref(), value)?;
+        choice = ended(file, lattice, choice, key.get_ref().as_ref(), value)?;
     }
     if ends.is_none_or(DeTable::is_empty) {
-        let parameters = table(&file, top, "parameters")?;
-        ends_unchosen(&file, stated, &choice, parameters)?;
+        let parameters = file.table(top, "parameters")?;
+        ends_unchosen(file, stated, &choice, parameters)?;
     }
     Ok(Some(choice))
 }

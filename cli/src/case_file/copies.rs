@@ -1,11 +1,12 @@
 //! Which sites the quantities of a lattice have, and at which of them they are given.
 //! Takes a model with labels and a choice; gives the sites of each quantity, in order.
 
-use super::labels::Stated;
+use super::stated::Stated;
 use clebsch::card::Field;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Choice, ExpandedModel, Kind, Lattice, unfold};
 use clebsch_core::syntax::ast::Statement;
+use std::borrow::Cow;
 use std::collections::HashSet;
 
 /// Most copies for which the lattice is written out to find them: there every statement is heeded.
@@ -134,8 +135,8 @@ impl Copies {
 
 /// The key of a quantity whose copies are fields of a card, and the site of one of them.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub(crate) struct Base {
-    pub key: String,
+pub(crate) struct Base<'a> {
+    pub key: Cow<'a, str>,
     pub site: usize,
     pub label: usize,
     /// Whether it belongs to an end condition.
@@ -143,24 +144,24 @@ pub(crate) struct Base {
     /// Whether it is a copy that is given at an end.
     pub given: bool,
     /// The name in ASCII of the quantity that it is, or whose momentum it is.
-    pub of: String,
+    pub of: &'a str,
     /// Whether it is a momentum of that.
     pub is_momentum: bool,
 }
 
 /// What a field of a card is a copy of.
-pub(crate) fn base(copies: &Copies, field: &Field) -> Option<Base> {
+pub(crate) fn base<'a>(copies: &'a Copies, field: &Field) -> Option<Base<'a>> {
     if let Some((of, site, label)) = &copies.only
         && ["momentum", "body_momentum", "spatial_momentum"].contains(&field.ascii)
     {
         // Of a single configuration the momentum is named without it.
         return Some(Base {
-            key: format!("{}_{of}", field.ascii),
+            key: format!("{}_{of}", field.ascii).into(),
             site: *site,
             label: *label,
             end: false,
             given: false,
-            of: of.clone(),
+            of,
             is_momentum: true,
         });
     }
@@ -168,12 +169,12 @@ pub(crate) fn base(copies: &Copies, field: &Field) -> Option<Base> {
     let site: usize = digits.parse().ok()?;
     if copies.of_ends.iter().any(|own| own == field.ascii) {
         return Some(Base {
-            key: key.to_owned(),
+            key: key.into(),
             site,
             label: copies.line?,
             end: true,
             given: false,
-            of: key.to_owned(),
+            of: key,
             is_momentum: false,
         });
     }
@@ -182,13 +183,13 @@ pub(crate) fn base(copies: &Copies, field: &Field) -> Option<Base> {
         own && g.sites.binary_search(&site).is_ok()
     })?;
     Some(Base {
-        key: key.to_owned(),
+        key: key.into(),
         site,
         label: group.label?,
         end: false,
         given: group.moving.binary_search(&site).is_err(),
         is_momentum: key != group.of,
-        of: group.of.clone(),
+        of: &group.of,
     })
 }
 

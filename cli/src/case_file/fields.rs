@@ -1,376 +1,467 @@
 //! The tables `[parameters]` and `[initial]` of a case. Takes a table and the fields of a card; gives the numbers of each field, in
 //! order, and how configurations start whose momenta are not given.
 
-use super::beside::Beside;
-use super::from_npz::{self, Arrays};
-use super::inertia::{self, Given, Taken};
+use super::at_sites::{AtSites, Here};
+use super::copies::Base;
+use super::from_npz::{self, Arrays, Fault, Wanted};
+use super::inertia;
+use super::keys::quantity_of;
 use super::location::File;
-use super::motion::{Motion, Start, elements};
-use super::read::{known_keys, table};
+use super::motion::{Motion, Start};
 use super::scope::Scope;
-use super::value::{self, Numbers, expected};
+use super::sites;
+use super::table::{Found, Key, Table};
+use super::taken_as::TakenAs;
+use super::value::{expected, is_element};
 use super::velocity::{self, Way};
-use crate::failure::Failure;
-use crate::model_file::is_momentum;
-use crate::suggestion::slip;
-use clebsch::card::{Field, Kind};
-use std::collections::{BTreeMap, HashMap, HashSet};
+use crate::models::fields::is_momentum;
+use crate::terminal::failure::Failure;
+use crate::words::plain::shown;
+use crate::words::suggestion::{did_you_mean, slip};
+use clebsch::card::{Card, Field};
+use std::collections::{BTreeMap, HashSet};
+use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// Reads the numbers of a field from a value.
-type Read = fn(&Field, &DeValue<'_>, &Numbers<'_>) -> Result<Vec<f64>, String>;
 
 /// Reads tables of a case.
 pub(super) struct Fields<'a> {
     pub file: &'a File<'a>,
-    /// Values that stand beside the text.
-    pub beside: &'a Beside,
     pub scope: &'a Scope,
+    pub arrays: Arrays,
+    /// Of a model with labels.
+    pub sites: Option<&'a AtSites<'a>>,
     /// The lines of keys.
-    pub lines: &'a mut BTreeMap<String, usize>,
+    pub lines: BTreeMap<String, usize>,
     /// What is given by velocities, and what rests.
     pub motion: Motion,
+    /// Keys of each table that gave a value.
+    pub seen: BTreeMap<&'static str, HashSet<String>>,
+    /// Quantities whose line at all sites is kept.
+    pub quantities: HashSet<(&'static str, &'static str)>,
 }
 
-/// One table.
-struct Table<'t, 'i> {
-    name: &'static str,
-    fields: &'static [Field],
-    table: &'t DeTable<'i>,
-    taken: Taken<'static>,
-    /// The names of all fields.
-    names: HashSet<&'static str>,
-    /// The configuration of each momentum.
-    elements: HashMap<usize, usize>,
-    arrays: Arrays,
-}
+/// What expressions read.
+const READS: &str = ": an expression of a site reads its label, the number of sites, and numbers of the case that are the same at \
+                     all sites";
 
-impl Fields<'_> {
-    /// The numbers of the fields of a table.
+impl<'a> Fields<'a> {
+    /// The numbers of all parameters and initial values of a card.
     pub(super) fn read(
         &mut self,
         top: &DeTable<'_>,
-        name: &'static str,
-        fields: &'static [Field],
-    ) -> Result<Vec<Vec<f64>>, Failure> {
-        let nothing = DeTable::new();
-        let (found, span) = match table(self.file, top, name)? {
-            Some((table, span)) => (table, Some(span)),
-            None => (&nothing, None),
-        };
-        let needed: Vec<&str> = fields
-            .iter()
-            .filter(|field| !is_momentum(field))
-            .map(|field| field.ascii)
-            .collect();
-        if span.is_none() && !needed.is_empty() {
-            let message = format!("missing table [{name}] with keys {}", needed.join(", "));
-            return Err(self.file.wrong(None, &message));
+        card: &Card,
+    ) -> Result<[Vec<Vec<f64>>; 2], Failure> {
+        let at_sites = self.sites.is_some();
+        for name in ["parameters", "initial"] {
+            self.file.table(top, name)?;
         }
-        let own = Table {
-            name,
-            fields,
-            table: found,
-            taken: Taken::of(fields),
-            names: fields.iter().map(|field| field.ascii).collect(),
-            elements: elements(fields),
-            arrays: Arrays::of(self.file),
-        };
-        self.known(&own)?;
-        let mut values = Vec::with_capacity(fields.len());
-        for (index, field) in fields.iter().enumerate() {
-            if let Some(numbers) = self.beside.get(name, index) {
-                values.push(numbers.to_vec());
-                continue;
+        let parameters = ("parameters", card.parameters);
+        let parameters = self.table(&Table::of(top, parameters, (at_sites, true)))?;
+        let initial = ("initial", card.initial);
+        let initial = self.table(&Table::of(top, initial, (at_sites, false)))?;
+        Ok([parameters, initial])
+    }
+
+    fn table(&mut self, table: &Table<'_, '_>) -> Result<Vec<Vec<f64>>, Failure> {
+        if self.sites.is_none() {
+            let needed = table.fields.iter().filter(|field| !is_momentum(field));
+            let needed: Vec<&str> = needed.map(|field| field.ascii).collect();
+            if table.span.is_none() && !needed.is_empty() {
+                let keys = needed.join(", ");
+                let message = format!("missing table [{}] with keys {keys}", table.name);
+                return Err(self.file.wrong(None, &message));
             }
-            let read = match own.given(field) {
-                Some(key) => {
-                    if let Some((other, value)) = own.velocities(index).pop() {
-                        let message =
-                            format!("{name}.{other}: is given beside {key}: give one of them");
-                        return Err(self.file.wrong(Some(&value.span()), &message));
-                    }
-                    self.value(&own, field, key)?
-                }
-                None if is_momentum(field) && own.elements.contains_key(&index) => {
-                    self.moving(&own, index)?;
-                    vec![0.0; field.count()]
+            self.known(table)?;
+        }
+        let sites = self.sites;
+        let mut all = Vec::with_capacity(table.fields.len());
+        for (index, field) in table.fields.iter().enumerate() {
+            let base = sites.and_then(|sites| sites.base(field));
+            all.push(self.field(table, index, field, base.as_ref())?);
+        }
+        if self.sites.is_some() {
+            self.known(table)?;
+        }
+        Ok(all)
+    }
+
+    fn field(
+        &mut self,
+        table: &Table<'_, '_>,
+        index: usize,
+        field: &'static Field,
+        base: Option<&Base<'_>>,
+    ) -> Result<Vec<f64>, Failure> {
+        if let Some((numbers, line)) = self.of_fluid(field.ascii, base.map(|b| (&*b.key, b.site))) {
+            let numbers = self.plain(field, (table.name, field.ascii), numbers, line)?;
+            self.keep_line(table.name, field.ascii, line, base.is_some());
+            return Ok(numbers);
+        }
+        let end = base.and_then(|base| self.sites?.at_end(base));
+        let held = base.is_some_and(|b| b.given);
+        let Some(found) = table.find(table.keys(field, base, end), held) else {
+            if is_momentum(field) && table.elements.contains_key(&index) {
+                self.velocities(table, index, base)?;
+                return Ok(vec![0.0; field.count()]);
+            }
+            // A slip of the keyboard comes first.
+            if base.is_none() {
+                self.known(table)?;
+            }
+            return Err(self.missing(table, field, base));
+        };
+        if let Some(second) = self.second(table, &found, (index, field), base) {
+            return Err(second);
+        }
+        let taken_as = match found.key.inertia {
+            true => TakenAs::Inertia,
+            false => TakenAs::Itself,
+        };
+        let own = match found.key.inertia {
+            true => table.inertia(field, field.ascii),
+            false => None,
+        };
+        let written = own.as_deref().unwrap_or(field.ascii);
+        let numbers = self.valued(&found, (field, base), taken_as, written)?;
+        let line = self.file.line(&found.value.span());
+        let of_sites = found.key.of_sites && found.table == table.name;
+        self.keep_line(found.table, field.ascii, line, of_sites);
+        self.see(&found);
+        Ok(numbers)
+    }
+
+    /// What is wrong if a field is given twice: by its inertia too, or a momentum by a velocity too.
+    fn second(
+        &self,
+        table: &Table<'_, '_>,
+        found: &Found<'_, '_, '_>,
+        (index, field): (usize, &Field),
+        base: Option<&Base<'_>>,
+    ) -> Option<Failure> {
+        let key = &found.key;
+        let inertia = table.inertia(field, &key.name).filter(|_| !key.inertia);
+        if let Some((_, value)) = inertia.and_then(|inertia| table.get(&inertia, false)) {
+            let why = "is given twice, by itself and by its inertia";
+            let message = format!("{}.{}: {why}", table.name, key.name);
+            return Some(self.file.wrong(Some(&value.span()), &message));
+        }
+        if !(table.moves && is_momentum(field)) {
+            return None;
+        }
+        let velocities = table.ways(index, base).filter_map(|(_, _, keys)| {
+            // One site may have a momentum of its own among velocities.
+            let keys = keys.into_iter().flatten();
+            table.find(keys.filter(|own| !own.of_sites || key.of_sites), false)
+        });
+        let other = velocities.last()?;
+        let message = format!(
+            "{}.{}: is given beside {}: give one of them",
+            table.name, other.key.name, key.name
+        );
+        Some(self.file.wrong(Some(&other.value.span()), &message))
+    }
+
+    /// The velocities of a configuration whose momentum is not given; without any it rests.
+    fn velocities(
+        &mut self,
+        table: &Table<'_, '_>,
+        index: usize,
+        base: Option<&Base<'_>>,
+    ) -> Result<(), Failure> {
+        let Some((momentum, element)) = table.moving(index) else {
+            return Ok(());
+        };
+        let is_fluid = self.sites.is_some_and(|sites| sites.fluid.is_some());
+        let mut turns: Option<String> = None;
+        let before = self.motion.given.len();
+        let ways = table.ways(index, base).filter(|_| table.moves || is_fluid);
+        for (way, written, keys) in ways {
+            let field = way.field(element, momentum);
+            let all = base.and_then(|b| Some((way.key(&b.key)?, b.site)));
+            let place = all.as_ref().map(|(key, site)| (key.as_str(), *site));
+            let (key, numbers, line, of_sites) = match self.of_fluid(&written, place) {
+                Some((numbers, line)) => {
+                    let named = (table.name, written.as_str());
+                    let numbers = self.plain(&field, named, numbers, line)?;
+                    (written, numbers, line, true)
                 }
                 None => {
-                    let message = format!(
-                        "missing key `{}.{}`: {}",
-                        self.stands(&own, field),
-                        field.ascii,
-                        expected(field)
-                    );
-                    return Err(self.file.wrong(span.as_ref(), &message));
+                    let Some(found) = table.find(keys.into_iter().flatten(), false) else {
+                        continue;
+                    };
+                    let key = match self.sites {
+                        Some(_) => written,
+                        None => found.key.name.to_string(),
+                    };
+                    if let Some(other) = turns.as_ref().filter(|_| way != Way::Rate) {
+                        let message = format!(
+                            "{}.{key}: is given beside {other}: give one of them",
+                            table.name
+                        );
+                        return Err(self.file.wrong(Some(&found.value.span()), &message));
+                    }
+                    let numbers = self.valued(&found, (&field, base), TakenAs::Velocity, &key)?;
+                    self.see(&found);
+                    let line = self.file.line(&found.value.span());
+                    (key, numbers, line, found.key.of_sites)
                 }
             };
-            values.push(read);
-        }
-        Ok(values)
-    }
-
-    /// The table in which a field stands: what an end holds is an initial value.
-    fn stands(&self, own: &Table<'_, '_>, field: &Field) -> &'static str {
-        match self.beside.initial(field.ascii) {
-            true => "initial",
-            false => own.name,
-        }
-    }
-
-    /// Refuses keys that no field has.
-    fn known(&self, own: &Table<'_, '_>) -> Result<(), Failure> {
-        let mut keys = own.table.keys();
-        if keys.all(|key| own.names.contains(key.get_ref().as_ref())) {
-            return Ok(());
-        }
-        let in_text = own.fields.iter().enumerate();
-        let in_text = in_text.filter(|(index, _)| self.beside.get(own.name, *index).is_none());
-        let mut known: Vec<String> = Vec::new();
-        let mut seen: HashSet<String> = HashSet::new();
-        for (index, field) in in_text {
-            let mut add = |key: String| {
-                if seen.insert(key.clone()) {
-                    known.push(key);
-                }
-            };
-            add(field.ascii.to_owned());
-            inertia::key(field, &own.taken)
-                .into_iter()
-                .for_each(&mut add);
-            if let Some(base) = own.of_all_copies(field.ascii) {
-                add(base.to_owned());
-                let of_all = inertia::key_of(field, base, &own.taken);
-                of_all.into_iter().for_each(&mut add);
+            self.keep_line(table.name, momentum.ascii, line, of_sites);
+            if way != Way::Rate {
+                turns = Some(key.clone());
             }
-            own.ways(index)
-                .into_iter()
-                .flat_map(|(_, keys)| keys)
-                .for_each(add);
-        }
-        let names: Vec<&str> = known.iter().map(String::as_str).collect();
-        let otherwise = |asked: &str| {
-            // `"Λ"` is how the model writes it, but files use the ASCII name.
-            let written = own.fields.iter().find(|field| field.name == asked);
-            if let Some(field) = written {
-                return Some(format!("; did you mean `{}`?", field.ascii));
-            }
-            if let Some(near) = slip(asked, &names) {
-                return Some(format!("; did you mean `{near}`?"));
-            }
-            velocity::is_meant(asked)
-                .then(|| own.how_to_move())
-                .flatten()
-        };
-        let place = format!("in [{}]", own.name);
-        known_keys(self.file, own.table, &names, &place, &otherwise)
-    }
-
-    /// The numbers of a field that is given under a key.
-    fn value(
-        &mut self,
-        own: &Table<'_, '_>,
-        field: &'static Field,
-        key: &str,
-    ) -> Result<Vec<f64>, Failure> {
-        let stands = self.stands(own, field);
-        let shown = inertia::shown_key(own.table, field, key, &own.taken);
-        let (value, found) = match inertia::given(own.table, field, key, &own.taken) {
-            Given::Own(value) => {
-                let read = self.numbers(own, (field, field), (&shown, value), value::numbers);
-                (value, read?)
-            }
-            Given::Inertia(value) => {
-                let inertia = inertia::field(field);
-                let of = (field, &inertia);
-                let read = self.numbers(own, of, (&shown, value), inertia::second_moments);
-                (value, read?)
-            }
-            Given::Twice(value) => (
-                value,
-                Err("is given twice, by itself and by its inertia".to_owned()),
-            ),
-            Given::Missing => return Ok(Vec::new()),
-        };
-        let found = found.map_err(|message| {
-            let message = format!("{stands}.{shown}: {message}");
-            self.file.wrong(Some(&value.span()), &message)
-        })?;
-        let line = self.file.line(&value.span());
-        self.lines.insert(format!("{stands}.{}", field.ascii), line);
-        Ok(found)
-    }
-
-    /// The numbers of a value, or of an array of a file: `of` has the field and the shape of its array.
-    fn numbers(
-        &self,
-        own: &Table<'_, '_>,
-        (field, as_array): (&Field, &Field),
-        (shown, value): (&str, &Spanned<DeValue<'_>>),
-        read: Read,
-    ) -> Result<Result<Vec<f64>, String>, Failure> {
-        let of = |name: &str| self.scope.number(name);
-        if !from_npz::is_meant(value.get_ref()) {
-            let found = read(field, value.get_ref(), &of);
-            return Ok(found.map_err(|why| self.scope.explained(why)));
-        }
-        let named = shown.trim_end_matches(".I");
-        let text = own.arrays.whole(as_array, value, named).map_err(|fault| {
-            let message = format!("{}.{shown}: {}", self.stands(own, field), fault.why);
-            self.file.wrong(Some(&fault.at), &message)
-        })?;
-        let one = DeValue::parse(&text);
-        let one = one.map_err(|e| self.file.wrong(Some(&value.span()), e.message()))?;
-        Ok(read(field, one.get_ref(), &of))
-    }
-
-    /// The motion of a configuration whose momentum is not given.
-    fn moving(&mut self, own: &Table<'_, '_>, index: usize) -> Result<(), Failure> {
-        let (Some(momentum), Some(element)) = (own.fields.get(index), own.element(index)) else {
-            return Ok(());
-        };
-        let given = own.velocities(index);
-        let turns = |way: Way| way != Way::Rate;
-        let mut before: Option<&str> = None;
-        for (key, value) in &given {
-            let way = own.way(index, key);
-            let Some(way) = way else { continue };
-            if let Some(other) = before.filter(|_| turns(way)) {
-                let message = format!(
-                    "{}.{key}: is given beside {other}: give one of them",
-                    own.name
-                );
-                return Err(self.file.wrong(Some(&value.span()), &message));
-            }
-            before = turns(way).then_some(key.as_str()).or(before);
-            let field = way.field(element, momentum);
-            let read = self.numbers(own, (&field, &field), (key, value), velocity_numbers)?;
-            let numbers = read.map_err(|why| {
-                let message = format!("{}.{key}: {why}", own.name);
-                self.file.wrong(Some(&value.span()), &message)
-            })?;
-            let line = self.file.line(&value.span());
-            self.lines
-                .insert(format!("{}.{}", own.name, momentum.ascii), line);
             self.motion.given.push(Start {
                 momentum: index,
                 way,
-                key: key.clone(),
+                key,
                 line,
                 numbers,
             });
         }
-        if given.is_empty() {
+        if self.motion.given.len() == before {
             self.motion.resting.push(index);
         }
         Ok(())
     }
-}
 
-/// Of a skew matrix both halves are looked at.
-fn velocity_numbers(
-    field: &Field,
-    value: &DeValue<'_>,
-    of: &Numbers<'_>,
-) -> Result<Vec<f64>, String> {
-    let all = value::numbers(field, value, of)?;
-    let n = field.rows;
-    let at = |i: usize, j: usize| all.get(i * n + j).copied().unwrap_or_default();
-    let off =
-        |k: usize| (at(k / n, k % n) + at(k % n, k / n)).abs() > 1e-9 * at(k / n, k % n).abs();
-    match field.kind == Kind::Skew && (0..n * n).any(off) {
-        true => Err("not skew: an angular velocity W of n dimensions is a skew matrix, the rate of change of R being R*W".to_owned()),
-        false => Ok(all),
+    /// Numbers that were computed for all particles of a fluid, and the line of what gave them.
+    fn of_fluid(&self, name: &str, place: Option<(&str, usize)>) -> Option<(&'a [f64], usize)> {
+        self.sites?.fluid.as_ref()?.numbers(name, place)
     }
-}
 
-impl<'t, 'i> Table<'t, 'i> {
-    /// The key by which a field is given: its own, or that of all copies.
-    fn given(&self, field: &'static Field) -> Option<&'static str> {
-        let is_given = |key: &str| {
-            !matches!(
-                inertia::given(self.table, field, key, &self.taken),
-                Given::Missing
-            )
+    /// Numbers that are those of a field as they are.
+    fn plain(
+        &self,
+        field: &Field,
+        (table, written): (&str, &str),
+        numbers: &[f64],
+        line: usize,
+    ) -> Result<Vec<f64>, Failure> {
+        let fits = field.cols == 1 && field.rows == numbers.len();
+        let why = match numbers.iter().find(|x| !x.is_finite()) {
+            None if fits => return Ok(numbers.to_vec()),
+            None => format!(
+                "expected {}, found {} numbers",
+                expected(field),
+                numbers.len()
+            ),
+            Some(x) => format!("{x} is not a finite number"),
         };
-        let all = self.of_all_copies(field.ascii);
-        [Some(field.ascii), all]
-            .into_iter()
-            .flatten()
-            .find(|key| is_given(key))
+        let message = format!("{table}.{written}: {why}");
+        Err(self.file.wrong_at(line.max(1), &message))
     }
 
-    /// The name of all copies of a quantity whose names end in numbers: `x` of `x1`, `x_2`. None where a field has it.
-    fn of_all_copies<'k>(&self, name: &'k str) -> Option<&'k str> {
-        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
-        let stem = match stem.len() < name.len() {
-            true => stem.strip_suffix('_').unwrap_or(stem),
-            false => return None,
+    /// The numbers of a field from the value that was found; `written` is its key with its site.
+    fn valued(
+        &self,
+        found: &Found<'_, '_, '_>,
+        (field, base): (&Field, Option<&Base<'_>>),
+        taken_as: TakenAs,
+        written: &str,
+    ) -> Result<Vec<f64>, Failure> {
+        let own = &*found.key.name;
+        let wrong = |key: &str, why: &str, at: &Range<usize>| {
+            let message = format!("{}.{}: {why}", found.table, shown(key));
+            self.file.wrong(Some(at), &message)
         };
-        (!stem.is_empty() && !self.names.contains(stem)).then_some(stem)
-    }
-
-    fn element(&self, momentum: usize) -> Option<&'static Field> {
-        let at = self.elements.get(&momentum)?;
-        self.fields.get(*at)
-    }
-
-    /// The velocities that a configuration may have, and the keys of each.
-    fn ways(&self, momentum: usize) -> Vec<(Way, Vec<String>)> {
-        let (Some(field), Some(element)) = (self.fields.get(momentum), self.element(momentum))
-        else {
-            return Vec::new();
-        };
-        let own = Way::ALL.into_iter().filter(|way| way.is_of(element, field));
-        let each = own.filter_map(|way| {
-            let key = way.key(field.ascii)?;
-            let named = velocity::suffix(field.ascii)
-                .is_some_and(str::is_empty)
-                .then(|| format!("{key}_{}", element.ascii));
-            let all = self.of_all_copies(&key).map(str::to_owned);
-            let keys = [Some(key), named, all].into_iter().flatten();
-            // A field of the model may bear such a name.
-            let keys: Vec<String> = keys.filter(|k| !self.names.contains(k.as_str())).collect();
-            Some((way, keys))
-        });
-        each.collect()
-    }
-
-    fn way(&self, momentum: usize, key: &str) -> Option<Way> {
-        let ways = self.ways(momentum).into_iter();
-        let mut own = ways.filter(|(_, keys)| keys.iter().any(|k| k == key));
-        own.next().map(|(way, _)| way)
-    }
-
-    /// The velocities that are given of a configuration, each under the first of its keys.
-    fn velocities(&self, momentum: usize) -> Vec<(String, &'t Spanned<DeValue<'i>>)> {
-        let ways = self.ways(momentum).into_iter();
-        let found = ways.filter_map(|(_, keys)| {
-            keys.into_iter()
-                .find_map(|key| Some((self.table.get(key.as_str())?, key)))
-        });
-        found.map(|(value, key)| (key, value)).collect()
-    }
-
-    /// Which keys a reader may write who looks for velocities.
-    fn how_to_move(&self) -> Option<String> {
-        let mut keys: Vec<String> = Vec::new();
-        for index in 0..self.fields.len().min(64) {
-            let ways = self.ways(index).into_iter();
-            let first = ways.filter_map(|(way, keys)| Some((way, keys.into_iter().next()?)));
-            for (way, key) in first {
-                let said = match way {
-                    Way::Rate => format!("`{key}`"),
-                    Way::Body => format!("`{key}` (in the axes of the body)"),
-                    Way::Space => format!("`{key}` (in those of space)"),
-                };
-                if !keys.contains(&said) {
-                    keys.push(said);
-                }
+        let span = found.value.span();
+        let base = base.filter(|_| found.key.of_sites);
+        let at = self
+            .sites
+            .zip(base)
+            .map(|(sites, base)| sites.at(field, base));
+        let (value, is_listed) = match at {
+            Some(at) if !from_npz::is_meant(found.value.get_ref()) => {
+                sites::at(&at, found.value).map_err(|why| wrong(own, &why, &span))?
             }
+            _ => (found.value, false),
+        };
+        let inside = inertia::inside(field, value.get_ref());
+        let inside = inside.filter(|_| taken_as == TakenAs::Itself);
+        let (value, taken_as, dot) = match inside {
+            Some(inertia) => (inertia, TakenAs::Inertia, ".I"),
+            None => (value, taken_as, ""),
+        };
+        if from_npz::is_meant(value.get_ref()) {
+            let read = self.of_array(field, base, taken_as, own, value);
+            return read.map_err(|fault| wrong(&format!("{own}{dot}"), &fault.why, &fault.at));
         }
-        (!keys.is_empty()).then(|| format!("; velocities are given by {}", keys.join(", ")))
+        let here = Here {
+            scope: self.scope,
+            sites: self.sites,
+            base,
+        };
+        taken_as
+            .value(field, value.get_ref(), &here)
+            .map_err(|why| {
+                let Some(sites) = self.sites else {
+                    return wrong(&format!("{own}{dot}"), &self.scope.explained(why), &span);
+                };
+                // What is wrong at every site alike is a matter of the key as it was written.
+                let other = |table: &DeTable<'_>| !table.contains_key("I");
+                let is_whole = is_element(field) || value.get_ref().as_table().is_some_and(other);
+                let unvalued = match is_whole {
+                    true => Some(why.clone()),
+                    false => sites::unvalued(value.get_ref(), &here),
+                };
+                match (unvalued, base) {
+                    (None, _) => {
+                        // The site is named, so that the expression is known.
+                        let why = why.rsplit_once("\": ").map_or(why.as_str(), |(_, why)| why);
+                        wrong(&format!("{written}{dot}"), why, &span)
+                    }
+                    (Some(why), None) => wrong(own, &self.scope.explained(why), &span),
+                    (Some(why), Some(base)) => {
+                        let listed = match is_listed {
+                            true => format!("at {} = {}, ", sites.index(base), base.site),
+                            false => String::new(),
+                        };
+                        let is_missing = why.ends_with("has no value here");
+                        let reads = if is_missing { READS } else { "" };
+                        wrong(own, &format!("{listed}{why}{reads}"), &span)
+                    }
+                }
+            })
+    }
+
+    /// The value of a copy, or of what belongs to no site, from an array of a file.
+    fn of_array(
+        &self,
+        field: &Field,
+        base: Option<&Base<'_>>,
+        taken_as: TakenAs,
+        named: &str,
+        value: &Spanned<DeValue<'_>>,
+    ) -> Result<Vec<f64>, Fault> {
+        let values = from_npz::shapes(&taken_as.of_array(field));
+        let base = base.filter(|b| !b.end);
+        let group = base.and_then(|b| self.sites?.group(b.of));
+        let may_move = base.is_some_and(|b| b.is_momentum);
+        let wanted = Wanted {
+            values: &values,
+            sites: group.map(|g| &g.sites[..]),
+            moving: group.filter(|_| may_move).map(|g| &g.moving[..]),
+        };
+        let taken = self.arrays.take(value, named, wanted)?;
+        let numbers = taken.at(base.map_or(0, |b| b.site));
+        let read = numbers.and_then(|numbers| taken_as.array(field, numbers, taken.shape()));
+        read.map_err(|why| Fault {
+            why,
+            at: value.span(),
+        })
+    }
+
+    fn missing(&self, table: &Table<'_, '_>, field: &Field, base: Option<&Base<'_>>) -> Failure {
+        let what = expected(field);
+        let name = table.name;
+        let Some((base, sites)) = base.zip(self.sites) else {
+            let message = format!("missing key `{name}.{}`: {what}", field.ascii);
+            return self.file.wrong(table.span.as_ref(), &message);
+        };
+        let (key, site) = (&base.key, base.site);
+        let index = sites.index(base);
+        let message = match base.end {
+            true => {
+                format!("missing key `{name}.{key}`: {what}, of the end condition at site {site}")
+            }
+            false => format!(
+                "missing key `{name}.{key}` for site {index} = {site}: {what}, with numbers or expressions in {index} for all sites, or a list of such for each"
+            ),
+        };
+        self.file.wrong(None, &message)
+    }
+
+    /// Refuses keys that no field has.
+    fn known(&self, table: &Table<'_, '_>) -> Result<(), Failure> {
+        let Some(values) = table.values else {
+            return Ok(());
+        };
+        // Of a configuration whose every copy is given nothing is initial, and of an alternative
+        // that is not chosen nothing is asked.
+        let is_left = |sites: &AtSites<'_>, key: &str| match table.name {
+            "initial" => sites.group(key).is_some(),
+            _ => sites.stated.of_other_ends(key),
+        };
+        let seen = self.seen.get(table.name);
+        let is_own = |key: &str| {
+            let is_seen = seen.is_some_and(|seen| seen.contains(key));
+            is_seen || self.sites.is_some_and(|sites| is_left(sites, key))
+        };
+        if values.keys().all(|key| is_own(key.get_ref())) {
+            return Ok(());
+        }
+        let names = self.names(table);
+        let mut known: Vec<&str> = names.iter().map(String::as_str).collect();
+        let left = values.keys().map(|key| key.get_ref().as_ref());
+        let left: Vec<&str> = left.filter(|key| is_own(key)).collect();
+        let place = format!("in [{}]", table.name);
+        if self.sites.is_some() {
+            known.sort_unstable();
+            let listed = known.clone();
+            known.extend(left);
+            let otherwise = |asked: &str| Some(did_you_mean(asked, listed.iter().copied()));
+            return self.file.known_keys(values, &known, &place, &otherwise);
+        }
+        let otherwise = |asked: &str| {
+            // `"Λ"` is how the model writes it, but files use the ASCII name.
+            let written = table.fields.iter().find(|field| field.name == asked);
+            let near = written.map(|field| field.ascii);
+            if let Some(near) = near.or_else(|| slip(asked, &known)) {
+                return Some(format!("; did you mean `{near}`?"));
+            }
+            velocity::is_meant(asked)
+                .then(|| table.how_to_move())
+                .flatten()
+        };
+        self.file.known_keys(values, &known, &place, &otherwise)
+    }
+
+    /// The keys that the fields of a table may have, in their order.
+    fn names(&self, table: &Table<'_, '_>) -> Vec<String> {
+        let fluid = self.sites.and_then(|sites| sites.fluid.as_ref());
+        let mut names: Vec<String> = fluid
+            .iter()
+            .flat_map(|f| f.used())
+            .map(str::to_owned)
+            .collect();
+        let mut known: HashSet<String> = names.iter().cloned().collect();
+        let mut put = |key: Key<'_>| {
+            if !known.contains(&*key.name) {
+                known.insert(key.name.to_string());
+                names.push(key.name.into_owned());
+            }
+        };
+        for (index, field) in table.fields.iter().enumerate() {
+            let base = self.sites.and_then(|sites| sites.base(field));
+            let base = base.as_ref();
+            if self
+                .of_fluid(field.ascii, base.map(|b| (&*b.key, b.site)))
+                .is_some()
+            {
+                continue;
+            }
+            let end = base.and_then(|base| self.sites?.at_end(base));
+            table.keys(field, base, end).for_each(&mut put);
+            let ways = table.ways(index, base).flat_map(|(_, _, keys)| keys);
+            ways.flatten().for_each(&mut put);
+        }
+        names
+    }
+
+    fn see(&mut self, found: &Found<'_, '_, '_>) {
+        let seen = self.seen.entry(found.table).or_default();
+        if !seen.contains(&*found.key.name) {
+            seen.insert(found.key.name.to_string());
+        }
+    }
+
+    /// Keeps the line of a value: under the name of its field, or of values at all sites once under that of their quantity.
+    fn keep_line(&mut self, table: &'static str, field: &'static str, line: usize, of_sites: bool) {
+        let quantity = quantity_of(field).filter(|_| of_sites);
+        if quantity.is_none_or(|quantity| self.quantities.insert((table, quantity))) {
+            let key = format!("{table}.{}", quantity.unwrap_or(field));
+            self.lines.insert(key, line);
+        }
     }
 }

@@ -5,14 +5,13 @@ mod expressions;
 mod meshes;
 
 use super::from_npz::{self, Arrays, Fault};
-use super::labels::{Stated, table};
 use super::location::File;
 use super::scope::Scope;
 use super::space::Space;
 use super::start::places;
+use super::stated::Stated;
 use super::value::names_a_file;
-use crate::failure::Failure;
-use clebsch::card::Field;
+use crate::terminal::failure::Failure;
 use clebsch::mesh::{Domain, Voronoi};
 use clebsch::nalgebra::SVector;
 use clebsch_core::expr::symbol::ascii;
@@ -95,8 +94,8 @@ impl Fluid {
         let Some(space) = Space::read(file, top, stated)? else {
             return Ok(None);
         };
-        let parameters = table(file, top, "parameters")?;
-        let initial = table(file, top, "initial")?;
+        let parameters = file.table(top, "parameters")?;
+        let initial = file.table(top, "initial")?;
         let nodes = match &space.cells {
             Some(_) => space.nodes().map_err(|why| file.wrong(None, &why))?,
             None => Default::default(),
@@ -133,51 +132,28 @@ impl Fluid {
         Ok(Some(reader.fluid))
     }
 
-    /// The numbers of a field of the card, and the line that they came from, where they need no reading: finite ones of a number
-    /// or a vector.
+    /// The numbers of a field of the card, by its name or by its quantity and its site, and the line that they came from.
     pub(super) fn numbers(
         &self,
-        field: &Field,
+        field: &str,
         key: Option<(&str, usize)>,
     ) -> Option<(&[f64], usize)> {
-        let (key, site) = key?;
-        let column = self.columns.get(key)?;
-        let plain = field.cols == 1 && field.rows == column.size;
-        let own = column
-            .numbers
-            .get(site * column.size..(site + 1) * column.size)?;
-        (plain && own.iter().all(|x| x.is_finite())).then_some((own, column.line))
-    }
-
-    /// The value of a field of the card, and the line that it came from.
-    pub(super) fn text(&self, field: &str, key: Option<(&str, usize)>) -> Option<(String, usize)> {
         if let Some(list) = self.whole.get(field) {
-            return Some((spelt(list), 0));
+            return Some((list, 0));
         }
         let (key, site) = key?;
-        let column = self.columns.get(key)?;
-        let own = column
-            .numbers
-            .get(site * column.size..(site + 1) * column.size)?;
-        Some((spelt(own), column.line))
+        let Column {
+            numbers,
+            size,
+            line,
+        } = self.columns.get(key)?;
+        let own = numbers.get(site * size..(site + 1) * size)?;
+        Some((own, *line))
     }
 
     /// The keys that were read.
     pub(super) fn used(&self) -> impl Iterator<Item = &str> {
         self.used.iter().map(String::as_str)
-    }
-}
-
-/// Numbers as TOML reads them back.
-fn spelt(list: &[f64]) -> String {
-    let one = |x: &f64| match *x {
-        v if v.is_nan() => "nan".to_owned(),
-        v if v.is_infinite() => if v > 0.0 { "inf" } else { "-inf" }.to_owned(),
-        v => format!("{v:?}"),
-    };
-    match list {
-        [x] => one(x),
-        all => format!("[{}]", all.iter().map(one).collect::<Vec<_>>().join(", ")),
     }
 }
 

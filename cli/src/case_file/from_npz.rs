@@ -3,9 +3,8 @@
 
 use super::archive::{Archive, Array};
 use super::location::File;
-use super::sites::spelt;
-use crate::plain::shown;
-use crate::suggestion::did_you_mean;
+use crate::words::plain::shown;
+use crate::words::suggestion::did_you_mean;
 use clebsch::card::{Field, Kind};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -87,25 +86,6 @@ impl Arrays {
         let taken = Rc::new(self.read(value, named, wanted)?);
         self.taken.borrow_mut().insert(start, taken.clone());
         Ok(taken)
-    }
-
-    /// The value of a field that belongs to no site, as TOML.
-    pub(super) fn whole(
-        &self,
-        field: &Field,
-        value: &Spanned<DeValue<'_>>,
-        named: &str,
-    ) -> Result<String, Fault> {
-        let wanted = Wanted {
-            values: &shapes(field),
-            sites: None,
-            moving: None,
-        };
-        let taken = self.take(value, named, wanted)?;
-        taken.text(0).map_err(|why| Fault {
-            why,
-            at: value.span(),
-        })
     }
 
     fn read(
@@ -239,9 +219,9 @@ impl Taken {
         })
     }
 
-    /// The value of a site as TOML.
-    pub(super) fn text(&self, site: usize) -> Result<String, String> {
-        Ok(nested(self.at(site)?, &self.shape))
+    /// The shape of a value.
+    pub(super) fn shape(&self) -> &[usize] {
+        &self.shape
     }
 }
 
@@ -345,16 +325,6 @@ fn tuple(each: &[String]) -> String {
         [n] => format!("({n},)"),
         all => format!("({})", all.join(", ")),
     }
-}
-
-/// Numbers as TOML, in lists of lists.
-fn nested(numbers: &[f64], shape: &[usize]) -> String {
-    let Some((count, rest)) = shape.split_first() else {
-        return numbers.first().map_or_else(String::new, |x| spelt(*x));
-    };
-    let size = (numbers.len() / (*count).max(1)).max(1);
-    let each: Vec<String> = numbers.chunks(size).map(|own| nested(own, rest)).collect();
-    format!("[{}]", each.join(", "))
 }
 
 /// A text of the table.

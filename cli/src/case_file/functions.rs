@@ -1,12 +1,12 @@
 //! Functions that a case gives: `[functions]` with `b = "0.1*cos(2*pi*x/Lx)"` for `given b(Vec<2>): Real = case;`.
 //! Takes the text of a model and a case; gives the text with the expressions in it, which the engine differentiates.
 
-use super::labels::{Stated, table};
 use super::location::File;
 use super::space::Space;
-use crate::failure::Failure;
-use crate::plain::shown;
-use crate::suggestion::did_you_mean;
+use super::stated::Stated;
+use crate::terminal::failure::Failure;
+use crate::words::plain::shown;
+use crate::words::suggestion::did_you_mean;
 use clebsch_core::diagnostic::Errors;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::{Model, Name, Statement};
@@ -46,7 +46,7 @@ impl Filled {
         })?;
         let file = File::new(name, text);
         let document = file.document().ok()?;
-        let given = table(&file, document.get_ref(), TABLE).ok()??;
+        let given = file.table(document.get_ref(), TABLE).ok()??;
         let span = given.get(key.as_str())?.span();
         let message = format!("{TABLE}.{key}: {}", diagnostic.text());
         Some(file.wrong(Some(&span), &message))
@@ -99,7 +99,7 @@ fn of_case(
         let argument = f.argument.components().unwrap_or(1);
         formula::in_quotes(&sample(f.components, argument, false))
     };
-    let Some(given) = table(&file, top, TABLE)? else {
+    let Some(given) = file.table(top, TABLE)? else {
         let each = open
             .iter()
             .map(|f| format!("{} = {}", f.name.text, example(f)));

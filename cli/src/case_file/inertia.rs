@@ -2,96 +2,29 @@
 //! I in the place of J. Takes a table of a case file; gives J with `I = tr(J) Id - J`.
 
 use super::value::{Numbers, numbers};
-use crate::plots::axis;
+use crate::words::number;
 use clebsch::card::{Field, Kind};
-use std::collections::HashSet;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 /// The key under which the inertia may stand beside the field's own: `I` for `J`, `I2` for `J2`.
-/// None where the field is no matrix of second moments, has another letter, or the key is taken.
-pub(super) fn key(field: &Field, taken: &Taken<'_>) -> Option<String> {
-    key_of(field, field.ascii, taken)
-}
-
-/// The same of a field that is given by this name.
-pub(super) fn key_of(field: &Field, name: &str, taken: &Taken<'_>) -> Option<String> {
+/// None where the field is no matrix of second moments, or has another letter.
+pub(super) fn key_of(field: &Field, name: &str) -> Option<String> {
     if field.kind != Kind::SecondMoments {
         return None;
     }
-    let key = format!("I{}", name.strip_prefix('J')?);
-    (!taken.0.contains(key.as_str())).then_some(key)
+    Some(format!("I{}", name.strip_prefix('J')?))
 }
 
-/// The names of fields of a table that begin as those of inertias do.
-pub(super) struct Taken<'a>(HashSet<&'a str>);
-
-impl<'a> Taken<'a> {
-    /// Those of these fields, which may be millions.
-    pub(super) fn of(fields: &'a [Field]) -> Self {
-        let names = fields.iter().map(|field| field.ascii);
-        Taken(names.filter(|name| name.starts_with('I')).collect())
-    }
-}
-
-/// The value of a field, and whether it is its inertia: under its own name, as `J = { I = ... }`,
-/// or under the key of its inertia.
-pub(super) enum Given<'a, 'i> {
-    /// The field itself.
-    Own(&'a Spanned<DeValue<'i>>),
-    /// Its inertia.
-    Inertia(&'a Spanned<DeValue<'i>>),
-    /// Both, of which one is too many; the second one.
-    Twice(&'a Spanned<DeValue<'i>>),
-    /// Neither.
-    Missing,
-}
-
-/// How a table gives a field by a name: its own, or that of all its copies.
-pub(super) fn given<'a, 'i>(
-    table: &'a DeTable<'i>,
+/// The inertia in a value of second moments: `{ I = ... }`.
+pub(super) fn inside<'a, 'i>(
     field: &Field,
-    name: &str,
-    fields: &Taken<'_>,
-) -> Given<'a, 'i> {
-    let own = table.get(name);
-    let beside = key_of(field, name, fields).and_then(|key| table.get(key.as_str()));
-    let inside = own
-        .filter(|_| field.kind == Kind::SecondMoments)
-        .and_then(|value| value.get_ref().as_table())
-        .filter(|inner| inner.len() == 1)
-        .and_then(|inner| inner.get("I"));
-    match (own, inside, beside) {
-        (Some(_), _, Some(second)) => Given::Twice(second),
-        (_, Some(inertia), None) | (None, None, Some(inertia)) => Given::Inertia(inertia),
-        (Some(value), None, None) => Given::Own(value),
-        (None, _, None) => Given::Missing,
-        (None, Some(_), Some(second)) => Given::Twice(second),
-    }
-}
-
-/// What the key of a given field is called in messages: `I` where it is the inertia that was given.
-pub(super) fn shown_key(
-    table: &DeTable<'_>,
-    field: &Field,
-    name: &str,
-    fields: &Taken<'_>,
-) -> String {
-    match given(table, field, name, fields) {
-        Given::Inertia(_) if table.contains_key(name) => format!("{name}.I"),
-        Given::Inertia(_) => key_of(field, name, fields).unwrap_or_else(|| name.to_owned()),
-        Given::Own(_) | Given::Twice(_) | Given::Missing => name.to_owned(),
-    }
-}
-
-/// What to write for a matrix of second moments besides itself.
-pub(super) fn words(field: &Field) -> &'static str {
-    match field.kind {
-        Kind::SecondMoments => {
-            ", or the inertia: { I = [a, b, c] } for principal moments, { I = [[..], ..] } for a matrix"
-        }
-        _ => "",
-    }
+    value: &'a DeValue<'i>,
+) -> Option<&'a Spanned<DeValue<'i>>> {
+    let inner = value
+        .as_table()
+        .filter(|_| field.kind == Kind::SecondMoments)?;
+    inner.get("I").filter(|_| inner.len() == 1)
 }
 
 /// The inertia in the place of a field of second moments: a matrix, or its diagonal.
@@ -120,7 +53,7 @@ fn impossible(entries: &[f64], n: usize) -> Option<String> {
             format!(
                 "moments of inertia obey I{} <= I{first} + I{second}; {own} > {}",
                 i + 1,
-                axis::short(sum)
+                number::short(sum)
             )
         })
     })
@@ -141,6 +74,11 @@ pub(super) fn second_moments(
             None => message,
         }
     })?;
+    of_entries(field, &entries)
+}
+
+/// The same of the entries of its matrix.
+pub(super) fn of_entries(field: &Field, entries: &[f64]) -> Result<Vec<f64>, String> {
     let n = field.rows;
     for i in 0..n {
         for j in i + 1..n {
@@ -154,7 +92,7 @@ pub(super) fn second_moments(
             }
         }
     }
-    if let Some(why) = impossible(&entries, n) {
+    if let Some(why) = impossible(entries, n) {
         return Err(why);
     }
     let half: f64 = (0..n).map(|i| 0.5 * entries[i * n + i]).sum();

@@ -1,16 +1,17 @@
 //! The sample case of a model with labels: a key for each quantity as stated, expressions in the label.
 //! Takes a card and the choice it was made for; gives the text of a case file.
 
-use super::copies::{Base, base};
-use super::labels::Stated;
+use super::copies::{Base, Copies, base};
 use super::motion::elements;
 use super::remarks::remark;
 use super::sample as fluid;
 use super::space::Space;
+use super::stated::Stated;
 use super::velocity::Way;
 use super::write::{bounds, comment};
-use crate::model_file::{OF_HELD, has_holds, is_momentum, sample_entry, turns};
-use crate::plain::shown;
+use crate::models::fields::{is_momentum, sample_entry, turns};
+use crate::models::held::{OF_HELD, has_holds};
+use crate::words::plain::shown;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::Choice;
@@ -67,7 +68,7 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
         fluid::tables(&mut text, card, stated, space);
         return text;
     }
-    let Some(copies) = stated.copies(choice) else {
+    let Some(copies) = Copies::of(stated, choice) else {
         return text;
     };
     let elements = elements(card.initial);
@@ -76,7 +77,7 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
         let mut told: Vec<String> = Vec::new();
         for (at, field) in fields.iter().enumerate() {
             let base = base(&copies, field);
-            let key = base.as_ref().map_or(field.ascii, |b| b.key.as_str());
+            let key = base.as_ref().map_or(field.ascii, |b| &*b.key);
             // What is given at an end has its value among those of all sites.
             if base.as_ref().is_some_and(|b| b.given) || told.iter().any(|t| t == key) {
                 continue;
@@ -143,7 +144,7 @@ fn ends(text: &mut String, stated: &Stated, choice: &Choice) {
 fn sample(
     stated: &Stated,
     field: &Field,
-    base: Option<&Base>,
+    base: Option<&Base<'_>>,
     table: &str,
     turned: bool,
 ) -> String {

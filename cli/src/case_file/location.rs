@@ -3,10 +3,12 @@
 
 use super::motion::Motion;
 use super::not_toml;
-use crate::failure::Failure;
-use crate::gallery::Case;
-use crate::plain::shown;
-use std::collections::BTreeMap;
+use crate::models::gallery::Case;
+use crate::terminal::failure::Failure;
+use crate::words::plain::shown;
+use crate::words::suggestion::did_you_mean;
+use clebsch_core::lattice::Choice;
+use std::collections::{BTreeMap, HashSet};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::DeTable;
@@ -22,6 +24,8 @@ pub struct Located {
     pub lines: BTreeMap<String, usize>,
     /// How what is not given by momenta starts.
     pub(crate) motion: Motion,
+    /// How many sites a model with labels has, and how its line ends.
+    pub(crate) choice: Option<Choice>,
 }
 
 /// A file being read.
@@ -30,8 +34,6 @@ pub(super) struct File<'a> {
     pub text: &'a str,
     /// Where its lines end.
     ends: Vec<usize>,
-    /// Of a text that was written out: the line of the file that each of its lines came from.
-    origin: Option<&'a [usize]>,
 }
 
 impl<'a> File<'a> {
@@ -41,17 +43,6 @@ impl<'a> File<'a> {
             name,
             text,
             ends: ends(text),
-            origin: None,
-        }
-    }
-
-    /// A text that was written out from a file.
-    pub fn written_out(name: &'a str, text: &'a str, origin: &'a [usize]) -> File<'a> {
-        File {
-            name,
-            text,
-            ends: ends(text),
-            origin: Some(origin),
         }
     }
 
@@ -72,11 +63,57 @@ impl<'a> File<'a> {
 
     /// Line, from 1, where `span` begins.
     pub fn line(&self, span: &Range<usize>) -> usize {
-        let line = self.ends.partition_point(|end| *end < span.start);
-        match self.origin.and_then(|lines| lines.get(line)) {
-            Some(own) => (*own).max(1),
-            None => 1 + line,
+        1 + self.ends.partition_point(|end| *end < span.start)
+    }
+
+    /// The table `name`; `None` when the file has none.
+    ///
+    /// # Errors
+    /// Usage: what has this name is not a table.
+    pub fn table<'t, 'i>(
+        &self,
+        top: &'t DeTable<'i>,
+        name: &str,
+    ) -> Result<Option<&'t DeTable<'i>>, Failure> {
+        let Some(value) = top.get(name) else {
+            return Ok(None);
+        };
+        match value.get_ref().as_table() {
+            Some(table) => Ok(Some(table)),
+            None => Err(self.wrong(
+                Some(&value.span()),
+                &format!(
+                    "{name}: expected a table [{name}], found a value of type {}",
+                    value.get_ref().type_str()
+                ),
+            )),
         }
+    }
+
+    /// Refuses a key of a table that is not among those that are known; `otherwise` may say what is meant.
+    ///
+    /// # Errors
+    /// Usage: the first such key.
+    pub fn known_keys(
+        &self,
+        table: &DeTable<'_>,
+        known: &[&str],
+        place: &str,
+        otherwise: &dyn Fn(&str) -> Option<String>,
+    ) -> Result<(), Failure> {
+        let all: HashSet<&str> = known.iter().copied().collect();
+        for key in table.keys() {
+            let name = key.get_ref().as_ref();
+            if all.contains(name) {
+                continue;
+            }
+            let hint = otherwise(name).unwrap_or_else(|| did_you_mean(name, known.iter().copied()));
+            return Err(self.wrong(
+                Some(&key.span()),
+                &format!("unknown key `{}` {place}{hint}", shown(name)),
+            ));
+        }
+        Ok(())
     }
 
     /// A usage failure at a line.

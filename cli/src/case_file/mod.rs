@@ -3,8 +3,8 @@
 //! and of models with labels `[labels]` and `[ends]`.
 
 pub(crate) mod archive;
+mod at_sites;
 mod attitude;
-mod beside;
 mod chosen;
 mod copies;
 mod fields;
@@ -12,10 +12,11 @@ mod fluid;
 mod from_npz;
 pub(crate) mod functions;
 mod inertia;
-pub(crate) mod labels;
+mod keys;
 mod lattice;
 mod location;
 mod motion;
+mod names;
 mod not_toml;
 mod read;
 mod remarks;
@@ -24,16 +25,20 @@ mod scope;
 mod sites;
 pub(crate) mod space;
 mod start;
+pub(crate) mod stated;
+mod table;
+mod taken_as;
 mod value;
 mod velocity;
 mod write;
 
 pub(crate) use attitude::is_key_of_rotation;
-pub(crate) use beside::{at_site, line_of, quantity_of};
-pub(crate) use chosen::choice;
+pub(crate) use chosen::{choice, default_choice};
+pub(crate) use keys::{at_site, line_of, quantity_of};
 pub(crate) use lattice::write_lattice;
 pub use location::Located;
 pub(crate) use motion::{Motion, is_velocity, undefined};
 pub use read::read;
-pub(crate) use read::{no_steps, read_without_steps, read_written_out};
+pub(crate) use read::{no_steps, read_of};
+pub(crate) use write::DEFAULT_BOUND;
 pub use write::write;

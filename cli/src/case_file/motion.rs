@@ -1,10 +1,10 @@
 //! The motion with which a case starts, where it is not given by momenta: velocities, or nothing, which is rest. Takes them by the
 //! fields of a card; puts the momenta that the action gives to them into the case.
 
-use super::beside::at_site;
+use super::keys::at_site;
 use super::velocity::{Way, momentum_of, suffix};
-use crate::gallery::Case;
-use crate::model_file::is_momentum;
+use crate::models::fields::is_momentum;
+use crate::models::gallery::Case;
 use clebsch::card::{Card, Field, Kind};
 use clebsch_check::{
     Legendre, NoMomentum, Setup, Undefined, Velocities, Velocity, onto_constraints,

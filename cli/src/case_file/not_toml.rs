@@ -1,7 +1,7 @@
 //! Values of other languages in a case that is no TOML: `2*pi**2`, `(3.0, 0.0)`, `None`. Takes the text and where TOML stopped;
 //! gives what to write.
 
-use crate::plain::shown;
+use crate::words::plain::shown;
 use clebsch_core::lattice::value::translated;
 use std::ops::Range;
 use toml::de::DeValue;

@@ -1,23 +1,21 @@
 //! Reads a case from a TOML file, for the model whose card is given.
 //! Takes the text; gives the case with the lines of its keys, or the first thing wrong with it.
 
-use super::beside::Beside;
+use super::at_sites::AtSites;
 use super::fields::Fields;
-use super::labels::WrittenOut;
+use super::from_npz::Arrays;
 use super::location::{File, Located};
 use super::motion::Motion;
 use super::scope::{Scope, rounded};
-use crate::arguments::whole;
-use crate::failure::Failure;
-use crate::gallery::Case;
-use crate::plain::shown;
-use crate::suggestion::did_you_mean;
+use super::stated::Stated;
+use crate::models::gallery::Case;
+use crate::terminal::failure::Failure;
+use crate::words::number::whole;
+use crate::words::plain::shown;
 use clebsch::card::Card;
 use clebsch::validate::positive_step;
-use clebsch_core::lattice::Choice;
 use clebsch_core::pipeline;
-use std::collections::HashSet;
-use std::ops::Range;
+use std::collections::{BTreeMap, HashSet};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -38,19 +36,11 @@ const KEYS: [&str; 8] = [
 /// Usage: no TOML, another model, an unknown, missing, mistyped or misshapen value. The message
 /// names file, line and key.
 pub fn read(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
-    let located = read_without_steps(name, text, card)?;
+    let located = read_of(name, text, card, None)?;
     match located.case.steps {
         0 => Err(no_steps(name)),
         _ => Ok(located),
     }
-}
-
-/// The same of a case that may leave the number of steps to an option: it is 0 then.
-///
-/// # Errors
-/// As [`read`].
-pub(crate) fn read_without_steps(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
-    located(&File::new(name, text), &Beside::default(), card, None)
 }
 
 /// The message for a case without a number of steps.
@@ -59,29 +49,25 @@ pub(crate) fn no_steps(name: &str) -> Failure {
     Failure::Usage(format!("{}: {message}", shown(name)))
 }
 
-/// The same of a case that was written out from a file, whose lines are told.
+/// The same of a case that may leave the number of steps to an option, which is 0 then; with the statement of a model that has labels.
 ///
 /// # Errors
 /// As [`read`].
-pub(crate) fn read_written_out(
+pub(crate) fn read_of(
     name: &str,
-    out: &WrittenOut,
+    text: &str,
     card: &Card,
+    stated: Option<&Stated>,
 ) -> Result<Located, Failure> {
-    let file = File::written_out(name, &out.text, &out.lines);
-    located(&file, &out.beside, card, Some(&out.choice))
-}
-
-fn located(
-    file: &File<'_>,
-    beside: &Beside,
-    card: &Card,
-    choice: Option<&Choice>,
-) -> Result<Located, Failure> {
-    let name = file.name;
+    let file = &File::new(name, text);
     let document = file.document()?;
     let top = document.get_ref();
+    let sites = stated.map(|stated| AtSites::read(file, top, stated));
+    let sites = sites.transpose()?;
     let mut known = KEYS.to_vec();
+    if sites.is_some() {
+        known.extend(["labels", "domain", "ends"]);
+    }
     let functions = super::functions::TABLE;
     // The model is read again for those cases alone.
     let model = top
@@ -90,7 +76,7 @@ fn located(
     if matches!(&model, Some(Ok(model)) if super::functions::are_given(model)) {
         known.push(functions);
     }
-    known_keys(file, top, &known, "at the top level", &|_| None)?;
+    file.known_keys(top, &known, "at the top level", &|_| None)?;
     let model = required(
         file,
         top,
@@ -108,26 +94,31 @@ fn located(
             ),
         ));
     }
-    let mut lines = beside.lines();
-    for (key, value) in top {
-        lines.insert(key.get_ref().to_string(), file.line(&value.span()));
-    }
     let scope = Scope::of(top);
     let h = step_size(file, &scope, required(file, top, "h", "the step size")?)?;
     let steps = match top.get("steps") {
         Some(count) => steps(file, &scope, count)?,
         None => 0,
     };
+    let of_top = top.iter().map(|(key, value)| {
+        let line = file.line(&value.span());
+        (key.get_ref().to_string(), line)
+    });
     let mut fields = Fields {
         file,
-        beside,
         scope: &scope,
-        lines: &mut lines,
+        arrays: Arrays::of(file),
+        sites: sites.as_ref(),
+        lines: of_top.collect(),
         motion: Motion::default(),
+        seen: BTreeMap::new(),
+        quantities: HashSet::new(),
     };
-    let parameters = fields.read(top, "parameters", card.parameters)?;
-    let initial = fields.read(top, "initial", card.initial)?;
-    let mut motion = fields.motion;
+    let [parameters, initial] = fields.read(top, card)?;
+    let Fields {
+        lines, mut motion, ..
+    } = fields;
+    let choice = sites.map(|sites| sites.choice);
     let mut case = Case {
         name: optional_string(file, top, "name")?.unwrap_or_else(|| stem(name)),
         doc: optional_string(file, top, "doc")?.unwrap_or_default(),
@@ -137,7 +128,7 @@ fn located(
         initial,
         bounds: bounds(file, &scope, top, card)?,
     };
-    let put = motion.put(card, choice, &mut case);
+    let put = motion.put(card, choice.as_ref(), &mut case);
     put.map_err(|wrong| {
         let message = format!("initial.{}: {}", wrong.key, wrong.why);
         file.wrong_at(wrong.line, &message)
@@ -147,6 +138,7 @@ fn located(
         file: name.to_owned(),
         lines,
         motion,
+        choice,
     })
 }
 
@@ -157,28 +149,6 @@ fn stem(name: &str) -> String {
         || name.to_owned(),
         |stem| stem.to_string_lossy().into_owned(),
     )
-}
-
-pub(super) fn known_keys(
-    file: &File<'_>,
-    table: &DeTable<'_>,
-    known: &[&str],
-    place: &str,
-    otherwise: &dyn Fn(&str) -> Option<String>,
-) -> Result<(), Failure> {
-    let all: HashSet<&str> = known.iter().copied().collect();
-    for key in table.keys() {
-        let name = key.get_ref().as_ref();
-        if all.contains(name) {
-            continue;
-        }
-        let hint = otherwise(name).unwrap_or_else(|| did_you_mean(name, known.iter().copied()));
-        return Err(file.wrong(
-            Some(&key.span()),
-            &format!("unknown key `{}` {place}{hint}", shown(name)),
-        ));
-    }
-    Ok(())
 }
 
 fn required<'a, 'i>(
@@ -252,34 +222,13 @@ fn steps(file: &File<'_>, scope: &Scope, value: &Spanned<DeValue<'_>>) -> Result
     }
 }
 
-/// The table `name`, with the line it starts on; `None` when the file has none.
-pub(super) fn table<'a, 'i>(
-    file: &File<'_>,
-    top: &'a DeTable<'i>,
-    name: &str,
-) -> Result<Option<(&'a DeTable<'i>, Range<usize>)>, Failure> {
-    let Some(value) = top.get(name) else {
-        return Ok(None);
-    };
-    match value.get_ref().as_table() {
-        Some(table) => Ok(Some((table, value.span()))),
-        None => Err(file.wrong(
-            Some(&value.span()),
-            &format!(
-                "{name}: expected a table [{name}], found a value of type {}",
-                value.get_ref().type_str()
-            ),
-        )),
-    }
-}
-
 fn bounds(
     file: &File<'_>,
     scope: &Scope,
     top: &DeTable<'_>,
     card: &Card,
 ) -> Result<Vec<(String, f64)>, Failure> {
-    let Some((table, _)) = table(file, top, "bounds")? else {
+    let Some(table) = file.table(top, "bounds")? else {
         return Ok(Vec::new());
     };
     let known: Vec<&str> = card
@@ -287,7 +236,7 @@ fn bounds(
         .iter()
         .map(|invariant| invariant.name)
         .collect();
-    known_keys(file, table, &known, "in [bounds]", &|_| None)?;
+    file.known_keys(table, &known, "in [bounds]", &|_| None)?;
     let mut bounds = Vec::new();
     // In the order of the card, so that the order in the file does not matter.
     for name in known {

@@ -1,8 +1,8 @@
 //! The sample case of a fluid: its domain, particles on a lattice, a depth and velocities by expressions of the place.
 //! Takes a card; gives the tables of a case file.
 
-use super::labels::Stated;
 use super::space::Space;
+use super::stated::Stated;
 use clebsch::card::{Card, Kind as FieldKind};
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Kind, Quantity};

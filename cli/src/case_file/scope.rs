@@ -1,7 +1,8 @@
 //! The numbers that expressions of a case may hold: its step `h`, and its parameters that are one number. Takes the tables of a
 //! case; gives the values of names, whatever order they are given in.
 
-use super::value::{Numbers, number};
+use super::names::{Nameless, Names};
+use super::value::number;
 use clebsch_core::lattice::value::SiteData;
 use std::collections::{BTreeMap, HashMap};
 use toml::de::{DeTable, DeValue};
@@ -17,6 +18,12 @@ pub(super) struct Scope {
     open: BTreeMap<String, String>,
     /// Names with a value.
     names: Vec<String>,
+}
+
+impl Names for Scope {
+    fn number(&self, name: &str) -> Option<f64> {
+        self.known.get(name).copied()
+    }
 }
 
 impl Scope {
@@ -35,7 +42,7 @@ impl Scope {
                     rest.extend(SiteData::read(text).ok().map(|data| (key, data)));
                 }
                 plain => {
-                    if let Ok(x) = number(plain, &|_| None) {
+                    if let Ok(x) = number(plain, &Nameless) {
                         out.names.push(key.clone());
                         out.known.insert(key, x);
                     }
@@ -59,11 +66,6 @@ impl Scope {
                 return out;
             }
         }
-    }
-
-    /// The value of a name.
-    pub(super) fn number(&self, name: &str) -> Option<f64> {
-        self.known.get(name).copied()
     }
 
     /// What is wrong with an expression, with what a reader needs to mend it.
@@ -114,7 +116,7 @@ impl Scope {
 
     /// A number, or an expression that has one.
     pub(super) fn read(&self, value: &DeValue<'_>) -> Result<f64, String> {
-        number(value, &|name| self.number(name)).map_err(|why| self.explained(why))
+        number(value, self).map_err(|why| self.explained(why))
     }
 
     /// A whole number, or an expression that has one to rounding.
@@ -143,23 +145,9 @@ pub(super) fn rounded(x: f64) -> Option<u64> {
     (is_whole && (0.0..MOST).contains(&whole)).then_some(whole as u64)
 }
 
-/// The value of an expression, whatever number it is.
-pub(super) fn value(text: &str, of: &Numbers<'_>) -> Result<f64, String> {
-    let value = SiteData::read(text).and_then(|data| data.value(of));
-    value.map_err(|why| format!("\"{text}\": {why}"))
-}
-
-/// The value of an expression, if it is a finite number.
-pub(super) fn evaluated(text: &str, of: &Numbers<'_>) -> Result<f64, String> {
-    match value(text, of)? {
-        x if x.is_finite() => Ok(x),
-        x => Err(format!("\"{text}\": {x} is not a finite number")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Scope, rounded};
+    use super::{Names as _, Scope, rounded};
     use toml::de::DeTable;
 
     #[test]

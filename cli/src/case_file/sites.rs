@@ -3,9 +3,10 @@
 //! element for each site.
 
 use super::attitude;
-use super::scope;
-use super::value::{Numbers, number, numbers};
+use super::names;
+use super::value::{Numbers, number};
 use clebsch::card::{Field, Kind};
+use toml::Spanned;
 use toml::de::DeValue;
 
 /// Of which field a value is asked, at which of its sites.
@@ -17,110 +18,44 @@ pub(super) struct Site<'a> {
     pub count: usize,
     /// The same among the sites that move, where a list may leave the others out.
     pub moving: Option<(usize, usize)>,
-    /// Which site it is, as a reader is told: `i = 3`.
-    pub named: &'a str,
 }
 
-/// What expressions read.
-const READS: &str = ": an expression of a site reads its label, the number of sites, and numbers of the case that are the same at \
-                     all sites";
-
-/// The value as TOML, texts in it evaluated.
-pub(super) fn plain(value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, String> {
+/// Why an expression in a value has no value, or what is no number; nothing if all of it has one.
+pub(super) fn unvalued(value: &DeValue<'_>, of: &Numbers<'_>) -> Option<String> {
     match value {
-        // What is no finite number is told with its site, where the case is read.
-        DeValue::String(text) => Ok(spelt(scope::value(text, of)?)),
-        DeValue::Array(list) => {
-            let each = list.iter().map(|v| plain(v.get_ref(), of));
-            let each: Result<Vec<String>, String> = each.collect();
-            Ok(format!("[{}]", each?.join(", ")))
-        }
-        DeValue::Table(table) => {
-            let each = table.iter().map(|(key, v)| {
-                let text = plain(v.get_ref(), of)?;
-                Ok(format!("{} = {text}", key.get_ref()))
-            });
-            let each: Result<Vec<String>, String> = each.collect();
-            Ok(format!("{{ {} }}", each?.join(", ")))
-        }
-        other => Ok(spelt(number(other, of)?)),
+        // A number that is not finite belongs to its site.
+        DeValue::String(text) => names::value(text, of).err(),
+        DeValue::Array(list) => list.iter().find_map(|v| unvalued(v.get_ref(), of)),
+        DeValue::Table(table) => table.iter().find_map(|(_, v)| unvalued(v.get_ref(), of)),
+        other => number(other, of).err(),
     }
 }
 
-/// The value of a field that belongs to one site or to none, as TOML: an element of a group by its numbers.
-pub(super) fn of_field(
-    field: &Field,
-    value: &DeValue<'_>,
-    of: &Numbers<'_>,
-) -> Result<String, String> {
-    match field.kind {
-        Kind::Rotation | Kind::UnitQuaternion | Kind::RigidMotion => {
-            Ok(by_rows(field, &numbers(field, value, of)?))
-        }
-        // The inertia in the place of second moments.
-        _ if value.as_table().is_some_and(|t| !t.contains_key("I")) => {
-            numbers(field, value, of).map(|all| by_rows(field, &all))
-        }
-        _ => plain(value, of),
-    }
-}
-
-/// Numbers as TOML, row by row.
-fn by_rows(field: &Field, all: &[f64]) -> String {
-    let list = |row: &[f64]| {
-        let each: Vec<String> = row.iter().map(|x| spelt(*x)).collect();
-        format!("[{}]", each.join(", "))
+/// The value at one site, and whether it is an element of a list.
+pub(super) fn at<'v, 'i>(
+    site: &Site<'_>,
+    value: &'v Spanned<DeValue<'i>>,
+) -> Result<(&'v Spanned<DeValue<'i>>, bool), String> {
+    let list = value.get_ref().as_array();
+    let list = list.filter(|_| is_list_of_sites(site.field, value.get_ref()));
+    let Some(list) = list else {
+        return Ok((value, false));
     };
-    match field.cols {
-        1 => list(all),
-        cols => {
-            let rows: Vec<String> = all.chunks(cols).map(list).collect();
-            format!("[{}]", rows.join(", "))
-        }
-    }
-}
-
-/// A number as TOML reads it back.
-pub(super) fn spelt(value: f64) -> String {
-    match value {
-        v if v.is_nan() => "nan".to_owned(),
-        v if v.is_infinite() => if v > 0.0 { "inf" } else { "-inf" }.to_owned(),
-        v => format!("{v:?}"),
-    }
-}
-
-/// The value at one site.
-pub(super) fn at(site: &Site<'_>, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, String> {
-    found(site, value, of).map_err(|why| match why.ends_with("has no value here") {
-        true => format!("{why}{READS}"),
-        false => why,
-    })
-}
-
-fn found(site: &Site<'_>, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<String, String> {
-    let DeValue::Array(list) = value else {
-        return of_field(site.field, value, of);
-    };
-    if !is_list_of_sites(site.field, value) {
-        return of_field(site.field, value, of);
-    }
     let place = match site.moving {
         Some((place, count)) if list.len() == count => place,
-        _ => site.place,
+        _ if list.len() == site.count => site.place,
+        _ => {
+            return Err(format!(
+                "a list has a value for each of the {} sites, and this one has {}",
+                site.count,
+                list.len()
+            ));
+        }
     };
-    let fits = list.len() == site.count || site.moving.is_some_and(|(_, n)| list.len() == n);
-    if !fits {
-        return Err(format!(
-            "a list has a value for each of the {} sites, and this one has {}",
-            site.count,
-            list.len()
-        ));
-    }
-    match list.get(place) {
-        Some(one) => of_field(site.field, one.get_ref(), of)
-            .map_err(|why| format!("at {}, {why}", site.named)),
-        None => of_field(site.field, value, of),
-    }
+    Ok(match list.get(place) {
+        Some(one) => (one, true),
+        None => (value, false),
+    })
 }
 
 /// Whether a value is a list with an element for each site rather than the value of all sites.
@@ -139,7 +74,10 @@ fn is_list_of_sites(field: &Field, value: &DeValue<'_>) -> bool {
             d => d >= 3,
         },
         Kind::UnitQuaternion => match depth {
-            2 => inner == Some(4) && !(field.cols == 4 && attitude::is_left_factor(value)),
+            2 => {
+                inner == Some(4)
+                    && !(field.cols == 4 && lengths(value) == 4 && attitude::is_left_factor(value))
+            }
             d => d >= 3,
         },
         Kind::Diagonal => depth >= 3 || (depth == 2 && lengths(value) != field.rows),

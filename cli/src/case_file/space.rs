@@ -1,10 +1,10 @@
 //! Where the particles of a fluid live: the tables `[domain]` and `[labels]` of a case. Takes the tables; gives
 //! lengths, walls and cells, or what is wrong with them.
 
-use super::labels::Stated;
 use super::location::File;
 use super::scope::Scope;
-use crate::failure::Failure;
+use super::stated::Stated;
+use crate::terminal::failure::Failure;
 use clebsch::mesh::{Domain, Nodes, Setting, Wall};
 use clebsch_core::syntax::ast::Extent;
 use toml::Spanned;
@@ -64,7 +64,7 @@ impl Space {
             (None, _) => "[domain] with lengths = [1.0, 1.0] and walls = [\"solid\", \"periodic\"]"
                 .to_owned(),
         };
-        let Some(table) = super::labels::table(file, top, "domain")? else {
+        let Some(table) = file.table(top, "domain")? else {
             let message =
                 format!("missing table [domain], where particles live: for example {example}");
             return Err(file.wrong(None, &message));
@@ -251,7 +251,7 @@ fn cells(
     };
     let name = &grid.index.text;
     let example = if d == 1 { "32" } else { "[32, 32]" };
-    let labels = super::labels::table(file, top, "labels")?;
+    let labels = file.table(top, "labels")?;
     let Some(value) = labels.and_then(|t| t.get(name.as_str())) else {
         let message = format!(
             "missing key `labels.{name}`, the cells of the grid along each direction: for example {name} = {example}"

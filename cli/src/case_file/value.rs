@@ -4,13 +4,11 @@
 //! Shapes are checked here; symmetry, orthogonality and the like by the model that is opened with them.
 
 use super::attitude;
-use super::scope::evaluated;
+use super::names::evaluated;
+pub(super) use super::names::{Nameless, Numbers};
 use clebsch::card::{Field, Kind};
 use toml::Spanned;
 use toml::de::DeValue;
-
-/// The values of names in expressions.
-pub(super) type Numbers<'a> = dyn Fn(&str) -> Option<f64> + 'a;
 
 /// What to write for a field, in words.
 pub(super) fn expected(field: &Field) -> String {
@@ -20,8 +18,8 @@ pub(super) fn expected(field: &Field) -> String {
         Kind::Rotation | Kind::UnitQuaternion | Kind::RigidMotion => attitude::expected(field),
         Kind::Diagonal => format!("the {rows} diagonal entries [a, ..] or a {rows}x{cols} matrix"),
         Kind::SecondMoments => format!(
-            "a symmetric {rows}x{cols} matrix [[..], ..], written in full{}",
-            super::inertia::words(field)
+            "a symmetric {rows}x{cols} matrix [[..], ..], written in full, or the inertia: {{ I = [a, b, c] }} for principal \
+             moments, {{ I = [[..], ..] }} for a matrix"
         ),
         Kind::Symmetric => format!("a symmetric {rows}x{cols} matrix [[..], ..], written in full"),
         Kind::Skew => format!("a skew {rows}x{cols} matrix [[..], ..], written in full"),
@@ -36,14 +34,31 @@ pub(super) fn numbers(
     value: &DeValue<'_>,
     of: &Numbers<'_>,
 ) -> Result<Vec<f64>, String> {
-    let is_element = matches!(
-        field.kind,
-        Kind::Rotation | Kind::UnitQuaternion | Kind::RigidMotion
-    );
-    match is_element {
+    match is_element(field) {
         true => attitude::numbers(field, value, of),
         false => entries(field, value, of),
     }
+}
+
+/// The numbers of `field` from those of an array, which has one of the shapes that it may have there.
+pub(super) fn of_array(
+    field: &Field,
+    numbers: &[f64],
+    shape: &[usize],
+) -> Result<Vec<f64>, String> {
+    match field.kind {
+        _ if is_element(field) => attitude::of_array(field, numbers, shape),
+        Kind::Diagonal if shape.len() == 1 => Ok(on_diagonal(numbers)),
+        _ => Ok(numbers.to_vec()),
+    }
+}
+
+/// Whether a field is an element of a group.
+pub(super) fn is_element(field: &Field) -> bool {
+    matches!(
+        field.kind,
+        Kind::Rotation | Kind::UnitQuaternion | Kind::RigidMotion
+    )
 }
 
 /// The same of a field that is given by its entries alone.

@@ -20,7 +20,7 @@ impl Way {
     pub(super) const ALL: [Self; 3] = [Self::Rate, Self::Body, Self::Space];
 
     /// The beginning of its key.
-    fn word(self) -> &'static str {
+    pub(super) fn word(self) -> &'static str {
         match self {
             Self::Rate => "velocity",
             Self::Body => "angular_velocity",

@@ -3,13 +3,16 @@
 
 use super::motion::elements;
 use super::velocity::Way;
-use crate::gallery::Case;
-use crate::model_file::{OF_HELD, has_holds};
-use crate::plain::shown;
-use crate::verdict::DEFAULT_BOUND;
+use crate::models::gallery::Case;
+use crate::models::held::{OF_HELD, has_holds};
+use crate::words::plain::shown;
 use clebsch::card::{Card, Conserved, Field, Kind};
 use clebsch_core::pipeline;
 use std::fmt::Write as _;
+
+/// Drift allowed to an exactly conserved invariant when the case names no bound. Rounding adds up to
+/// some 1e-16 a step at worst, so this holds for about 1e4 steps of any stepper and 1e6 of a careful one.
+pub(crate) const DEFAULT_BOUND: f64 = 1e-12;
 
 /// The TOML text of `case`, of the model that is called `named` on the command line: its name, or a path.
 #[must_use]

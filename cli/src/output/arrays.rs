@@ -12,7 +12,7 @@ const OFFSET: usize = 2;
 
 /// All arrays of a run: those of the card, quantities at sites with the site as their second index in the place of their
 /// copies.
-pub(super) fn arrays(card: &Card, samples: u64) -> Vec<Array> {
+pub(crate) fn arrays(card: &Card, samples: u64) -> Vec<Array> {
     let at_sites = at_sites(card);
     let members = at_sites.iter().flat_map(|q| &q.members);
     let starts: HashSet<usize> = members.map(|(_, columns)| columns.start).collect();

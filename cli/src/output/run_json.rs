@@ -3,7 +3,7 @@
 
 use super::Finished;
 use crate::plan::Plan;
-use crate::verdict::{Outcome, Verdict};
+use crate::trajectory::verdict::{Outcome, Verdict};
 use clebsch::card::{Card, Field, Kind};
 use serde_json::{Map, Value, json};
 
@@ -33,7 +33,7 @@ pub fn run_json(run: &Finished<'_>, files: &[String]) -> Value {
         results.insert("made_by_parts".to_owned(), made);
     }
     if let (Some(verdict), Some(results)) = (stated, results.as_object_mut()) {
-        let verdict = crate::stated::verdict_json(verdict);
+        let verdict = crate::trajectory::stated::verdict_json(verdict);
         results.insert("action_as_stated".to_owned(), verdict);
     }
     if let Some(object) = object.as_object_mut() {

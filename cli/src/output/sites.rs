@@ -1,7 +1,7 @@
 //! Which observables are copies of one quantity, at the sites of a label.
 //! Takes a card; gives each such quantity with the columns of its sites.
 
-use crate::case_file::labels::Stated;
+use crate::case_file::stated::Stated;
 use clebsch::card::{Card, Field};
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Kind, Quantity, Sites};

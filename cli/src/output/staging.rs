@@ -16,8 +16,8 @@ pub use resumed::Found;
 
 use super::interrupted;
 use super::standing::{self, Standing};
-use crate::failure::Failure;
-use crate::plain::{Shown, shown};
+use crate::terminal::failure::Failure;
+use crate::words::plain::{Shown, shown};
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter};

@@ -1,15 +1,19 @@
 //! What stands where results are to go: nothing, the folder of an earlier run, or something else.
 //! Takes a path; gives what `--force` may replace, or why nothing may be.
 
-use super::vtk;
-use crate::failure::Failure;
-use crate::plain::shown;
-use crate::plot::is_drawn;
+use crate::terminal::failure::Failure;
+use crate::words::plain::shown;
 use std::ffi::OsString;
 use std::fs::{self, DirEntry};
 use std::io;
 use std::path::Path;
 use std::time::SystemTime;
+
+/// What tells a picture of `clebsch plot` from any other file.
+pub(crate) const MARK: &str = "clebsch plot: time ";
+
+/// The endings of files for ParaView.
+const ENDINGS: [&str; 3] = ["pvd", "vtp", "vti"];
 
 /// One file as it stood: name, size, time of its last change.
 type Entry = (OsString, u64, Option<SystemTime>);
@@ -88,12 +92,18 @@ fn within(path: &Path, name: &OsString) -> io::Result<Result<Vec<Entry>, OsStrin
         let found = entry.metadata()?;
         let own = Path::new(name).join(entry.file_name());
         let ending = own.extension().and_then(|e| e.to_str());
-        if !found.is_file() || !ending.is_some_and(|e| vtk::ENDINGS.contains(&e)) {
+        if !found.is_file() || !ending.is_some_and(|e| ENDINGS.contains(&e)) {
             return Ok(Err(own.into_os_string()));
         }
         files.push((own.into_os_string(), found.len(), found.modified().ok()));
     }
     Ok(Ok(files))
+}
+
+/// Whether a file is a picture of `clebsch plot`, which may be replaced.
+pub(crate) fn is_drawn(file: &Path) -> bool {
+    let is_svg = file.extension().is_some_and(|ending| ending == "svg");
+    is_svg && fs::read_to_string(file).is_ok_and(|text| text.contains(MARK))
 }
 
 /// Removes a folder within and what a run has written into it.

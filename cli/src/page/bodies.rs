@@ -1,11 +1,11 @@
 //! Bodies that a page shows by their axes, and where each is: at its own place, about the origin, or in a row beside what has
 //! places. Takes a card with its model as stated; gives their columns, and their axes and places in a sample.
 
-use super::places::{Places, Point};
 use super::ties::{Tied, Ties};
 use super::value::Stated;
 use crate::output::Finished;
-use crate::plots::attitude::{matrix, placed};
+use crate::output::attitude::{matrix, placed};
+use crate::output::places::{Places, Point};
 use clebsch::card::{Field, Kind};
 use clebsch_core::syntax::ast::Statement;
 use std::collections::HashSet;

@@ -1,13 +1,13 @@
 //! Points that a page shows: a line of them, single ones, particles, or numbers along a line as a profile.
 //! Takes the fields of a card; gives their places in a sample, those that ends hold among them.
 
-use super::places::Point;
 use super::tints::Tints;
 use super::value::Stated;
 use crate::case_file::space::Space;
+use crate::output::attitude::placed;
+use crate::output::places::Point;
 use crate::output::points::Diagonals;
 use crate::output::sites::AtSites;
-use crate::plots::attitude::placed;
 use clebsch::card::{Card, Field};
 use serde_json::{Value, json};
 use std::collections::HashSet;

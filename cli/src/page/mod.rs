@@ -4,16 +4,15 @@
 mod bodies;
 mod chains;
 mod links;
-pub(crate) mod places;
 mod scene;
 mod ties;
 mod tints;
 mod value;
 
 use crate::output::Finished;
-use crate::plain::steps;
-use crate::record::Samples;
-use crate::verdict::zeros;
+use crate::trajectory::record::Samples;
+use crate::trajectory::verdict::zeros;
+use crate::words::plain::steps;
 use std::fmt::Write as _;
 
 /// The page.

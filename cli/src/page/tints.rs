@@ -2,8 +2,8 @@
 //! between whose nodes it is interpolated. Takes a run; gives a number for each particle of a sample.
 
 use crate::case_file::space::Space;
+use crate::output::fluid::Coloured;
 use crate::output::sites::AtSites;
-use crate::plots::particles::Coloured;
 use std::collections::HashMap;
 
 /// The colours of particles.

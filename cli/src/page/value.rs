@@ -1,10 +1,10 @@
 //! Expressions of a model in a sample: vectors, matrices and numbers, from the parameters and what is observed. Takes an
 //! expression as it is stated, a sample and a site; gives its entries, nothing where it has what a picture needs not.
 
-use super::places::{Places, Point};
+use crate::output::attitude::{matrix, placed};
+use crate::output::places::{Places, Point};
 use crate::output::sites::{AtSites, at_sites};
 use crate::plan::Plan;
-use crate::plots::attitude::{matrix, placed};
 use clebsch::card::{Card, Field, Kind as FieldKind};
 use clebsch::nalgebra::DMatrix;
 use clebsch_core::expr::symbol::ascii;

@@ -1,14 +1,15 @@
 //! Euler angles of rotations: against time, of many sites as maps over sites and time.
 //! Takes the samples of a run; gives precession, nutation and spin of each.
 
-use super::attitude::{Kin, Placed, grouped, matrix, rotations, rows};
+use super::attitude::{Kin, Placed, grouped, rotations, rows};
 use super::axis::Axis;
 use super::curve::{Curve, Stroke};
 use super::figure::Panel;
 use super::window::{Window, window};
 use super::{Plot, caption, figure, reduce, sites};
 use crate::output::Finished;
-use crate::record::Samples;
+use crate::output::attitude::matrix;
+use crate::trajectory::record::Samples;
 use clebsch::nalgebra::Matrix3;
 use std::ops::Range;
 

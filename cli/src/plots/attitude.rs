@@ -5,8 +5,10 @@ use super::sphere::{Course, Sphere, sheet};
 use super::window::{Window, window};
 use super::{Plot, letter, subscript};
 use crate::output::Finished;
+use crate::output::attitude::{matrix, placed};
 use crate::output::sites::at_sites;
-use crate::record::Samples;
+use crate::trajectory::record::Samples;
+use crate::words::number;
 use clebsch::card::{Field, Kind};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::scalar::largest;
@@ -113,18 +115,6 @@ fn chosen(kin: Vec<Kin>, room: usize) -> (Vec<Kin>, Option<String>) {
     (some, Some(sentence))
 }
 
-/// Observables with their columns.
-pub(crate) fn placed(
-    fields: &'static [Field],
-) -> impl Iterator<Item = (&'static Field, Range<usize>)> {
-    let mut from = 0;
-    fields.iter().map(move |field| {
-        let columns = from..from + field.count();
-        from = columns.end;
-        (field, columns)
-    })
-}
-
 /// The rotations among the observables.
 pub(super) fn rotations(run: &Finished<'_>) -> Vec<Placed> {
     let turns = |field: &Field| {
@@ -133,25 +123,6 @@ pub(super) fn rotations(run: &Finished<'_>) -> Vec<Placed> {
     placed(run.card.observables)
         .filter(|(field, _)| turns(field))
         .collect()
-}
-
-/// The matrix body -> space of a rotation or a unit quaternion.
-pub(crate) fn matrix(numbers: &[f64]) -> Option<Matrix3<f64>> {
-    match *numbers {
-        [w, x, y, z] => Some(Matrix3::new(
-            1.0 - 2.0 * (y * y + z * z),
-            2.0 * (x * y - w * z),
-            2.0 * (x * z + w * y),
-            2.0 * (x * y + w * z),
-            1.0 - 2.0 * (x * x + z * z),
-            2.0 * (y * z - w * x),
-            2.0 * (x * z - w * y),
-            2.0 * (y * z + w * x),
-            1.0 - 2.0 * (x * x + y * y),
-        )),
-        _ if numbers.len() == 9 => Some(Matrix3::from_row_slice(numbers)),
-        _ => None,
-    }
 }
 
 /// The rows of the samples shown, these columns of each.
@@ -261,7 +232,7 @@ fn of_vectors(
     let longest = largest(lengths());
     let shortest = lengths().fold(f64::INFINITY, f64::min);
     let on = longest - shortest <= SAME_LENGTH * longest;
-    let length = super::axis::plain(rounded(longest));
+    let length = number::plain(rounded(longest));
     let contours = match field.kind {
         Kind::BodyMomentum if on => inverse_inertia(run).map_or_else(Vec::new, |inverse| {
             super::sphere::contours(longest, &|m| 0.5 * m.dot(&(inverse * m)))

@@ -3,6 +3,7 @@
 
 use super::curve::Curve;
 use super::power_of_ten;
+use crate::words::number::plain;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use std::ops::Range;
 
@@ -238,22 +239,6 @@ pub(crate) fn superscript(number: i32) -> String {
             .unwrap_or(digit),
     };
     number.to_string().chars().map(raised).collect()
-}
-
-/// A number for a caption, without the noise of its last digits.
-pub(crate) fn plain(number: f64) -> String {
-    let rounded: f64 = format!("{number:.11e}").parse().unwrap_or(number);
-    if rounded == 0.0 || (1e-4..1e15).contains(&rounded.abs()) {
-        return rounded.to_string();
-    }
-    // Four digits are enough beside an exponent.
-    let short: f64 = format!("{rounded:.3e}").parse().unwrap_or(rounded);
-    format!("{short:e}")
-}
-
-/// A number with at most four digits, enough beside a picture.
-pub(crate) fn short(number: f64) -> String {
-    plain(format!("{number:.3e}").parse().unwrap_or(number))
 }
 
 impl Ranged for Axis {

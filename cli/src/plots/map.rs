@@ -1,6 +1,7 @@
 //! A map: values over time and sites as colours, with their scale beside it.
 
 use super::figure::{Area, centred, fine, text};
+use crate::words::number;
 use plotters::chart::ChartContext;
 use plotters::coord::cartesian::Cartesian2d;
 use plotters::coord::ranged1d::Ranged;
@@ -113,7 +114,7 @@ impl Map {
             (0.0, TOP + TALL * STEPS),
         ] {
             let value = low + part * (high - low);
-            let words = super::axis::plain(rounded(value, high - low)).replace('-', "−");
+            let words = number::plain(rounded(value, high - low)).replace('-', "−");
             text(area, &words, 11, RGBColor(30, 30, 30), (26, y - 7))?;
         }
         Ok(())

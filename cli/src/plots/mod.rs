@@ -5,7 +5,6 @@ mod angles;
 pub(crate) mod attitude;
 pub mod axis;
 mod cells;
-mod comparison;
 pub mod curve;
 pub mod figure;
 pub mod map;
@@ -18,15 +17,15 @@ pub(crate) mod window;
 
 pub(crate) use angles::angles;
 pub(crate) use attitude::attitude;
-pub(crate) use comparison::comparison;
 pub(crate) use particles::{particles, vorticity};
 pub(crate) use snapshots::snapshots;
 
 use crate::output::points::{Diagonals, Linear};
 use crate::output::{Finished, is_multiplier};
-use crate::plain::steps;
-use crate::record::Samples;
-use crate::run::end;
+use crate::plan::end;
+use crate::trajectory::record::Samples;
+use crate::words::number;
+use crate::words::plain::steps;
 use axis::{Axis, FLOOR, superscript};
 use clebsch::card::{Card, Conserved, Field, Kind};
 use clebsch::integrate::Drift;
@@ -229,26 +228,26 @@ fn figure(run: &Finished<'_>, shown: Window<'_>, what: &str, panels: Vec<Panel>)
 fn titles(run: &Finished<'_>, shown: Window<'_>, what: &str) -> (String, String) {
     let case = &run.plan.case;
     let times = shown.record.times.get(..shown.count).unwrap_or_default();
-    let to = axis::plain(last(times));
+    let to = number::plain(last(times));
     let part = if shown.cut {
         format!("; shown: time 0 to {to} (more: clebsch plot)")
     } else {
         String::new()
     };
     let stopped = run.stopped.as_ref().map_or_else(String::new, |stopped| {
-        let time = axis::plain(stopped.time);
+        let time = number::plain(stopped.time);
         format!("; stopped at node {} (time {time})", stopped.node)
     });
     let title = format!(
         "{}, case {}: {what}",
         run.card.kebab,
-        crate::plain::shown(&case.name)
+        crate::words::plain::shown(&case.name)
     );
     let subtitle = format!(
         "h = {}, {}, to time {}; order {}{stopped}{part}",
         case.h,
         steps(case.steps),
-        axis::plain(end(case.h, case.steps)),
+        number::plain(end(case.h, case.steps)),
         run.plan.order.unwrap_or(run.card.order)
     );
     (title, subtitle)
@@ -453,7 +452,7 @@ fn caption(field: &Field) -> String {
         Kind::SpatialMomentum => format!("{name}, space frame"),
         Kind::FieldMomentum => field.doc.to_owned(),
         _ if field.doc.is_empty() => name,
-        _ => format!("{name}: {}", crate::list::first_line(field.doc)),
+        _ => format!("{name}: {}", crate::words::lines::first_line(field.doc)),
     }
 }
 

@@ -6,17 +6,13 @@ use super::figure::{Area, fine, text};
 use super::map::{Map, color};
 use super::sphere::printed_size;
 use super::window::Window;
-use super::{Plot, axis, subscript, titles};
-use crate::case_file::labels::Stated;
+use super::{Plot, subscript, titles};
 use crate::case_file::space::Space;
 use crate::output::Finished;
+use crate::output::fluid::{Coloured, space};
 use crate::output::sites::{AtSites, at_sites};
-use crate::plan::Plan;
-use clebsch::card::Card;
+use crate::words::number;
 use clebsch::record::Record;
-use clebsch_core::expr::symbol::ascii;
-use clebsch_core::lattice::Source;
-use clebsch_core::syntax::ast::Statement;
 use plotters::prelude::{
     Circle, Color, IntoDrawingArea, PathElement, Polygon, RGBColor, Rectangle, SVGBackend, WHITE,
 };
@@ -56,53 +52,6 @@ pub(super) struct Snapshot {
 /// Whether a run is of a fluid in the plane: its particles have no order along a line, and are shown where they are.
 pub(super) fn in_plane(run: &Finished<'_>) -> bool {
     space(run.card, run.plan).is_some_and(|(space, _)| space.lengths.len() > 1)
-}
-
-/// What colours a fluid.
-pub(crate) struct Coloured<'a> {
-    pub(crate) space: Space,
-    /// The places of its particles.
-    pub(crate) places: &'a AtSites<'a>,
-    /// Its functional, at the particles or at the nodes of a grid.
-    pub(crate) shown: &'a AtSites<'a>,
-    /// What it is: `S = smooth(H, α)`.
-    pub(crate) what: String,
-}
-
-impl<'a> Coloured<'a> {
-    /// The functional of a fluid that no other one is made of, or its depth; nothing for models that are no fluids.
-    pub(crate) fn of(card: &Card, plan: &Plan, all: &'a [AtSites<'a>]) -> Option<Self> {
-        let (space, stated) = space(card, plan)?;
-        let own = ascii(&stated.lattice.places()?.name.text);
-        let places = all.iter().find(|s| s.key == own)?;
-        // A depth that is smoothed moves the fluid, not the one that it is made of.
-        let meshes = &stated.lattice.meshes;
-        let taken = |at: usize| meshes.iter().any(|m| m.of == Source::Functional(at));
-        let last = meshes.iter().enumerate().filter(|(at, _)| !taken(*at));
-        let mut last = last.map(|(_, m)| m.name.text.as_str());
-        let (name, shown) = last.find_map(|name| {
-            let key = ascii(name);
-            Some((name, all.iter().find(|s| s.key == key)?))
-        })?;
-        let made = stated.model.statements.iter().find_map(|s| match s {
-            Statement::Mesh {
-                name: own,
-                path,
-                arguments,
-                ..
-            } if own.text == name => {
-                let arguments: Vec<&str> = arguments.iter().map(|a| a.text.as_str()).collect();
-                Some(format!("{name} = {}({})", path.text, arguments.join(", ")))
-            }
-            _ => None,
-        });
-        Some(Coloured {
-            space,
-            places,
-            shown,
-            what: made.unwrap_or_else(|| name.to_owned()),
-        })
-    }
 }
 
 /// The picture; nothing for models that are no fluids.
@@ -166,34 +115,6 @@ fn titled(
     let titles = titles(run, window, what);
     let titles = (!run.plan.paper).then_some(titles);
     draw(titles, [colours, places], space, shots, side).map(Some)
-}
-
-/// Where the particles of a run live.
-pub(crate) fn space(card: &Card, plan: &Plan) -> Option<(Space, Stated)> {
-    let stated = Stated::read(card.source)?;
-    let sample = Space::sample(&stated)?;
-    let d = sample.lengths.len();
-    let of = |key: &str| {
-        let at = card.parameters.iter().position(|f| f.ascii == key)?;
-        plan.case.parameters.get(at).cloned()
-    };
-    let torus = Space::torus(&stated).map(ascii);
-    let own = of(torus.as_deref().unwrap_or("domain"))?;
-    let grid = stated.lattice.grid();
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let cells = grid.and_then(|l| of(&ascii(&l.index.text)));
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let cells = cells.map(|n| n.iter().map(|x| *x as usize).collect());
-    let walls = own.get(d..).unwrap_or_default().iter().map(|w| *w != 0.0);
-    let mut walls: Vec<bool> = walls.collect();
-    walls.resize(d, false);
-    let lengths = own.get(..d)?.to_vec();
-    let space = Space {
-        lengths,
-        walls,
-        cells,
-    };
-    Some((space, stated))
 }
 
 fn snapshot(
@@ -441,20 +362,32 @@ fn panel(
     }
     let edge = [(left * unit, up * unit), (right * unit, down * unit)];
     root.draw(&Rectangle::new(edge, INK.stroke_width(fine(1))))?;
-    let time = format!("t = {}", axis::plain(shot.time));
+    let time = format!("t = {}", number::plain(shot.time));
     text(root, &time, 13, INK, (left, up - 20))?;
-    text(root, &axis::short(frame.low[0]), 11, INK, (left, down + 4))?;
     text(
         root,
-        &axis::short(frame.high[0]),
+        &number::short(frame.low[0]),
+        11,
+        INK,
+        (left, down + 4),
+    )?;
+    text(
+        root,
+        &number::short(frame.high[0]),
         11,
         INK,
         (right - 10, down + 4),
     )?;
-    text(root, &axis::short(frame.high[1]), 11, INK, (left - 38, up))?;
     text(
         root,
-        &axis::short(frame.low[1]),
+        &number::short(frame.high[1]),
+        11,
+        INK,
+        (left - 38, up),
+    )?;
+    text(
+        root,
+        &number::short(frame.low[1]),
         11,
         INK,
         (left - 38, down - 12),

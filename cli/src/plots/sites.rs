@@ -9,7 +9,8 @@ use crate::output::Finished;
 use crate::output::sites::{AtSites, at_sites};
 use crate::plots::Plot;
 use crate::plots::window::Window;
-use crate::record::Samples;
+use crate::trajectory::record::Samples;
+use crate::words::number;
 use clebsch::card::{Field, Kind};
 use clebsch::record::Record;
 use clebsch::scalar::largest;
@@ -141,7 +142,7 @@ fn same<'a>(values: impl Iterator<Item = &'a f64>, size: f64) -> Option<String> 
         (a.min(v), b.max(v))
     });
     let most = low.abs().max(high.abs());
-    let of = |value: f64| super::axis::short(value).replace('-', "−");
+    let of = |value: f64| number::short(value).replace('-', "−");
     if most == 0.0 {
         return Some("zero throughout".to_owned());
     }

@@ -4,10 +4,11 @@
 use super::figure::{Area, fine, text};
 use super::sphere::{COLUMN, WIDE, printed_size};
 use super::window::Window;
-use super::{Plot, axis, subscript, titles};
+use super::{Plot, subscript, titles};
 use crate::output::Finished;
+use crate::output::places::{Places, Point};
 use crate::output::sites::{AtSites, at_sites};
-use crate::page::places::{Places, Point};
+use crate::words::number;
 use clebsch::record::Record;
 use clebsch::scalar::largest;
 use clebsch_core::lattice::Sites;
@@ -306,7 +307,7 @@ impl Block {
         let far = [corner[0] + side[0], corner[1] + side[1]];
         let edge = [pixel(corner), pixel(far)];
         root.draw(&Rectangle::new(edge, FAINT.stroke_width(fine(1) / 2)))?;
-        let words = format!("t = {}", axis::short(time));
+        let words = format!("t = {}", number::short(time));
         #[allow(clippy::cast_possible_truncation)]
         let above = (corner[0] as i32, corner[1] as i32 - 17);
         text(root, &words, 12, INK, above)?;
@@ -361,8 +362,8 @@ impl Block {
         let Seen::Plane([across, up]) = self.seen else {
             let words = format!(
                 "from site to site; between {} and {}; a dot at the first site",
-                axis::short(self.low[1]),
-                axis::short(self.high[1])
+                number::short(self.low[1]),
+                number::short(self.high[1])
             );
             #[allow(clippy::cast_possible_truncation)]
             return text(root, &words, 12, INK, (left as i32, top as i32));
@@ -375,7 +376,7 @@ impl Block {
         let ends = [[left, top + 6.0], [left + length * unit, top + 6.0]].map(pixel);
         root.draw(&PathElement::new(ends, INK.stroke_width(fine(2))))?;
         let seen = format!("component {} to the right, {} up", across + 1, up + 1);
-        let words = format!("{}; {seen}; a dot at the first site", axis::short(length));
+        let words = format!("{}; {seen}; a dot at the first site", number::short(length));
         #[allow(clippy::cast_possible_truncation)]
         text(
             root,

@@ -1,7 +1,7 @@
 //! How much of a run a plot of oscillating quantities can show.
 //! Takes the samples of a run; gives those to draw: all, or a first stretch with every swing resolved.
 
-use crate::record::Samples;
+use crate::trajectory::record::Samples;
 use clebsch::record::{Record, Table};
 use std::ops::Range;
 

@@ -16,6 +16,7 @@ mod continuous_limit;
 mod documents;
 mod equations_of_a_step;
 mod expansion;
+mod folders;
 mod generated_fresh;
 mod kinetic_analogy;
 mod latex;

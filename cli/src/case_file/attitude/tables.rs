@@ -3,7 +3,7 @@
 
 use super::{orthonormal, unit};
 use crate::case_file::value::{Numbers, entries, number, row};
-use crate::suggestion::did_you_mean;
+use crate::words::suggestion::did_you_mean;
 use clebsch::card::Kind;
 use clebsch::nalgebra::{Matrix3, Vector3};
 use toml::de::{DeTable, DeValue};

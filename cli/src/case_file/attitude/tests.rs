@@ -8,7 +8,7 @@ const SPACE: Field = Kind::Rotation.field("R", [3, 3], "");
 
 fn read(field: &Field, text: &str) -> Result<Vec<f64>, String> {
     let value = DeValue::parse(text).map_err(|e| e.to_string())?;
-    numbers(field, value.get_ref(), &|_| None)
+    numbers(field, value.get_ref(), &super::super::value::Nameless)
 }
 
 fn off(a: &[f64], b: &[f64]) -> f64 {

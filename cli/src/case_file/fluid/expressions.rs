@@ -4,6 +4,7 @@
 use super::meshes::Meshes;
 use super::{Reader, Wrong, size};
 use crate::case_file::from_npz::{self, Wanted};
+use crate::case_file::names::{Nameless, Names as _};
 use crate::case_file::space::Space;
 use crate::case_file::value::{number, shape};
 use clebsch_core::expr::symbol::ascii;
@@ -136,7 +137,7 @@ impl Reader<'_> {
     /// One number or expression, at all sites.
     fn component(&self, q: &Quantity, value: &Spanned<DeValue<'_>>) -> Result<Vec<f64>, Wrong> {
         let DeValue::String(text) = value.get_ref() else {
-            return Ok(vec![number(value.get_ref(), &|_| None)?; self.count(q)]);
+            return Ok(vec![number(value.get_ref(), &Nameless)?; self.count(q)]);
         };
         let told = |why: String| told(text, value, &why);
         let (data, meshes) = self.expression(q, text).map_err(told)?;
@@ -146,7 +147,7 @@ impl Reader<'_> {
 
     fn at(&self, q: &Quantity, value: &Spanned<DeValue<'_>>, site: usize) -> Result<f64, Wrong> {
         let DeValue::String(text) = value.get_ref() else {
-            return Ok(number(value.get_ref(), &|_| None)?);
+            return Ok(number(value.get_ref(), &Nameless)?);
         };
         let own = self.expression(q, text);
         let value_here = own.and_then(|(data, meshes)| self.valued(q, &data, &meshes, site));

@@ -2,6 +2,7 @@
 //! meshes in it at the particles where these start, by the model's own functionals, or says why one has no value there.
 
 use super::Reader;
+use crate::case_file::names::Names as _;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::value::SiteData;
 use clebsch_core::lattice::{Kind, Quantity};

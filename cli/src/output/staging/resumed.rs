@@ -3,10 +3,10 @@
 //! is nothing to go on with. What cannot be taken up is left as it is.
 
 use super::{PARTIAL, Staging, first_free, interrupted, standing};
-use crate::checkpoint::{self, Checkpoint, Identity};
-use crate::failure::Failure;
 use crate::output::samples;
-use crate::plain::shown;
+use crate::terminal::failure::Failure;
+use crate::trajectory::checkpoint::{self, Checkpoint, Identity};
+use crate::words::plain::shown;
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 

@@ -3,9 +3,9 @@
 
 use super::columns::{axes, in_space, place};
 use super::{Data, Part};
+use crate::output::attitude::placed;
 use crate::output::points::Diagonals;
 use crate::output::sites::at_sites;
-use crate::plots::attitude::placed;
 use clebsch::card::{Card, Field, Kind};
 use clebsch::record::vtk::{PolyData, Values};
 use std::collections::HashSet;

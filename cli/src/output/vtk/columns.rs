@@ -1,7 +1,7 @@
 //! Quantities as arrays of a file: numbers and vectors as they are, attitudes as the axes of their bodies.
 //! Takes the columns of a quantity at every point or cell; gives its arrays for a sample.
 
-use crate::plots::attitude::matrix;
+use crate::output::attitude::matrix;
 use clebsch::card::{Field, Kind};
 use clebsch::record::vtk::Values;
 use std::ops::Range;

@@ -11,8 +11,8 @@ mod sites;
 
 use super::samples::Rows;
 use super::staging::Staging;
-use crate::failure::Failure;
 use crate::plan::Plan;
+use crate::terminal::failure::Failure;
 use clebsch::card::Card;
 use clebsch::record::Rows as _;
 use clebsch::record::vtk::{ImageData, Member, PolyData, write_collection};
@@ -20,9 +20,6 @@ use std::io::{self, Write};
 
 /// The folder, by its name among the files that a run can write.
 pub(crate) const FOLDER: &str = "vtk/";
-
-/// The endings of what is in it.
-pub(crate) const ENDINGS: [&str; 3] = ["pvd", "vtp", "vti"];
 
 /// Most samples that are written where nobody says how many.
 const FRAMES: u64 = 1000;
@@ -73,7 +70,7 @@ pub(crate) fn drawn(card: &Card, plan: &Plan) -> Result<Vec<Drawn>, Failure> {
 ///
 /// # Errors
 /// Failed: the file system refuses.
-pub(super) fn write(
+pub(crate) fn write(
     staging: &Staging,
     plan: &Plan,
     rows: &Rows,

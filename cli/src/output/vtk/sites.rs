@@ -3,8 +3,8 @@
 
 use super::columns::{Columns, in_space, name_axes};
 use super::{Data, Part};
+use crate::output::places::{Places, Point};
 use crate::output::sites::{AtSites, at_sites};
-use crate::page::places::{Places, Point};
 use crate::plan::Plan;
 use clebsch::card::Card;
 use clebsch::record::vtk::{PolyData, Values};

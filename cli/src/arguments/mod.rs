@@ -1,0 +1,103 @@
+//! The command line: subcommands, options and the checks that need no model.
+//! Takes the width of the terminal; gives the clap command, whose matches the commands read.
+
+mod foreign_option;
+mod of_a_case;
+mod option;
+mod prints;
+mod runs;
+mod shard;
+
+pub(crate) use foreign_option::explained;
+pub(crate) use shard::Shard;
+
+use clap::{Arg, Command};
+use of_a_case::{model, of_a_case, shown_case};
+use option::{json, option};
+
+/// Help is made no wider than this: longer lines are hard to read.
+const WIDEST: usize = 100;
+
+/// The whole command line; help fits `width` letters where that is given.
+#[must_use]
+pub fn command(width: Option<usize>) -> Command {
+    Command::new("clebsch")
+        .term_width(width.unwrap_or(WIDEST).min(WIDEST))
+        .version(env!("CARGO_PKG_VERSION"))
+        .about(
+            "Discrete Clebsch variational integrators: derived from a Lagrangian, run from a case",
+        )
+        .after_help(
+            "Examples:\n  clebsch list\n  clebsch run heavy-top\n  clebsch derive heavy-top\n  clebsch new my-model\n\n\
+             Exit codes: 0 done, 1 failed, 2 usage, 3 an invariant exceeded the bound of its case \
+             (results are written). A sweep ends with 1 if a point was refused or stopped before its end, else with 3 if an \
+             invariant of a point exceeded its bound; its table is written.",
+        )
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommand(
+            Command::new("list")
+                .about("List the models, or the cases of one model")
+                .after_help(
+                    "Examples:\n  clebsch list\n  clebsch list chain\n  clebsch list toda-chain\n  clebsch list --json",
+                )
+                .arg(Arg::new("which").value_name("FAMILY|MODEL").help(
+                    "Family of models (rigid, particle, elastic, chain, fluid), or a model",
+                ))
+                .arg(json()),
+        )
+        .subcommand(
+            Command::new("show")
+                .about("Print the statement of a model and a case of it")
+                .after_help("Examples:\n  clebsch show toda-chain\n  clebsch show heavy-top:general")
+                .arg(model())
+                .arg(shown_case()),
+        )
+        .subcommand(
+            Command::new("case")
+                .about("Print a complete case as TOML, to start your own from")
+                .after_help(
+                    "Examples:\n  clebsch case heavy-top > my-top.toml\n  clebsch case heavy-top:general\n  \
+                     clebsch case my-model.clebsch > my-model.toml",
+                )
+                .arg(model())
+                .arg(shown_case()),
+        )
+        .subcommand(
+            Command::new("new")
+                .about("Write a model and a case of your own, NAME.clebsch and NAME.toml, to start from")
+                .after_help("Examples:\n  clebsch new my-model\n  clebsch new my-chain --from toda-chain:soliton")
+                .arg(
+                    Arg::new("name")
+                        .value_name("NAME")
+                        .required(true)
+                        .help("Name of the model, such as my-top; files that exist are never replaced"),
+                )
+                .arg(option(
+                    "from",
+                    "MODEL[:CASE]",
+                    "Model to copy; two masses on a spring by default",
+                )),
+        )
+        .subcommand(
+            of_a_case(Command::new("check"))
+                .about("Derive a model, read its case and take one step, without a run")
+                .after_help("Examples:\n  clebsch check my-model.clebsch"),
+        )
+        .subcommand(runs::run())
+        .subcommand(runs::sweep())
+        .subcommand(runs::collect())
+        .subcommand(runs::compare())
+        .subcommand(runs::converge())
+        .subcommand(prints::plot())
+        .subcommand(prints::figures())
+        .subcommand(prints::derive())
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn clap_finds_no_contradiction() {
+        super::command(None).debug_assert();
+    }
+}

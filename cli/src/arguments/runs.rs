@@ -1,0 +1,200 @@
+//! The commands that run cases: `run`, `compare`, `converge`, `sweep` and `collect`.
+
+use super::of_a_case::{of_a_case, planned};
+use super::option::{flag, json, option, positive_number, seconds};
+use super::shard::Shard;
+use clap::{Arg, ArgAction, Command, value_parser};
+
+pub(super) fn run() -> Command {
+    let checkpoint = option(
+        "checkpoint",
+        "SECONDS",
+        "Write a checkpoint every so many seconds of a run with --out, from which --resume goes on",
+    );
+    planned(
+        Command::new("run")
+            .about("Run a case and check what it conserves")
+            .after_help(
+                "Examples:\n  clebsch run heavy-top\n  clebsch run free-body --order 6 --steps 1e6\n  \
+                 clebsch run heavy-top --case my-top.toml --out out/my-top\n  \
+                 clebsch run my-model.clebsch",
+            ),
+        "Look at every N-th node and the last: invariants are checked and samples are written there. The default looks at \
+         10000 nodes at most, so that looking takes less time than a long run",
+        "Write trajectory.csv, trajectory.npz, run.json and plots into this new folder; when a step \
+         fails, those of the run up to there, which run.json and the plots say",
+    )
+    .arg(
+        flag(
+            "resume",
+            "Go on with the run into DIR that was interrupted or killed, to the same results to the last \
+             bit; begin it where there is none",
+        )
+        .requires("out")
+        .conflicts_with("force"),
+    )
+    .arg(
+        flag(
+            "paper",
+            "Draw pictures for a column of a paper: 86 mm wide, without titles, legends below; as PDF beside SVG \
+             where the command is built with `--features pdf`",
+        )
+        .requires("out"),
+    )
+    .arg(
+        flag(
+            "csv",
+            "Write trajectory.csv even if it is long; without it, only of at most 500000 numbers (trajectory.npz has all)",
+        )
+        .requires("out"),
+    )
+    .arg(
+        flag(
+            "vtk",
+            "Write files for ParaView into DIR/vtk: lines, cells, particles, grids and bodies at every sample, at \
+             most about 1000 unless --every says how many",
+        )
+        .requires("out"),
+    )
+    .arg(flag("quiet", "Print warnings and errors only; the exit code says how the run ended").conflicts_with_all(["json", "verbose"]))
+    .arg(flag("verbose", "Print what was derived, and how steps are solved, before the result").conflicts_with("json"))
+    .arg(
+        option(
+            "stability-limit",
+            "SECONDS",
+            "Search at most this long for the stability limit of the step size, which is only reported; 0 skips the search",
+        )
+        .default_value("1")
+        .value_parser(seconds),
+    )
+    .arg(
+        option(
+            "check",
+            "STEPS",
+            "Which steps are judged by the action as stated, independently of derivation and program: a sample of a \
+             hundred and the last, all, or none",
+        )
+        .value_parser(["sample", "all", "none"])
+        .default_value("sample"),
+    )
+    .arg(
+        checkpoint
+            .requires("out")
+            .default_value("60")
+            .value_parser(positive_number),
+    )
+}
+
+pub(super) fn compare() -> Command {
+    planned(
+        Command::new("compare")
+            .about(
+                "Run a case by the generated stepper, the hand-written one and other methods, side \
+                 by side",
+            )
+            .after_help(
+                "Examples:\n  clebsch compare free-body\n  clebsch compare heavy-top --steps 1000 --out out/compared",
+            ),
+        "Compare at every N-th node; by default such that at most 10000 are compared",
+        "Write comparison.csv, comparison.json and comparison.svg into this new folder",
+    )
+}
+
+pub(super) fn converge() -> Command {
+    of_a_case(
+        Command::new("converge")
+            .about("Measure the error at a fixed time against the step size, and the order")
+            .after_help(
+                "Examples:\n  clebsch converge kepler --until 10\n  clebsch converge my-model.clebsch --h 0.1 --until 1 --out out/converged",
+            ),
+    )
+    .arg(
+        option(
+            "levels",
+            "N",
+            "Number of step sizes h, h/2, h/4, ..., from 3 to 16",
+        )
+        .default_value("6")
+        .value_parser(value_parser!(u32).range(3..=16)),
+    )
+    .arg(
+        option(
+            "out",
+            "DIR",
+            "Write convergence.csv, convergence.json and convergence.svg into this new folder",
+        )
+        .value_parser(value_parser!(std::path::PathBuf)),
+    )
+    .arg(flag("force", "Replace DIR when it holds earlier results").requires("out"))
+    .arg(json())
+}
+
+pub(super) fn sweep() -> Command {
+    of_a_case(
+        Command::new("sweep")
+            .about("Run a case at every point of a grid, on all cores, into one table")
+            .after_help(
+                "Examples:\n  clebsch sweep heavy-top --vary gU.z=0:1:100 --out out/sweep\n  \
+                 clebsch sweep heavy-top --vary gU.z=0:1:100 --vary h=0.1,0.05 --shard 3/16 --out out/part-3\n  \
+                 clebsch collect out/part-* --out out/sweep",
+            ),
+    )
+    .arg(
+        option(
+            "vary",
+            "NAME=VALUES",
+            "Parameter, initial value or step h, with its component, and its values as FROM:TO:COUNT or \
+             A,B,...; of several the last varies fastest",
+        )
+        .action(ArgAction::Append)
+        .required(true),
+    )
+    .arg(
+        option(
+            "shard",
+            "PART/OF",
+            "Compute only this part of the points; `clebsch collect` joins the parts",
+        )
+        .value_parser(Shard::read),
+    )
+    .arg(
+        option(
+            "out",
+            "DIR",
+            "Write sweep.csv, sweep.npz and sweep.json into this new folder",
+        )
+        .required(true)
+        .value_parser(value_parser!(std::path::PathBuf)),
+    )
+    .arg(
+        flag(
+            "resume",
+            "Go on with the sweep into DIR that was interrupted or killed; begin it where there is none",
+        )
+        .conflicts_with("force"),
+    )
+    .arg(flag("force", "Replace DIR when it holds an earlier sweep"))
+    .arg(json())
+}
+
+pub(super) fn collect() -> Command {
+    Command::new("collect")
+        .about("Join the parts of a sweep to the table of the whole")
+        .after_help("Examples:\n  clebsch collect out/part-* --out out/sweep")
+        .arg(
+            Arg::new("parts")
+                .value_name("PART")
+                .required(true)
+                .action(ArgAction::Append)
+                .num_args(1..)
+                .value_parser(value_parser!(std::path::PathBuf))
+                .help("Folders of all parts, in any order"),
+        )
+        .arg(
+            option("out", "DIR", "Write the table into this new folder")
+                .required(true)
+                .value_parser(value_parser!(std::path::PathBuf)),
+        )
+        .arg(flag("force", "Replace DIR when it holds an earlier sweep"))
+        .arg(json())
+}

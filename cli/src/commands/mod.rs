@@ -1,0 +1,13 @@
+//! The commands, each of which takes the gallery and the matches of its arguments.
+
+pub(crate) mod check;
+pub(crate) mod compare;
+pub(crate) mod converge;
+pub mod derive;
+pub(crate) mod figures;
+pub(crate) mod list;
+pub(crate) mod new;
+pub(crate) mod plot;
+pub(crate) mod run;
+pub(crate) mod show;
+pub(crate) mod sweep;

@@ -1,0 +1,370 @@
+//! `clebsch run`: from a case to a checked trajectory.
+//! Takes the gallery and the options; gives files, a table of what was conserved, and the exit code.
+
+mod complete;
+mod files;
+mod follow;
+mod listener;
+mod pdf;
+mod summary;
+
+use crate::models::gallery::Gallery;
+use crate::named::resolve::resolved;
+use crate::output::samples::{self, Stream};
+use crate::output::{self, Finished, Found, Staging, Stopped, run_json};
+use crate::plan::Plan;
+use crate::terminal::Streams;
+use crate::terminal::failure::{BOUND_LEFT, BY_SIGNAL, DONE, FAILED, Failure};
+use crate::terminal::waiting::Waiting;
+use crate::trajectory::checkpoint::{Checkpoint, Identity};
+use crate::trajectory::record::{LARGEST, Recorder};
+use crate::trajectory::stated::JudgedTrajectory;
+use crate::trajectory::step_limit::{self, StepLimit};
+use crate::trajectory::verdict::{Verdict, judge, lost, table};
+use crate::words::plain::shown;
+use crate::words::width::paragraph;
+use clap::ArgMatches;
+use clebsch::card::{Card, Trajectory as _};
+use clebsch::integrate::{self, Halved, RunError, Watch};
+use clebsch::record::Record;
+use clebsch_check::Which;
+use complete::already;
+use follow::{End, Kept, Run};
+use listener::Listener;
+use serde_json::json;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use summary::Told;
+
+/// Steps whose every node is kept for the plots: all the swings there is room for, of 150 steps each.
+const OPENING: u64 = 10_000;
+
+/// Most numbers that are kept of them, a quarter of a gigabyte: of a fluid fewer steps.
+const OPENING_NUMBERS: u64 = 1 << 25;
+
+/// Runs the command; the code is 0, 3 when an invariant exceeded its bound or the action as stated refutes a step, or 1 when a step after the
+/// first failed: what was computed before is shown and written then, marked as stopped.
+///
+/// # Errors
+/// Usage for a wrong request, failed when the solver refuses the first step or the file system gives
+/// up. Nothing is left behind then.
+pub fn run(
+    gallery: &Gallery,
+    matches: &ArgMatches,
+    streams: &mut Streams<'_>,
+) -> Result<u8, Failure> {
+    let resolved = resolved(gallery, matches, streams)?;
+    let entry = &resolved.entry;
+    let plan = {
+        let _told = Waiting::told("reading the case".to_owned(), streams.progress);
+        Plan::new(&resolved, matches)?
+    };
+    let card = &entry.card_of(&plan.case);
+    let target = matches.get_one::<PathBuf>("out");
+    let as_json = matches.get_flag("json");
+    let identity = Identity::of(card, &plan);
+    let drawn = match matches.get_flag("vtk") {
+        true => output::vtk::drawn(card, &plan)?,
+        false => Vec::new(),
+    };
+    let (mut staging, checkpoint) = match target {
+        None => (None, None),
+        Some(target) => {
+            fits(card, &plan)?;
+            let found = match matches.get_flag("resume") {
+                true => Staging::resume(target, &output::FILES, &identity)?,
+                false => Found::Nothing,
+            };
+            match found {
+                Found::Results => {
+                    return already(card, &plan, target, (as_json, !drawn.is_empty()), streams);
+                }
+                Found::Middle(both) => (Some(both.0), Some(both.1)),
+                Found::Nothing => {
+                    let force = matches.get_flag("force");
+                    (Some(Staging::new(target, force, &output::FILES)?), None)
+                }
+            }
+        }
+    };
+    // With `--json` a warning stands in the object as well; nothing is lost when it cannot be written.
+    let mut warn = |warning: &str| {
+        let _ = writeln!(streams.err, "clebsch: warning: {warning}");
+    };
+    let started = {
+        let numbers: usize = plan.case.initial.iter().map(Vec::len).sum();
+        let what = format!("starting from {numbers} numbers: the first step is tried");
+        let _told = Waiting::told(what, streams.progress);
+        plan.open(card)
+    };
+    // Values that the model cannot work with are told before anything is searched for.
+    let started = match started {
+        Err(wrong @ Failure::Usage(_)) => return Err(wrong),
+        other => other,
+    };
+    let limit = {
+        let what = "searching for the stability limit of the step size".to_owned();
+        let _told = Waiting::told(what, streams.progress);
+        StepLimit::of(card, &plan, step_limit::patience(matches))
+    };
+    let too_long = limit.warning(plan.case.h);
+    // Where the first step is refused, that it is too long is why, mostly.
+    let trajectory = started.inspect_err(|_| {
+        too_long.iter().for_each(|warning| warn(warning));
+    })?;
+    let which = judged_steps(matches);
+    let mut trajectory = JudgedTrajectory::new(card, &plan, which, trajectory);
+    let kinetic = trajectory.kinetic_warning().map(|w| w.to_string());
+    let warnings: Vec<String> = kinetic.into_iter().chain(too_long).collect();
+    warnings.iter().for_each(|warning| warn(warning));
+    let mut out = Listener {
+        out: &mut *streams.out,
+        // Results that are written to files are worth the work, whoever listens.
+        may_go: target.is_some(),
+        gone: false,
+    };
+    let width = streams.width;
+    let told = match matches.get_flag("quiet") || as_json {
+        true => Told::Nothing,
+        false if matches.get_flag("verbose") => Told::All,
+        false => Told::Result,
+    };
+    summary::title(&mut out, width, card, &plan, told)?;
+    let steps = plan.case.steps;
+    let watch = Watch::new(&trajectory, steps, plan.every);
+    let mut following = Run {
+        trajectory: &mut trajectory,
+        watch,
+        steps,
+        progress: streams.progress,
+    };
+    let mut kept = match &mut staging {
+        None => None,
+        Some(staging) => {
+            let stream = match &checkpoint {
+                None => {
+                    Stream::new(staging.folder(), card).map_err(|error| cannot(staging, &error))?
+                }
+                Some(checkpoint) => {
+                    following.restore(checkpoint)?;
+                    resumed(staging, card, checkpoint)?
+                }
+            };
+            let seconds = matches.get_one::<f64>("checkpoint").copied();
+            Some(Kept {
+                staging,
+                stream,
+                identity,
+                seconds: seconds.unwrap_or(f64::INFINITY),
+            })
+        }
+    };
+    if let (Some(kept), Some(_)) = (&mut kept, &checkpoint) {
+        kept.staging.go_on();
+    }
+    if checkpoint.is_some() && told != Told::Nothing {
+        let node = following.watch.summary().node;
+        let text = format!("resumed at node {node}");
+        out.write_all(paragraph(&text, width, 2).as_bytes())?;
+    }
+    let end = following.follow(kept.as_mut())?;
+    let summary = following.watch.summary();
+    let halvings = following.trajectory.halvings();
+    // Steps before an interruption may have been judged as well.
+    let stated = trajectory.verdict();
+    let stated = (which != Which::None || stated.judged > 0).then(|| stated.clone());
+    let why = match &end {
+        End::Whole => None,
+        // A run without a step has no results.
+        End::Stopped(error) if summary.steps == 0 => {
+            return Err(Failure::Failed(refused(error, &plan)));
+        }
+        End::Stopped(error) => Some(refused(error, &plan)),
+        End::Interrupted(signal) => Some(interrupted(*signal)),
+    };
+    let stopped = why.map(|why| Stopped {
+        node: summary.node,
+        time: summary.time,
+        why,
+    });
+    let outcomes = judge(card, &plan.case, &summary.drifts);
+    let lost = lost(&outcomes, plan.case.h);
+    let warnings: Vec<String> = warnings.into_iter().chain(lost.iter().cloned()).collect();
+    let run = Finished {
+        card,
+        plan: &plan,
+        outcomes: &outcomes,
+        samples: summary.samples,
+        halvings,
+        stated,
+        stopped,
+    };
+    let stream = kept.map(|kept| kept.stream);
+    let (mut files, mut place) = (Vec::<String>::new(), None);
+    if let (Some(staging), Some(stream), Some(target)) = (staging, stream, target) {
+        let write = |files: &mut Vec<String>| {
+            let rows = stream.into_rows();
+            let rows = rows.map_err(|error| cannot(&staging, &error))?;
+            // Who has interrupted a run waits for its end, not for its beginning.
+            let opening = match end {
+                End::Interrupted(_) => None,
+                _ => opening(card, &plan, summary.steps)?,
+            };
+            *files = files::write(&staging, &run, &rows, opening, drawn)?;
+            match (&end, &run.stopped) {
+                (End::Interrupted(_), _) => staging.commit_stopped(),
+                (_, None) => staging.commit().map(|()| {
+                    output::remove_what_resumes(target);
+                    shown(target)
+                }),
+                (_, Some(_)) => {
+                    output::remove_what_resumes(staging.folder());
+                    staging.commit_stopped()
+                }
+            }
+        };
+        // Of two things that went wrong both are said.
+        place = Some(write(&mut files).map_err(|failure| match &run.stopped {
+            None => failure,
+            Some(stopped) => Failure::Failed(format!("{}; {failure}", stopped.why)),
+        })?);
+    }
+    let left: Vec<&str> = outcomes
+        .iter()
+        .filter(|outcome| outcome.verdict == Verdict::Left)
+        .map(|outcome| outcome.invariant.name)
+        .collect();
+    let refuted = run.stated.as_ref().filter(|verdict| !verdict.holds());
+    let kept = left.is_empty() && refuted.is_none();
+    let code = match (&run.stopped, kept) {
+        (Some(_), _) if matches!(end, End::Interrupted(_)) => match end {
+            End::Interrupted(signal) => BY_SIGNAL.saturating_add(signal),
+            _ => FAILED,
+        },
+        (Some(_), _) => FAILED,
+        (None, true) => DONE,
+        (None, false) => BOUND_LEFT,
+    };
+    if as_json {
+        let mut object = run_json::run_json(&run, &files);
+        if let Some(object) = object.as_object_mut() {
+            let place = place.as_ref().map(ToString::to_string);
+            object.insert("out".to_owned(), json!(place));
+            object.insert("exit_code".to_owned(), json!(code));
+            object.insert("warnings".to_owned(), json!(warnings));
+            object.insert("longest_step".to_owned(), limit.json(plan.case.h));
+            if let Some(stopped) = &run.stopped {
+                object.insert("error".to_owned(), json!(stopped.why));
+            }
+        }
+        writeln!(out, "{object}")?;
+    } else if told != Told::Nothing {
+        write!(out, "\n{}", table(&outcomes, width))?;
+        let mut lines = summary::below_the_table(&run, summary.steps);
+        lines.extend(limit.told(plan.case.h));
+        if let Some(place) = place {
+            lines.push(format!("written to {place}: {}", files.join(", ")));
+            if !files.iter().any(|file| file == output::FILES[0]) {
+                lines.push(format!(
+                    "{} is left out, since it would be long; --csv writes it",
+                    output::FILES[0]
+                ));
+            }
+        }
+        writeln!(out)?;
+        for line in lines {
+            out.write_all(paragraph(&line, width, 2).as_bytes())?;
+        }
+    }
+    for warning in lost {
+        let _ = writeln!(streams.err, "clebsch: warning: {warning}");
+    }
+    // The exit code says the same; nothing is lost when these cannot be written.
+    if !left.is_empty() {
+        let message = format!("bound exceeded: {}", left.join(", "));
+        let _ = writeln!(streams.err, "clebsch: {message}");
+    }
+    if let Some(verdict) = refuted {
+        let _ = writeln!(streams.err, "clebsch: {verdict}");
+    }
+    if let Some(stopped) = &run.stopped {
+        let _ = writeln!(streams.err, "clebsch: {}", stopped.why);
+    }
+    Ok(code)
+}
+
+/// Which steps are judged by the action as stated.
+fn judged_steps(matches: &ArgMatches) -> Which {
+    match matches.get_one::<String>("check").map(String::as_str) {
+        Some("all") => Which::All,
+        Some("none") => Which::None,
+        _ => Which::Sample,
+    }
+}
+
+/// The samples of a run that is gone on with.
+fn resumed(staging: &Staging, card: &Card, checkpoint: &Checkpoint) -> Result<Stream, Failure> {
+    let (rows, sum) = (checkpoint.rows, checkpoint.sum);
+    let again = Stream::again(staging.folder(), card, rows, sum);
+    again.map_err(|error| cannot(staging, &error))?.ok_or_else(|| {
+        let file = staging.folder().join(samples::NAME);
+        Failure::Usage(format!(
+            "--resume: {}: the samples before the checkpoint are damaged: their checksum is another. Give \
+             --force instead to begin anew",
+            shown(&file)
+        ))
+    })
+}
+
+fn cannot(staging: &Staging, error: &io::Error) -> Failure {
+    let path = staging.folder().join(samples::NAME);
+    Failure::io(&format!("cannot write {}", shown(&path)), error)
+}
+
+/// Why a step was refused. A run that halves steps has tried shorter ones, whichever is offered.
+fn refused(error: &RunError, plan: &Plan) -> String {
+    match (error, plan.halve) {
+        (RunError::Step(_), true) => format!(
+            "{error}; --halve has tried it by 2, 4, ... to {} steps of a part of its length, none of which went the whole way",
+            Halved::MOST_PARTS
+        ),
+        _ => error.to_string(),
+    }
+}
+
+/// What a signal did.
+fn interrupted(signal: u8) -> String {
+    let by = match signal {
+        2 => "SIGINT".to_owned(),
+        15 => "SIGTERM".to_owned(),
+        other => format!("signal {other}"),
+    };
+    format!("interrupted by {by}; a run with --out goes on by --resume")
+}
+
+/// The beginning of the run once more with every node kept, when the record is sparser than that.
+fn opening(card: &Card, plan: &Plan, made: u64) -> Result<Option<Record>, Failure> {
+    if plan.every == 1 {
+        return Ok(None);
+    }
+    let width = samples::width(card) as u64;
+    let steps = made.min(OPENING).min(OPENING_NUMBERS / width.max(1));
+    let mut recorder = Recorder::new(card, steps, true, false);
+    let mut trajectory = plan.open(card)?;
+    integrate::run(trajectory.as_mut(), steps, 1, &mut recorder)
+        .map_err(|error| Failure::Failed(error.to_string()))?;
+    Ok(recorder.finish())
+}
+
+/// The samples must fit into memory.
+fn fits(card: &Card, plan: &Plan) -> Result<(), Failure> {
+    let size = Record::size(card, plan.case.steps, plan.every);
+    if size <= LARGEST {
+        return Ok(());
+    }
+    let every = plan.every.saturating_mul(size.div_ceil(LARGEST));
+    Err(Failure::Usage(format!(
+        "--every {}: {size} numbers would be written, at most {LARGEST} can be; give --every {every} or more",
+        plan.every
+    )))
+}

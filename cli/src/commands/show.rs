@@ -1,0 +1,93 @@
+//! `clebsch show` and `clebsch case`: the statement of a model, and a case as TOML to start your own from.
+//! Takes what the command line names; gives the texts as they would be in files.
+
+use crate::case_file::{self, stated::Stated};
+use crate::models::gallery::{self, Gallery};
+use crate::named::cases::WhichCase;
+use crate::named::resolve::{ModelText, Named, asked, case_of, entry};
+use crate::terminal::Streams;
+use crate::terminal::failure::Failure;
+use clap::ArgMatches;
+
+/// Prints a case.
+///
+/// # Errors
+/// Usage: no such model or case.
+pub(crate) fn case(
+    gallery: &Gallery,
+    matches: &ArgMatches,
+    streams: &mut Streams<'_>,
+) -> Result<(), Failure> {
+    let (named, case) = asked(gallery, matches)?;
+    let toml = case_text(&named, case, streams)?;
+    streams.out.write_all(toml.as_bytes())?;
+    Ok(())
+}
+
+/// Prints the statement and a case.
+///
+/// # Errors
+/// Usage: no such model or case.
+pub(crate) fn show(
+    gallery: &Gallery,
+    matches: &ArgMatches,
+    streams: &mut Streams<'_>,
+) -> Result<(), Failure> {
+    let (named, case) = asked(gallery, matches)?;
+    let toml = case_text(&named, case, streams)?;
+    write!(streams.out, "{}\n\n{toml}", statement(&named).trim_end())?;
+    Ok(())
+}
+
+/// The statement of a model.
+pub(crate) fn statement<'n>(named: &'n Named<'_>) -> &'n str {
+    match named {
+        Named::Compiled(entry) => entry.card.source,
+        Named::Text(text) => &text.text,
+    }
+}
+
+/// A case of a model as TOML. Without a name it is the first case of the gallery's model, and placeholder values for a file.
+///
+/// # Errors
+/// Usage: no such case, or a text that does not derive.
+pub(crate) fn case_text(
+    named: &Named<'_>,
+    case: Option<&str>,
+    streams: &mut Streams<'_>,
+) -> Result<String, Failure> {
+    match named {
+        Named::Compiled(entry) => {
+            let case = gallery::case(entry, case)?;
+            Ok(case_file::write(
+                &entry.card_of(case),
+                case,
+                entry.card.kebab,
+            ))
+        }
+        Named::Text(text) if text.is_path && case.is_none() => placeholder(text, streams),
+        Named::Text(text) => match case_of(text, case)? {
+            WhichCase::Text(case) => Ok(case.text),
+            _ => placeholder(text, streams),
+        },
+    }
+}
+
+/// A case of placeholder values for a model's text.
+fn placeholder(text: &ModelText, streams: &mut Streams<'_>) -> Result<String, Failure> {
+    let sample = WhichCase::Named("sample".to_owned());
+    if let Some(stated) = Stated::read(&text.text)
+        && let Some(choice) = case_file::default_choice(&stated)
+    {
+        let entry = entry(text, &WhichCase::First, streams)?;
+        return Ok(case_file::write_lattice(
+            &entry.card,
+            &stated,
+            &choice,
+            &text.name,
+        ));
+    }
+    let entry = entry(text, &sample, streams)?;
+    let case = gallery::case(&entry, None)?;
+    Ok(case_file::write(&entry.card_of(case), case, &text.name))
+}

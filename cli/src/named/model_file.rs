@@ -1,0 +1,133 @@
+//! A model in a file: read, derived and executed without a build.
+//! Takes a path; gives the model with a case of sample values, to start one's own from.
+
+use crate::case_file;
+use crate::case_file::stated::Stated;
+use crate::models::fields::{is_momentum, sample_values, turns};
+use crate::models::gallery::{Case, Citations, Entry};
+use crate::models::held::is_held;
+use crate::named::cases::WhichCase;
+use crate::named::sample::onto_constraints;
+use crate::terminal::failure::Failure;
+use crate::words::plain::shown;
+use clebsch::card::{Card, Field};
+use clebsch_core::lattice::Choice;
+use clebsch_core::pipeline;
+use clebsch_core::syntax::ast::{Model, Statement};
+use clebsch_interpret::Refused;
+use std::io::Write;
+
+/// The model of a text, with the placeholder case if that is the one to run. Warnings go to `err`.
+///
+/// # Errors
+/// Usage: the text does not derive, or the model needs a build.
+pub(crate) fn read(
+    name: &str,
+    text: &str,
+    case: &WhichCase,
+    err: &mut dyn Write,
+) -> Result<Entry, Failure> {
+    let name = shown(name).to_string();
+    let of_case = case.text().map(|c| (c.file.as_str(), c.text.as_str()));
+    let filled = case_file::functions::put_in(text, of_case)?;
+    let text = filled.text.as_str();
+    let stated = Stated::read(text);
+    let choice = match &stated {
+        None => None,
+        Some(stated) => chosen(stated, of_case)?,
+    };
+    let read = match &choice {
+        None => clebsch_interpret::card_and_warnings(text),
+        Some(choice) => clebsch_interpret::card_on_lattice(text, choice),
+    };
+    let (card, warnings) = read.map_err(|refused| match refused {
+        Refused::Model(errors) => filled
+            .wrong_in(&errors, of_case)
+            .unwrap_or_else(|| Failure::Usage(format!("\n{}", errors.render(text, &name)))),
+        other => Failure::Usage(format!("{name}: {other}")),
+    })?;
+    for warning in warnings {
+        // What cannot be written there stands in the derivation too.
+        let _ = write!(err, "{}", warning.diagnostic.render("warning", text, &name));
+    }
+    let cases = match (case, stated.zip(choice)) {
+        (WhichCase::Text(_) | WhichCase::First, _) => Vec::new(),
+        (WhichCase::Named(_), None) => vec![sample(&card, &name)],
+        (WhichCase::Named(_), Some((stated, choice))) => {
+            let text = case_file::write_lattice(&card, &stated, &choice, &name);
+            vec![sample_on_lattice(&text, &stated, &card)?]
+        }
+    };
+    Ok(Entry {
+        card,
+        citations: Citations::NONE,
+        cases,
+    })
+}
+
+/// How many sites there are and how the line ends: as the case says, if one is given by a file.
+fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>, Failure> {
+    match case {
+        None => Ok(case_file::default_choice(stated)),
+        Some((file, text)) => case_file::choice(file, text, stated),
+    }
+}
+
+/// The sample case of a model with labels.
+fn sample_on_lattice(text: &str, stated: &Stated, card: &Card) -> Result<Case, Failure> {
+    let located = case_file::read_of("sample", text, card, Some(stated))?;
+    Ok(located.case)
+}
+
+/// Values that are admissible for most models, and of no further meaning.
+fn sample(card: &Card, file: &str) -> Case {
+    let turned = turns(card);
+    let held = is_held(card);
+    let values = |fields: &[Field]| {
+        let sample = |f: &Field| match held && is_momentum(f) {
+            true => vec![0.0; f.count()],
+            false => sample_values(f, turned),
+        };
+        fields.iter().map(sample).collect()
+    };
+    let mut case = Case {
+        name: "sample".to_owned(),
+        doc: format!(
+            "sample values, to start a case of your own from: clebsch case {file} > my.toml"
+        ),
+        h: 0.01,
+        steps: 1000,
+        parameters: values(card.parameters),
+        initial: values(card.initial),
+        bounds: Vec::new(),
+    };
+    if let Ok(model) = pipeline::parse_source(card.source) {
+        apart(&model, card, &mut case);
+        if held {
+            onto_constraints(&model, card, &mut case);
+        }
+    }
+    case
+}
+
+/// Moves fields of one shape apart: many Lagrangians are singular where two positions are the same.
+fn apart(model: &Model, card: &Card, case: &mut Case) {
+    let is_field = |name: &str| {
+        model.statements.iter().any(|s| match s {
+            Statement::Field { names, .. } => names.iter().any(|own| own.text == name),
+            _ => false,
+        })
+    };
+    let mut before: Vec<[usize; 2]> = Vec::new();
+    for (field, numbers) in card.initial.iter().zip(&mut case.initial) {
+        if field.cols != 1 || !is_field(field.name) {
+            continue;
+        }
+        let shape = [field.rows, field.cols];
+        let distance = before.iter().filter(|own| **own == shape).count();
+        if let Some(first) = numbers.first_mut() {
+            *first += distance as f64;
+        }
+        before.push(shape);
+    }
+}

@@ -1,0 +1,375 @@
+//! What is to be run: a case of the gallery or of a file, with the options that override it.
+//! Takes the matches of `clebsch run`; gives the plan, and places error messages in its file.
+
+mod blamed;
+
+use crate::case_file::stated::Stated;
+use crate::case_file::{self, Located, Motion, undefined};
+use crate::models::gallery::{self, Case, Entry};
+use crate::named::cases::{CaseText, WhichCase};
+use crate::named::resolve::Resolved;
+use crate::overrides;
+use crate::plan::blamed::{Origin, blamed};
+use crate::terminal::failure::Failure;
+use crate::words::plain::shown;
+use clap::ArgMatches;
+use clebsch::card::{Card, Field, OpenError, Settings, Trajectory};
+use clebsch::integrate::Halved;
+use clebsch::solvers::Method;
+use clebsch::{ParameterError, StartError};
+use clebsch_core::lattice::Choice;
+use serde_json::{Value, json};
+
+/// Most nodes written by default: a plot shows no more, and the files stay at a few megabytes.
+const SAMPLES: u64 = 10_000;
+
+/// The time at the last node, for print.
+#[allow(clippy::cast_precision_loss)]
+pub(crate) fn end(h: f64, steps: u64) -> f64 {
+    h * steps as f64
+}
+
+/// A run before it starts.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The case, options applied.
+    pub case: Case,
+    /// The order of a step, where one was asked for.
+    pub order: Option<u32>,
+    /// Every how many nodes the trajectory is written.
+    pub every: u64,
+    /// The options that determine the results, as given; `null` where not given.
+    pub arguments: Value,
+    /// The solver asked for.
+    pub solver: Option<Method>,
+    /// Whether steps with modified moments are compensated.
+    pub compensated: bool,
+    /// Whether refused steps are made by parts.
+    pub halve: bool,
+    /// Whether pictures are drawn for a column of a paper.
+    pub paper: bool,
+    /// Whether samples are written as text however many they are.
+    pub csv: bool,
+    /// How many sites a model with labels has, and how its line ends.
+    pub choice: Option<Choice>,
+    /// Whether another step size keeps the time to which the case runs, rather than the number of steps.
+    pub keeps_time: bool,
+    /// The names of the quantities that `--set` set.
+    set: Vec<String>,
+    /// For a case read from a file: its name, and the line of each key.
+    origin: Option<Origin>,
+    /// How what is not given by momenta starts.
+    pub(crate) motion: Motion,
+}
+
+impl Plan {
+    /// Reads the case, a name or a file, and applies the options.
+    ///
+    /// # Errors
+    /// Usage: an unknown case, an unreadable or wrong file.
+    pub(crate) fn new(resolved: &Resolved<'_>, matches: &ArgMatches) -> Result<Self, Failure> {
+        let entry = &*resolved.entry;
+        let typed = matches.get_one::<String>("case");
+        let every = matches.try_get_one::<u64>("every").ok().flatten().copied();
+        let order = matches.get_one::<u32>("order").copied();
+        let is_set = |flag: &str| matches.try_get_one::<bool>(flag).ok().flatten() == Some(&true);
+        let compensated = matches.get_flag("compensated");
+        let halve = matches.get_flag("halve");
+        let solver = match matches.get_one::<String>("solver") {
+            None => None,
+            Some(name) => match name.parse::<Method>() {
+                Ok(method) => Some(method),
+                Err(_) => {
+                    let offered = entry.card.solvers;
+                    let error = OpenError::Solver { offered };
+                    return Err(Failure::Usage(format!("--solver {}: {error}", shown(name))));
+                }
+            },
+        };
+        let size = matches.get_one::<u64>("dim").copied();
+        let cards = of_size(entry, size)?;
+        let (mut case, origin, choice, mut motion) = match &resolved.case {
+            WhichCase::Text(text) => {
+                let located = read(text, &cards)?;
+                let origin = Some((located.file, located.lines));
+                (located.case, origin, located.choice, located.motion)
+            }
+            named => {
+                let asked = match named {
+                    WhichCase::Named(name) => Some(name.as_str()),
+                    _ => None,
+                };
+                let stated = Stated::read(entry.card.source);
+                let choice = stated.as_ref().and_then(case_file::default_choice);
+                let case = case_of_size(entry, asked, size)?.clone();
+                (case, None, choice, Motion::default())
+            }
+        };
+        let card = entry.card_of(&case);
+        let h = case.h;
+        let text = resolved.case.text().map(|case| case.text.as_str());
+        let set = overrides::apply(&mut case, &mut motion, &card, text, matches)?;
+        if case.steps == 0 {
+            return Err(case_file::no_steps(
+                origin.as_ref().map_or("", |(file, _)| file.as_str()),
+            ));
+        }
+        if !set.is_empty() || h.to_bits() != case.h.to_bits() {
+            start(&mut motion, &card, choice.as_ref(), &mut case)?;
+        }
+        let steps = matches.get_one::<u64>("steps").copied();
+        Ok(Self {
+            every: every.unwrap_or_else(|| case.steps.div_ceil(SAMPLES).max(1)),
+            case,
+            order,
+            arguments: json!({
+                "model": matches.get_one::<String>("model").map_or(entry.card.kebab, String::as_str),
+                "case": typed,
+                "steps": steps,
+                "until": overrides::until(matches),
+                "h": matches.get_one::<f64>("h"),
+                "set": overrides::set(matches).collect::<Vec<_>>(),
+                "order": order,
+                "every": every,
+                "solver": solver.map(Method::name),
+                "compensated": compensated,
+                "halve": halve,
+                "dim": size,
+            }),
+            solver,
+            compensated,
+            halve,
+            paper: is_set("paper"),
+            csv: is_set("csv"),
+            choice,
+            keeps_time: steps.is_none(),
+            set,
+            origin,
+            motion,
+        })
+    }
+
+    /// The case with another step size, up to the same time unless the number of steps was asked for.
+    #[must_use]
+    pub fn with_step(mut self, h: f64) -> Self {
+        let time = end(self.case.h, self.case.steps);
+        self.case.h = h;
+        if self.keeps_time {
+            self.case.steps = overrides::steps_to(time, h).unwrap_or(self.case.steps);
+        }
+        self
+    }
+
+    /// The case as it is, every `every`-th node kept.
+    #[must_use]
+    pub fn of(case: &Case, every: u64) -> Self {
+        Self {
+            case: case.clone(),
+            order: None,
+            every: every.max(1),
+            arguments: Value::Null,
+            solver: None,
+            compensated: false,
+            halve: false,
+            paper: false,
+            csv: false,
+            choice: None,
+            keeps_time: true,
+            set: Vec::new(),
+            origin: None,
+            motion: Motion::default(),
+        }
+    }
+
+    /// Puts the momenta of velocities into the case again, where its parameters or its configuration are others now.
+    ///
+    /// # Errors
+    /// Usage: the velocities have no momenta there.
+    pub(crate) fn start_anew(&mut self, card: &Card) -> Result<(), Failure> {
+        start(&mut self.motion, card, self.choice.as_ref(), &mut self.case)
+    }
+
+    /// What a reader is told of momenta that were made of velocities.
+    pub(crate) fn starts(&self, card: &Card) -> Vec<String> {
+        self.motion.told(card, &self.case)
+    }
+
+    /// Starts the trajectory.
+    ///
+    /// # Errors
+    /// Usage for data that the model cannot work with, with file and line where they come from one;
+    /// failed when the data are fine and the solver refuses the first step.
+    pub fn open(&self, card: &Card) -> Result<Box<dyn Trajectory>, Failure> {
+        let Case {
+            parameters,
+            initial,
+            h,
+            ..
+        } = &self.case;
+        let settings = Settings {
+            order: self.order,
+            solver: self.solver,
+            compensated: self.compensated,
+            ..Settings::step(*h)
+        };
+        let opened = match self.halve {
+            true => Halved::open(card, parameters, initial, settings)
+                .map(|t| Box::new(t) as Box<dyn Trajectory>),
+            false => (card.open)(parameters, initial, settings),
+        };
+        opened.map_err(|error| match error {
+            OpenError::Parameter(wrong) | OpenError::Start(StartError::Initial(wrong)) => {
+                let place = self.place(card, &wrong);
+                let sample = self.sample().unwrap_or_default();
+                Failure::Usage(format!(
+                    "{place}: {}; {}{sample}",
+                    wrong.problem, wrong.remedy
+                ))
+            }
+            OpenError::Start(StartError::Refused(cause)) => {
+                let undefined = cause
+                    .is_not_finite()
+                    .then(|| undefined(card, self.choice.as_ref(), &self.case));
+                Failure::Failed(match undefined.flatten() {
+                    Some(found) => format!(
+                        "cannot take the first step: {found}; change the initial values or parameters there"
+                    ),
+                    None => format!("cannot take the first step: {cause}"),
+                })
+            }
+            OpenError::Kinetic { .. } => Failure::Failed(error.to_string()),
+            OpenError::Solver { .. } => {
+                let name = self.solver.map_or("", Method::name);
+                Failure::Usage(format!("--solver {}: {error}", shown(name)))
+            }
+            OpenError::Compensation { .. } => Failure::Usage(format!("--compensated: {error}")),
+            OpenError::Unseen { .. } => Failure::Usage(format!("--halve: {error}")),
+            _ => Failure::Usage(error.to_string()),
+        })
+    }
+
+    /// How to give other values than the samples with which a model in a file runs.
+    fn sample(&self) -> Option<String> {
+        let model = self.arguments.get("model")?.as_str()?;
+        let is_sample = self.origin.is_none() && self.case.name == "sample";
+        is_sample.then(|| {
+            let model = shown(model);
+            format!(
+                "; these are sample values: print them by `clebsch case {model} > my.toml`, change them there, and run \
+                 with `--case my.toml`"
+            )
+        })
+    }
+
+    /// Where the value that is wrong was given: `top.toml:7: parameters.J`; what is made of parameters is told by them.
+    fn place(&self, card: &Card, wrong: &ParameterError) -> String {
+        if wrong.field == "h" && self.arguments.get("h").is_some_and(Value::is_number) {
+            return "--h".to_owned();
+        }
+        let is_set = |name: &&String| name.split('.').next() == Some(wrong.field);
+        if let Some(name) = self.set.iter().find(is_set) {
+            return format!("--set {}", shown(name));
+        }
+        let of = |table: &str, fields: &[Field]| {
+            let named = |field: &&Field| field.name == wrong.field || field.ascii == wrong.field;
+            let field = fields.iter().find(named)?;
+            Some(format!("{table}.{}", field.ascii))
+        };
+        // What an end holds may stand among the initial values.
+        let lines = self.origin.as_ref().map(|(_, lines)| lines);
+        let among_initial = |key: &String| lines.is_some_and(|l| l.contains_key(key));
+        let held = of("initial", card.parameters).filter(among_initial);
+        let key = held
+            .or_else(|| of("parameters", card.parameters))
+            .or_else(|| of("initial", card.initial));
+        let made = || blamed(card, &self.case, self.origin.as_ref(), wrong.field);
+        if let Some(place) = key.is_none().then(made).flatten() {
+            return place;
+        }
+        let key = key.unwrap_or_else(|| wrong.field.to_owned());
+        // A momentum that was made of a velocity is named by that.
+        let momentum = key.strip_prefix("initial.");
+        let at = momentum.and_then(|own| card.initial.iter().position(|f| f.ascii == own));
+        let velocity = at.and_then(|at| self.motion.key_of(at));
+        let named = velocity.map_or_else(|| key.clone(), |own| format!("initial.{own}"));
+        match &self.origin {
+            None => format!("case `{}`: {named}", shown(&self.case.name)),
+            Some((file, lines)) => match case_file::line_of(lines, &key) {
+                Some(line) => format!("{}:{line}: {named}", shown(file)),
+                None => format!("{}: {named}", shown(file)),
+            },
+        }
+    }
+}
+
+/// Puts the momenta of velocities into a case.
+fn start(
+    motion: &mut Motion,
+    card: &Card,
+    choice: Option<&Choice>,
+    case: &mut Case,
+) -> Result<(), Failure> {
+    let put = motion.put(card, choice, case);
+    put.map_err(|wrong| Failure::Usage(format!("initial.{}: {}", wrong.key, wrong.why)))
+}
+
+/// The case of a file, by the first card whose fields it fits; the message is that of the first.
+fn read(case: &CaseText, cards: &[Card]) -> Result<Located, Failure> {
+    let CaseText { file, text } = case;
+    let mut first = None;
+    for card in cards {
+        let stated = Stated::read(card.source);
+        match case_file::read_of(file, text, card, stated.as_ref()) {
+            Ok(located) => return Ok(located),
+            Err(error) => first = first.or(Some(error)),
+        }
+    }
+    Err(first.unwrap_or_else(|| Failure::Usage(format!("{}: the model has no card", shown(file)))))
+}
+
+/// The cards of the model, all or those of one size.
+fn of_size(entry: &Entry, size: Option<u64>) -> Result<Vec<Card>, Failure> {
+    let cards = entry.cards();
+    let Some(size) = size else { return Ok(cards) };
+    let has = |card: &&Card| card.dimensions.iter().any(|d| d.value as u64 == size);
+    let fitting: Vec<Card> = cards.iter().filter(has).copied().collect();
+    if fitting.is_empty() {
+        let model = entry.card.kebab;
+        let dimensions = entry.card.dimensions.iter();
+        let admitted: Vec<String> = dimensions
+            .map(|d| format!("{} from {} to {}", d.name, d.from, d.to))
+            .collect();
+        return Err(Failure::Usage(match admitted.is_empty() {
+            true => format!("--dim {size}: the matrices of `{model}` have a fixed size"),
+            false => format!("--dim {size}: `{model}` takes {}", admitted.join(", ")),
+        }));
+    }
+    Ok(fitting)
+}
+
+/// The case asked for; without a name the first one of the size asked for.
+fn case_of_size<'a>(
+    entry: &'a Entry,
+    asked: Option<&str>,
+    size: Option<u64>,
+) -> Result<&'a Case, Failure> {
+    let has = |case: &&Case| {
+        let card = entry.card_of(case);
+        size.is_none_or(|n| card.dimensions.iter().any(|d| d.value as u64 == n))
+    };
+    match (asked, size) {
+        (None, Some(n)) => entry.cases.iter().find(has).ok_or_else(|| {
+            Failure::Usage(format!(
+                "--dim {n}: no case of that size; give one: --case FILE.toml"
+            ))
+        }),
+        (Some(name), Some(n)) => match gallery::case(entry, asked)? {
+            case if has(&case) => Ok(case),
+            _ => Err(Failure::Usage(format!(
+                "--dim {n}: case `{}` has another size",
+                shown(name)
+            ))),
+        },
+        (_, None) => gallery::case(entry, asked),
+    }
+}

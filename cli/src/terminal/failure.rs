@@ -1,0 +1,74 @@
+//! Why a command stops, and with which exit code.
+//! Takes the message of whoever noticed; gives the code that the shell sees.
+
+use std::fmt;
+use std::io;
+
+/// Everything was done and every bounded invariant stayed within its bound.
+pub const DONE: u8 = 0;
+/// The solver or the file system failed. Of a run that stopped after its first step the results up to
+/// there are written.
+pub const FAILED: u8 = 1;
+/// The request cannot be understood: arguments, names, case files, values.
+pub const USAGE: u8 = 2;
+/// The run ended, its results are written, and an invariant left its bound, or steps are
+/// refuted by the action as stated.
+pub const BOUND_LEFT: u8 = 3;
+/// Less than the codes of commands that a signal ended, by its number: 130 for SIGINT, 143 for SIGTERM.
+pub const BY_SIGNAL: u8 = 128;
+
+/// A command that did not come to its end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// The request is wrong; the message names the argument, or file, line and field.
+    Usage(String),
+    /// The request was fine, but the work failed.
+    Failed(String),
+    /// Whoever read our output has gone, as `head` does. Not worth a message.
+    ReaderGone,
+}
+
+impl Failure {
+    /// The exit code of the process.
+    #[must_use]
+    pub const fn code(&self) -> u8 {
+        match self {
+            Self::Usage(_) => USAGE,
+            Self::Failed(_) | Self::ReaderGone => FAILED,
+        }
+    }
+
+    /// An input or output error, said of what was being done: `cannot write x/run.json`.
+    #[must_use]
+    pub fn io(doing: &str, error: &io::Error) -> Self {
+        Self::Failed(format!("{doing}: {error}"))
+    }
+
+    /// The object that stands for what did not come to its end.
+    #[must_use]
+    pub fn json(&self) -> serde_json::Value {
+        serde_json::json!({"error": self.to_string(), "exit_code": self.code()})
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Usage(message) | Self::Failed(message) => f.write_str(message),
+            Self::ReaderGone => f.write_str("the reader of the output has gone"),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+/// For `?` on writes to standard output, the only unlabelled ones.
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        if error.kind() == io::ErrorKind::BrokenPipe {
+            Self::ReaderGone
+        } else {
+            Self::io("cannot write to standard output", &error)
+        }
+    }
+}

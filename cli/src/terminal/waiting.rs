@@ -1,0 +1,66 @@
+//! What is done before the first step of a run is counted: a line on a terminal, where it takes longer than a second. Takes the words;
+//! nothing is shown of what is quick.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// How long nothing is shown.
+const QUIET: Duration = Duration::from_secs(1);
+
+/// Something that is waited for until it is dropped.
+#[derive(Debug)]
+pub(crate) struct Waiting {
+    end: Option<Sender<()>>,
+    shown: Option<JoinHandle<()>>,
+}
+
+impl Waiting {
+    /// Tells what is waited for; nothing where no terminal is.
+    pub(crate) fn told(what: String, terminal: bool) -> Self {
+        let (end, ended) = channel();
+        let show = move || {
+            if ended.recv_timeout(QUIET) != Err(RecvTimeoutError::Timeout) {
+                return;
+            }
+            let line = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+            line.set_message(what);
+            line.set_style(style());
+            line.enable_steady_tick(Duration::from_millis(250));
+            // Until the other end is dropped.
+            let _ = ended.recv();
+            line.finish_and_clear();
+        };
+        Self {
+            end: Some(end),
+            shown: terminal.then(|| std::thread::spawn(show)),
+        }
+    }
+}
+
+/// A bar on standard error with the time left, for so many `what`.
+pub(crate) fn progress_bar(steps: u64, what: &str) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
+    let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {what}, {{eta}} left");
+    match ProgressStyle::with_template(&template) {
+        Ok(style) => bar.with_style(style),
+        // The template is fixed; should it ever be wrong, the plain bar does.
+        Err(_) => bar,
+    }
+}
+
+fn style() -> ProgressStyle {
+    let own = ProgressStyle::with_template("{msg}, {elapsed}");
+    own.unwrap_or_else(|_| ProgressStyle::default_spinner())
+}
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        drop(self.end.take());
+        if let Some(shown) = self.shown.take() {
+            // A thread that has failed has shown nothing worth telling.
+            let _ = shown.join();
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The samples of a run, kept in memory until they are written, and the progress bar.
+//! Takes what the integration loop shows; gives tables with one row per sample.
+
+use crate::terminal::waiting::progress_bar;
+use clebsch::card::Card;
+use clebsch::integrate::Observer;
+use clebsch::record::Record;
+use indicatif::ProgressBar;
+
+/// Most numbers a record may hold: 2 GiB, which also keeps an npz within the classic zip format.
+pub const LARGEST: u64 = 1 << 28;
+
+/// What is kept of a run for its files.
+#[derive(Clone, Debug, Default)]
+pub struct Samples {
+    /// The samples to write.
+    pub record: Record,
+    /// Every node of the beginning, for plots of quick oscillations; `None` when the record has them.
+    pub opening: Option<Record>,
+}
+
+/// What watches a run: it keeps the samples if they are wanted, and draws the bar if there is one.
+pub struct Recorder {
+    record: Option<Record>,
+    bar: Option<ProgressBar>,
+}
+
+impl Recorder {
+    /// Keeps samples when `keep`; draws a bar with the time left on standard error when `bar`.
+    #[must_use]
+    pub fn new(card: &Card, steps: u64, keep: bool, bar: bool) -> Self {
+        Self {
+            record: keep.then(|| Record::new(card)),
+            bar: bar.then(|| progress_bar(steps, "steps")),
+        }
+    }
+
+    /// Takes the bar away and gives the samples.
+    #[must_use]
+    pub fn finish(self) -> Option<Record> {
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
+        }
+        self.record
+    }
+}
+
+impl Observer for Recorder {
+    fn sample(&mut self, node: u64, time: f64, observables: &[f64], invariants: &[f64]) {
+        if let Some(record) = &mut self.record {
+            record.sample(node, time, observables, invariants);
+        }
+    }
+
+    fn progress(&mut self, done: u64, _total: u64) {
+        if let Some(bar) = &self.bar {
+            bar.set_position(done);
+        }
+    }
+}
