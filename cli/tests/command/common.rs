@@ -98,10 +98,10 @@ pub static CARD: Card = Card {
         rows: 1,
         conserved: Conserved::Boundedly,
     },
-    open,
+    open: &open,
     solvers: &[],
     dimensions: &[],
-    sized: |_| None,
+    sized: &|_| None,
 };
 
 struct Rotor {

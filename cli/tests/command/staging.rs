@@ -59,7 +59,7 @@ fn open(
 /// Runs with `event` in the middle; 20 steps, so that the results are told from those of other runs.
 fn run_while(event: impl FnOnce() + 'static, out: &str, more: &[&str]) -> Done {
     let mut card = super::common::CARD;
-    card.open = open;
+    card.open = &open;
     let gallery = Gallery {
         entries: vec![Entry {
             card,

@@ -35,7 +35,7 @@ fn slow(arguments: &[&str]) -> (Done, usize) {
     let _alone = ALONE.lock();
     INQUIRIES.store(0, Ordering::SeqCst);
     let mut gallery = gallery();
-    gallery.entries[0].card.open = slowly;
+    gallery.entries[0].card.open = &slowly;
     let done = on(&gallery, arguments);
     (done, INQUIRIES.load(Ordering::SeqCst))
 }
