@@ -304,6 +304,6 @@ impl BodyInTwoFields<f64> {
             1,
         ),
         solvers: &Method::NAMES,
-        ..Card::plain(open::<Self>, only_size::<Self>)
+        ..Card::plain(&open::<Self>, &only_size::<Self>)
     };
 }

@@ -263,6 +263,6 @@ impl CayleyKlein<f64> {
             "-4 c re(W_k)/h² + 2 im(W_k)·((I - c Id) im(W_k))/h² + 4 c/h²",
             1,
         ),
-        ..Card::plain(open::<Self>, only_size::<Self>)
+        ..Card::plain(&open::<Self>, &only_size::<Self>)
     };
 }

@@ -537,7 +537,7 @@ impl<const N: usize> EllipsoidConvective<N, f64> {
                 value: N,
             },
         ],
-        ..Card::plain(open::<Self>, Self::sized)
+        ..Card::plain(&open::<Self>, &Self::sized)
     };
     /// The card of the model at the given sizes, in the order of their declaration.
     fn sized(sizes: &[usize]) -> Option<Card> {

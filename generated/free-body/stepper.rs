@@ -242,6 +242,6 @@ impl FreeBody<f64> {
             1,
         ),
         solvers: &Method::NAMES,
-        ..Card::plain(open::<Self>, only_size::<Self>)
+        ..Card::plain(&open::<Self>, &only_size::<Self>)
     };
 }

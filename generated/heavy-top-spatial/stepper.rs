@@ -376,6 +376,6 @@ impl HeavyTopSpatial<f64> {
             1,
         ),
         solvers: &Method::NAMES,
-        ..Card::plain(open::<Self>, only_size::<Self>)
+        ..Card::plain(&open::<Self>, &only_size::<Self>)
     };
 }

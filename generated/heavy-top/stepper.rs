@@ -269,6 +269,6 @@ impl HeavyTop<f64> {
             1,
         ),
         solvers: &Method::NAMES,
-        ..Card::plain(open::<Self>, only_size::<Self>)
+        ..Card::plain(&open::<Self>, &only_size::<Self>)
     };
 }

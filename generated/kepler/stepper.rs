@@ -279,6 +279,6 @@ impl Kepler<f64> {
             "m ΔX_k·ΔX_k/(2 h²) - m k/(2 |X_k|) - m k/(2 |X_{k+1}|)",
             1,
         ),
-        ..Card::plain(open::<Self>, only_size::<Self>)
+        ..Card::plain(&open::<Self>, &only_size::<Self>)
     };
 }

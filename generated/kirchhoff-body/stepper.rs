@@ -875,6 +875,6 @@ impl KirchhoffBody<f64> {
             "-tr(J rot(V_k))/h² + 2 (½ (pos(V_k) + rot(V_k)ᵀ pos(V_k)))·(½ M (pos(V_k) + rot(V_k)ᵀ pos(V_k)))/(2 h)² + (vee(rot(V_k))·(½ D (pos(V_k) + rot(V_k)ᵀ pos(V_k))))/h² + ½ b·P_k + ½ b·P_{k+1} + tr(J)/h²",
             1,
         ),
-        ..Card::plain(open::<Self>, only_size::<Self>)
+        ..Card::plain(&open::<Self>, &only_size::<Self>)
     };
 }

@@ -1515,6 +1515,6 @@ impl MixedFour<f64> {
             1,
         ),
         solvers: &Method::NAMES,
-        ..Card::plain(open::<Self>, only_size::<Self>)
+        ..Card::plain(&open::<Self>, &only_size::<Self>)
     };
 }

@@ -1,30 +1,44 @@
-//! Models that are open in this process. A card starts trajectories by a function without captures, so
-//! each open model has a number, and each number a function.
+//! The cards of texts. A card borrows its names for as long as the process lives, so clebsch reads each text once and keeps
+//! the result.
 
 use crate::Refused;
 use crate::lines::{Carded, LineModel, NoLine};
 use crate::opened::{Opened, Text};
 use crate::signs::Agreement;
-use clebsch::card::{Card, Invariant, Open, OpenError, Settings, Trajectory};
+use clebsch::card::{Card, Invariant, OpenError, Settings};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::document::{self, InvariantWords};
 use clebsch_core::lattice::{Choice, Lattice};
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::{Model, Statement};
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::rc::Rc;
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
-/// What is open, by number; each stays for as long as the process, as its card may.
-static OPEN: RwLock<Vec<Known>> = RwLock::new(Vec::new());
+/// A card, and the warnings of its text.
+type Told = (Card, Vec<Warning>);
 
-/// An open model.
-#[derive(Clone, Copy)]
-enum Known {
-    /// One of bodies.
-    Bodies(&'static Opened),
-    /// A line, found by its key.
-    Line(&'static str, &'static Carded),
+/// Cards by their texts and the chosen sizes or sites, and whether the text has warnings.
+static KNOWN: RwLock<BTreeMap<String, (Card, bool)>> = RwLock::new(BTreeMap::new());
+
+/// The card of a key, which is made once. Places in a text belong to the thread that has read it: if the text has warnings, it
+/// is derived again for them.
+fn once(
+    key: String,
+    make: impl FnOnce(Option<Card>) -> Result<Told, Refused>,
+) -> Result<Told, Refused> {
+    let all = KNOWN.read().unwrap_or_else(PoisonError::into_inner);
+    let known = all.get(&key).copied();
+    drop(all);
+    if let Some((card, false)) = known {
+        return Ok((card, Vec::new()));
+    }
+    let (card, warnings) = make(known.map(|(card, _)| card))?;
+    let mut all = KNOWN.write().unwrap_or_else(PoisonError::into_inner);
+    // Another thread may have been first.
+    let (card, _) = *all.entry(key).or_insert((card, !warnings.is_empty()));
+    Ok((card, warnings))
 }
 
 /// Most sites of a label.
@@ -53,58 +67,13 @@ fn most_body_by_body(model: &Model) -> usize {
     }
 }
 
-type Sized = fn(&[usize]) -> Option<Card>;
-
-fn opened(number: usize) -> Option<Known> {
-    let list = OPEN.read().unwrap_or_else(PoisonError::into_inner);
-    list.get(number).copied()
-}
-
-fn open_at<const I: usize>(
-    parameters: &[Vec<f64>],
-    initial: &[Vec<f64>],
-    settings: Settings,
-) -> Result<Box<dyn Trajectory>, OpenError> {
-    match opened(I) {
-        Some(Known::Bodies(model)) => model.open(parameters, initial, settings),
-        Some(Known::Line(_, line)) => line.open(parameters, initial, settings),
-        None => Err(OpenError::Count {
-            field: "open models",
-            expected: I + 1,
-            found: 0,
-        }),
-    }
-}
-
-fn sized_at<const I: usize>(sizes: &[usize]) -> Option<Card> {
-    let Known::Bodies(model) = opened(I)? else {
-        return None;
-    };
-    let source = model.source;
-    match model.sizes == sizes {
-        true => Some(model.card),
-        false => at_sizes(source, Some(sizes)).ok(),
-    }
-}
-
-macro_rules! functions {
-    ($($i:literal)*) => {
-        [$((open_at::<$i> as Open, sized_at::<$i> as Sized)),*]
-    };
-}
-
-const FUNCTIONS: [(Open, Sized); 64] = functions!(
-    0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31
-    32 33 34 35 36 37 38 39 40 41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63
-);
-
 /// The card of the model that a text states: a bare `model NAME { ... }`, or Rust source with one
 /// `model! { ... }`. Of named sizes each is three where that is admitted, else its smallest.
 ///
 /// # Errors
 /// [`Refused`] for what is no model, and for models that need a build.
 pub fn card(source: &str) -> Result<Card, Refused> {
-    at_sizes(source, None)
+    card_and_warnings(source).map(|(card, _)| card)
 }
 
 /// The same, and what derives in the text and is hardly meant.
@@ -112,12 +81,7 @@ pub fn card(source: &str) -> Result<Card, Refused> {
 /// # Errors
 /// As [`card`].
 pub fn card_and_warnings(source: &str) -> Result<(Card, Vec<Warning>), Refused> {
-    let text = derived(source)?;
-    let card = match known(source, None) {
-        Some(card) => card,
-        None => opened_now(&text, source, None)?,
-    };
-    Ok((card, text.derivation.warnings.clone()))
+    at_sizes(source, None)
 }
 
 /// The card of a model with labels, for so many sites and these ends, and what is hardly meant.
@@ -125,6 +89,12 @@ pub fn card_and_warnings(source: &str) -> Result<(Card, Vec<Warning>), Refused> 
 /// # Errors
 /// As [`card`].
 pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warning>), Refused> {
+    once(format!("{choice:?}\n{source}"), |known| {
+        on_lattice(source, choice, known)
+    })
+}
+
+fn on_lattice(source: &str, choice: &Choice, known: Option<Card>) -> Result<Told, Refused> {
     let model = pipeline::parse_source(source).map_err(Refused::Model)?;
     let lattice = Lattice::read(&model).map_err(Refused::Model)?;
     let mut written_out = None;
@@ -140,7 +110,7 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
     // Functionals of all sites have no form body by body.
     if !lattice.meshes.is_empty() {
         return match LineModel::read(source) {
-            Ok(line) => card_of_line((&model, &lattice), choice, line, source),
+            Ok(line) => card_of_line((&model, &lattice), choice, line, source, known),
             Err(NoLine::Form(why)) => Err(Refused::Form { why }),
             Err(NoLine::Refused(refused)) => Err(refused),
         };
@@ -150,7 +120,7 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
     if beyond(most.min(MOST_TOGETHER_BODY_BY_BODY)) {
         match LineModel::read(source) {
             Ok(line) if !beyond(most) && !line.is_solved_together() => {}
-            Ok(line) => return card_of_line((&model, &lattice), choice, line, source),
+            Ok(line) => return card_of_line((&model, &lattice), choice, line, source, known),
             Err(_) if !beyond(most) => {}
             Err(NoLine::Form(why)) => written_out = Some(why),
             // What is wrong with a model is said of its bodies too; what is not read of a line is
@@ -172,10 +142,10 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
             most: MOST_BODY_BY_BODY,
         });
     }
-    match body_by_body((&model, &lattice), choice, source, written_out) {
+    match body_by_body((&model, &lattice), choice, source, written_out, known) {
         // What is too large body by body has one kernel for all sites.
         Err(Refused::Model(errors)) if errors.are_of_size() => match LineModel::read(source) {
-            Ok(line) => card_of_line((&model, &lattice), choice, line, source),
+            Ok(line) => card_of_line((&model, &lattice), choice, line, source, known),
             Err(_) => Err(Refused::Model(errors)),
         },
         card => card,
@@ -187,9 +157,11 @@ pub fn card_on_lattice(source: &str, choice: &Choice) -> Result<(Card, Vec<Warni
 /// # Errors
 /// As [`card`].
 pub fn card_body_by_body(source: &str, choice: &Choice) -> Result<(Card, Vec<Warning>), Refused> {
-    let model = pipeline::parse_source(source).map_err(Refused::Model)?;
-    let lattice = Lattice::read(&model).map_err(Refused::Model)?;
-    body_by_body((&model, &lattice), choice, source, None)
+    once(format!("body by body, {choice:?}\n{source}"), |known| {
+        let model = pipeline::parse_source(source).map_err(Refused::Model)?;
+        let lattice = Lattice::read(&model).map_err(Refused::Model)?;
+        body_by_body((&model, &lattice), choice, source, None, known)
+    })
 }
 
 /// The card of a lattice that is written out; `written_out` says why, where loops over sites were asked for.
@@ -198,24 +170,21 @@ fn body_by_body(
     choice: &Choice,
     source: &str,
     written_out: Option<String>,
-) -> Result<(Card, Vec<Warning>), Refused> {
+    known: Option<Card>,
+) -> Result<Told, Refused> {
     let derived = pipeline::derive_lattice(model, lattice, choice);
     let (unfolded, d) = derived.map_err(Refused::Model)?;
-    // What is open is found by its text; here the choice is part of it.
-    let key = format!("{source}\n{choice:?}");
-    let text = Text::of_derivation(d)?;
-    let card = match known(&key, None) {
-        Some(card) => card,
-        None => {
-            let mut opened = Opened::read(&text, &key, None)?;
-            // What is not read of a line has none.
-            let signs = clebsch_core::line::signs(model, lattice).unwrap_or_default();
-            opened.signs = Agreement::of(signs, lattice, choice, &opened.card);
-            kept(opened)?
-        }
-    };
-    let d = &text.derivation;
     let warnings = unfolded.told(choice, &d.warnings);
+    if let Some(card) = known {
+        return Ok((card, warnings));
+    }
+    let text = Text::of_derivation(d)?;
+    let mut opened = Opened::read(&text, None)?;
+    // What is not read of a line has none.
+    let signs = clebsch_core::line::signs(model, lattice).unwrap_or_default();
+    opened.signs = Agreement::of(signs, lattice, choice, &opened.card);
+    let card = kept(opened, |_| None);
+    let d = &text.derivation;
     let words = document::card_words(lattice, choice, unfolded, d, card.solver);
     let invariants = named(card.invariants, words.invariants);
     let card = Card {
@@ -256,78 +225,97 @@ fn card_of_line(
     choice: &Choice,
     line: Arc<LineModel>,
     source: &str,
-) -> Result<(Card, Vec<Warning>), Refused> {
-    let key = format!("{source}\n{choice:?}");
-    let (mut carded, warnings) = Carded::of(stated, choice, line, source, open_at::<0>)?;
-    let mut list = OPEN.write().unwrap_or_else(PoisonError::into_inner);
-    let known = list.iter().find_map(|known| match known {
-        Known::Line(own, line) if *own == key => Some(line.card),
-        _ => None,
-    });
+    known: Option<Card>,
+) -> Result<Told, Refused> {
+    let (mut carded, warnings) = Carded::of(stated, choice, line, source)?;
     if let Some(card) = known {
         return Ok((card, warnings));
     }
-    let most = FUNCTIONS.len();
-    let (open, _) = *FUNCTIONS.get(list.len()).ok_or(Refused::TooMany { most })?;
-    carded.card.open = open;
-    let card = carded.card;
-    list.push(Known::Line(crate::text(&key), Box::leak(Box::new(carded))));
-    Ok((card, warnings))
+    let place: &'static OnceLock<Carded> = Box::leak(Box::default());
+    let open = move |parameters: &[Vec<f64>], initial: &[Vec<f64>], settings: Settings| {
+        let line = place.get().ok_or(NOT_OPEN)?;
+        line.open(parameters, initial, settings)
+    };
+    carded.card.open = Box::leak(Box::new(open));
+    Ok((place.get_or_init(|| carded).card, warnings))
 }
 
 /// The card at given sizes.
-fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<Card, Refused> {
-    if let Some(card) = known(source, sizes) {
-        return Ok(card);
-    }
-    opened_now(&*derived(source)?, source, sizes)
+fn at_sizes(source: &str, sizes: Option<&[usize]>) -> Result<Told, Refused> {
+    once(format!("{sizes:?}\n{source}"), |known| {
+        let text = derived(source)?;
+        let warnings = text.derivation.warnings.clone();
+        if let Some(card) = known {
+            return Ok((card, warnings));
+        }
+        let own = source.to_owned();
+        let resize = move |sizes: &[usize]| at_sizes(&own, Some(sizes)).ok();
+        Ok((kept(Opened::read(&text, sizes)?, resize), warnings))
+    })
 }
 
 thread_local! {
-    /// The texts that this thread has derived: other sizes of a model are of the same program.
-    static DERIVED: RefCell<Vec<(String, Rc<Text>)>> = const { RefCell::new(Vec::new()) };
+    /// The text that this thread derived last: other sizes of a model are of the same program.
+    static DERIVED: RefCell<Option<(String, Rc<Text>)>> = const { RefCell::new(None) };
 }
 
 /// What is made of a text, once for all sizes.
 fn derived(source: &str) -> Result<Rc<Text>, Refused> {
-    let known = DERIVED.with_borrow(|all| {
-        let found = all.iter().find(|(text, _)| text == source);
+    let known = DERIVED.with_borrow(|last| {
+        let found = last.as_ref().filter(|(text, _)| text == source);
         found.map(|(_, made)| made.clone())
     });
     if let Some(known) = known {
         return Ok(known);
     }
     let made = Rc::new(Text::of(source)?);
-    DERIVED.with_borrow_mut(|all| {
-        all.truncate(FUNCTIONS.len() - 1);
-        all.insert(0, (source.to_owned(), made.clone()));
-    });
+    DERIVED.set(Some((source.to_owned(), made.clone())));
     Ok(made)
 }
 
-/// The card of a model that is open.
-fn known(source: &str, sizes: Option<&[usize]>) -> Option<Card> {
-    let list = OPEN.read().unwrap_or_else(PoisonError::into_inner);
-    let same = |m: &&'static Opened| sizes.map_or(m.is_default, |sizes| m.sizes == sizes);
-    let mut of_bodies = list.iter().filter_map(|known| match known {
-        Known::Bodies(model) => Some(model),
-        Known::Line(..) => None,
-    });
-    let found = of_bodies.find(|m| m.source == source && same(m));
-    found.map(|m| m.card)
+/// A card holds the function that opens its model, and the model its card: the model is put in its place last.
+const NOT_OPEN: OpenError = OpenError::Solver { offered: &[] };
+
+/// The card of a model that is open from now on; others of its sizes are given by `resize`.
+fn kept(mut model: Opened, resize: impl Fn(&[usize]) -> Option<Told> + Sync + 'static) -> Card {
+    let place: &'static OnceLock<Opened> = Box::leak(Box::default());
+    let open = move |parameters: &[Vec<f64>], initial: &[Vec<f64>], settings: Settings| {
+        let model = place.get().ok_or(NOT_OPEN)?;
+        model.open(parameters, initial, settings)
+    };
+    let sized = move |sizes: &[usize]| match place.get() {
+        Some(model) if model.sizes == sizes => Some(model.card),
+        _ => resize(sizes).map(|(card, _)| card),
+    };
+    model.card.open = Box::leak(Box::new(open));
+    model.card.sized = Box::leak(Box::new(sized));
+    place.get_or_init(|| model).card
 }
 
-fn opened_now(text: &Text, source: &str, sizes: Option<&[usize]>) -> Result<Card, Refused> {
-    kept(Opened::read(text, source, sizes)?)
-}
+#[cfg(test)]
+mod tests {
+    use super::card;
+    use clebsch::card::Settings;
 
-/// The card of a model that is open from now on.
-fn kept(mut model: Opened) -> Result<Card, Refused> {
-    let mut list = OPEN.write().unwrap_or_else(PoisonError::into_inner);
-    let most = FUNCTIONS.len();
-    let (open, sized) = *FUNCTIONS.get(list.len()).ok_or(Refused::TooMany { most })?;
-    (model.card.open, model.card.sized) = (open, sized);
-    let card = model.card;
-    list.push(Known::Bodies(Box::leak(Box::new(model))));
-    Ok(card)
+    /// More than a table of functions once held, each with its own action.
+    #[test]
+    fn any_number_of_models_opens_and_a_text_is_read_once() {
+        let text = |i: u32| {
+            format!(
+                "model Spring {{ field x: Real; lagrangian = (next(x) - x)^2/(2*h) - h*{i}*x^2/2; }}"
+            )
+        };
+        for i in 1..=70 {
+            let of_text = card(&text(i)).unwrap_or_else(|e| panic!("{e}"));
+            let again = card(&text(i)).unwrap_or_else(|e| panic!("{e}"));
+            assert!(std::ptr::addr_eq(of_text.open, again.open));
+            let opened = (of_text.open)(&[], &[vec![1.0], vec![0.0]], Settings::step(0.1));
+            let mut motion = opened.unwrap_or_else(|e| panic!("{e}"));
+            motion.step().unwrap_or_else(|e| panic!("{e}"));
+            let mut seen = [0.0; 2];
+            motion.observe(&mut seen);
+            let wanted = 1.0 - 0.005 * f64::from(i);
+            assert!((seen[0] - wanted).abs() < 1e-15, "{i}: {seen:?}");
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use crate::lower::constant;
 use crate::program::{Program, named};
 use crate::{Refused, text};
-use clebsch::card::{Card, Dimension, Field, Invariant, Kind, Open};
+use clebsch::card::{Card, Dimension, Field, Invariant, Kind, Open, OpenError};
 use clebsch::solvers::Method;
 use std::collections::BTreeMap;
 
@@ -13,6 +13,9 @@ pub struct Constants<'a> {
     ty: &'a str,
     sizes: &'a BTreeMap<String, usize>,
 }
+
+/// Before a card is given its function.
+const NOTHING: Open = &|_, _, _| Err(OpenError::Solver { offered: &[] });
 
 type Fields<'a> = BTreeMap<String, &'a syn::Expr>;
 
@@ -27,12 +30,12 @@ impl<'a> Constants<'a> {
         self.program.constants.get(&key)
     }
 
-    /// The card; trajectories are opened by `open`.
-    pub fn card(&self, open: Open, sized: fn(&[usize]) -> Option<Card>) -> Result<Card, Refused> {
+    /// The card; it opens nothing yet.
+    pub fn card(&self) -> Result<Card, Refused> {
         let read = || {
             let card = fields(self.own("CARD")?)?;
             let get = |name: &str| card.get(name).copied();
-            let plain = Card::plain(open, sized);
+            let plain = Card::plain(NOTHING, &|_| None);
             Some(Card {
                 name: self.text(get("name")?)?,
                 kebab: self.text(get("kebab")?)?,
@@ -53,13 +56,12 @@ impl<'a> Constants<'a> {
                 observables: kept(self.list(get("observables")?, Self::field)?),
                 invariants: kept(self.list(get("invariants")?, Self::invariant)?),
                 discrete_energy: self.invariant(get("discrete_energy")?)?,
-                open,
                 solvers: get("solvers").map_or(Some(plain.solvers), |e| self.solvers(e))?,
                 dimensions: match get("dimensions") {
                     Some(e) => kept(self.list(e, Self::dimension)?),
                     None => plain.dimensions,
                 },
-                sized,
+                ..plain
             })
         };
         read().ok_or_else(|| Refused::Construct(format!("{}::CARD", self.ty)))

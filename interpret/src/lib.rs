@@ -75,11 +75,6 @@ pub enum Refused {
     },
     /// An operation that is not known here.
     Construct(String),
-    /// More models than one process holds.
-    TooMany {
-        /// How many that is.
-        most: usize,
-    },
 }
 
 impl fmt::Display for Refused {
@@ -122,10 +117,6 @@ impl fmt::Display for Refused {
                 "a model file with this operation is not run yet: `{what}`; put the model into a \
                  crate by `model! {{ ... }}`, which builds it"
             ),
-            Self::TooMany { most } => write!(
-                f,
-                "more than {most} model files in one process; open fewer, or other sizes of fewer"
-            ),
         }
     }
 }
@@ -133,7 +124,7 @@ impl fmt::Display for Refused {
 impl std::error::Error for Refused {}
 
 /// A text for as long as the process: cards and errors name fields and parameters without owning them.
-/// A process opens a few models, each once.
+/// A text is read once.
 fn text(text: &str) -> &'static str {
     Box::leak(text.to_owned().into_boxed_str())
 }

@@ -7,7 +7,7 @@ use crate::lower::{self, Shared, entry};
 use crate::program::{Program, type_name};
 use crate::signs::Agreement;
 use crate::value::{Layout, Value};
-use clebsch::card::{Card, OpenError};
+use clebsch::card::Card;
 use clebsch_core::{Derivation, derive_source, emit};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -73,13 +73,9 @@ pub struct Functions {
 /// A model that can be started.
 #[derive(Debug)]
 pub struct Opened {
-    /// The text it was read from.
-    pub source: &'static str,
     /// The values of its sizes, as declared.
     pub sizes: Vec<usize>,
-    /// Whether those are the ones taken where none are named.
-    pub is_default: bool,
-    /// The card; its functions are those of the number that the model gets.
+    /// The card; its functions are put in by who opens it.
     pub card: Card,
     /// The functions.
     pub functions: Functions,
@@ -128,28 +124,20 @@ impl Text {
     }
 }
 
-fn never(
-    _: &[Vec<f64>],
-    _: &[Vec<f64>],
-    _: clebsch::card::Settings,
-) -> Result<Box<dyn clebsch::card::Trajectory>, OpenError> {
-    Err(OpenError::Solver { offered: &[] })
-}
-
 impl Opened {
     /// Reads a derived model, at given sizes or those that are taken where none are named.
     ///
     /// # Errors
     /// [`Refused`] for models that need a build.
-    pub fn read(text: &Text, source: &str, sizes: Option<&[usize]>) -> Result<Self, Refused> {
+    pub fn read(text: &Text, sizes: Option<&[usize]>) -> Result<Self, Refused> {
         let Text {
             derivation: d,
             program,
         } = text;
         let name = d.spec.name.clone();
-        let (values, chosen, is_default) = chosen_sizes(program, &name, sizes)?;
+        let (values, chosen) = chosen_sizes(program, &name, sizes)?;
         let constants = Constants::new(program, &name, &values);
-        let card = constants.card(never, |_| None)?;
+        let card = constants.card()?;
         let mut shared = Shared::new(program, values.clone());
         let functions = functions(&mut shared, &name).map_err(|refused| match refused {
             // What is not known yet belongs to a method that is not.
@@ -178,9 +166,7 @@ impl Opened {
         let initial = given(&mut shared, &format!("{name}Initial"))?;
         let node = shared.name(&node_name(program, &name));
         Ok(Opened {
-            source: crate::text(source),
             sizes: chosen,
-            is_default,
             card,
             functions,
             parameters,
@@ -216,7 +202,7 @@ fn node_name(program: &Program, name: &str) -> String {
     count.next_back().unwrap_or_default()
 }
 
-type Chosen = (BTreeMap<String, usize>, Vec<usize>, bool);
+type Chosen = (BTreeMap<String, usize>, Vec<usize>);
 
 /// The values of the sizes by their names in the emitted code, and in the order of their declaration.
 fn chosen_sizes(program: &Program, name: &str, sizes: Option<&[usize]>) -> Result<Chosen, Refused> {
@@ -225,8 +211,8 @@ fn chosen_sizes(program: &Program, name: &str, sizes: Option<&[usize]>) -> Resul
     let unknown = || Refused::Construct(format!("{name}::CARD"));
     let dimensions = constants.dimensions().ok_or_else(unknown)?;
     let names = constants.size_names().ok_or_else(unknown)?;
-    let default: Vec<usize> = dimensions.iter().map(|d| 3.clamp(d.from, d.to)).collect();
-    let chosen = sizes.map_or_else(|| default.clone(), <[usize]>::to_vec);
+    let default = || dimensions.iter().map(|d| 3.clamp(d.from, d.to)).collect();
+    let chosen: Vec<usize> = sizes.map_or_else(default, <[usize]>::to_vec);
     let admitted = chosen.len() == dimensions.len()
         && (chosen.iter().zip(&dimensions)).all(|(n, d)| (d.from..=d.to).contains(n));
     if !admitted {
@@ -238,8 +224,7 @@ fn chosen_sizes(program: &Program, name: &str, sizes: Option<&[usize]>) -> Resul
         });
     }
     let values = names.into_iter().zip(chosen.iter().copied()).collect();
-    let is_default = chosen == default;
-    Ok((values, chosen, is_default))
+    Ok((values, chosen))
 }
 
 /// The struct of what is given, and how each field is read.

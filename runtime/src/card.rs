@@ -230,10 +230,17 @@ pub fn chosen_solver(
 /// # Errors
 /// [`OpenError`] for a wrong number of values, bad parameters, an order that is not offered, or a
 /// refused start.
-pub type Open = fn(&[Vec<f64>], &[Vec<f64>], Settings) -> Result<Box<dyn Trajectory>, OpenError>;
+pub type Open = &'static (
+             dyn Fn(&[Vec<f64>], &[Vec<f64>], Settings) -> Result<Box<dyn Trajectory>, OpenError>
+                 + Sync
+         );
+
+/// Gives the card of a model at other sizes, one for each dimension; none where the model does not
+/// admit them.
+pub type Resize = &'static (dyn Fn(&[usize]) -> Option<Card> + Sync);
 
 /// Everything there is to know about a model without knowing its type.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Card {
     /// The model's name, such as `HeavyTop`.
     pub name: &'static str,
@@ -275,9 +282,18 @@ pub struct Card {
     pub solvers: &'static [&'static str],
     /// The named sizes of the model, with their values in this card; none for most models.
     pub dimensions: &'static [Dimension],
-    /// The card of the same model at other sizes, one for each dimension; none where the model does
-    /// not admit them.
-    pub sized: fn(&[usize]) -> Option<Card>,
+    /// The card of the same model at other sizes.
+    pub sized: Resize,
+}
+
+impl fmt::Debug for Card {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Card")
+            .field("name", &self.name)
+            .field("fingerprint", &self.fingerprint)
+            .field("dimensions", &self.dimensions)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Card {
@@ -306,7 +322,7 @@ impl Card {
     /// Of a model of one size whose steps are symmetric, of order two and of those that are composed of them, and leave
     /// no choice of a solver: how it is opened. The rest is for the model to say.
     #[must_use]
-    pub const fn plain(open: Open, sized: fn(&[usize]) -> Option<Card>) -> Card {
+    pub const fn plain(open: Open, sized: Resize) -> Card {
         Card {
             name: "",
             kebab: "",

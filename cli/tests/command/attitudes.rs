@@ -1,6 +1,6 @@
 //! Rotations are read in every way wherever a case has one: initial values, parameters, values at sites and at ends.
 
-use crate::common::{Folder, clebsch, shipped};
+use crate::common::{Folder, table};
 use crate::ran::{Ran, run};
 
 const MODEL: &str = "model Drawn {
@@ -51,43 +51,18 @@ fn a_parameter_that_is_a_rotation_is_given_as_an_initial_one_is() {
 fn wrong_rotations_are_told_with_what_to_write() {
     let folder = Folder::new("attitudes-wrong");
     let good = "[1, 0, 0, 0]";
-    for (wrong, said) in [
-        (
-            "[0.6, 0.7, 0, 0]",
-            "R0: the quaternion has norm 0.92195444572928",
-        ),
-        (
-            "{ axis = [0, 0, 0], angle = 1 }",
-            "R0: axis: a direction has a length that is not zero",
-        ),
-        (
-            "{ axis = [0, 0, 1] }",
-            "R0: missing key `angle` beside `axis`",
-        ),
-        (
-            "{ axis = [0, 0, 1], angel = 1 }",
-            "R0: unknown key `angel`; did you mean `angle`?",
-        ),
-        (
-            "{ euler = \"zzx\", angles = [0, 0, 0] }",
-            "R0: euler: expected three axes",
-        ),
-        (
-            "{ from = [0, 0, 1], to = [0, 0, -1] }",
-            "R0: the directions are opposite",
-        ),
-        (
-            "[1, 2, 3]",
-            "R0: expected a 3x3 matrix [[..], [..], [..]], a unit quaternion [w, x, y, z], { axis = ",
-        ),
-    ] {
-        let done = run(&folder, MODEL, &case(wrong, good, good), &[]);
-        assert_eq!(done.code, 2, "{wrong}: {}", done.out);
-        assert!(
-            done.err.contains(&format!("parameters.{said}")),
-            "{wrong}: {}",
-            done.err
-        );
+    for [wrong, said] in table(
+        r#"
+        [0.6, 0.7, 0, 0]                      | R0: the quaternion has norm 0.92195444572928
+        { axis = [0, 0, 0], angle = 1 }       | R0: axis: a direction has a length that is not zero
+        { axis = [0, 0, 1] }                  | R0: missing key `angle` beside `axis`
+        { axis = [0, 0, 1], angel = 1 }       | R0: unknown key `angel`; did you mean `angle`?
+        { euler = "zzx", angles = [0, 0, 0] } | R0: euler: expected three axes
+        { from = [0, 0, 1], to = [0, 0, -1] } | R0: the directions are opposite
+        [1, 2, 3]                             | R0: expected a 3x3 matrix [[..], [..], [..]], a unit quaternion [w, x, y, z], { axis =
+"#,
+    ) {
+        run(&folder, MODEL, &case(wrong, good, good), "").refuses(&format!("parameters.{said}"));
     }
 }
 
@@ -95,19 +70,17 @@ fn wrong_rotations_are_told_with_what_to_write() {
 #[test]
 fn a_printed_case_of_rotations_runs() {
     let folder = Folder::new("attitudes-sample");
-    let model = folder.write("drawn.clebsch", MODEL);
-    let sample = clebsch(&["case", &model]);
-    assert_eq!(sample.code, 0, "{}", sample.err);
+    folder.write("drawn.clebsch", MODEL);
+    let sample = folder.runs("case @drawn.clebsch");
     for said in [
         "q0 = [\n    [1.0, 0.0, 0.0, 0.0],\n    [0.0, 1.0, 0.0, 0.0],",
         "{ axis, angle }",
         "or give angular_velocity, spatial_angular_velocity",
     ] {
-        assert!(sample.out.contains(said), "{said}: {}", sample.out);
+        sample.prints(said);
     }
-    let case = folder.write("drawn.toml", &sample.out);
-    let done = clebsch(&["run", &model, "--case", &case, "--steps", "2"]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    folder.write("drawn.toml", &sample.out);
+    folder.runs("run @drawn.clebsch --case @drawn.toml --steps 2");
 }
 
 /// The clamped end of a rod and its sections, in every way.
@@ -160,7 +133,6 @@ fn eight_digits_of_a_quaternion_are_enough() {
     let folder = Folder::new("attitudes-digits");
     let case = "model = \"cayley-klein\"\nh = 0.01\nsteps = 2\n[parameters]\nI = [2, 2, 1]\nc = 1\n\
                 [initial]\nq = [0.70710678, -0.70710678, 0, 0]\n";
-    let file = folder.write("q.toml", case);
-    let done = shipped(&["run", "cayley-klein", "--case", &file]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    folder.write("q.toml", case);
+    folder.runs("run cayley-klein --case @q.toml");
 }

@@ -1,7 +1,7 @@
 //! The book, chapter by chapter, as a reader follows it: files are written, commands run in order, what is shown of their
 //! output is in it, and models that are said to be refused are.
 
-use crate::common::{Folder, shipped as clebsch};
+use crate::common::{Folder, runs};
 use std::path::Path;
 
 fn source() -> String {
@@ -40,8 +40,7 @@ fn run(line: &str, folder: &Folder) -> String {
         })
         .collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let done = clebsch(&words);
-    assert_eq!(done.code, 0, "{line}: {}{}", done.out, done.err);
+    let done = runs(&words);
     done.out + &done.err
 }
 
@@ -59,8 +58,8 @@ fn follow(chapter: &str) {
                 }
             }
             ("clebsch,refused", _) => {
-                let path = folder.write("refused.clebsch", &text);
-                let done = clebsch(&["derive", &path]);
+                folder.write("refused.clebsch", &text);
+                let done = folder.clebsch("derive @refused.clebsch");
                 assert_ne!(done.code, 0, "{text}");
                 printed = done.err;
             }

@@ -1,7 +1,7 @@
 //! Named cases beside the files of models: found by their names, printed, suggested; all that are shipped run, and two of
 //! them give the numbers of other implementations and of closed forms.
 
-use crate::common::{Folder, program as clebsch};
+use crate::common::{Folder, clebsch, runs};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -46,6 +46,7 @@ fn shipped() -> Vec<(String, Vec<String>)> {
     all
 }
 
+/// Long, since every shipped model with cases beside it is derived, and each case run.
 #[test]
 fn every_shipped_case_runs_by_its_name() {
     let all = shipped();
@@ -53,87 +54,54 @@ fn every_shipped_case_runs_by_its_name() {
     assert!(count >= 14, "{all:?}");
     for (model, names) in all {
         for name in names {
-            let done = clebsch(&["run", &model, "--case", &name, "--steps", "2"]);
-            assert_eq!(done.code, 0, "{model} {name}: {}{}", done.out, done.err);
+            let done = runs(&format!("run {model} --case {name} --steps 2"));
             let told = format!("case {name}: ");
-            assert!(done.out.contains(&told), "{model} {name}: {}", done.out);
+            done.prints(&told);
         }
     }
     for name in [
         "fluids/particle-mesh-2d-over-ground",
         "lattices/hanging-chain",
     ] {
-        let done = clebsch(&["derive", &model(name)]);
-        assert_eq!(done.code, 0, "{name}: {}", done.err);
+        runs(&format!("derive {}", model(name)));
     }
     // The one that is called as its model goes by the name that it bears.
-    let done = clebsch(&[
-        "run",
-        &model("lattices/hanging-chain"),
-        "--case",
-        "swing",
-        "--steps",
-        "2",
-    ]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    assert!(done.out.contains("constraint_lambda"), "{}", done.out);
+    runs(&format!(
+        "run {} --case swing --steps 2",
+        model("lattices/hanging-chain")
+    ))
+    .prints("constraint_lambda");
 }
 
 #[test]
 fn a_case_is_printed_and_a_wrong_name_told() {
     let own = model("fluids/shallow-water-2d-regularised");
-    let done = clebsch(&["case", &own, "--case", "bickley-jet"]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    let done = runs(&format!("case {own} --case bickley-jet"));
     let file = models().join("fluids/shallow-water-2d-regularised/bickley-jet.toml");
     assert_eq!(done.out, fs::read_to_string(file).expect("is shipped"));
     for (name, told) in [
         ("bickley-jets", "did you mean `bickley-jet`?"),
         ("xyz", "known: shear, bickley-jet, geostrophic-vortex, "),
     ] {
-        let done = clebsch(&["run", &own, "--case", name]);
-        assert_eq!(done.code, 2, "{}", done.out);
-        assert!(done.err.contains(told), "{}", done.err);
+        clebsch(&format!("run {own} --case {name}")).refuses(told);
     }
     // Without any beside it a name can only be that of the sample values.
     let folder = Folder::new("cases-alone");
     let text = fs::read_to_string(model("elastic/neo-hooke")).expect("is shipped");
-    let alone = folder.write("alone.clebsch", &text);
-    let done = clebsch(&["run", &alone, "--case", "sample", "--steps", "2"]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    assert_eq!(clebsch(&["run", &alone, "--case", "other"]).code, 2);
+    folder.write("alone.clebsch", &text);
+    folder.runs("run @alone.clebsch --case sample --steps 2");
+    folder.clebsch("run @alone.clebsch --case other").ended(2);
 }
 
 /// Columns of the trajectory of a case by the beginnings of their names.
 fn trajectory(name: &str, case: &str, steps: &str, wanted: &str) -> Vec<Vec<f64>> {
     let folder = Folder::new(&format!("cases-{case}"));
-    let out = folder.path("out");
-    let done = clebsch(&[
-        "run",
-        &model(name),
-        "--case",
-        case,
-        "--steps",
-        steps,
-        "--csv",
-        "--out",
-        &out,
-    ]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let csv = fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
-    let mut lines = csv.lines();
-    let head = lines.next().expect("a head").split(',');
-    let at: Vec<usize> = head
-        .enumerate()
-        .filter(|(_, name)| name.starts_with(wanted))
-        .map(|(i, _)| i)
-        .collect();
-    let row = |line: &str| {
-        let all: Vec<&str> = line.split(',').collect();
-        at.iter()
-            .map(|i| all[*i].parse().expect("a number"))
-            .collect()
-    };
-    lines.map(row).collect()
+    folder.runs(&format!(
+        "run {} --case {case} --steps {steps} --csv --out @out",
+        model(name)
+    ));
+    let samples = folder.samples("out/trajectory.csv");
+    samples.only(|name| name.starts_with(wanted))
 }
 
 /// Singular values of the placement at nodes 10 and 50, as another implementation of the same scheme has them; by the

@@ -1,6 +1,6 @@
 //! Clocks of models that are driven in time: they tell the time after many steps as well.
 
-use crate::common::{Folder, clebsch, program};
+use crate::common::Folder;
 
 /// What is carried by another rule than a motion's is judged by that rule: each of these steps is right, and the check says so.
 #[test]
@@ -25,10 +25,10 @@ fn numbers_carried_by_any_rule_are_judged_by_it() {
             "model Carried {{ param m, k: Real; field x: Real; advected t: Real; constraint next(t) = {rule};
              lagrangian = m*(next(x) - x)^2/(2*h) - h*k*cos(t)*x^2; }}"
         );
-        let file = folder.write("carried.clebsch", &text);
-        let done = program(&["run", &file, "--case", &case, "--check", "all"]);
-        assert_eq!(done.code, 0, "{rule}: {}", done.err);
-        assert!(done.out.contains("5 steps judged"), "{rule}: {}", done.out);
+        folder.write("carried.clebsch", &text);
+        folder
+            .runs(&format!("run @carried.clebsch --case {case} --check all"))
+            .prints("5 steps judged");
     }
 }
 
@@ -36,7 +36,7 @@ fn numbers_carried_by_any_rule_are_judged_by_it() {
 #[test]
 fn a_clock_tells_the_time_after_many_steps() {
     let folder = Folder::new("clock");
-    let model = folder.write(
+    folder.write(
         "driven.clebsch",
         "model Driven {
             param m, k, A, w: Real;
@@ -48,7 +48,7 @@ fn a_clock_tells_the_time_after_many_steps() {
             lagrangian = m*(next(q) - q)^2/(2*h) - h*k*q^2/2 + h*A*q*cos(w*t) + h*A*q*sin(phase[1]);
         }",
     );
-    let case = clebsch(&["case", &model]).out;
+    let case = folder.clebsch("case @driven.clebsch").out;
     let case: Vec<&str> = case
         .lines()
         .map(|line| match line {
@@ -58,38 +58,26 @@ fn a_clock_tells_the_time_after_many_steps() {
         })
         .collect();
     let case = folder.write("driven.toml", &case.join("\n"));
-    let out = folder.path("out");
-    let done = clebsch(&[
-        "run", &model, "--case", &case, "--h", "0.01", "--steps", "20000", "--every", "2000",
-        "--out", &out,
-    ]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let table = std::fs::read_to_string(folder.path("out/trajectory.csv")).expect("written");
-    let mut lines = table.lines().filter(|line| !line.starts_with('#'));
-    let head: Vec<&str> = lines.next().expect("a head").split(',').collect();
-    let column = |name: &str| head.iter().position(|x| *x == name).expect(name);
-    let (time, clocks) = (column("time"), ["t", "phase_1"].map(column));
-    let mut last = 0.0;
-    for line in lines {
-        let numbers: Vec<f64> = line
-            .split(',')
-            .map(|x| x.parse().expect("a number"))
-            .collect();
-        last = numbers[time];
-        for clock in clocks {
+    folder.runs(&format!(
+        "run @driven.clebsch --case {case} --h 0.01 --steps 20000 --every 2000 --out @out"
+    ));
+    let samples = folder.samples("out/trajectory.csv");
+    for row in 0..samples.rows.len() {
+        let time = samples.at("time", row);
+        for clock in ["t", "phase_1"] {
             // Two roundings of 200.
-            let off = (numbers[clock] - numbers[time]).abs();
-            assert!(off < 6e-14, "{off:e} at {last}");
+            let off = (samples.at(clock, row) - time).abs();
+            assert!(off < 6e-14, "{off:e} at {time}");
         }
     }
-    assert_eq!(last, 200.0);
+    assert_eq!(samples.end("time"), 200.0);
 }
 
 /// A bead on a spring to a bead that an end holds, at rest at the start and driven by `F sin(ω t)`.
 #[test]
 fn a_clock_goes_on_where_an_end_prescribes_a_value() {
     let folder = Folder::new("driven-bead");
-    let model = folder.write(
+    folder.write(
         "driven.clebsch",
         "model Driven {
             label i in 0..N;
@@ -101,21 +89,14 @@ fn a_clock_goes_on_where_an_end_prescribes_a_value() {
             end i = 0 { free; pinned { q = given; } }
         }",
     );
-    let case = folder.write(
+    folder.write(
         "driven.toml",
         "model = \"driven\"\nname = \"d\"\ndoc = \"d\"\nh = 0.01\nsteps = 1000\n[labels]\ni = 1\n\
          [ends]\ni = [\"pinned\", \"free\"]\n[parameters]\nm = 1.0\nk = 1.0\nF = 1.0\nw = 0.5\n\
          [initial]\nq = 0.0\nmomentum_q = 0.0\nt = 0.0\n",
     );
-    let out = folder.path("out");
-    let done = clebsch(&["run", &model, "--case", &case, "--out", &out]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let table = std::fs::read_to_string(folder.path("out/trajectory.csv")).expect("written");
-    let mut lines = table.lines().filter(|line| !line.starts_with('#'));
-    let head: Vec<&str> = lines.next().expect("a head").split(',').collect();
-    let last: Vec<&str> = lines.next_back().expect("a row").split(',').collect();
-    let at = head.iter().position(|x| *x == "q_1").expect("q_1");
-    let found: f64 = last[at].parse().expect("a number");
+    folder.runs("run @driven.clebsch --case @driven.toml --out @out");
+    let found = folder.samples("out/trajectory.csv").end("q_1");
     let (w, t) = (0.5_f64, 10.0_f64);
     let wanted = ((w * t).sin() - w * t.sin()) / (1.0 - w * w);
     // The step is of second order, and h² is 1e-4.

@@ -1,30 +1,8 @@
 //! `clebsch compare`: what is printed, what is written, how wrong requests and models without other
 //! methods are answered. Takes the shipped gallery and the rotor of these tests.
 
-use super::common::{Folder, clebsch};
+use crate::common::{Folder, clebsch, rotor, runs, table};
 use clebsch_cli::gallery::Gallery;
-use clebsch_cli::{Streams, execute};
-use std::ffi::OsString;
-
-/// Runs a command on the shipped gallery: exit code, standard output, standard error.
-fn shipped(arguments: &[&str]) -> (u8, String, String) {
-    let (mut out, mut err) = (Vec::new(), Vec::new());
-    let mut streams = Streams {
-        input: &mut std::io::empty(),
-        out: &mut out,
-        err: &mut err,
-        progress: false,
-        width: None,
-    };
-    let words = std::iter::once("clebsch").chain(arguments.iter().copied());
-    let code = execute(words.map(OsString::from), &Gallery::shipped(), &mut streams);
-    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
-    (code, text(out), text(err))
-}
-
-fn json(text: &str) -> serde_json::Value {
-    serde_json::from_str(text).expect("one JSON object")
-}
 
 /// The method of this name in a comparison.
 fn method<'a>(object: &'a serde_json::Value, name: &str) -> &'a serde_json::Value {
@@ -37,9 +15,8 @@ fn method<'a>(object: &'a serde_json::Value, name: &str) -> &'a serde_json::Valu
 fn every_model_has_a_row_for_itself_and_for_its_reference() {
     for entry in Gallery::shipped().entries {
         let model = entry.card.kebab;
-        let (code, out, err) = shipped(&["compare", model, "--steps", "40", "--json"]);
-        assert_eq!((code, err.as_str()), (0, ""), "{model}");
-        let object = json(&out);
+        let done = runs(&format!("compare {model} --steps 40 --json"));
+        let object = done.says_nothing().json();
         assert_eq!(object["model"], model);
         let methods = object["methods"].as_array().expect("methods");
         assert_eq!(
@@ -55,6 +32,7 @@ fn every_model_has_a_row_for_itself_and_for_its_reference() {
     }
 }
 
+/// Long, since every case of the gallery is compared twice with references of thirteen digits.
 /// The scheme is of second order against references that know nothing of it: the equations written by
 /// hand are those of the model, for every model that has some.
 #[test]
@@ -63,13 +41,11 @@ fn generated_steppers_tend_to_the_hand_written_equations() {
         let model = entry.card.kebab;
         for case in &entry.cases {
             let errors = [0.02, 0.01].map(|h: f64| {
-                let (h, steps) = (h.to_string(), (2.0 / h).round().to_string());
-                let request = [
-                    "compare", model, "--case", &case.name, "--h", &h, "--steps", &steps, "--json",
-                ];
-                let (code, out, err) = shipped(&request);
-                assert_eq!((code, err.as_str()), (0, ""), "{model} {}", case.name);
-                let fields = json(&out)["methods"][0]["error"].clone();
+                let (case, steps) = (&case.name, (2.0 / h).round());
+                let done = runs(&format!(
+                    "compare {model} --case {case} --h {h} --steps {steps} --json"
+                ));
+                let fields = done.says_nothing().json()["methods"][0]["error"].clone();
                 let fields = fields.as_object().expect("fields").values();
                 fields
                     .map(|field| field["worst"].as_f64().expect("a number"))
@@ -109,15 +85,14 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     differences.fold(0.0, clebsch::scalar::larger)
 }
 
+/// Long, since every case of the gallery is compared with all its methods.
 /// What was written by hand is the generated scheme: it is as far from the truth, but for the rounding of 200 steps.
 /// Errors of the scheme are above 1e-6, and other schemes of second order have other errors.
 #[test]
 fn steppers_by_hand_have_the_errors_of_the_generated_ones() {
     let compared = |model: &str, case: &str| {
-        let request = ["compare", model, "--case", case, "--steps", "200", "--json"];
-        let (code, out, err) = shipped(&request);
-        assert_eq!((code, err.as_str()), (0, ""), "{model} {case}");
-        json(&out)
+        let done = runs(&format!("compare {model} --case {case} --steps 200 --json"));
+        done.says_nothing().json()
     };
     let mut models = Vec::new();
     for entry in Gallery::shipped().entries {
@@ -147,9 +122,7 @@ fn steppers_by_hand_have_the_errors_of_the_generated_ones() {
 
 #[test]
 fn the_free_body_is_compared_with_everything() {
-    let (code, out, _) = shipped(&["compare", "free-body", "--case", "figure-2-6", "--json"]);
-    assert_eq!(code, 0);
-    let object = json(&out);
+    let object = runs("compare free-body --case figure-2-6 --json").json();
     let worst = |name: &str, kind: &str, of: &str| {
         method(&object, name)[kind][of]["worst"]
             .as_f64()
@@ -172,39 +145,31 @@ fn the_free_body_is_compared_with_everything() {
 
 #[test]
 fn a_model_without_other_methods_is_compared_with_itself() {
-    let done = clebsch(&["compare", "harmonic-rotor", "--steps", "50"]);
-    assert_eq!((done.code, done.err.as_str()), (0, ""));
-    for words in [
+    let done = rotor("compare harmonic-rotor --steps 50");
+    done.ended(0).says_nothing();
+    done.prints([
         "reference extrapolated: no equations of this model were written by hand",
         "it measures the step, not the equations",
         "\ngenerated ",
         "\nextrapolated ",
-    ] {
-        assert!(
-            done.out.contains(words),
-            "{words:?} is missing in\n{}",
-            done.out
-        );
-    }
+    ]);
 }
 
 #[test]
 fn files_are_the_same_but_for_times() {
     let folder = Folder::new("compare");
     let read = |name: &str| {
-        let out = folder.path(name);
-        let request = ["compare", "heavy-top", "--steps", "100", "--out", &out];
-        let (code, text, _) = shipped(&request);
-        assert_eq!(code, 0);
-        assert!(text.contains("comparison.csv, comparison.json, comparison.svg"));
-        let (again, _, err) = shipped(&request);
-        assert_eq!(again, 2);
-        assert!(err.contains("give --force to replace it"), "{err}");
-        ["comparison.csv", "comparison.svg"]
-            .map(|file| std::fs::read(format!("{out}/{file}")).expect("written"))
+        let request = format!("compare heavy-top --steps 100 --out @{name}");
+        folder
+            .runs(&request)
+            .prints("comparison.csv, comparison.json, comparison.svg");
+        folder
+            .clebsch(&request)
+            .refuses("give --force to replace it");
+        ["comparison.csv", "comparison.svg"].map(|file| folder.bytes(&format!("{name}/{file}")))
     };
     assert!(read("one") == read("two"));
-    let csv = std::fs::read_to_string(folder.path("one/comparison.csv")).expect("written");
+    let csv = folder.read("one/comparison.csv");
     let head = csv.lines().next().expect("a line");
     assert!(
         head.starts_with("method,time,error_Lambda,error_body_momentum,drift_energy"),
@@ -220,24 +185,15 @@ fn files_are_the_same_but_for_times() {
 
 #[test]
 fn wrong_requests_are_usage_errors() {
-    for (request, words) in [
-        (&["compare", "heavy-topp"][..], "did you mean `heavy-top`?"),
-        (
-            &["compare", "heavy-top", "--case", "lagrang"],
-            "did you mean `lagrange`?",
-        ),
-        (
-            &["compare", "heavy-top", "--h", "-1"],
-            "give a positive step size; to run backwards in time, reverse all initial momenta",
-        ),
-        (&["compare", "heavy-top", "--force"], "--out"),
-    ] {
-        let (code, out, err) = shipped(request);
-        assert_eq!((code, out.as_str()), (2, ""), "{request:?}");
-        assert!(err.contains(words), "{request:?}: {err}");
+    for [request, words] in table("
+        compare heavy-topp               | did you mean `heavy-top`?
+        compare heavy-top --case lagrang | did you mean `lagrange`?
+        compare heavy-top --h -1         | give a positive step size; to run backwards in time, reverse all initial momenta
+        compare heavy-top --force        | --out
+") {
+        clebsch(request).prints_nothing().refuses(words);
     }
     // A step beyond the bound of solvability is nobody's mistake in asking.
-    let (code, out, err) = shipped(&["compare", "free-body", "--h", "5", "--json"]);
-    assert_eq!(code, 1, "{err}");
-    assert_eq!(json(&out)["exit_code"], 1);
+    let done = clebsch("compare free-body --h 5 --json").exits(1);
+    assert_eq!(done.json()["exit_code"], 1);
 }

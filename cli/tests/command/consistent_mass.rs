@@ -1,7 +1,7 @@
 //! Chains whose velocities stand in terms of neighbours alone, as with the consistent mass matrix of linear elements: the
 //! recorded momenta of a step against the derivatives of the action by hand.
 
-use crate::common::{Folder, program};
+use crate::common::Folder;
 
 const MODEL: &str = "model Bar {
     label i in 0..N step s;
@@ -42,8 +42,8 @@ fn lists(count: usize, from: impl Fn(f64) -> f64) -> (Vec<f64>, String) {
 
 #[test]
 fn velocities_of_neighbours_alone_are_found_for_every_number_of_sites() {
-    let folder = Folder::new("consistent mass");
-    let model = folder.write("bar.clebsch", MODEL);
+    let folder = Folder::new("consistent-mass");
+    folder.write("bar.clebsch", MODEL);
     for n in [4, 32, 33, 100] {
         let (x, places) = lists(n + 1, |i| 0.3 * (1.7 * i).sin());
         let (p, momentum) = lists(n + 1, |i| 0.2 * (0.9 * i + 0.4).cos());
@@ -52,23 +52,13 @@ fn velocities_of_neighbours_alone_are_found_for_every_number_of_sites() {
              [parameters]\nm = 1.3\nk = 0.7\nb = 0.2\ns = 0.5\n[initial]\nu = {places}\nmomentum_u = {momentum}\n"
         );
         let case = folder.write("bar.toml", &case);
-        let out = folder.path("out");
-        let done = program(&[
-            "run", &model, "--case", &case, "--csv", "--out", &out, "--force",
-        ]);
-        assert_eq!(done.code, 0, "{n}: {}", done.err);
-        let text = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
-        let mut rows = text.lines().map(|l| l.split(',').collect::<Vec<_>>());
-        let names = rows.next().expect("names");
-        let last = rows.next_back().expect("a node");
+        folder.runs(&format!(
+            "run @bar.clebsch --case {case} --csv --out @out --force"
+        ));
+        let samples = folder.samples("out/trajectory.csv");
         let of = |name: &str| -> Vec<f64> {
-            let column = |i: usize| {
-                let wanted = format!("{name}_{i}");
-                let at = names.iter().position(|n| *n == wanted);
-                last[at.unwrap_or_else(|| panic!("{wanted} of {names:?}"))]
-            };
             (0..=n)
-                .map(|i| column(i).parse().expect("a number"))
+                .map(|i| samples.end(&format!("{name}_{i}")))
                 .collect()
         };
         let (y, q) = (of("u"), of("momentum_u"));

@@ -1,7 +1,7 @@
 //! Elastic bodies and held constraints on the command line: the shipped files derived and run, numbers of reference
 //! runs, what a trajectory says of multipliers.
 
-use crate::common::{Folder, program as clebsch};
+use crate::common::{Folder, clebsch, runs, text_of};
 
 /// The model files that the project ships, each with its case and steps that take little time.
 const SHIPPED: [(&str, &str); 9] = [
@@ -16,25 +16,20 @@ const SHIPPED: [(&str, &str); 9] = [
     ("spherical-pendulum", "200"),
 ];
 
-fn shipped(file: &str) -> String {
-    format!("{}/../models/elastic/{file}", env!("CARGO_MANIFEST_DIR"))
-}
-
+/// Long, since each of nine models is derived in four formats and run.
 #[test]
 fn every_model_is_derived_and_runs_its_case() {
     for (name, steps) in SHIPPED {
-        let (model, case) = (
-            shipped(&format!("{name}.clebsch")),
-            shipped(&format!("{name}.toml")),
-        );
         for format in ["text", "latex", "markdown", "json"] {
-            let done = clebsch(&["derive", &model, "--format", format]);
-            assert_eq!(done.code, 0, "{name} {format}: {}", done.err);
-            assert!(done.out.contains("Invariants"), "{name} {format}");
+            runs(&format!(
+                "derive models/elastic/{name}.clebsch --format {format}"
+            ))
+            .prints("Invariants");
         }
-        let done = clebsch(&["run", &model, "--case", &case, "--steps", steps]);
-        assert_eq!(done.code, 0, "{name}: {}{}", done.out, done.err);
-        assert!(!done.out.contains("EXCEEDED"), "{name}: {}", done.out);
+        runs(&format!(
+            "run models/elastic/{name}.clebsch --case models/elastic/{name}.toml --steps {steps}"
+        ))
+        .never_prints("EXCEEDED");
     }
 }
 
@@ -43,20 +38,12 @@ fn every_model_is_derived_and_runs_its_case() {
 #[test]
 fn a_rod_at_rest_ends_where_the_reference_does() {
     let folder = Folder::new("rod-at-rest");
-    let (model, case) = (
-        shipped("kirchhoff-static.clebsch"),
-        shipped("kirchhoff-static.toml"),
-    );
-    let done = clebsch(&["run", &model, "--case", &case, "--out", &folder.path("out")]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let csv = std::fs::read_to_string(folder.path("out/trajectory.csv")).expect("written");
-    let end: Vec<f64> = csv
-        .lines()
-        .last()
-        .expect("rows")
-        .split(',')
-        .map(|x| x.parse().expect("a number"))
-        .collect();
+    runs(&format!(
+        "run models/elastic/kirchhoff-static.clebsch --case models/elastic/kirchhoff-static.toml --out {}",
+        folder.path("out")
+    ));
+    let samples = folder.samples("out/trajectory.csv");
+    let end = samples.rows.last().expect("rows");
     #[rustfmt::skip]
     let reference = [
         0.7076694221454083, -0.6554814347525227, 0.26371969523559435,
@@ -74,8 +61,7 @@ fn a_rod_at_rest_ends_where_the_reference_does() {
 #[test]
 fn a_section_of_a_rod_turns_by_less_than_a_right_angle() {
     let folder = Folder::new("rod-bound");
-    let model = shipped("kirchhoff-static.clebsch");
-    let text = std::fs::read_to_string(shipped("kirchhoff-static.toml")).expect("is shipped");
+    let text = text_of("elastic/kirchhoff-static.toml");
     let with = |moment: &str| {
         let (force, own) = (
             "n = [0.0045000000000000005, 0.0, 0.015]",
@@ -94,9 +80,11 @@ fn a_section_of_a_rod_turns_by_less_than_a_right_angle() {
         let case = with(moment);
         let run = |share: f64| {
             let h = format!("{}", share * stiffness / 0.0036);
-            clebsch(&["run", &model, "--case", &case, "--h", &h, "--steps", "1"])
+            clebsch(&format!(
+                "run models/elastic/kirchhoff-static.clebsch --case {case} --h {h} --steps 1"
+            ))
         };
-        assert_eq!(run(0.9999).code, 0, "{}", run(0.9999).err);
+        run(0.9999).ended(0);
         assert_ne!(run(1.0001).code, 0);
         let done = run(1.01);
         let numbers = format!("|h N_{axis}| = 1.01 I_{axis}{axis})");
@@ -106,7 +94,9 @@ fn a_section_of_a_rod_turns_by_less_than_a_right_angle() {
     }
     let case = with("[0.0036, 0.0036, 0]");
     let h = format!("{}", 0.9999 * 0.002 / 0.0036);
-    let done = clebsch(&["run", &model, "--case", &case, "--h", &h, "--steps", "1"]);
+    let done = clebsch(&format!(
+        "run models/elastic/kirchhoff-static.clebsch --case {case} --h {h} --steps 1"
+    ));
     assert_ne!(
         done.code, 0,
         "about the axis between them the moment is larger"
@@ -118,20 +108,19 @@ fn a_section_of_a_rod_turns_by_less_than_a_right_angle() {
 #[test]
 fn samples_of_held_models_lie_on_their_constraints() {
     let folder = Folder::new("held-samples");
-    let (model, case) = (folder.path("model.clebsch"), folder.path("case.toml"));
+    let model = folder.path("model.clebsch");
+    let case = folder.path("case.toml");
     let linked = "model Linked { param m, l, g: Real; field x, y: Vec<3>; \
         hold a: dot(x, x) = l^2; hold b: dot(y - x, y - x) = l^2; \
         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) + m*dot(next(y) - y, next(y) - y)/(2*h) - h*m*g*(x[3] + y[3]); }";
     let turned = "model Turned { param J: Sym<3>; group A: SO<3> velocity W; constraint next(A) = A*W; \
         hold n: dot(A*E3, E2) = 0; lagrangian = -tr(J*W)/h; }";
-    let pendulum = std::fs::read_to_string(shipped("spherical-pendulum.clebsch")).expect("reads");
+    let pendulum = text_of("elastic/spherical-pendulum.clebsch");
     for text in [linked, turned, &pendulum] {
         std::fs::write(&model, text).expect("writes");
-        let sample = clebsch(&["case", &model]);
-        assert_eq!(sample.code, 0, "{text}: {}", sample.err);
+        let sample = folder.runs("case @model.clebsch");
         std::fs::write(&case, &sample.out).expect("writes");
-        let done = clebsch(&["run", &model, "--case", &case, "--steps", "10"]);
-        assert_eq!(done.code, 0, "{text}: {}{}", done.out, done.err);
+        folder.runs("run @model.clebsch --case @case.toml --steps 10");
     }
 }
 
@@ -151,45 +140,24 @@ fn a_chain_at_rest_is_within_its_bounds() {
     let case = folder.path("case.toml");
     let vertical = text.replace(slanting, "x = [0.0, 0.0, \"-0.025*i\"]");
     std::fs::write(&case, vertical).expect("writes");
-    let done = clebsch(&[
-        "run",
-        &lattice("clebsch"),
-        "--case",
-        &case,
-        "--steps",
-        "200",
-    ]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    assert!(!done.out.contains("EXCEEDED"), "{}", done.out);
+    folder
+        .runs(&format!(
+            "run {} --case @case.toml --steps 200",
+            lattice("clebsch")
+        ))
+        .never_prints("EXCEEDED");
 }
 
-/// Columns of a table by their names, row by row.
-fn columns(csv: &str, wanted: &[&str]) -> Vec<Vec<f64>> {
-    let mut lines = csv.lines();
-    let head: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-    let place = |name: &&str| head.iter().position(|h| h == name).expect("is a column");
-    let at: Vec<usize> = wanted.iter().map(place).collect();
-    let row = |line: &str| {
-        let all: Vec<&str> = line.split(',').collect();
-        at.iter()
-            .map(|i| all[*i].parse().expect("a number"))
-            .collect()
-    };
-    lines.map(row).collect()
-}
-
-fn trajectory(name: &str, arguments: &[&str], wanted: &[&str]) -> Vec<Vec<f64>> {
+/// These columns of the run of a shipped case, row by row.
+fn trajectory(name: &str, more: &str, wanted: &[&str]) -> Vec<Vec<f64>> {
     let folder = Folder::new(&format!("elastic-{name}"));
-    let out = folder.path("out");
-    let (model, case) = (
-        shipped(&format!("{name}.clebsch")),
-        shipped(&format!("{name}.toml")),
-    );
-    let own = ["run", &model, "--case", &case, "--out", &out];
-    let done = clebsch(&[&own[..], arguments].concat());
-    assert_eq!(done.code, 0, "{name}: {}{}", done.out, done.err);
-    let csv = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
-    columns(&csv, wanted)
+    let model = format!("models/elastic/{name}");
+    folder.runs(&format!(
+        "run {model}.clebsch --case {model}.toml --out @out {more}"
+    ));
+    let samples = folder.samples("out/trajectory.csv");
+    let row = |row| wanted.iter().map(|name| samples.at(name, row)).collect();
+    (0..samples.rows.len()).map(row).collect()
 }
 
 /// Stretches and angular momentum of the run of figures 3.1 to 3.3 by another implementation: nodes 1, 2, 10 and 50.
@@ -197,7 +165,7 @@ fn trajectory(name: &str, arguments: &[&str], wanted: &[&str]) -> Vec<Vec<f64>> 
 fn the_pseudo_rigid_body_of_the_thesis_is_that_of_the_reference_run() {
     let rows = trajectory(
         "pseudo-rigid",
-        &["--steps", "50"],
+        "--steps 50",
         &["D_1", "D_2", "D_3", "spatial_momentum_R_2"],
     );
     for (node, wanted) in [
@@ -235,7 +203,7 @@ fn a_maclaurin_spheroid_is_steady() {
     let off = |h: &str, steps: &str| {
         let rows = trajectory(
             "fluid-ellipsoid",
-            &["--h", h, "--steps", steps],
+            &format!("--h {h} --steps {steps}"),
             &["Q_31", "Q_32", "Q_33", "Q_11", "Q_21"],
         );
         let height = rows[0][2];
@@ -258,13 +226,13 @@ fn a_maclaurin_spheroid_is_steady() {
 #[test]
 fn the_printed_sign_of_the_force_in_3_62_explodes() {
     let folder = Folder::new("elastic-sign");
-    let text = std::fs::read_to_string(shipped("pseudo-rigid.clebsch")).expect("is shipped");
+    let text = text_of("elastic/pseudo-rigid.clebsch");
     assert!(text.contains("- h*W;"));
-    let model = folder.write("wrong.clebsch", &text.replace("- h*W;", "+ h*W;"));
-    let case = shipped("pseudo-rigid.toml");
-    let done = clebsch(&["run", &model, "--case", &case, "--steps", "30"]);
+    folder.write("wrong.clebsch", &text.replace("- h*W;", "+ h*W;"));
+    let done =
+        folder.clebsch("run @wrong.clebsch --case models/elastic/pseudo-rigid.toml --steps 30");
     assert_ne!(done.code, 0);
-    assert!(done.err.contains("no step from node 8"), "{}", done.err);
+    done.says("no step from node 8");
 }
 
 /// Multipliers are observables, constraints at both levels invariants, and wrong data are told with the way out.
@@ -272,7 +240,7 @@ fn the_printed_sign_of_the_force_in_3_62_explodes() {
 fn multipliers_and_constraints_are_seen() {
     let rows = trajectory(
         "spherical-pendulum",
-        &["--steps", "100"],
+        "--steps 100",
         &["lambda", "x_1", "x_2", "x_3"],
     );
     // The weight of the mass along its rod, and the pull of its turn.
@@ -282,8 +250,7 @@ fn multipliers_and_constraints_are_seen() {
         assert!((length - 0.5).abs() < 1e-15, "{length}");
     }
     let folder = Folder::new("elastic-off");
-    let text = std::fs::read_to_string(shipped("spherical-pendulum.toml")).expect("is shipped");
-    let model = shipped("spherical-pendulum.clebsch");
+    let text = text_of("elastic/spherical-pendulum.toml");
     for (from, to, wanted) in [
         (
             "x = [0.3,",
@@ -297,10 +264,10 @@ fn multipliers_and_constraints_are_seen() {
         ),
     ] {
         assert!(text.contains(from));
-        let case = folder.write("off.toml", &text.replace(from, to));
-        let done = clebsch(&["run", &model, "--case", &case]);
+        folder.write("off.toml", &text.replace(from, to));
+        let done = folder.clebsch("run models/elastic/spherical-pendulum.clebsch --case @off.toml");
         assert_ne!(done.code, 0);
-        assert!(done.err.contains(wanted), "{}", done.err);
+        done.says(wanted);
     }
 }
 
@@ -308,49 +275,36 @@ fn multipliers_and_constraints_are_seen() {
 #[test]
 fn a_sample_of_a_held_model_is_at_rest_and_says_so() {
     let folder = Folder::new("held-sample");
-    let model = folder.write(
+    folder.write(
         "ring.clebsch",
         "model Ring { param m, k: Real; param c: Vec<2>; field x: Vec<2>; hold λ: dot(x - c, x - c) = 1;
          lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*k*dot(x, x)/2; }",
     );
-    let sample = clebsch(&["case", &model]);
-    assert!(
-        sample.out.contains("\nmomentum = [0.0, 0.0]\n"),
-        "{}",
-        sample.out
-    );
-    assert!(sample.out.contains("must satisfy them"), "{}", sample.out);
-    let rod = folder.write(
+    let sample = folder.clebsch("case @ring.clebsch");
+    sample.prints("\nmomentum = [0.0, 0.0]\n");
+    sample.prints("must satisfy them");
+    folder.write(
         "rod.clebsch",
         "model Rod { label i in 0..N step s; param m: Real at nodes; field q: Vec<3> at nodes;
          hold n: dot(next(q, i) - q, next(q, i) - q) = s*s;
          lagrangian = m*dot(next(q) - q, next(q) - q)/(2*h); }",
     );
-    let sample = clebsch(&["case", &rod]);
-    let own = folder.write("rod.toml", &sample.out);
-    let done = clebsch(&["run", &rod, "--case", &own, "--steps", "3"]);
-    assert_eq!(done.code, 0, "{}{}", sample.out, done.err);
+    let sample = folder.clebsch("case @rod.clebsch");
+    folder.write("rod.toml", &sample.out);
+    folder.runs("run @rod.clebsch --case @rod.toml --steps 3");
 }
 
 /// A matrix field whose balance has a number on one side and a matrix on the other: free, p = Q̇ I0 is constant.
 #[test]
 fn a_matrix_field_with_second_moments_runs_from_its_file() {
     let folder = Folder::new("matrix-field");
-    let model = folder.write(
+    folder.write(
         "free.clebsch",
         "model Drifting { param I0: Sym<3>; field Q: Mat<3>; lagrangian = tr((next(Q) - Q)*I0*(next(Q) - Q)^T)/(2*h); }",
     );
-    let out = folder.path("out");
-    let done = clebsch(&[
-        "run", &model, "--case", "sample", "--steps", "10", "--out", &out,
-    ]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let csv = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
-    let last = csv.lines().last().expect("a row");
-    let numbers: Vec<f64> = last
-        .split(',')
-        .map(|x| x.parse().expect("a number"))
-        .collect();
+    folder.runs("run @free.clebsch --case sample --steps 10 --out @out");
+    let samples = folder.samples("out/trajectory.csv");
+    let numbers = samples.rows.last().expect("a row");
     // The sample: Q begins at a matrix of entries 1, 1/2, ..., momenta 0.1/(1 + i + 3 j), moments 1, 2, 3.
     let (q, p) = (&numbers[2..11], &numbers[11..20]);
     for (k, (q, p)) in q.iter().zip(p).enumerate() {

@@ -1,6 +1,6 @@
 //! Arithmetic in the numbers of every case, with and without labels, and one value for all copies of a quantity.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Folder, clebsch, table};
 use crate::ran::{Ran, run};
 
 const MODEL: &str = "model Beads {
@@ -50,46 +50,22 @@ fn every_number_may_be_an_expression_and_one_value_stands_for_all_copies() {
 #[test]
 fn what_has_no_value_is_told_at_its_key() {
     let folder = Folder::new("expressions-wrong");
-    for (from, to, said) in [
-        (
-            "m1 = \"1/k\"",
-            "m1 = \"1/n\"",
-            "h: \"m1/100\": `m1` has no value here: m1 = \"1/n\", and `n` has no value; an expression may hold the step",
-        ),
-        (
-            "m2 = \"k*m1\"",
-            "m2 = \"1/n\"",
-            "parameters.m2: \"1/n\": `n` has no value here; an expression may hold the step",
-        ),
-        ("m1 = \"1/k\"", "m1 = \"m2/2\"", "in a circle"),
-        (
-            "m1 = \"1/k\"",
-            "m1 = \"1/0\"",
-            "m1 = \"1/0\" is no finite number",
-        ),
-        (
-            "steps = \"10*k\"",
-            "steps = \"10.2*k\"",
-            "steps: must be a whole number, at least 1, found 20.4",
-        ),
-        ("\"k - 1\"", "\"k -\"", "initial.x: \"k -\": "),
-        (
-            "energy = \"1/k\"",
-            "energy = \"-k\"",
-            "bounds.energy: a bound is never negative, found -2",
-        ),
-        (
-            "a = [0, 0, \"sin(0)\"]",
-            "a = { csv = \"a.csv\" }",
-            "an array of a file is { npz = ",
-        ),
-    ] {
+    for [from, to, said] in table(
+        r#"
+        m1 = "1/k"           | m1 = "1/n"            | h: "m1/100": `m1` has no value here: m1 = "1/n", and `n` has no value; an expression may hold the step
+        m2 = "k*m1"          | m2 = "1/n"            | parameters.m2: "1/n": `n` has no value here; an expression may hold the step
+        m1 = "1/k"           | m1 = "m2/2"           | in a circle
+        m1 = "1/k"           | m1 = "1/0"            | m1 = "1/0" is no finite number
+        steps = "10*k"       | steps = "10.2*k"      | steps: must be a whole number, at least 1, found 20.4
+        "k - 1"              | "k -"                 | initial.x: "k -":
+        energy = "1/k"       | energy = "-k"         | bounds.energy: a bound is never negative, found -2
+        a = [0, 0, "sin(0)"] | a = { csv = "a.csv" } | an array of a file is { npz =
+"#,
+    ) {
         let text = case(PARAMETERS);
         let wrong = text.replacen(from, to, 1);
         assert_ne!(text, wrong, "{from}");
-        let done = run(&folder, MODEL, &wrong, &[]);
-        assert_eq!(done.code, 2, "{to}: {}", done.out);
-        assert!(done.err.contains(said), "{to}: {}", done.err);
+        run(&folder, MODEL, &wrong, "").refuses(said);
     }
 }
 
@@ -104,13 +80,12 @@ fn labels_and_domains_are_counted_by_expressions() {
     }";
     let case = "model = \"chain\"\nh = \"s/10\"\nsteps = \"M\"\n[labels]\ni = \"2*M\"\n\
                 [parameters]\ns = \"1/M\"\nM = 3\nm = \"s\"\nk = 1\n[initial]\nq = \"0.1*sin(2*pi*i/N)\"\n";
-    let done = run(&folder, chain, case, &[]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    assert!(done.out.contains("3 steps"), "{}", done.out);
+    let done = run(&folder, chain, case, "").succeeds();
+    done.prints("3 steps");
     let wrong = case.replace("\"2*M\"", "\"2.5*M\"");
-    let done = run(&folder, chain, &wrong, &[]);
+    let done = run(&folder, chain, &wrong, "");
     let said = "labels.i: expected a whole number of sites";
-    assert!(done.err.contains(said), "{}", done.err);
+    done.says(said);
 }
 
 /// A particle that a case puts beyond a wall is no one that a step reflects.
@@ -135,23 +110,15 @@ fn particles_start_between_the_walls() {
         )
     };
     for (first, said) in [("-0.12", "-0.12"), ("-0.001", "-0.001"), ("3", "3")] {
-        let done = run(
-            &folder,
-            model,
-            &case(&format!("[{first}, 0.4, 0.6, 0.9]")),
-            &[],
-        );
-        assert_eq!(done.code, 2, "{}", done.out);
+        let places = format!("[{first}, 0.4, 0.6, 0.9]");
         let said = format!("initial.X: particle 0 at {said} lies outside the walls 0 to 1");
-        assert!(done.err.contains(&said), "{}", done.err);
+        run(&folder, model, &case(&places), "").refuses(&said);
     }
-    let done = run(&folder, model, &case("[0, 0.4, 0.6, 1]"), &[]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let done = clebsch(&[
-        "run",
-        &folder.path("model.clebsch"),
-        "--case",
-        &folder.write("csv.toml", &case("{ csv = \"x.csv\" }")),
-    ]);
-    assert!(done.err.contains("{ npz = "), "{}", done.err);
+    run(&folder, model, &case("[0, 0.4, 0.6, 1]"), "").succeeds();
+    clebsch(&format!(
+        "run {} --case {}",
+        folder.path("model.clebsch"),
+        folder.write("csv.toml", &case("{ csv = \"x.csv\" }"))
+    ))
+    .says("{ npz = ");
 }

@@ -1,39 +1,20 @@
 //! `clebsch figures`: what is written, and how wrong requests are answered. Takes the shipped gallery,
 //! and one without the models of the figures.
 
-use super::common::{Folder, clebsch};
-use clebsch_cli::gallery::Gallery;
-use clebsch_cli::{Streams, execute};
-use std::ffi::OsString;
+use crate::common::{Folder, clebsch, rotor};
 
-fn shipped(arguments: &[&str]) -> (u8, String, String) {
-    let (mut out, mut err) = (Vec::new(), Vec::new());
-    let mut streams = Streams {
-        input: &mut std::io::empty(),
-        out: &mut out,
-        err: &mut err,
-        progress: false,
-        width: None,
-    };
-    let words = std::iter::once("clebsch").chain(arguments.iter().copied());
-    let code = execute(words.map(OsString::from), &Gallery::shipped(), &mut streams);
-    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
-    (code, text(out), text(err))
-}
-
+/// Long, since all figures are computed.
 #[test]
 fn every_figure_is_drawn_once() {
     let folder = Folder::new("figures");
-    let out = folder.path("all");
-    let (code, text, err) = shipped(&["figures", "--out", &out, "--json"]);
-    assert_eq!((code, err.as_str()), (0, ""));
-    let object: serde_json::Value = serde_json::from_str(&text).expect("one JSON object");
+    let done = folder.runs("figures --out @all --json");
+    let object = done.says_nothing().json();
     let list = |key: &str| object[key].as_array().expect("a list").clone();
     assert_eq!(list("figures").len() + list("left_out").len(), 18);
     assert!(list("figures").len() >= 14);
     for figure in list("figures") {
         let file = figure["file"].as_str().expect("a name");
-        let svg = std::fs::read_to_string(format!("{out}/{file}")).expect("written");
+        let svg = folder.read(&format!("all/{file}"));
         assert!(
             svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"),
             "{file}"
@@ -44,23 +25,21 @@ fn every_figure_is_drawn_once() {
             "{file}"
         );
     }
-    let (code, _, err) = shipped(&["figures", "--out", &out]);
-    assert_eq!(code, 2);
-    assert!(err.contains("give --force to replace it"), "{err}");
+    folder
+        .clebsch("figures --out @all")
+        .refuses("give --force to replace it");
 }
 
 #[test]
 fn figures_of_missing_models_are_left_out() {
     let folder = Folder::new("no_figures");
-    let done = clebsch(&["figures", "--out", &folder.path("none")]);
-    assert_eq!((done.code, done.err.as_str()), (0, ""));
+    let done = rotor(&format!("figures --out {}", folder.path("none")));
+    done.ended(0).says_nothing();
     let line = "2.5     left out: the gallery has no model `free-body`\n";
-    assert!(done.out.contains(line), "{}", done.out);
+    done.prints(line);
 }
 
 #[test]
 fn a_folder_must_be_named() {
-    let (code, out, err) = shipped(&["figures"]);
-    assert_eq!((code, out.as_str()), (2, ""));
-    assert!(err.contains("--out"), "{err}");
+    clebsch("figures").prints_nothing().refuses("--out");
 }

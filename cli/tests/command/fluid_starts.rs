@@ -1,7 +1,7 @@
 //! Starts of fluids that are stated by the meshes of the model: values and slopes at the particles. They are in balance with the force
 //! of the model to rounding; equal cases start alike to the last byte; what has no value there is told with what to write.
 
-use crate::common::Folder;
+use crate::common::{Folder, table};
 use crate::ran::{Ran, run};
 use clebsch::scalar::largest;
 
@@ -136,10 +136,9 @@ fn a_lattice_that_cannot_fill_its_domain_evenly_is_refused_with_numbers_that_can
         let of = |count: usize, more: &str| {
             let text = case("").replace("a = 64", &format!("a = {count}"));
             let text = text.replace("\"square\"", &format!("\"{kind}\"{more}"));
-            run(&folder, MODEL, &text, &["--steps", "1"])
+            run(&folder, MODEL, &text, "--steps 1")
         };
-        let done = of(257, "");
-        assert_eq!(done.code, 2, "{}{}", done.out, done.err);
+        let done = of(257, "").exits(2);
         let said = format!(
             "initial.X: 257 particles do not fill the domain evenly with lattice = \"{kind}\"; take "
         );
@@ -160,10 +159,10 @@ fn a_lattice_that_cannot_fill_its_domain_evenly_is_refused_with_numbers_that_can
         assert_eq!(numbers.len(), 4, "{numbers:?}");
         for n in numbers {
             assert!(n.abs_diff(257) < 10, "{n}");
-            assert_eq!(of(n, "").code, 0, "{n}");
+            of(n, "").ended(0);
         }
         // Columns that a case states are its own.
-        assert_eq!(of(257, ", columns = 257").code, 0);
+        of(257, ", columns = 257").ended(0);
     }
 }
 
@@ -171,29 +170,30 @@ fn a_lattice_that_cannot_fill_its_domain_evenly_is_refused_with_numbers_that_can
 fn equal_cases_start_alike_to_the_last_byte_and_go_on_from_a_checkpoint() {
     let folder = Folder::new("fluid-starts-bytes");
     let text = case(&format!("velocity_X = {VELOCITY}"));
-    let whole = |name: &str, more: &[&str]| {
-        let out = folder.path(name);
-        let mut all = vec!["--steps", "20", "--out", &out[..]];
-        all.extend(more);
-        let done = run(&folder, MODEL, &text, &all);
-        assert_eq!(done.code, 0, "{}", done.err);
+    let whole = |name: &str, more: &str| {
+        run(
+            &folder,
+            MODEL,
+            &text,
+            &format!("--steps 20 --out @{name} {more}"),
+        )
+        .ended(0);
         ["trajectory.csv", "trajectory.npz", "run.json"]
-            .map(|file| std::fs::read(format!("{out}/{file}")).expect("is written"))
+            .map(|file| folder.bytes(&format!("{name}/{file}")))
     };
-    let first = whole("first", &[]);
-    assert!(first == whole("second", &[]));
+    let first = whole("first", "");
+    assert!(first == whole("second", ""));
     // A run that is complete is taken up as the same one: its start has the same numbers.
-    assert!(first == whole("first", &["--resume"]));
+    assert!(first == whole("first", "--resume"));
 }
 
 #[test]
 fn what_has_no_value_is_told_with_what_to_write() {
     let folder = Folder::new("fluid-starts-refused");
     let check = |text: &str, said: &[&str]| {
-        let done = run(&folder, MODEL, text, &[]);
-        assert_eq!(done.code, 2, "{}{}", done.out, done.err);
+        let done = run(&folder, MODEL, text, "").exits(2);
         for said in said {
-            assert!(done.err.contains(said), "{said}\n{}", done.err);
+            done.says(said);
         }
     };
     let velocity = |first: &str| case(&format!("velocity_X = [\n\"0\",\n\"{first}\"]"));
@@ -201,34 +201,19 @@ fn what_has_no_value_is_told_with_what_to_write() {
         .split_once("[initial]")
         .map_or((0, ""), |(head, _)| (head.lines().count() + 5, ""));
     let place = format!("case.toml:{line}: initial.velocity_X: ");
-    for (text, said) in [
-        (
-            "slope(S, 3)",
-            "slope(S, 3): the domain has two directions: write 1 or 2",
-        ),
-        ("slope(S, 0)", "the domain has two directions"),
-        (
-            "slope(S, x)",
-            "the direction of a slope is a whole number, as in slope(S, 1)",
-        ),
-        (
-            "slope(S)",
-            "a slope is that of a mesh along a direction, as in slope(S, 1)",
-        ),
-        ("slope(2, 1)", "a slope is that of a mesh by its name"),
-        ("slope(S^2, 1)", "2*S*slope(S, 1) of S^2"),
-        (
-            "slope(m, 1)",
-            "`m` is no mesh of the model; slopes are those of meshes on a grid, of which the model has `H`, `S`",
-        ),
-        ("slope(Q, 1)", "`Q` is no mesh of the model"),
-        (
-            "grad(S, 1)",
-            "`grad` is no function of site data; there are sin",
-        ),
-        ("Q", "`Q` has no value here"),
-        ("w", "`w` has no value here"),
-    ] {
+    for [text, said] in table("
+        slope(S, 3)   | slope(S, 3): the domain has two directions: write 1 or 2
+        slope(S, 0)   | the domain has two directions
+        slope(S, x)   | the direction of a slope is a whole number, as in slope(S, 1)
+        slope(S)      | a slope is that of a mesh along a direction, as in slope(S, 1)
+        slope(2, 1)   | a slope is that of a mesh by its name
+        slope(S^2, 1) | 2*S*slope(S, 1) of S^2
+        slope(m, 1)   | `m` is no mesh of the model; slopes are those of meshes on a grid, of which the model has `H`, `S`
+        slope(Q, 1)   | `Q` is no mesh of the model
+        grad(S, 1)    | `grad` is no function of site data; there are sin
+        Q             | `Q` has no value here
+        w             | `w` has no value here
+") {
         check(&velocity(text), &[&place, text, said]);
     }
     let of = |from: &str, to: &str| {
@@ -289,10 +274,9 @@ fn what_has_no_value_is_told_with_what_to_write() {
         ("x", "`x` has no value here"),
     ] {
         let text = format!("{text}Y = [\"b\", 0.0]\nmomentum_Y = [\"{momentum}\", 0.0]\n");
-        let done = run(&folder, &two, &text, &[]);
-        assert_eq!(done.code, 2, "{}{}", done.out, done.err);
+        let done = run(&folder, &two, &text, "").exits(2);
         let said = format!("initial.momentum_Y: \"{momentum}\": {said}");
-        assert!(done.err.contains(&said), "{}", done.err);
+        done.says(&said);
     }
 }
 

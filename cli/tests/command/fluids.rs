@@ -1,7 +1,7 @@
 //! Fluids on the command line: derived, run from cases with domains, lattices and expressions of the place, wrong
 //! cases told by key and site.
 
-use crate::common::{Folder, clebsch, program};
+use crate::common::{Folder, clebsch, models, runs, table, text_of};
 
 /// The model files that the project ships, each with its case.
 const SHIPPED: [&str; 4] = [
@@ -11,32 +11,22 @@ const SHIPPED: [&str; 4] = [
     "shallow-water-2d-regularised",
 ];
 
-fn shipped(file: &str) -> String {
-    format!("{}/../models/fluids/{file}", env!("CARGO_MANIFEST_DIR"))
-}
-
-fn text(file: &str) -> String {
-    std::fs::read_to_string(shipped(file)).expect("is shipped")
-}
-
 #[test]
 fn every_fluid_is_derived_and_runs_its_case() {
     for name in SHIPPED {
-        let (model, case) = (
-            shipped(&format!("{name}.clebsch")),
-            shipped(&format!("{name}.toml")),
-        );
+        let model = models(&format!("fluids/{name}.clebsch"));
         for format in ["text", "latex", "markdown", "json"] {
-            let done = clebsch(&["derive", &model, "--format", format]);
-            assert_eq!(done.code, 0, "{name} {format}: {}", done.err);
+            runs(&format!(
+                "derive models/fluids/{name}.clebsch --format {format}"
+            ));
         }
-        let done = clebsch(&["run", &model, "--case", &case, "--steps", "20"]);
-        assert_eq!(done.code, 0, "{name}: {}{}", done.out, done.err);
-        assert!(done.out.contains("energy"), "{}", done.out);
+        let done = runs(&format!(
+            "run models/fluids/{name}.clebsch --case models/fluids/{name}.toml --steps 20"
+        ));
+        done.prints("energy");
         // The case that is printed for it runs.
         let folder = Folder::new(&format!("fluids-{name}"));
-        let sample = clebsch(&["case", &model]);
-        assert_eq!(sample.code, 0, "{}", sample.err);
+        let sample = runs(&format!("case models/fluids/{name}.clebsch"));
         let own = folder.write("own.toml", &sample.out);
         let run = [
             "run",
@@ -47,12 +37,7 @@ fn every_fluid_is_derived_and_runs_its_case() {
             "0",
             "--case",
         ];
-        let done = clebsch(&[&run[..], &[&own]].concat());
-        assert_eq!(
-            done.code, 0,
-            "{name}: {}{}\n{}",
-            done.out, done.err, sample.out
-        );
+        let done = runs(&[&run[..], &[&own]].concat());
         let same = clebsch(&[&run[..], &["sample"]].concat());
         // The file says where its momenta come from.
         let of_file = |line: &&str| !line.starts_with("initial momentum_");
@@ -66,15 +51,8 @@ fn every_fluid_is_derived_and_runs_its_case() {
 fn arrays_are_by_sample_particle_and_component_and_particles_are_mapped() {
     let folder = Folder::new("fluids-written");
     let out = folder.path("out");
-    let (model, case) = (
-        shipped("particle-mesh-2d.clebsch"),
-        shipped("particle-mesh-2d.toml"),
-    );
-    let done = clebsch(&[
-        "run", &model, "--case", &case, "--steps", "4", "--out", &out,
-    ]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let npz = std::fs::read(format!("{out}/trajectory.npz")).expect("is written");
+    folder.runs("run models/fluids/particle-mesh-2d.clebsch --case models/fluids/particle-mesh-2d.toml --steps 4 --out @out");
+    let npz = folder.bytes("out/trajectory.npz");
     let has = |shape: &str| npz.windows(shape.len()).any(|w| w == shape.as_bytes());
     // Nodes are one more than cells across the channel, and as many along it.
     for shape in ["(5, 1800, 2,)", "(5, 528,)", "momentum_X.npy", "H.npy"] {
@@ -87,7 +65,7 @@ fn arrays_are_by_sample_particle_and_component_and_particles_are_mapped() {
             "{name}"
         );
     }
-    let map = std::fs::read_to_string(format!("{out}/particles.svg")).expect("is written");
+    let map = folder.read("out/particles.svg");
     let circles = map.matches("<circle").count();
     // Particles, twice.
     assert_eq!(circles, 2 * 1800, "{circles}");
@@ -99,15 +77,14 @@ fn arrays_are_by_sample_particle_and_component_and_particles_are_mapped() {
 #[test]
 fn velocities_and_momenta_say_the_same() {
     let folder = Folder::new("fluids-momenta");
-    let model = shipped("shallow-water-2d.clebsch");
-    let case = text("shallow-water-2d.toml")
+    let case = text_of("fluids/shallow-water-2d.toml")
         .replace("f = 0.0", "f = 2.0")
         .replace("a = 400", "a = 64");
     let (head, _) = case.split_once("velocity_X").expect("has velocities");
     let run = |line: &str| {
-        let file = folder.write("case.toml", &format!("{head}{line}\n"));
-        let done = clebsch(&["run", &model, "--case", &file, "--steps", "5"]);
-        assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+        folder.write("case.toml", &format!("{head}{line}\n"));
+        let done =
+            folder.runs("run models/fluids/shallow-water-2d.clebsch --case @case.toml --steps 5");
         done.out
     };
     // The momentum of a particle in a rotating frame is m v + (m f/2) perp(X).
@@ -131,71 +108,51 @@ fn velocities_and_momenta_say_the_same() {
 fn masses_and_velocities_that_are_none_are_told() {
     let folder = Folder::new("fluids-masses");
     let run = |model: &str, key: &str, given: &str| {
-        let case = text(&format!("{model}.toml"));
+        let case = text_of(&format!("fluids/{model}.toml"));
         let own = |line: &str| line.starts_with(&format!("{key} = "));
         let old = case.lines().find(|l| own(l)).expect("is given").to_owned();
-        let file = folder.write("own.toml", &case.replace(&old, &format!("{key} = {given}")));
-        let model = shipped(&format!("{model}.clebsch"));
-        clebsch(&["run", &model, "--case", &file, "--steps", "1"])
+        folder.write("own.toml", &case.replace(&old, &format!("{key} = {given}")));
+        folder.clebsch(&format!(
+            "run models/fluids/{model}.clebsch --case @own.toml --steps 1"
+        ))
     };
-    for (model, key, given, said) in [
-        (
-            "particle-mesh-1d",
-            "m",
-            "{ depth = \"-1\" }",
-            "parameters.m: the depth at particle 0 is -1",
-        ),
-        (
-            "shallow-water-2d",
-            "m",
-            "{ depth = \"a - 3\", share = \"cells\" }",
-            "parameters.m: the depth at particle 0 is -3",
-        ),
-        (
-            "shallow-water-2d",
-            "velocity_X",
-            "[\"x\", \"log(-1)\"]",
-            "initial.velocity_X: \"log(-1)\": NaN at site 0 is not a finite number",
-        ),
-    ] {
+    for [model, key, given, said] in table(
+        r#"
+        particle-mesh-1d | m          | { depth = "-1" }                     | parameters.m: the depth at particle 0 is -1
+        shallow-water-2d | m          | { depth = "a - 3", share = "cells" } | parameters.m: the depth at particle 0 is -3
+        shallow-water-2d | velocity_X | ["x", "log(-1)"]                     | initial.velocity_X: "log(-1)": NaN at site 0 is not a finite number
+"#,
+    ) {
         let done = run(model, key, given);
         assert_ne!(done.code, 0, "{given}: {}", done.out);
-        assert!(done.err.contains(said), "{given}: {}", done.err);
+        done.says(said);
     }
     for (model, count) in [("particle-mesh-1d", 256), ("shallow-water-2d", 800)] {
         let done = run(model, "m", "-1.0");
         let said = format!("is negative: it is negative in {count} of {count} independent");
-        assert!(done.err.contains(&said), "{model}: {}", done.err);
-        let done = run(model, "m", "0.01");
-        assert!(
-            !done.err.contains("kinetic energy"),
-            "{model}: {}",
-            done.err
-        );
+        done.says(&said);
+        run(model, "m", "0.01").never_says("kinetic energy");
     }
     // One of them.
-    let done = run("particle-mesh-1d", "m", "\"0.01*(a - 0.5)\"");
-    assert!(
-        done.err.contains("it is negative in 1 of 256 independent"),
-        "{}",
-        done.err
-    );
+    run("particle-mesh-1d", "m", "\"0.01*(a - 0.5)\"")
+        .says("it is negative in 1 of 256 independent");
 }
 
 #[test]
 fn a_wrong_case_is_told_by_key_and_site() {
     let folder = Folder::new("fluids-wrong");
     let check = |model: &str, changes: &[(&str, &str, &str)]| {
-        let case = text(&format!("{model}.toml"));
+        let case = text_of(&format!("fluids/{model}.toml"));
         for (from, to, expected) in changes {
             let wrong = case.replacen(from, to, 1);
             assert_ne!(wrong, case, "{from}");
-            let file = folder.write("wrong.toml", &wrong);
-            let model = shipped(&format!("{model}.clebsch"));
-            let done = clebsch(&["run", &model, "--case", &file, "--steps", "2"]);
+            folder.write("wrong.toml", &wrong);
+            let done = folder.clebsch(&format!(
+                "run models/fluids/{model}.clebsch --case @wrong.toml --steps 2"
+            ));
             assert_ne!(done.code, 0, "{to}: {}{}", done.out, done.err);
-            assert!(done.err.contains(expected), "{to}: {}", done.err);
-            assert!(!done.err.contains("panicked"), "{to}: {}", done.err);
+            done.says(expected);
+            done.never_says("panicked");
         }
     };
     check(
@@ -281,15 +238,12 @@ fn a_wrong_case_is_told_by_key_and_site() {
 #[test]
 fn masses_are_depths_times_the_areas_of_cells() {
     let folder = Folder::new("fluids-shares");
-    let model = shipped("shallow-water-2d.clebsch");
-    let text = text("shallow-water-2d.toml");
+    let text = text_of("fluids/shallow-water-2d.toml");
     let with = |share: &str| text.replace("{ depth = \"1\" }", share);
-    let own = folder.write("cells.toml", &with("{ depth = \"2\", share = \"cells\" }"));
-    let out = folder.path("out");
-    let done = program(&["run", &model, "--case", &own, "--steps", "1", "--out", &out]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let json = std::fs::read_to_string(format!("{out}/run.json")).expect("is written");
-    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    folder.write("cells.toml", &with("{ depth = \"2\", share = \"cells\" }"));
+    folder
+        .runs("run models/fluids/shallow-water-2d.clebsch --case @cells.toml --steps 1 --out @out");
+    let json = folder.json("out/run.json");
     let masses: Vec<f64> = (0..400)
         .map(|a| {
             json["parameters"][format!("m_{a}")]
@@ -301,25 +255,19 @@ fn masses_are_depths_times_the_areas_of_cells() {
     assert!((masses.iter().sum::<f64>() - 2.0).abs() < 1e-13);
     assert!(masses.iter().any(|m| (m - 0.005).abs() > 1e-4));
     let wrong = folder.write("wrong.toml", &with("{ depth = \"2\", share = \"boxes\" }"));
-    let done = program(&["run", &model, "--case", &wrong, "--steps", "1"]);
-    assert_eq!(done.code, 2, "{}", done.out);
-    assert!(
-        done.err.contains("share: expected \"equal\" or \"cells\""),
-        "{}",
-        done.err
-    );
-    let grid = shipped("particle-mesh-1d.clebsch");
-    let case = std::fs::read_to_string(shipped("particle-mesh-1d.toml")).expect("is shipped");
+    let done = clebsch(&format!(
+        "run models/fluids/shallow-water-2d.clebsch --case {wrong} --steps 1"
+    ))
+    .exits(2);
+    done.says("share: expected \"equal\" or \"cells\"");
+    let case = text_of("fluids/particle-mesh-1d.toml");
     let case = case.replace(
         "-200*(x - 0.5)^2)\" }",
         "-200*(x - 0.5)^2)\", share = \"cells\" }",
     );
     let wrong = folder.write("grid.toml", &case);
-    let done = program(&["run", &grid, "--case", &wrong, "--steps", "1"]);
-    assert_eq!(done.code, 2, "{}", done.out);
-    assert!(
-        done.err.contains("share: Voronoi cells are those"),
-        "{}",
-        done.err
-    );
+    clebsch(&format!(
+        "run models/fluids/particle-mesh-1d.clebsch --case {wrong} --steps 1"
+    ))
+    .refuses("share: Voronoi cells are those");
 }

@@ -1,15 +1,7 @@
 //! Site data from arrays of a file: the end of one run is the start of another, files as numpy writes them are read, and what is
 //! wrong is told where it stands.
 
-use crate::common::{Folder, program as clebsch};
-
-fn shipped(file: &str) -> String {
-    format!("{}/../models/{file}", env!("CARGO_MANIFEST_DIR"))
-}
-
-fn text(file: &str) -> String {
-    std::fs::read_to_string(shipped(file)).expect("is shipped")
-}
+use crate::common::{Folder, clebsch, models, runs, table, text_of};
 
 /// CRC-32 bit by bit (polynomial 0xEDB88320, reflected).
 fn crc(bytes: &[u8]) -> u32 {
@@ -111,10 +103,9 @@ fn restarted(name: &str, model: &str, case: &str, initial: &str) -> [f64; 2] {
     let run = |out: &str, case: &str, steps: &str| {
         let case = folder.write(&format!("{out}.toml"), case);
         let to = folder.path(out);
-        let done = clebsch(&[
-            "run", model, "--case", &case, "--steps", steps, "--every", "30", "--out", &to,
-        ]);
-        assert_eq!(done.code, 0, "{name} {out}: {}{}", done.out, done.err);
+        runs(&format!(
+            "run {model} --case {case} --steps {steps} --every 30 --out {to}"
+        ));
         rows(&folder, out)
     };
     let whole = run("whole", case, "60");
@@ -136,8 +127,8 @@ fn restarted(name: &str, model: &str, case: &str, initial: &str) -> [f64; 2] {
 #[test]
 fn the_end_of_a_run_is_the_start_of_another() {
     let ring = "q = NPZ\nmomentum_q = NPZ";
-    let toda = text("lattices/toda-chain.toml");
-    let model = shipped("lattices/toda-chain.clebsch");
+    let toda = text_of("lattices/toda-chain.toml");
+    let model = models("lattices/toda-chain.clebsch");
     // Of a written out ring, and in loops over sites.
     let long = toda.replace("i = 32", "i = 40");
     for (name, case) in [("ring", toda), ("long-ring", long)] {
@@ -146,6 +137,7 @@ fn the_end_of_a_run_is_the_start_of_another() {
     }
 }
 
+/// Long, since two models are derived body by body and as lines, and each is run twice.
 /// Attitudes are read as matrices or quaternions; of what an end holds a run has no values, and its array says at which sites.
 #[test]
 fn rods_go_on_from_what_a_run_has_written() {
@@ -154,7 +146,7 @@ fn rods_go_on_from_what_a_run_has_written() {
             ("geometrically-exact-rod", "Lambda"),
             ("quaternion-rod", "q"),
         ] {
-            let case = text(&format!("lattices/{model}.toml"));
+            let case = text_of(&format!("lattices/{model}.toml"));
             let (before, rest) = case.split_once("m = [").expect("has masses");
             let (_, after) = rest.split_once("]\n").expect("ends");
             let case =
@@ -162,7 +154,7 @@ fn rods_go_on_from_what_a_run_has_written() {
             let initial = format!(
                 "phi = NPZ\nphi_0 = [0.0, 0.0, 0.0]\nmomentum_phi = NPZ\n{q} = NPZ\nbody_momentum_{q} = NPZ"
             );
-            let file = shipped(&format!("lattices/{model}.clebsch"));
+            let file = models(&format!("lattices/{model}.clebsch"));
             let [start, end] = restarted(&format!("{model}-{name}"), &file, &case, &initial);
             // Attitudes are made orthonormal anew.
             assert!(start < 4.0 * f64::EPSILON, "{model} {name}: {start}");
@@ -218,12 +210,12 @@ fn a_single_site_goes_on_from_what_a_run_has_written() {
 
 #[test]
 fn bodies_and_particles_go_on_too() {
-    let top = clebsch(&["case", "heavy-top"]).out;
+    let top = clebsch("case heavy-top").out;
     let initial = "Lambda = NPZ\nbody_momentum = NPZ";
     let [start, end] = restarted("top", "heavy-top", &top, initial);
     assert!(start < 4.0 * f64::EPSILON && end < 1e-14, "{start} {end}");
-    let fluid = text("fluids/shallow-water-2d.toml").replace("a = 400", "a = 64");
-    let model = shipped("fluids/shallow-water-2d.clebsch");
+    let fluid = text_of("fluids/shallow-water-2d.toml").replace("a = 400", "a = 64");
+    let model = models("fluids/shallow-water-2d.clebsch");
     // Shares of the depth are the same for all.
     let [start, end] = restarted("fluid", &model, &fluid, "X = NPZ\nmomentum_X = NPZ");
     assert!(start == 0.0 && end < 1e-14, "{start} {end}");
@@ -231,7 +223,7 @@ fn bodies_and_particles_go_on_too() {
 
 /// A ring of three points with these lines of `[initial]`.
 fn ring(initial: &str) -> String {
-    let case = text("lattices/toda-chain.toml").replace("i = 32", "i = 3");
+    let case = text_of("lattices/toda-chain.toml").replace("i = 32", "i = 3");
     let (head, _) = case.split_once("[initial]").expect("has values");
     format!("{head}[initial]\n{initial}\n")
 }
@@ -271,11 +263,10 @@ fn arrays() -> Vec<u8> {
 fn files_of_numpy_are_read() {
     let folder = Folder::new("from-npz-numpy");
     std::fs::write(folder.path("data.npz"), arrays()).expect("a file for the test");
-    let model = shipped("lattices/toda-chain.clebsch");
     let run = |initial: &str| {
-        let file = folder.write("case.toml", &ring(initial));
-        let done = clebsch(&["run", &model, "--case", &file, "--steps", "50"]);
-        assert_eq!(done.code, 0, "{initial}: {}{}", done.out, done.err);
+        folder.write("case.toml", &ring(initial));
+        let done =
+            folder.runs("run models/lattices/toda-chain.clebsch --case @case.toml --steps 50");
         done.out
     };
     let by_list = run("q = [0.0, 0.5, 1.0]\nmomentum_q = [0.1, 0.2, 0.3]");
@@ -323,87 +314,40 @@ fn what_is_wrong_is_told_where_it_stands() {
         .expect("a directory");
     compressed[first + 10] = 8;
     write("compressed.npz", &compressed);
-    let model = shipped("lattices/toda-chain.clebsch");
     let wrong = |case: &str, expected: &str| {
-        let file = folder.write("wrong.toml", case);
-        let done = clebsch(&["run", &model, "--case", &file]);
-        assert_eq!(done.code, 2, "{case}: {}{}", done.out, done.err);
-        assert!(done.err.contains(expected), "{expected}: {}", done.err);
+        folder.write("wrong.toml", case);
+        folder
+            .clebsch("run models/lattices/toda-chain.clebsch --case @wrong.toml")
+            .refuses(expected);
     };
-    for (table, expected) in [
-        ("npz = \"gone.npz\"", "gone.npz: No such file"),
-        ("npz = \".\"", "cannot read "),
-        ("npz = \"note.txt\"", "note.txt is no npz file"),
-        ("npz = \"cut.npz\"", "cut.npz is no npz file"),
-        (
-            "npz = \"one.npy\"",
-            "one.npy is a single array, as numpy.save writes it",
-        ),
-        ("npz = \"none.npz\"", "none.npz has no arrays"),
-        (
-            "npz = \"damaged.npz\"",
-            "damaged.npz is damaged: `q` does not read",
-        ),
-        (
-            "npz = \"data.npz\", key = \"records\"",
-            "data.npz is damaged: `records` does not read",
-        ),
-        ("npz = \"compressed.npz\"", "write it by numpy.savez"),
-        (
-            "npz = \"data.npz\", key = \"x\"",
-            "data.npz has no array `x`; known: q, p, single, whole, runs, turned, wide, short, infinite, complex, records",
-        ),
-        (
-            "npz = \"data.npz\", key = \"run\"",
-            "data.npz has no array `run`; did you mean `runs`?",
-        ),
-        (
-            "npz = \"data.npz\", key = \"complex\"",
-            "has entries of type `<c16`",
-        ),
-        (
-            "npz = \"data.npz\", key = \"wide\"",
-            "data.npz has the shape (3, 2); a value at each of 3 sites takes (3,) or (samples, 3)",
-        ),
-        ("npz = \"data.npz\", key = \"short\"", "has the shape (2,)"),
-        (
-            "npz = \"data.npz\", key = \"infinite\"",
-            "the array `infinite` of ",
-        ),
-        (
-            "npz = \"data.npz\", key = \"infinite\"",
-            "data.npz is inf at site 1, which is not a finite number",
-        ),
-        (
-            "npz = \"data.npz\", simple = 1",
-            "unknown key `simple`; did you mean `sample`?",
-        ),
-        ("key = \"q\"", "missing key `npz`"),
-        (
-            "npz = 1",
-            "npz: expected a text in quotes, found a value of type integer",
-        ),
-        (
-            "npz = \"data.npz\", key = 1",
-            "key: expected a text in quotes",
-        ),
-        (
-            "npz = \"data.npz\", sample = 0.5",
-            "sample: expected a whole number",
-        ),
-        (
-            "npz = \"data.npz\", sample = 0",
-            "has no samples, its shape is (3,)",
-        ),
-        (
-            "npz = \"data.npz\", key = \"runs\", sample = 2",
-            "has 2 samples, 0 to 1 or, counted from the end, -1 to -2; found 2",
-        ),
-        (
-            "npz = \"data.npz\", key = \"runs\", sample = -3",
-            "found -3",
-        ),
-    ] {
+    for [table, expected] in table(
+        r#"
+        npz = "gone.npz"                         | gone.npz: No such file
+        npz = "."                                | cannot read
+        npz = "note.txt"                         | note.txt is no npz file
+        npz = "cut.npz"                          | cut.npz is no npz file
+        npz = "one.npy"                          | one.npy is a single array, as numpy.save writes it
+        npz = "none.npz"                         | none.npz has no arrays
+        npz = "damaged.npz"                      | damaged.npz is damaged: `q` does not read
+        npz = "data.npz", key = "records"        | data.npz is damaged: `records` does not read
+        npz = "compressed.npz"                   | write it by numpy.savez
+        npz = "data.npz", key = "x"              | data.npz has no array `x`; known: q, p, single, whole, runs, turned, wide, short, infinite, complex, records
+        npz = "data.npz", key = "run"            | data.npz has no array `run`; did you mean `runs`?
+        npz = "data.npz", key = "complex"        | has entries of type `<c16`
+        npz = "data.npz", key = "wide"           | data.npz has the shape (3, 2); a value at each of 3 sites takes (3,) or (samples, 3)
+        npz = "data.npz", key = "short"          | has the shape (2,)
+        npz = "data.npz", key = "infinite"       | the array `infinite` of
+        npz = "data.npz", key = "infinite"       | data.npz is inf at site 1, which is not a finite number
+        npz = "data.npz", simple = 1             | unknown key `simple`; did you mean `sample`?
+        key = "q"                                | missing key `npz`
+        npz = 1                                  | npz: expected a text in quotes, found a value of type integer
+        npz = "data.npz", key = 1                | key: expected a text in quotes
+        npz = "data.npz", sample = 0.5           | sample: expected a whole number
+        npz = "data.npz", sample = 0             | has no samples, its shape is (3,)
+        npz = "data.npz", key = "runs", sample = 2 | has 2 samples, 0 to 1 or, counted from the end, -1 to -2; found 2
+        npz = "data.npz", key = "runs", sample = -3 | found -3
+"#,
+    ) {
         wrong(
             &ring(&format!("q = {{ {table} }}\nmomentum_q = 0.0")),
             expected,
@@ -440,22 +384,20 @@ fn values_that_an_end_holds_are_told_where_they_stand() {
         ("sites_of_inner", floats("(2,)", &sites[1..3])),
     ]);
     std::fs::write(folder.path("data.npz"), arrays).expect("a file for the test");
-    let model = shipped("lattices/sine-gordon.clebsch");
-    let case = text("lattices/sine-gordon.toml").replace("i = 80", "i = 3");
+    let case = text_of("lattices/sine-gordon.toml").replace("i = 80", "i = 3");
     let (head, _) = case.split_once("[initial]").expect("has values");
     let run = |values: &str| {
-        let file = folder.write("case.toml", &format!("{head}[initial]\n{values}\n"));
-        clebsch(&["run", &model, "--case", &file, "--steps", "5"])
+        folder.write("case.toml", &format!("{head}[initial]\n{values}\n"));
+        folder.clebsch("run models/lattices/sine-gordon.clebsch --case @case.toml --steps 5")
     };
-    let by_list = run("u = [0.0, 0.1, 0.2, 0.3]\nmomentum_u = [0.1, 0.2]");
-    assert_eq!(by_list.code, 0, "{}", by_list.err);
+    let by_list = run("u = [0.0, 0.1, 0.2, 0.3]\nmomentum_u = [0.1, 0.2]").succeeds();
     let inner = "{ npz = \"data.npz\", key = \"inner\" }";
     for values in [
         "u = { npz = \"data.npz\" }\nmomentum_u = { npz = \"data.npz\" }".to_owned(),
         format!("u = {inner}\nu_0 = 0.0\nu_3 = 0.3\nmomentum_u = {inner}"),
     ] {
         let done = run(&values);
-        assert_eq!((done.code, done.err.as_str()), (0, ""), "{values}");
+        done.ended(0).says_nothing();
         assert_eq!(done.out, by_list.out, "{values}");
     }
     for (values, expected) in [
@@ -480,16 +422,14 @@ fn values_that_an_end_holds_are_told_where_they_stand() {
             ":21: initial.u_0: expected a number",
         ),
     ] {
-        let done = run(&values);
-        assert_eq!(done.code, 2, "{values}: {}{}", done.out, done.err);
-        assert!(done.err.contains(expected), "{expected}: {}", done.err);
+        run(&values).refuses(expected);
     }
 }
 
 #[test]
 fn a_parameter_of_an_end_asks_which_ends_there_are() {
     let folder = Folder::new("ends-unchosen");
-    let model = folder.write(
+    folder.write(
         "line.clebsch",
         "model Line { label i in 0..N; periodic; param m: Real at nodes; field q: Real at nodes offset L;
         lagrangian = m*(next(q) - q)^2/(2*h) - (h/2)*(next(q, i) - q)^2;
@@ -501,31 +441,21 @@ fn a_parameter_of_an_end_asks_which_ends_there_are() {
             "model = \"line\"\nh = 0.05\nsteps = 4\n[labels]\ni = 3\n{ends}[parameters]\nm = 1.0\n{extra}\n\
              [initial]\nq = \"i\"\nmomentum_q = 0.0\n"
         );
-        let file = folder.write("case.toml", &case);
-        clebsch(&["run", &model, "--case", &file])
+        folder.write("case.toml", &case);
+        folder.clebsch("run @line.clebsch --case @case.toml")
     };
     let ends = "(the first end: free, pinned; the last one: free, load; or \"periodic\")";
-    for (extra, owner, example) in [
-        (
-            "F = 0.1",
-            "`load`",
-            "add [ends] with i = [\"free\", \"load\"]",
-        ),
-        ("F_N = 0.1", "`load`", "i = [\"free\", \"load\"]"),
-        (
-            "L = 3.0",
-            "is of the ring",
-            "add [ends] with i = \"periodic\"",
-        ),
-    ] {
-        let done = run(extra, "");
-        assert_eq!(done.code, 2, "{extra}: {}{}", done.out, done.err);
-        for part in [":8: parameters.", owner, example, ends] {
-            assert!(done.err.contains(part), "{part}: {}", done.err);
-        }
+    for [extra, owner, example] in table(
+        r#"
+        F = 0.1   | `load`         | add [ends] with i = ["free", "load"]
+        F_N = 0.1 | `load`         | i = ["free", "load"]
+        L = 3.0   | is of the ring | add [ends] with i = "periodic"
+"#,
+    ) {
+        let done = run(extra, "").exits(2);
+        done.says([":8: parameters.", owner, example, ends]);
         // Of ends that are chosen the case may keep what belongs to others.
-        let done = run(extra, "[ends]\ni = \"free\"\n");
-        assert_eq!(done.code, 0, "{extra}: {}{}", done.out, done.err);
+        run(extra, "[ends]\ni = \"free\"\n").succeeds();
     }
     let (default, free) = (run("", ""), run("", "[ends]\ni = \"free\"\n"));
     assert_eq!(

@@ -1,7 +1,7 @@
 //! Functions that a case gives: a run is that of the model with the expression typed in its place, and what is wrong of a
 //! function is told by file and line.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Folder, runs, table};
 
 const BOWL: &str = "/// A bead in a bowl, carried by a vector potential.
 model Bowl {
@@ -23,13 +23,10 @@ fn case(functions: &str) -> String {
 }
 
 fn rows(folder: &Folder, model: &str, case: &str, name: &str) -> String {
-    let (model, case) = (
-        folder.write(&format!("{name}.clebsch"), model),
-        folder.write(&format!("{name}.toml"), case),
-    );
+    let model = folder.write(&format!("{name}.clebsch"), model);
+    let case = folder.write(&format!("{name}.toml"), case);
     let out = folder.path(name);
-    let done = clebsch(&["run", &model, "--case", &case, "--out", &out]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    runs(&format!("run {model} --case {case} --out {out}"));
     std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written")
 }
 
@@ -62,19 +59,13 @@ fn a_fluid_over_topography_has_the_lengths_of_its_domain() {
         lagrangian = (m/(2*h))*dot(next(X) - X, next(X) - X) - h*g*m*(m/D/2 + b(X));
     }";
     let model = folder.write("lake.clebsch", text);
-    let sample = clebsch(&["case", &model]);
-    assert_eq!(sample.code, 0, "{}", sample.err);
-    assert!(
-        sample.out.contains("b = \"0.1*cos(2*pi*x/Lx)\""),
-        "{}",
-        sample.out
-    );
+    let sample = runs(&format!("case {model}"));
+    sample.prints("b = \"0.1*cos(2*pi*x/Lx)\"");
     let steps = sample.out.replace("steps = 1000", "steps = 5");
     let of = |name: &str, model: &str, case: &str| {
         let own = folder.write(&format!("{name}.toml"), case);
         let out = folder.path(name);
-        let done = clebsch(&["run", model, "--case", &own, "--out", &out]);
-        assert_eq!(done.code, 0, "{}", done.err);
+        runs(&format!("run {model} --case {own} --out {out}"));
         std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written")
     };
     let wide = steps.replace("L = [1.0, 1.0]", "L = [2.0, 1.0]");
@@ -94,44 +85,31 @@ fn a_fluid_over_topography_has_the_lengths_of_its_domain() {
 #[test]
 fn what_is_wrong_of_a_function_is_told_by_its_line() {
     let folder = Folder::new("functions-wrong");
-    let model = folder.write("bowl.clebsch", BOWL);
-    for (functions, said) in [
-        ("", "missing table [functions]"),
-        ("[functions]\nb = \"x\"", "missing key `functions.R`"),
-        (
-            "[functions]\nb = \"x\"\nR = \"y\"",
-            ":6: functions.R: expected a list of 2 expressions",
-        ),
-        (
-            "[functions]\nb = \"cos(x\"\nR = [\"x\", \"y\"]",
-            ":5: functions.b: in this expression, at character 4: this `(` is not closed",
-        ),
-        (
-            "[functions]\nb = \"q\"\nR = [\"x\", \"y\"]",
-            ":5: functions.b: `q` is not known here",
-        ),
+    folder.write("bowl.clebsch", BOWL);
+    for [functions, said] in table(
+        r#"
+                                                 | missing table [functions]
+        [functions]\nb = "x"                     | missing key `functions.R`
+        [functions]\nb = "x"\nR = "y"            | :6: functions.R: expected a list of 2 expressions
+        [functions]\nb = "cos(x"\nR = ["x", "y"] | :5: functions.b: in this expression, at character 4: this `(` is not closed
+        [functions]\nb = "q"\nR = ["x", "y"]     | :5: functions.b: `q` is not known here
         // What the derivation finds is told at the case as well, where the expression stands.
-        (
-            "[functions]\nb = \"x\"\nR = [\"sqrt(-1 - y^2)\", \"y\"]",
-            ":6: functions.R: the base of a root is negative here for all values",
-        ),
-        (
-            "[functions]\nc = \"x\"\nR = [\"x\", \"y\"]",
-            ":5: unknown key `functions.c`",
-        ),
-    ] {
-        let own = folder.write("own.toml", &case(functions));
-        let done = clebsch(&["run", &model, "--case", &own]);
-        assert_eq!(done.code, 2, "{functions}: {}", done.err);
-        assert!(done.err.contains(said), "{functions}: {}", done.err);
+        [functions]\nb = "x"\nR = ["sqrt(-1 - y^2)", "y"] | :6: functions.R: the base of a root is negative here for all values
+        [functions]\nc = "x"\nR = ["x", "y"]     | :5: unknown key `functions.c`
+"#,
+    ) {
+        folder.write("own.toml", &case(functions));
+        folder
+            .clebsch("run @bowl.clebsch --case @own.toml")
+            .refuses(said);
     }
     // A model that has none.
-    let other = folder.write("own.toml", &case("[functions]\nb = \"x\""));
+    folder.write("own.toml", &case("[functions]\nb = \"x\""));
     let plain = BOWL
         .replace("= case;", "= \"x\";")
         .replace("Vec<2> = \"x\"", "Vec<2> = [\"x\", \"y\"]");
     let plain = folder.write("plain.clebsch", &plain);
-    let done = clebsch(&["run", &plain, "--case", &other]);
-    assert_eq!(done.code, 2);
-    assert!(done.err.contains("unknown key `functions`"), "{}", done.err);
+    folder
+        .clebsch(&format!("run {plain} --case @own.toml"))
+        .refuses("unknown key `functions`");
 }

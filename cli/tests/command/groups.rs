@@ -1,13 +1,13 @@
 //! Models of motions of the plane, of frames and of deformable bodies, run from their texts: what is written of them and
 //! what is refused.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Folder, runs};
 
 /// A motion of the plane seen from space runs, and the action as stated holds along it.
 #[test]
 fn a_motion_of_the_plane_seen_from_space_is_judged() {
     let folder = Folder::new("plane-from-space");
-    let model = folder.write(
+    folder.write(
         "plate.clebsch",
         "model Plate {
             param Q: Sym<3>;
@@ -16,19 +16,19 @@ fn a_motion_of_the_plane_seen_from_space_is_judged() {
             lagrangian = tr((next(G) - G)*Q*(next(G) - G)^T)/(2*h);
         }",
     );
-    let case = clebsch(&["case", &model]);
+    let case = folder.clebsch("case @plate.clebsch");
     let case = folder.write("plate.toml", &case.out);
-    let done = clebsch(&["run", &model, "--case", &case, "--steps", "50"]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    assert!(!done.out.contains("NaN"), "{}", done.out);
-    assert!(done.out.contains("50 steps judged"), "{}", done.out);
+    folder
+        .runs(&format!("run @plate.clebsch --case {case} --steps 50"))
+        .never_prints("NaN")
+        .prints("50 steps judged");
 }
 
 /// Quantities that sites carry may differ in shape where their names differ by a number alone.
 #[test]
 fn what_a_clamped_rod_of_frames_carries_is_written() {
     let folder = Folder::new("frames-written");
-    let model = folder.write(
+    folder.write(
         "rod.clebsch",
         "model Rod {
             label i in 0..N step s;
@@ -42,7 +42,7 @@ fn what_a_clamped_rod_of_frames_carries_is_written() {
             end i = 0 { free; clamped { P = given; } }
         }",
     );
-    let case = clebsch(&["case", &model]).out;
+    let case = folder.clebsch("case @rod.clebsch").out;
     let lines: Vec<String> = case
         .lines()
         .map(|line| match line {
@@ -54,12 +54,10 @@ fn what_a_clamped_rod_of_frames_carries_is_written() {
         })
         .collect();
     let case = folder.write("rod.toml", &lines.join("\n"));
-    let out = folder.path("out");
-    let done = clebsch(&[
-        "run", &model, "--case", &case, "--steps", "10", "--out", &out,
-    ]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let held = std::fs::read(folder.path("out/trajectory.npz")).expect("written");
+    folder.runs(&format!(
+        "run @rod.clebsch --case {case} --steps 10 --out @out"
+    ));
+    let held = folder.bytes("out/trajectory.npz");
     assert!(!held.is_empty());
 }
 
@@ -67,7 +65,7 @@ fn what_a_clamped_rod_of_frames_carries_is_written() {
 #[test]
 fn a_step_through_a_singular_matrix_says_so_where_the_force_there_is_no_number() {
     let folder = Folder::new("through-singular");
-    let model = folder.write(
+    folder.write(
         "soft.clebsch",
         "model Soft {
             param a: Real;
@@ -78,11 +76,10 @@ fn a_step_through_a_singular_matrix_says_so_where_the_force_there_is_no_number()
     let case = "model = \"soft\"\nh = 0.05\nsteps = 10\n\n[parameters]\na = 0.1\n\n[initial]\n\
                 Q = [[1.0, 0.0], [0.0, 1.0]]\nmomentum = [[0.0, 0.0], [0.0, -60.0]]\n";
     let case = folder.write("soft.toml", case);
-    let done = clebsch(&["run", &model, "--case", &case]);
-    assert_eq!(done.code, 1, "{}{}", done.out, done.err);
-    for wanted in ["the motion meets det = 0", "was tried and can be made"] {
-        assert!(done.err.contains(wanted), "{}", done.err);
-    }
+    let done = folder
+        .clebsch(&format!("run @soft.clebsch --case {case}"))
+        .exits(1);
+    done.says(["the motion meets det = 0", "was tried and can be made"]);
 }
 
 /// `det(Q^T*C*Q)` is that of `C` times a square: a step that carries `Q` through a singular one is refused, though the
@@ -90,7 +87,7 @@ fn a_step_through_a_singular_matrix_says_so_where_the_force_there_is_no_number()
 #[test]
 fn a_body_is_not_turned_inside_out_by_a_step() {
     let folder = Folder::new("inside-out");
-    let model = folder.write(
+    folder.write(
         "soft.clebsch",
         "model Soft {
             param J, C: Sym<2>;
@@ -104,9 +101,9 @@ fn a_body_is_not_turned_inside_out_by_a_step() {
         J = [[1.0, 0.1], [0.1, 0.8]]\nC = [[1.0, 0.2], [0.2, 0.9]]\na = 1.0\nb = 0.001\n\n[initial]\n\
         Q = [[1.0, 0.1], [0.0, 0.9]]\nmomentum = [[-1.0, 0.3], [0.2, -1.0]]\n";
     let case = folder.write("soft.toml", case);
-    let done = clebsch(&["run", &model, "--case", &case]);
+    let done = folder.clebsch(&format!("run @soft.clebsch --case {case}"));
     assert_ne!(done.code, 0, "{}", done.out);
-    assert!(done.err.contains("`Q` loses its inverse"), "{}", done.err);
+    done.says("`Q` loses its inverse");
 }
 
 /// The solver taken without being named serves every group of a model: beside a rotation of space with a factor known
@@ -134,8 +131,7 @@ fn rotations_of_other_dimensions_run_beside_bodies_seen_from_space() {
             if !solver.is_empty() {
                 arguments.extend(["--solver", solver]);
             }
-            let done = clebsch(&arguments);
-            assert_eq!(done.code, 0, "{name} {solver}: {}{}", done.out, done.err);
+            runs(&arguments);
         }
     }
 }

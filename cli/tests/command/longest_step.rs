@@ -1,20 +1,15 @@
 //! The longest step that small motions about the start allow: printed before a run, sharp, and warned of beyond it.
 
-use crate::common::{Done, Folder, program};
+use crate::common::{Done, Folder, clebsch, models, text_of};
 
 /// Runs the program with a search that no load of the machine cuts.
-fn searched(arguments: &[&str]) -> Done {
-    program(&[arguments, &["--stability-limit", "600"]].concat())
-}
-
-fn shipped(file: &str) -> String {
-    format!("{}/../models/{file}", env!("CARGO_MANIFEST_DIR"))
+fn searched(words: &str) -> Done {
+    clebsch(&format!("{words} --stability-limit 600"))
 }
 
 /// The longest step that is printed for a model with a case, beside the frequency of which it is twice the inverse.
-fn printed(model: &str, case: &str, more: &[&str]) -> f64 {
-    let arguments = ["run", model, "--case", case, "--steps", "1"];
-    let done = searched(&[&arguments[..], more].concat());
+fn printed(model: &str, case: &str) -> f64 {
+    let done = searched(&format!("run {model} --case {case} --steps 1"));
     let number = |before: &str, behind: &str| -> f64 {
         let rest = done.out.split_once(before).map(|(_, rest)| rest);
         let number = rest.and_then(|rest| rest.split_once(behind));
@@ -33,17 +28,15 @@ fn printed(model: &str, case: &str, more: &[&str]) -> f64 {
 /// Of a straight rod, uniform and unloaded, shear and bending swing together: 2/sqrt of the larger eigenvalue of a pair.
 #[test]
 fn a_straight_rod_has_the_limit_of_its_coupled_modes() {
-    let (model, case) = (
-        shipped("lattices/circular-rod.clebsch"),
-        shipped("lattices/circular-rod.toml"),
-    );
+    let model = models("lattices/circular-rod.clebsch");
+    let case = models("lattices/circular-rod.toml");
     let (s, mass, inertia, shear, bending) = (0.1, 1.0, 0.01, 100.0, 1.5);
     let a: f64 = 4.0 * shear / (mass * s * s);
     let b: f64 = 4.0 * bending / (inertia * s * s) + shear / inertia;
     let coupled = a * shear / inertia;
     let largest = 0.5 * (a + b) + (0.25 * (b - a) * (b - a) + coupled).sqrt();
     let limit = 2.0 / largest.sqrt();
-    let found = printed(&model, &case, &[]);
+    let found = printed(&model, &case);
     // A line of 40 segments has waves of nearly the shortest length: a part in a thousand.
     assert!((found / limit - 1.0).abs() < 0.01, "{found} {limit}");
     // Both limits by themselves are longer.
@@ -51,17 +44,15 @@ fn a_straight_rod_has_the_limit_of_its_coupled_modes() {
     // Below it the rod goes on, above it is lost within a few steps.
     let run = |part: f64| {
         let h = format!("{}", part * limit);
-        searched(&["run", &model, "--case", &case, "--h", &h, "--steps", "300"])
+        searched(&format!(
+            "run models/lattices/circular-rod.clebsch --case models/lattices/circular-rod.toml --h {h} --steps 300"
+        ))
     };
     let (below, above) = (run(0.97), run(1.15));
-    assert_eq!(below.code, 0, "{}{}", below.out, below.err);
-    assert!(!below.err.contains("longest"), "{}", below.err);
-    assert_eq!(above.code, 1, "{}{}", above.out, above.err);
-    assert!(
-        above.err.contains("1.15 times the longest one"),
-        "{}",
-        above.err
-    );
+    below.ended(0);
+    below.never_says("longest");
+    above.ended(1);
+    above.says("1.15 times the longest one");
 }
 
 /// One top that hangs, in rotations and in unit quaternions, has the frequency of a pendulum.
@@ -84,7 +75,7 @@ fn a_hanging_top_has_the_limit_of_a_pendulum() {
             "model = \"hang\"\nname = \"hangs\"\n{data}Lambda = [1.0, 0.0, 0.0, 0.0]\nbody_momentum = [0.1, 0.0, 0.0]\n"
         );
         let case = folder.write(&format!("{name}.toml"), &case);
-        let found = printed(&model, &case, &[]);
+        let found = printed(&model, &case);
         let limit = 2.0 / (3.0_f64 / 4.0).sqrt();
         assert!(
             (found / limit - 1.0).abs() < 0.01,
@@ -97,8 +88,8 @@ fn a_hanging_top_has_the_limit_of_a_pendulum() {
 #[test]
 fn a_wrong_sign_between_neighbours_is_warned_of() {
     let folder = Folder::new("wrong-sign");
-    let text = std::fs::read_to_string(shipped("lattices/coupled-tops.clebsch")).expect("reads");
-    let case = std::fs::read_to_string(shipped("lattices/coupled-tops.toml")).expect("reads");
+    let text = text_of("lattices/coupled-tops.clebsch");
+    let case = text_of("lattices/coupled-tops.toml");
     let case = case
         .replace("s = 1.0", "s = 0.1")
         .replace("i = 6", "i = 20")
@@ -111,7 +102,7 @@ fn a_wrong_sign_between_neighbours_is_warned_of() {
     for h in ["0.04", "0.0001"] {
         for (text, warned) in [(&text, false), (&wrong, true)] {
             let model = folder.write("model.clebsch", text);
-            let done = searched(&["run", &model, "--case", &case, "--steps", "1", "--h", h]);
+            let done = searched(&format!("run {model} --case {case} --steps 1 --h {h}"));
             let said = done.err.contains("is there a sign wrong");
             assert_eq!(said, warned, "{h}: {}{}", done.out, done.err);
             assert_eq!(done.err.contains("elliptic"), warned, "{}", done.err);
@@ -164,7 +155,7 @@ fn rows_of_springs_have_one_limit_in_all_groups() {
                  i = [\"free\", \"free\"]\n[parameters]\nm = {size:e}\nk = {size:e}\n[initial]\n{start}"
             );
             let case = folder.write(&format!("{name}-{n}.toml"), &case);
-            let found = 2.0 / printed(&model, &case, &[]);
+            let found = 2.0 / printed(&model, &case);
             let half = std::f64::consts::FRAC_PI_2 * f64::from(n) / f64::from(n + 1);
             let wanted = 2.0 * half.sin();
             // Three digits are printed.
@@ -194,13 +185,13 @@ fn a_bent_start_has_the_limit_of_the_symmetric_part() {
              [initial]\nR = [\"cos(0.5*i^2)\", 0.0, \"sin(0.5*i^2)\", 0.0]\nbody_momentum_R = [0.0, 0.0, 0.0]\n"
         );
         let case = folder.write("case.toml", &case);
-        let found = 2.0 / printed(&model, &case, &[]);
+        let found = 2.0 / printed(&model, &case);
         // Of 18 freedoms to the digits that are printed; of 123, in the space of 60 vectors, to a hundredth beside that.
         assert!(
             (found / frequency - 1.0).abs() < 0.02,
             "{n}: {found} {frequency}"
         );
-        let done = searched(&["run", &model, "--case", &case]);
+        let done = searched(&format!("run {model} --case {case}"));
         let told = done.err.contains(growth);
         assert_eq!(told, n == 40, "{}", done.err);
     }
@@ -212,18 +203,11 @@ fn a_bent_start_has_the_limit_of_the_symmetric_part() {
 fn of_steps_of_another_kind_nothing_is_said() {
     let folder = Folder::new("other-steps");
     let silent = |done: crate::common::Done| {
-        assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-        assert!(!done.err.contains("longest"), "{}", done.err);
-        assert!(!done.out.contains("longest"), "{}", done.out);
+        done.ended(0);
+        done.never_says("longest");
+        done.never_prints("longest");
     };
-    silent(searched(&[
-        "run",
-        "charged-particle",
-        "--h",
-        "5",
-        "--steps",
-        "20",
-    ]));
+    silent(searched("run charged-particle --h 5 --steps 20"));
     let of = |name: &str, potential: &str, h: &str| {
         let text = format!(
             "model Spring {{ param m, k: Real; field q: Real; lagrangian = m*(next(q) - q)^2/(2*h) - {potential}; }}"
@@ -233,16 +217,11 @@ fn of_steps_of_another_kind_nothing_is_said() {
             "model = \"spring\"\nname = \"own\"\nh = {h}\nsteps = 20\n[parameters]\nm = 1.0\nk = 1.0\n[initial]\nq = 0.0\nmomentum = 0.1\n"
         );
         let case = folder.write(&format!("{name}.toml"), &case);
-        searched(&["run", &model, "--case", &case])
+        searched(&format!("run {model} --case {case}"))
     };
     silent(of("middle", "h*(k/2)*((q + next(q))/2)^2", "5.0"));
     // The same spring at the node has the limit 2.
-    let at_node = of("node", "h*(k/2)*q^2", "2.05");
-    assert!(
-        at_node.err.contains("1.02 times the longest one"),
-        "{}",
-        at_node.err
-    );
+    of("node", "h*(k/2)*q^2", "2.05").says("1.02 times the longest one");
     silent(of("node", "h*(k/2)*q^2", "0.5"));
 }
 
@@ -250,61 +229,46 @@ fn of_steps_of_another_kind_nothing_is_said() {
 /// segments that resolves it is told.
 #[test]
 fn of_one_body_that_is_unstable_no_sign_is_doubted() {
-    let (model, case) = (
-        shipped("elastic/kirchhoff-static.clebsch"),
-        shipped("elastic/kirchhoff-static.toml"),
-    );
     let run = |h: &str| {
-        searched(&[
-            "run", &model, "--case", &case, "--h", h, "--steps", "2", "--json",
-        ])
+        searched(&format!(
+            "run models/elastic/kirchhoff-static.clebsch --case models/elastic/kirchhoff-static.toml --h {h} --steps 2 --json"
+        ))
     };
-    let long = run("0.3");
-    assert_eq!(long.code, 0, "{}{}", long.out, long.err);
+    let long = run("0.3").succeeds();
     // With the force (0.00179, 0.00568, 0.01448) on the section: of its part along the tangent alone the root over the stiffness against
     // bending, 0.002, is 2.6910; with half the other, which joins bending and twist, 2.7188 by numpy; 0.3 over that.
-    for words in [
+    long.says([
         "rate 2.719",
         "do not resolve how the start is left; those up to 1.103e-1 do",
-    ] {
-        assert!(long.err.contains(words), "{}", long.err);
-    }
-    assert!(!long.err.contains("sign"), "{}", long.err);
+    ]);
+    long.never_says("sign");
     let short = run("0.08");
     assert!(short.err.is_empty(), "{}", short.err);
 }
 
+/// Long, since the limit of two rods is sought at five steps.
 /// However much too long a step is, it is told how long it may be, a first one that is refused as well.
 #[test]
 fn of_a_step_that_is_far_too_long_the_limit_is_told() {
-    let (model, case) = (
-        shipped("lattices/geometrically-exact-rod.clebsch"),
-        shipped("lattices/geometrically-exact-rod.toml"),
-    );
     let run = |h: &str| {
-        searched(&[
-            "run", &model, "--case", &case, "--h", h, "--steps", "1", "--json",
-        ])
+        searched(&format!(
+            "run models/lattices/geometrically-exact-rod.clebsch --case models/lattices/geometrically-exact-rod.toml --h {h} --steps 1 --json"
+        ))
     };
     // From eight times to a million times too long.
     let said = "times the longest one that keeps small motions about the start small, 1.2";
     for h in ["0.01", "1", "1000"] {
-        let long = run(h);
-        assert!(long.err.contains(said), "{h}: {}", long.err);
+        run(h).says(said);
     }
     // A rod that is struck is refused its first step.
-    let (struck, start) = (
-        shipped("lattices/circular-rod.clebsch"),
-        shipped("lattices/circular-rod.toml"),
-    );
-    let refused = searched(&["run", &struck, "--case", &start, "--h", "100"]);
-    assert_eq!(refused.code, 1, "{}{}", refused.out, refused.err);
-    for words in ["times the longest one", "cannot take the first step"] {
-        assert!(refused.err.contains(words), "{}", refused.err);
-    }
+
+    let refused = searched(
+        "run models/lattices/circular-rod.clebsch --case models/lattices/circular-rod.toml --h 100",
+    )
+    .exits(1);
+    refused.says(["times the longest one", "cannot take the first step"]);
     // The same numbers in JSON.
-    let done = run("0.0005");
-    let object: serde_json::Value = serde_json::from_str(&done.out).expect("one JSON object");
+    let object = run("0.0005").json();
     let limit = &object["longest_step"];
     let number = |key: &str| limit[key].as_f64().expect("a number");
     assert!((number("step") * number("frequency") - 2.0).abs() < 1e-12);
@@ -334,19 +298,17 @@ fn chains_that_hang_have_the_limits_of_laguerre() {
         );
         let case = folder.write("case.toml", &case);
         let limit = 2.0 / (20.0 * root).sqrt();
-        let found = printed(&model, &case, &[]);
+        let found = printed(&model, &case);
         assert!((found / limit - 1.0).abs() < 0.01, "{n}: {found} {limit}");
         let run = |part: f64| {
             let h = format!("{}", part * limit);
-            searched(&["run", &model, "--case", &case, "--h", &h, "--steps", "600"])
+            searched(&format!("run {model} --case {case} --h {h} --steps 600"))
         };
         let (below, above) = (run(0.98), run(1.02));
-        assert_eq!(below.code, 0, "{n}: {}{}", below.out, below.err);
-        assert!(!below.err.contains("longest"), "{n}: {}", below.err);
-        assert_eq!(above.code, 1, "{n}: {}{}", above.out, above.err);
-        for words in ["1.02 times the longest one", "no step from node"] {
-            assert!(above.err.contains(words), "{n}: {}", above.err);
-        }
+        below.ended(0);
+        below.never_says("longest");
+        above.ended(1);
+        above.says(["1.02 times the longest one", "no step from node"]);
     }
 }
 
@@ -374,7 +336,7 @@ fn chains_that_lean_have_the_limits_along_their_constraints() {
              [parameters]\ng = [0.0, 0.0, -9.0]\n[initial]\nx = [\"i*sin({lean})\", 0.0, \"-i*cos({lean})\"]\nmomentum_x = [0.0, 0.0, 0.0]\n"
         );
         let case = folder.write("own.toml", &case);
-        let found = 2.0 / printed(&model, &case, &[]);
+        let found = 2.0 / printed(&model, &case);
         assert!(
             (found / frequency - 1.0).abs() < 0.01,
             "{n} {lean}: {found} {frequency}"
@@ -407,7 +369,7 @@ fn under_a_sum_that_is_held_the_others_swing() {
         );
         let case = folder.write("case.toml", &case);
         let limit = 2.0 / f64::sqrt(square);
-        let found = printed(&model, &case, &[]);
+        let found = printed(&model, &case);
         assert!((found / limit - 1.0).abs() < 0.01, "{n}: {found} {limit}");
     }
 }
@@ -426,8 +388,8 @@ fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
         let case = "model = \"chain\"\nname = \"own\"\nh = 0.1\nsteps = 1\n[labels]\ni = 6\n[ends]\ni = [\"free\", \"free\"]\n\
             [parameters]\na = 0.1\n[initial]\nx = [0.0, 0.0, \"0.1*(i - N/2)\"]\nmomentum_x = [0.0, 0.0, 0.0]\n";
         let case = folder.write("case.toml", case);
-        let done = searched(&["run", &model, "--case", &case]);
-        assert!(!done.out.contains("frequency"), "{name}: {}", done.out);
+        let done = searched(&format!("run {model} --case {case}"));
+        done.never_prints("frequency");
         format!("{}{}", done.out.replace("\n", " "), done.err)
     };
     let said = |all: String, words: &str| {
@@ -466,7 +428,7 @@ fn terms_linear_in_velocities_leave_the_limit_along_constraints() {
              [initial]\nx = [{aside:?}, \"-i\"]\nmomentum_x = [\"f/2*i\", {:?}]\n",
             0.5 * f * aside
         );
-        printed(&model, &folder.write("case.toml", &case), &[])
+        printed(&model, &folder.write("case.toml", &case))
     };
     // Three links swing at most with the root of 6.29 (Laguerre); forty by loops over sites.
     for (links, square) in [(3, Some(6.289_945)), (40, None)] {
@@ -501,7 +463,7 @@ fn a_magnetic_field_leaves_the_limit_of_the_trap() {
             "model = \"charge\"\nname = \"own\"\nh = 0.9\nsteps = 1\n[parameters]\nK = [[1.0, 0.0], [0.0, 4.0]]\n\
              f = {f:?}\nc = {c:?}\n[initial]\nx = [0.0, 0.0]\nmomentum = [0.0, 0.0]\n"
         );
-        let found = printed(&model, &folder.write("case.toml", &case), &[]);
+        let found = printed(&model, &folder.write("case.toml", &case));
         assert!((found - 1.0).abs() < 0.01, "{f} {c}: {found}");
     }
 }

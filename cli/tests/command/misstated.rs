@@ -1,19 +1,11 @@
 //! What a run says of a start or of numbers that a model does not have, and of Lagrangians that look like a mistake and are none.
 
-use crate::common::{Done, Folder};
+use crate::common::{Done, Folder, has, process_in, table};
 use crate::ran;
 
-/// What a run of a model with a case says, and what it wrote.
-fn run(folder: &Folder, model: &str, case: &str) -> (Done, String) {
-    let out = folder.path("out");
-    let done = ran::run(
-        folder,
-        model,
-        case,
-        &["--every", "1", "--out", &out, "--force"],
-    );
-    let table = std::fs::read_to_string(format!("{out}/trajectory.csv"));
-    (done, table.unwrap_or_default())
+/// A run of a model with a case, into `out`.
+fn run(folder: &Folder, model: &str, case: &str) -> Done {
+    ran::run(folder, model, case, "--every 1 --out @out --force")
 }
 
 const PENDULA: &str = "model Pendula {
@@ -29,18 +21,18 @@ fn a_momentum_that_is_not_tangent_is_told_of_the_constraint_that_takes_it() {
     let folder = Folder::new("not-tangent");
     let case = "model = \"pendula\"\nname = \"own\"\nh = 0.01\nsteps = 2\n[parameters]\nm = 1.0\ng = 1.0\n[initial]\n\
         x = [0.0, -1.0]\ny = [1.0, 0.0]\nmomentum_x = [1.0, 0.0]\nmomentum_y = [0.5, 0.25]\n";
-    let (done, _) = run(&folder, PENDULA, case);
+    let done = run(&folder, PENDULA, case);
     assert_ne!(done.code, 0);
     let told = "q: the initial momentum is not tangent to the constraint `y_k·y_k = 1`: constraint forces take 5.000e-1 \
         of its size 1.559e0, with the multiplier 0.25 for this constraint; subtract the multiplier times the gradient";
-    assert!(done.err.contains(told), "{}", done.err);
+    done.says(told);
     // Without that part it runs.
-    let (done, _) = run(
+    let done = run(
         &folder,
         PENDULA,
         &case.replace("[0.5, 0.25]", "[0.0, 0.25]"),
     );
-    assert_eq!(done.code, 0, "{}", done.err);
+    done.ended(0);
 }
 
 #[test]
@@ -48,10 +40,10 @@ fn what_overflows_is_told_from_what_has_no_value() {
     let folder = Folder::new("overflow");
     let model = "model Spring { param m, k: Real; field x: Real; lagrangian = m*(next(x) - x)^2/(2*h) - h*k*x^2/2; }";
     let case = "model = \"spring\"\nname = \"own\"\nh = 5.0\nsteps = 400\n[parameters]\nm = 1.0\nk = 1.0\n[initial]\nx = 1.0\nmomentum = 0.0\n";
-    let (done, _) = run(&folder, model, case);
+    let done = run(&folder, model, case);
     assert_ne!(done.code, 0);
     let why = "the invariant `energy` is inf: it is larger than any number of double precision, 1.8e308; reduce the step size";
-    assert!(done.err.contains(why), "{}", done.err);
+    done.says(why);
 }
 
 const VORTICES: &str = "model Vortices {
@@ -66,24 +58,16 @@ fn point_vortices_run_without_a_warning() {
     let folder = Folder::new("vortices");
     let case = "model = \"vortices\"\nname = \"pair\"\nh = 0.01\nsteps = 1000\n[parameters]\na = 1.0\nb = 1.0\n[initial]\n\
         x = [0.5, 0.0]\ny = [-0.5, 0.0]\nmomentum_x = [0.0, 0.25]\nmomentum_y = [0.0, -0.25]\n";
-    let (done, table) = run(&folder, VORTICES, case);
-    assert_eq!(done.code, 0, "{}", done.err);
-    assert!(!done.err.contains("warning"), "{}", done.err);
-    let mut lines = table.lines().map(|l| l.split(',').collect::<Vec<_>>());
-    let names = lines.next().expect("names");
-    let last = lines.next_back().expect("rows");
-    let value = |name: &str| -> f64 {
-        let at = names.iter().position(|n| *n == name).expect("is a column");
-        last[at].parse().expect("a number")
-    };
+    run(&folder, VORTICES, case).ended(0).never_says("warning");
+    let samples = folder.samples("out/trajectory.csv");
     // Equal vortices at the distance d turn about their middle at the rate Γ/(π d²).
     let angle = 10.0 / std::f64::consts::PI;
     let turned = [0.5 * angle.cos(), 0.5 * angle.sin()];
     for (name, wanted) in ["x_1", "x_2"].into_iter().zip(turned) {
+        let found = samples.end(name);
         assert!(
-            (value(name).abs() - wanted.abs()).abs() < 1e-4,
-            "{name}: {} {wanted}",
-            value(name)
+            (found.abs() - wanted.abs()).abs() < 1e-4,
+            "{name}: {found} {wanted}"
         );
     }
 }
@@ -109,13 +93,9 @@ fn words_of_other_languages_in_a_case_are_answered() {
             "model = \"spring\"\nh = 0.01\nsteps = 1\n[parameters]\nm = 1\nk = \"{value}\"\n[initial]\nx = 1\n"
         );
         let folder = Folder::new("misstated-words");
-        let done = ran::run(&folder, model, &case, &[]);
-        assert_eq!(done.code, 2, "{value}");
-        assert!(
-            done.err.contains("case.toml:6: parameters.k: ") && done.err.contains(said),
-            "{value}: {}",
-            done.err
-        );
+        ran::run(&folder, model, &case, "")
+            .refuses("case.toml:6: parameters.k: ")
+            .says(said);
     }
 }
 
@@ -135,11 +115,11 @@ fn rates_and_degrees_in_a_model_are_answered() {
         let text = format!(
             "model Spring {{\n    param m: Real;\n    field x: Real;\n    lagrangian = {lagrangian};\n}}\n"
         );
-        let model = folder.write("spring.clebsch", &text);
+        folder.write("spring.clebsch", &text);
         for command in ["derive", "run", "check"] {
-            let done = crate::common::program(&[command, &model]);
+            let done = folder.clebsch(&format!("{command} @spring.clebsch"));
             assert!(done.err.starts_with("error: "), "{command}: {}", done.err);
-            assert!(done.err.contains(said), "{command}: {}", done.err);
+            done.says(said);
         }
     }
 }
@@ -161,14 +141,10 @@ fn an_energy_beyond_the_range_of_numbers_is_named() {
                 if count == 4 { 10 } else { 1 }
             );
             let folder = Folder::new("misstated-overflow");
-            let done = ran::run(&folder, model, &case, &[]);
-            assert!(
-                !done.err.contains("left its domain"),
-                "{size}: {}",
-                done.err
-            );
+            let done = ran::run(&folder, model, &case, "");
+            done.never_says("left its domain");
             if done.code != 0 {
-                assert!(done.err.contains("`energy` is inf"), "{size}: {}", done.err);
+                done.says("`energy` is inf");
             }
         }
     }
@@ -178,7 +154,7 @@ fn an_energy_beyond_the_range_of_numbers_is_named() {
         lagrangian = m*(next(x)-x)^2/(2*h) - h*x^2/2;
     }";
     let case = "model = \"spring\"\nh = 0.01\nsteps = 10\n[parameters]\nm = 1\n[initial]\nx = 1.3e154\nmomentum = 1.3e154\n";
-    let done = ran::run(&Folder::new("misstated-overflow-check"), spring, case, &[]);
+    let done = ran::run(&Folder::new("misstated-overflow-check"), spring, case, "");
     let both = format!("{}{}", done.out, done.err);
     assert!(
         both.contains("`energy` is inf") && !both.contains("does NOT hold"),
@@ -189,66 +165,44 @@ fn an_energy_beyond_the_range_of_numbers_is_named() {
 #[test]
 fn slips_of_a_new_user_are_answered_by_what_to_write() {
     let folder = Folder::new("slips");
-    let new = crate::common::program_in(&folder.path(""), &["new", "two"]);
-    assert_eq!(new.code, 0, "{}", new.err);
-    let case = std::fs::read_to_string(folder.path("two.toml")).expect("it was written");
-    let said = |arguments: &[&str]| {
-        let done = crate::common::program_in(&folder.path(""), arguments);
+    process_in(&folder.path(""), "new two").ended(0);
+    let case = folder.read("two.toml");
+    let said = |words: &str| {
+        let done = process_in(&folder.path(""), words);
         format!("{}{}", done.out, done.err)
     };
-    let sample = said(&["case", "two.clebsch"]);
-    for words in ["mass at y", "position of the second mass"] {
-        assert!(sample.contains(words), "{words}\n{sample}");
-    }
+    let sample = said("case two.clebsch");
+    has(&sample, ["mass at y", "position of the second mass"]);
     let of_case = |from: &str, to: &str| {
         folder.write("own.toml", &case.replace(from, to));
-        said(&["check", "two.clebsch", "--case", "own.toml"])
+        said("check two.clebsch --case own.toml")
     };
-    for (from, to, answer) in [
-        (
-            "k = 50.0",
-            "k = 2*pi**2",
-            "put expressions in quotes: \"2*pi^2\"",
-        ),
-        ("k = 50.0", "k = (3.0, 0.0)", "write [3.0, 0.0]"),
-        ("k = 50.0", "k = None", "expected a number, found `None`"),
-        ("k = 50.0", "k = \"2*np.pi\"", "write `pi`"),
-        ("velocity_y =", "velocty_y =", "did you mean `velocity_y`?"),
-        (
-            "m1 = 1.0",
-            "m1 = 0",
-            "the parameter `m1` of the kinetic energy is 0",
-        ),
-    ] {
+    for [from, to, answer] in table(
+        r#"
+        k = 50.0     | k = 2*pi**2    | put expressions in quotes: "2*pi^2"
+        k = 50.0     | k = (3.0, 0.0) | write [3.0, 0.0]
+        k = 50.0     | k = None       | expected a number, found `None`
+        k = 50.0     | k = "2*np.pi"  | write `pi`
+        velocity_y = | velocty_y =    | did you mean `velocity_y`?
+        m1 = 1.0     | m1 = 0         | the parameter `m1` of the kinetic energy is 0
+"#,
+    ) {
         let found = of_case(from, to);
         assert!(found.contains(answer), "{to}\n{found}");
     }
-    for (arguments, answer) in [
-        (vec!["run", "two"], "did you mean `two.clebsch`?"),
-        (vec!["run", "two.clebsch", "--time", "1"], "'--until'"),
-        (vec!["list", "chian"], "did you mean `chain`?"),
-        (
-            vec!["check", "two.clebsch"],
-            "model two: derived, 2 configurations",
-        ),
-        (
-            vec!["check", "two.clebsch", "--case", "sample"],
-            "first step: solved",
-        ),
-        (
-            vec!["run", "toda-chain", "--set", "N=100"],
-            "`N` is the number of sites of `i`",
-        ),
-        (
-            vec!["run", "free-body", "--set", "Lambda.angle=1"],
-            "`--set 'Lambda={axis=[0,1,0], angle=1}'`",
-        ),
-        (
-            vec!["run", "free-body", "--set", "I=[0.2, 0.2, 0.55]"],
-            "moments of inertia obey I3 <= I1 + I2; 0.55 > 0.4",
-        ),
-    ] {
-        let found = said(&arguments);
-        assert!(found.contains(answer), "{arguments:?}\n{found}");
+    for [words, answer] in table(
+        "
+        run two                                | did you mean `two.clebsch`?
+        run two.clebsch --time 1               | '--until'
+        list chian                             | did you mean `chain`?
+        check two.clebsch                      | model two: derived, 2 configurations
+        check two.clebsch --case sample        | first step: solved
+        run toda-chain --set N=100             | `N` is the number of sites of `i`
+        run free-body --set Lambda.angle=1     | `--set 'Lambda={axis=[0,1,0], angle=1}'`
+        run free-body --set I=[0.2,0.2,0.55]   | moments of inertia obey I3 <= I1 + I2; 0.55 > 0.4
+",
+    ) {
+        let found = said(words);
+        assert!(found.contains(answer), "{words}\n{found}");
     }
 }

@@ -37,7 +37,7 @@ fn a_run_tells_the_same_as_that_of_the_built_model() {
             let common = [&["--steps", "300", "--case", case.as_str()], more].concat();
             let built = on(&gallery, &[&["run", model], &common[..]].concat());
             let read = on(&gallery, &[&["run", file.as_str()], &common[..]].concat());
-            assert_eq!(built.code, 0, "{}", built.err);
+            built.ended(0);
             assert_eq!((built.code, built.err), (read.code, read.err));
             // How long a step took, and when it ran.
             let timeless = |out: &str| -> Vec<String> {
@@ -61,15 +61,16 @@ fn what_a_run_writes_is_the_same_as_of_the_built_model() {
     let gallery = Gallery::shipped();
     let file = folder.write("top.clebsch", text("heavy-top"));
     let case = folder.write("case.toml", &on(&gallery, &["case", "heavy-top"]).out);
-    let (built, read) = (folder.path("built"), folder.path("read"));
+    let built = folder.path("built");
+    let read = folder.path("read");
     for (model, out) in [("heavy-top", &built), (file.as_str(), &read)] {
-        let done = on(
+        on(
             &gallery,
             &[
                 "run", model, "--case", &case, "--steps", "200", "--out", out,
             ],
-        );
-        assert_eq!(done.code, 0, "{}", done.err);
+        )
+        .succeeds();
     }
     for name in [
         "trajectory.csv",
@@ -92,26 +93,26 @@ fn a_model_outside_the_gallery_gives_a_case_that_runs_and_compares() {
     let gallery = Gallery::shipped();
     let file = folder.write("beam.clebsch", OTHER);
     let case = on(&gallery, &["case", &file]);
-    assert_eq!((case.code, case.err.as_str()), (0, ""));
-    assert!(case.out.contains("model = \"beam\""), "{}", case.out);
+    case.ended(0).says_nothing();
+    case.prints("model = \"beam\"");
     let command = format!("clebsch run {file} --case THIS-FILE.toml");
-    assert!(case.out.contains(&command), "{}", case.out);
+    case.prints(&command);
     let case = folder.write("beam.toml", &case.out);
-    let run = on(&gallery, &["run", &file, "--case", &case, "--steps", "500"]);
-    assert_eq!(run.code, 0, "{}", run.err);
-    assert!(run.out.contains("energy"), "{}", run.out);
+    on(&gallery, &["run", &file, "--case", &case, "--steps", "500"])
+        .succeeds()
+        .prints("energy");
     // Without a case, the sample.
-    let sample = on(
+    on(
         &gallery,
         &["run", &file, "--case", "sample", "--steps", "500"],
-    );
-    assert_eq!(sample.code, 0, "{}", sample.err);
-    let compared = on(
+    )
+    .succeeds();
+    on(
         &gallery,
         &["compare", &file, "--case", &case, "--steps", "100"],
-    );
-    assert_eq!(compared.code, 0, "{}", compared.err);
-    assert!(compared.out.contains("order"), "{}", compared.out);
+    )
+    .succeeds()
+    .prints("order");
 }
 
 #[test]
@@ -134,14 +135,14 @@ fn a_file_without_a_model_that_runs_is_told_as_derive_tells_it() {
                 (2, "", &derived.err),
                 "{command}"
             );
-            assert!(done.err.contains(name), "{}", done.err);
+            done.says(name);
         }
     }
     for missing in ["no-such-file.clebsch", "./no/such.clebsch"] {
         let derived = on(&gallery, &["derive", missing]);
         let done = on(&gallery, &["run", missing]);
         assert_eq!((done.code, &done.err), (2, &derived.err));
-        assert!(done.err.contains("there is no model file"), "{}", done.err);
+        done.says("there is no model file");
     }
 }
 
@@ -158,7 +159,7 @@ fn wrong_values_are_told_with_file_and_line() {
     let built = on(&gallery, &["run", "heavy-top", "--case", &case]);
     let read = on(&gallery, &["run", &file, "--case", &case]);
     assert_eq!((built.code, &built.err), (read.code, &read.err));
-    assert_eq!(built.code, 2, "{}", built.err);
+    built.ended(2);
 }
 
 #[test]
@@ -168,7 +169,7 @@ fn a_warning_of_the_derivation_is_told() {
     let text = OTHER.replace("param k: Real;", "param k: Real;\n    param unused: Real;");
     let file = folder.write("beam.clebsch", &text);
     let derived = on(&gallery, &["derive", &file]);
-    assert!(derived.err.contains("warning"), "{}", derived.err);
+    derived.says("warning");
     let run = on(
         &gallery,
         &["run", &file, "--case", "sample", "--steps", "10"],
@@ -187,12 +188,12 @@ fn a_comparison_of_a_file_says_what_it_measures_against() {
         &[
             "compare", &file, "--case", "sample", "--steps", "40", "--out", &out,
         ],
-    );
-    assert_eq!(done.code, 0, "{}", done.err);
+    )
+    .succeeds();
     let said =
         "no equations of this model were written by hand; the interpreted stepper with steps";
-    assert!(done.out.contains(said), "{}", done.out);
-    assert!(done.out.contains("\ninterpreted "), "{}", done.out);
+    done.prints(said);
+    done.prints("\ninterpreted ");
     let read = |name: &str| std::fs::read_to_string(format!("{out}/{name}")).expect(name);
     for text in [
         done.out.clone(),
@@ -215,13 +216,13 @@ fn numbers_are_drawn_by_their_names() {
         let v = next(b) - b; lagrangian = (u*u + dot(v, v))/(2*h) - (h/2)*k*(a*a + dot(b, b)); }";
     let file = folder.write("pair.clebsch", text);
     let out = folder.path("out");
-    let done = on(
+    on(
         &gallery,
         &[
             "run", &file, "--case", "sample", "--steps", "40", "--out", &out,
         ],
-    );
-    assert_eq!(done.code, 0, "{}", done.err);
+    )
+    .succeeds();
     let plots = std::fs::read_dir(&out).expect("results");
     let plots = plots.filter_map(|entry| {
         let path = entry.ok()?.path();
@@ -246,8 +247,7 @@ fn a_long_line_is_quoted_around_the_mistake() {
         )
     };
     let file = folder.write("long.clebsch", &text("k*dot(y, x)"));
-    let done = on(&gallery, &["run", &file]);
-    assert_eq!(done.code, 2, "{}", done.err);
+    let done = on(&gallery, &["run", &file]).exits(2);
     let lines: Vec<&str> = done.err.lines().collect();
     let quoted = lines.iter().position(|line| line.starts_with("1 | ..."));
     let quoted = quoted.unwrap_or_else(|| panic!("{}", done.err));

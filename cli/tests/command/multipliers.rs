@@ -1,30 +1,17 @@
 //! Multipliers as they are recorded and as derivations print them: what the equations of a step and of the projection on
 //! arrival leave for them, solved by hand from recorded places and momenta.
 
-use crate::common::{Folder, program};
+use crate::common::{Folder, clebsch, runs};
 
 /// The columns of a run by name, at two nodes.
 fn two_nodes(folder: &Folder, model: &str, case: &str) -> impl Fn(&str, usize) -> f64 {
-    let (model, case) = (
-        folder.write("own.clebsch", model),
-        folder.write("own.toml", case),
-    );
-    let out = folder.path("out");
-    let done = program(&[
-        "run", &model, "--case", &case, "--every", "1", "--out", &out, "--force",
-    ]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let text = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
-    let mut lines = text
-        .lines()
-        .map(|l| l.split(',').map(str::to_owned).collect::<Vec<_>>());
-    let names = lines.next().expect("names");
-    let rows: Vec<Vec<String>> = lines.collect();
-    move |name, node| {
-        let at = names.iter().position(|n| n == name);
-        let at = at.unwrap_or_else(|| panic!("{name} of {names:?}"));
-        rows[node][at].parse().expect("a number")
-    }
+    let model = folder.write("own.clebsch", model);
+    let case = folder.write("own.toml", case);
+    folder.runs(&format!(
+        "run {model} --case {case} --every 1 --out @out --force"
+    ));
+    let samples = folder.samples("out/trajectory.csv");
+    move |name, node| samples.at(name, node)
 }
 
 /// Roundings of momenta and places by the step, of multipliers of size one to ten.
@@ -67,7 +54,7 @@ fn the_multiplier_of_a_pendulum_is_that_of_the_printed_equations() {
 
 #[test]
 fn the_multiplier_of_a_sum_is_that_of_the_printed_equations() {
-    let folder = Folder::new("multiplier of a sum");
+    let folder = Folder::new("multiplier-of-a-sum");
     let model = "model Balanced {
         label i in 0..N;
         param m, f: Real at nodes;
@@ -128,7 +115,7 @@ fn the_multiplier_of_a_sum_is_that_of_the_printed_equations() {
 #[test]
 fn light_bodies_on_a_hinge_stay_on_it() {
     let folder = Folder::new("light-hinge");
-    let model = folder.write(
+    folder.write(
         "joint.clebsch",
         "model Joint {
             param J, K: Sym<3>;
@@ -146,7 +133,7 @@ fn light_bodies_on_a_hinge_stay_on_it() {
                 + M*dot(next(y) - y, next(y) - y)/(2*h) - h*(x[3] + y[3])*m;
         }",
     );
-    let case = folder.write(
+    folder.write(
         "joint.toml",
         "model = \"joint\"\nh = 0.02\nsteps = 200\n[parameters]\n\
          J = [[1e-8, 0.0, 0.0], [0.0, 2e-8, 0.0], [0.0, 0.0, 1.5e-8]]\n\
@@ -159,8 +146,7 @@ fn light_bodies_on_a_hinge_stay_on_it() {
          momentum_x = [1e-9, 0.0, 0.0]\nmomentum_y = [2e-9, 0.0, 0.0]\n\
          [bounds]\nconstraint_rate_n = 1e-14\nconstraint_rate_ax = 1e-14\nconstraint_rate_ay = 1e-14\n",
     );
-    let done = program(&["run", &model, "--case", &case]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    folder.runs("run @joint.clebsch --case @joint.toml");
 }
 
 /// Of one segment there is no pair of neighbouring sections to bend against one another: a sum of no terms, which is a number.
@@ -176,9 +162,7 @@ fn a_held_rod_of_one_segment_has_an_energy() {
         env!("CARGO_MANIFEST_DIR")
     );
     let case = folder.write("one.toml", case);
-    let done = program(&["run", &model, "--case", &case, "--json"]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let object: serde_json::Value = serde_json::from_str(&done.out).expect("one JSON object");
+    let object = runs(&format!("run {model} --case {case} --json")).json();
     let energy = &object["results"]["invariants"][0];
     assert_eq!(energy["name"], "energy", "{energy}");
     // It hangs at rest: the mass at the end, 1, times 9.81 over half a unit of length.
@@ -212,17 +196,9 @@ fn the_one_site_that_moves_has_its_momentum() {
     // The way of a step but for a few squares of it.
     assert!((x - 0.6 - 0.8e-3).abs() < 3e-6 && p == 0.8, "{x} {p}");
     let refused = |last: &str, case: &str| {
-        let (model, case) = (
-            folder.write("links.clebsch", &model(last)),
-            folder.write("case.toml", case),
-        );
-        let done = program(&["run", &model, "--case", &case]);
-        assert_eq!(done.code, 2, "{}", done.out);
-        assert!(
-            done.err.contains("is not tangent to the constraint"),
-            "{}",
-            done.err
-        );
+        let model = folder.write("links.clebsch", &model(last));
+        let case = folder.write("case.toml", case);
+        clebsch(&format!("run {model} --case {case}")).refuses("is not tangent to the constraint");
     };
     refused("", &case(1, leaning, [0.6, -0.8]));
     // Between two ends that are held the joint of two links in the plane cannot move.
@@ -261,13 +237,10 @@ f = [0.2994231063173138, 0.019861053740829495, -0.1462283754825443]
 [initial]
 Q = [[0.8774019219310983, -0.028664803074704925, 0.022501246319340647], [-0.028899715573023527, 1.1293175359492715, 0.10132656257123335], [-0.22320132226492997, -0.18572307651610684, 0.959122720497102]]
 body_momentum = [[-0.01110885263621708, 0.04994609090395395, -0.1353340905761882], [1.2397888160578638, -0.18155660460206013, -0.03428467048639613], [0.6222076644092212, 0.15081191467850244, 0.37689370434391967]]"#;
-    let (model, case) = (
-        folder.write("own.clebsch", model),
-        folder.write("own.toml", case),
-    );
-    let done = program(&["run", &model, "--case", &case, "--json"]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let object: serde_json::Value = serde_json::from_str(&done.out).expect("one JSON object");
+    let model = folder.write("own.clebsch", model);
+    let case = folder.write("own.toml", case);
+    let done = runs(&format!("run {model} --case {case} --json"));
+    let object = done.json();
     let all = object["results"]["invariants"]
         .as_array()
         .expect("a list")
@@ -280,7 +253,7 @@ body_momentum = [[-0.01110885263621708, 0.04994609090395395, -0.1353340905761882
 #[test]
 fn constraints_hold_where_a_velocity_that_rested_begins_to_move() {
     // The second mass hangs straight above the first: its horizontal equation has no terms in the first steps.
-    let folder = Folder::new("double pendulum");
+    let folder = Folder::new("double-pendulum");
     let model = "model Double {
         param m, l, g: Real;
         field x, y: Vec<2>;

@@ -1,6 +1,6 @@
 //! Names from arguments and files reach neither the terminal nor a plot as commands.
 
-use super::common::{Done, Folder, clebsch, with};
+use crate::common::{Done, Folder, rotor, with};
 
 /// A colour, a cleared screen, a line that claims success, a bell, a C1 control, a turned direction.
 const NAME: &str = "x\u{1b}[31m\u{1b}[2J\nclebsch: done\r\u{7}\u{9b}1m\u{7f}\u{202e}y";
@@ -48,10 +48,10 @@ fn arguments() {
         &["run", model, "--steps", "5", "--out", &out],
     ];
     for arguments in requests {
-        let done = clebsch(arguments);
+        let done = rotor(arguments);
         is_plain(&done, &format!("{arguments:?}"));
         if arguments.contains(&NAME) {
-            assert!(done.err.contains(SHOWN), "{arguments:?}: {}", done.err);
+            done.says(SHOWN);
         }
     }
     // What clap says of arguments it does not know, new lines apart.
@@ -63,13 +63,12 @@ fn arguments() {
         &["derive", model, "--format", &wrong],
         &["run", model, &format!("--{wrong}")],
     ] {
-        let done = clebsch(arguments);
-        assert_eq!(done.code, 2);
+        let done = rotor(arguments).exits(2);
         is_plain(&done, &format!("{arguments:?}"));
     }
     is_plain(
         &with(
-            &super::common::gallery(),
+            &crate::rotor::gallery(),
             &["derive", "-"],
             "model \u{1b}[2J",
             None,
@@ -84,7 +83,7 @@ fn case_files() {
     let quoted = serde_json::to_string(NAME).expect("a string");
     // TOML has no raw DEL in strings.
     let quoted = quoted.replace('\u{7f}', "\\u007f");
-    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let text = rotor("case harmonic-rotor").out;
     let changes = [
         ("name = \"swing\"", format!("name = {quoted}")),
         (
@@ -110,7 +109,7 @@ fn case_files() {
             "--out",
             &out,
         ];
-        let done = clebsch(&run);
+        let done = rotor(&run);
         is_plain(&done, &changed);
         assert_eq!(done.code, if index < 2 { 0 } else { 2 }, "{}", done.err);
         if index != 1 {
@@ -131,9 +130,9 @@ fn case_files() {
             }
         }
         // JSON stays JSON, with the same string.
-        let done = clebsch(&[&run[..6], &["--json"]].concat());
+        let done = rotor(&[&run[..6], &["--json"]].concat());
         is_plain(&done, &changed);
-        let json: serde_json::Value = serde_json::from_str(&done.out).expect("JSON");
+        let json = done.json();
         if index == 0 {
             assert_eq!(json["case"], NAME);
         }
@@ -177,15 +176,12 @@ model ElasticString {
         ("inertia", inertia, "J_{(0),k}"),
     ] {
         let file = folder.write(&format!("{name}.clebsch"), model);
-        let derived = clebsch(&["derive", &file]);
-        assert_eq!(derived.code, 0, "{}", derived.err);
-        assert!(derived.out.contains(shown), "{}", derived.out);
-        let case = folder.write(&format!("{name}.toml"), &clebsch(&["case", &file]).out);
-        let done = clebsch(&["run", &file, "--case", &case, "--steps", "20"]);
-        assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+        rotor(&format!("derive {file}")).succeeds().prints(shown);
+        let case = folder.write(&format!("{name}.toml"), &rotor(&format!("case {file}")).out);
+        rotor(&format!("run {file} --case {case} --steps 20")).succeeds();
     }
     // What the model writes twice is refused as before.
     let twice = inertia.replace("J0", "J_0");
     let file = folder.write("twice.clebsch", &twice);
-    assert_eq!(clebsch(&["derive", &file]).code, 2);
+    rotor(&format!("derive {file}")).ended(2);
 }

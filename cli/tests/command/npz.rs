@@ -1,9 +1,7 @@
 //! trajectory.npz against trajectory.csv: the zip is sound, the arrays hold the very same bits.
 //! The reader here follows the two format documents and shares nothing with the writer.
 
-use super::common::{Folder, clebsch};
-use std::collections::BTreeMap;
-use std::fs;
+use crate::common::{Folder, table};
 
 fn u16_at(bytes: &[u8], at: usize) -> usize {
     usize::from(u16::from_le_bytes([bytes[at], bytes[at + 1]]))
@@ -80,87 +78,38 @@ fn array(npy: &[u8]) -> (String, Vec<u64>) {
 #[test]
 fn arrays_hold_the_bits_of_the_csv() {
     let folder = Folder::new("npz");
-    let out = folder.path("out");
-    clebsch(&[
-        "run",
-        "harmonic-rotor",
-        "--steps",
-        "100",
-        "--every",
-        "30",
-        "--out",
-        &out,
-    ]);
-    let csv = fs::read_to_string(format!("{out}/trajectory.csv")).expect("csv");
-    let mut lines = csv.lines();
-    let names: Vec<&str> = lines.next().expect("a header").split(',').collect();
-    let mut columns: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
-    for line in lines {
-        for (name, number) in names.iter().zip(line.split(',')) {
-            columns
-                .entry(name)
-                .or_default()
-                .push(number.parse().expect("a number"));
-        }
-    }
+    folder.rotor("run harmonic-rotor --steps 100 --every 30 --out @out");
+    let samples = folder.samples("out/trajectory.csv");
     // The start, every thirtieth node, and the end.
-    assert_eq!(columns["node"], [0.0, 30.0, 60.0, 90.0, 100.0]);
+    assert_eq!(samples.column("node"), [0.0, 30.0, 60.0, 90.0, 100.0]);
 
-    let zip = fs::read(format!("{out}/trajectory.npz")).expect("npz");
+    let zip = folder.bytes("out/trajectory.npz");
     let members = members(&zip);
     // Name, type, shape, columns of the CSV.
-    let expected: &[(&str, &str, &str, &[&str])] = &[
-        ("node", "<u8", "(5,)", &["node"]),
-        ("time", "<f8", "(5,)", &["time"]),
-        (
-            "Lambda",
-            "<f8",
-            "(5, 3, 3,)",
-            &[
-                "Lambda_11",
-                "Lambda_12",
-                "Lambda_13",
-                "Lambda_21",
-                "Lambda_22",
-                "Lambda_23",
-                "Lambda_31",
-                "Lambda_32",
-                "Lambda_33",
-            ],
-        ),
-        (
-            "body_momentum",
-            "<f8",
-            "(5, 3,)",
-            &["body_momentum_1", "body_momentum_2", "body_momentum_3"],
-        ),
-        (
-            "Gamma",
-            "<f8",
-            "(5, 3,)",
-            &["Gamma_1", "Gamma_2", "Gamma_3"],
-        ),
-        ("angle", "<f8", "(5,)", &["angle"]),
-        ("invariant_energy", "<f8", "(5,)", &["invariant_energy"]),
-        (
-            "invariant_across",
-            "<f8",
-            "(5, 2,)",
-            &["invariant_across_1", "invariant_across_2"],
-        ),
-    ];
+    let expected = table::<4>(
+        "
+        node             | <u8 | (5,)       | node
+        time             | <f8 | (5,)       | time
+        Lambda           | <f8 | (5, 3, 3,) | Lambda_11 Lambda_12 Lambda_13 Lambda_21 Lambda_22 Lambda_23 Lambda_31 Lambda_32 Lambda_33
+        body_momentum    | <f8 | (5, 3,)    | body_momentum_1 body_momentum_2 body_momentum_3
+        Gamma            | <f8 | (5, 3,)    | Gamma_1 Gamma_2 Gamma_3
+        angle            | <f8 | (5,)       | angle
+        invariant_energy | <f8 | (5,)       | invariant_energy
+        invariant_across | <f8 | (5, 2,)    | invariant_across_1 invariant_across_2
+",
+    );
     assert_eq!(members.len(), expected.len());
-    for ((file, npy), (name, kind, shape, of)) in members.iter().zip(expected) {
+    for ((file, npy), [name, kind, shape, of]) in members.iter().zip(expected) {
         assert_eq!(*file, format!("{name}.npy"));
         let (header, bits) = array(npy);
         let dictionary =
             format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
         assert_eq!(header, dictionary);
-        let mut cells = (0..5).flat_map(|row| of.iter().map(move |column| (row, *column)));
+        let mut cells = (0..5).flat_map(|row| of.split(' ').map(move |column| (row, column)));
         for bits in bits {
             let (row, column) = cells.next().expect("not more entries than cells");
-            let number = columns[column][row];
-            let expected = if *kind == "<u8" {
+            let number = samples.at(column, row);
+            let expected = if kind == "<u8" {
                 number as u64
             } else {
                 number.to_bits()

@@ -1,8 +1,8 @@
 //! Starts whose digits were typed: as near to their constraints as ten digits are, they are moved onto them, which is said; the check
 //! of the action as stated then holds. Starts farther off are rejected with the number.
 
-use super::common::Folder;
-use super::ran::run;
+use crate::common::Folder;
+use crate::ran::run;
 
 const PENDULUM: &str = "model Pendulum {
     param m, L, g: Real;
@@ -11,11 +11,11 @@ const PENDULUM: &str = "model Pendulum {
     lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*m*g*x[3];
 }";
 
-fn pendulum(x: &str) -> super::common::Done {
+fn pendulum(x: &str) -> crate::common::Done {
     let case = format!(
         "model = \"pendulum\"\nh = 0.01\nsteps = 50\n[parameters]\nm = 2\nL = 1\ng = 9.81\n[initial]\nx = {x}\nmomentum = [0, 1, 0]\n"
     );
-    run(&Folder::new("onto-pendulum"), PENDULUM, &case, &[])
+    run(&Folder::new("onto-pendulum"), PENDULUM, &case, "")
 }
 
 #[test]
@@ -25,26 +25,18 @@ fn a_start_of_ten_to_twelve_digits_is_moved_onto_its_constraint() {
         ("[0.14112000806, 0, -0.98999249660]", "8.4e-13"),
         ("[0.6000000001, 0, -0.8]", "1.2e-10"),
     ] {
-        let done = pendulum(x);
-        assert_eq!(done.code, 0, "{x}: {}{}", done.out, done.err);
-        assert!(
-            done.out
-                .contains("initial configuration moved onto its constraints, by ")
-                && done.out.contains(&format!("`λ` was off by {off}")),
-            "{x}: {}",
-            done.out
-        );
+        pendulum(x)
+            .succeeds()
+            .prints("initial configuration moved onto its constraints, by ")
+            .prints(&format!("`λ` was off by {off}"));
     }
 }
 
 #[test]
 fn a_start_on_its_constraint_stays_and_one_that_is_far_off_is_rejected() {
-    let done = pendulum("[0.6, 0, -0.8]");
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    assert!(!done.out.contains("moved onto"), "{}", done.out);
-    let done = pendulum("[0.6001, 0, -0.8]");
-    assert_eq!(done.code, 2, "{}{}", done.out, done.err);
-    assert!(done.err.contains("1.2001"), "{}", done.err);
+    let done = pendulum("[0.6, 0, -0.8]").succeeds();
+    done.never_prints("moved onto");
+    pendulum("[0.6001, 0, -0.8]").refuses("1.2001");
 }
 
 /// Links of a chain answer to one another, and bodies turn onto what holds them.
@@ -71,13 +63,9 @@ fn chains_and_bodies_are_moved_too() {
              [initial]\nx = [{}]\n",
             places.join(", ")
         );
-        let done = run(&Folder::new("onto-chain"), chain, &case, &[]);
-        assert_eq!(done.code, 0, "{count}: {}{}", done.out, done.err);
-        assert!(
-            done.out.contains("moved onto its constraints"),
-            "{count}: {}",
-            done.out
-        );
+        run(&Folder::new("onto-chain"), chain, &case, "")
+            .succeeds()
+            .prints("moved onto its constraints");
     }
     let body = "model Hinge {
         param J: Sym<3>;
@@ -89,11 +77,7 @@ fn chains_and_bodies_are_moved_too() {
     }";
     let case = "model = \"hinge\"\nh = 0.01\nsteps = 20\n[parameters]\nJ = { I = [2, 3, 4] }\nk = 1\n[initial]\n\
                 R = { axis = [1, 1e-11, 0], angle = 0.4 }\n";
-    let done = run(&Folder::new("onto-body"), body, case, &[]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    assert!(
-        done.out.contains("moved onto its constraints"),
-        "{}",
-        done.out
-    );
+    run(&Folder::new("onto-body"), body, case, "")
+        .succeeds()
+        .prints("moved onto its constraints");
 }

@@ -1,142 +1,73 @@
 //! Options that replace numbers of a case, and how much a run looks at and prints.
 
-use super::common::{Folder, shipped};
+use crate::common::{Folder, clebsch, table};
 use std::fs;
-
-/// The rows of a CSV, without its head.
-fn rows(file: &str) -> Vec<Vec<f64>> {
-    let text = fs::read_to_string(file).expect("is written");
-    let rows = text.lines().skip(1);
-    rows.map(|row| {
-        row.split(',')
-            .map(|x| x.parse().expect("a number"))
-            .collect()
-    })
-    .collect()
-}
 
 #[test]
 fn a_run_ends_at_the_node_nearest_to_a_time() {
-    for (arguments, said) in [
-        (&["--until", "10"][..], "h = 0.05, 200 steps, to time 10;"),
-        (
-            &["--until", "10", "--h", "0.3"],
-            "h = 0.3, 33 steps, to time 9.9;",
-        ),
-        (&["--until", "0.001"], "h = 0.05, 1 step, to time 0.05;"),
-    ] {
-        let done = shipped(&[&["run", "kepler", "--check", "none"], arguments].concat());
-        assert!(done.out.contains(said), "{}{}", done.out, done.err);
+    for [arguments, said] in table(
+        "
+        --until 10         | h = 0.05, 200 steps, to time 10;
+        --until 10 --h 0.3 | h = 0.3, 33 steps, to time 9.9;
+        --until 0.001      | h = 0.05, 1 step, to time 0.05;
+",
+    ) {
+        clebsch(&format!("run kepler --check none {arguments}")).prints(said);
     }
-    for wrong in [
-        &["--until", "10", "--steps", "3"][..],
-        &["--until", "-1"],
-        &["--until", "nan"],
-    ] {
-        assert_eq!(
-            shipped(&[&["run", "kepler"], wrong].concat()).code,
-            2,
-            "{wrong:?}"
-        );
+    for wrong in ["--until 10 --steps 3", "--until -1", "--until nan"] {
+        clebsch(&format!("run kepler {wrong}")).ended(2);
     }
-    let many = shipped(&["run", "kepler", "--until", "1e300"]);
-    assert!(many.err.contains("--until 1"), "{}", many.err);
+    clebsch("run kepler --until 1e300").says("--until 1");
 }
 
 #[test]
 fn quantities_are_set_by_name_and_component() {
     let folder = Folder::new("options-set");
-    let out = folder.path("out");
-    let run = [
-        "run",
-        "kepler",
-        "--steps",
-        "1",
-        "--out",
-        &out,
-        "--set",
-        "X.x=1.5",
-        "--set",
-        "momentum=0,0.5,0.25",
-        "--set",
-        "k=2",
-    ];
-    let done = shipped(&run);
+    let done = folder.clebsch(
+        "run kepler --steps 1 --out @out --set X.x=1.5 --set momentum=0,0.5,0.25 --set k=2",
+    );
     assert!(done.code != 2, "{}", done.err);
-    let start = rows(&format!("{out}/trajectory.csv")).remove(0);
+    let start = folder.samples("out/trajectory.csv").rows.remove(0);
     assert_eq!(start[2..8], [1.5, 0.0, 0.0, 0.0, 0.5, 0.25]);
-    let text = fs::read_to_string(format!("{out}/run.json")).expect("is written");
-    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let json = folder.json("out/run.json");
     assert_eq!(json["parameters"]["k"], 2.0);
     assert_eq!(json["arguments"]["set"][0], "X.x=1.5");
-    for (set, words) in [
-        ("X=1", "`X` has 3 numbers; name one, such as X.1"),
-        ("X=1,2", "`X` has 3 components, and 2 values are given"),
-        ("k=1,2", "`k` takes one number"),
-        (
-            "q=1",
-            "`kepler` has no such parameter or initial value; it has m, k, X, momentum",
-        ),
-        ("k=two", "`two` is not a number: `two` has no value here"),
-        ("k", "give NAME=VALUE"),
-    ] {
-        let done = shipped(&["run", "kepler", "--set", set]);
-        assert_eq!(done.code, 2, "{set}");
-        assert!(done.err.contains(words), "{set}: {}", done.err);
+    for [set, words] in table(
+        "
+        X=1   | `X` has 3 numbers; name one, such as X.1
+        X=1,2 | `X` has 3 components, and 2 values are given
+        k=1,2 | `k` takes one number
+        q=1   | `kepler` has no such parameter or initial value; it has m, k, X, momentum
+        k=two | `two` is not a number: `two` has no value here
+        k     | give NAME=VALUE
+",
+    ) {
+        clebsch(&format!("run kepler --set {set}")).refuses(words);
     }
     // A value that the model refuses is told by the option, and not by a line of the case.
-    let done = shipped(&["run", "heavy-top", "--set", "J.11=-5"]);
-    assert_eq!(done.code, 2);
-    assert!(
-        done.err.contains("--set J.11: negative second moment"),
-        "{}",
-        done.err
-    );
+    clebsch("run heavy-top --set J.11=-5").refuses("--set J.11: negative second moment");
 }
 
 /// The circular case of mass 1 gives a momentum; a velocity takes its place, whole.
 #[test]
 fn a_velocity_takes_the_place_of_a_momentum() {
     let folder = Folder::new("options-velocity");
-    let out = folder.path("out");
-    let done = shipped(&[
-        "run",
-        "kepler",
-        "--steps",
-        "1",
-        "--set",
-        "m=2",
-        "--set",
-        "velocity=0,1/2,-0.25*m",
-        "--out",
-        &out,
-    ]);
-    assert!(
-        done.out
-            .contains("initial momentum from velocity: (0, 1, -1)"),
-        "{}{}",
-        done.out,
-        done.err
-    );
-    let start = rows(&format!("{out}/trajectory.csv")).remove(0);
+    folder
+        .clebsch("run kepler --steps 1 --set m=2 --set velocity=0,1/2,-0.25*m --out @out")
+        .prints("initial momentum from velocity: (0, 1, -1)");
+    let start = folder.samples("out/trajectory.csv").rows.remove(0);
     for (found, wanted) in start[5..8].iter().zip([0.0, 1.0, -1.0]) {
         // The limit of small steps is taken of differences, to some roundings.
         assert!((found - wanted).abs() < 1e-12, "{found} {wanted}");
     }
-    for (arguments, words) in [
-        (
-            &["run", "kepler", "--set", "velocity.y=1"][..],
-            "give the velocity whole, by --set velocity=...",
-        ),
-        (&["run", "kepler", "--set", "velocity=1,2"], "has 3 numbers"),
-        (
-            &["run", "kepler", "--set", "angular_velocity=1"],
-            "no such parameter or initial value",
-        ),
-    ] {
-        let done = shipped(arguments);
-        assert_eq!(done.code, 2, "{arguments:?}");
-        assert!(done.err.contains(words), "{}", done.err);
+    for [arguments, words] in table(
+        "
+        run kepler --set velocity.y=1       | give the velocity whole, by --set velocity=...
+        run kepler --set velocity=1,2       | has 3 numbers
+        run kepler --set angular_velocity=1 | no such parameter or initial value
+",
+    ) {
+        clebsch(arguments).refuses(words);
     }
 }
 
@@ -147,38 +78,34 @@ fn expressions_follow_what_options_set() {
     let text =
         "model Osc { param m, k, c: Real; param g: Vec<2>; field x: Vec<2>; let d = next(x) - x;
         lagrangian = m*dot(d, d)/(2*h) - h*(k*dot(x, x)/2 + c*dot(x, x)^2 - dot(g, x)); }";
-    let file = folder.write("osc.clebsch", text);
+    folder.write("osc.clebsch", text);
     let case = |h: &str, k: &str| {
         format!(
             "model = \"osc\"\nh = {h}\nsteps = 40\n[parameters]\nm = 1.5\nk = {k}\nc = \"k/10\"\ng = [\"0.1*m\", \"-m*h\"]\n\
              [initial]\nx = [\"k/2\", 0.5]\nvelocity_x = [0, \"k\"]\n"
         )
     };
-    let last = |name: &str, case: &str, more: &[&str]| {
-        let case = folder.write(&format!("{name}.toml"), case);
-        let out = folder.path(name);
-        let done = shipped(&[&["run", &file, "--case", &case, "--out", &out], more].concat());
-        assert_eq!(done.code, 0, "{}", done.err);
-        rows(&format!("{out}/trajectory.csv")).pop().expect("a row")
+    let last = |name: &str, case: &str, more: &str| {
+        folder.write(&format!("{name}.toml"), case);
+        let run = format!("run @osc.clebsch --case @{name}.toml --out @{name} {more}");
+        folder.runs(&run);
+        let mut rows = folder.samples(&format!("{name}/trajectory.csv")).rows;
+        rows.pop().expect("a row")
     };
     let plain = case("\"k/40\"", "2");
-    let set = last("set", &plain, &["--set", "k=1"]);
-    assert_eq!(set, last("typed", &case("\"k/40\"", "1"), &[]));
-    let step = last("step", &plain, &["--h", "0.02", "--steps", "10"]);
-    assert_eq!(
-        step,
-        last("step-typed", &case("0.02", "2"), &["--steps", "10"])
-    );
+    let set = last("set", &plain, "--set k=1");
+    assert_eq!(set, last("typed", &case("\"k/40\"", "1"), ""));
+    let step = last("step", &plain, "--h 0.02 --steps 10");
+    assert_eq!(step, last("step-typed", &case("0.02", "2"), "--steps 10"));
     // And so is a point of a sweep.
     let out = folder.path("sweep");
-    let from = folder.write("from.toml", &case("0.025", "2"));
-    let done = shipped(&[
-        "sweep", &file, "--case", &from, "--vary", "k=1,3", "--out", &out,
-    ]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let points = rows(&format!("{out}/sweep.csv"));
+    folder.write("from.toml", &case("0.025", "2"));
+    folder.runs(&format!(
+        "sweep @osc.clebsch --case @from.toml --vary k=1,3 --out {out}"
+    ));
+    let points = folder.samples("sweep/sweep.csv").rows;
     for (k, row) in [("1", 0), ("3", 1)] {
-        let typed = last(&format!("k{k}"), &case("0.025", k), &[]);
+        let typed = last(&format!("k{k}"), &case("0.025", k), "");
         let at = points[row].len() - 4;
         assert_eq!(points[row][at..], typed[2..6], "{k}");
     }
@@ -186,44 +113,29 @@ fn expressions_follow_what_options_set() {
 
 #[test]
 fn options_take_expressions() {
-    let run = |more: &[&str]| shipped(&[&["run", "kepler", "--check", "none"], more].concat()).out;
-    assert!(
-        run(&["--until", "2*pi", "--h", "pi/50"]).contains(", 100 steps, to time 6.28318530718;")
-    );
-    assert_eq!(
-        run(&["--steps", "3", "--set", "k=m/4"]),
-        run(&["--steps", "3", "--set", "k=0.25"])
-    );
+    let run = |more: &str| clebsch(&format!("run kepler --check none {more}")).out;
+    assert!(run("--until 2*pi --h pi/50").contains(", 100 steps, to time 6.28318530718;"));
+    assert_eq!(run("--steps 3 --set k=m/4"), run("--steps 3 --set k=0.25"));
 }
 
 #[test]
 fn a_sweep_over_the_step_keeps_the_time() {
     let folder = Folder::new("options-sweep");
-    let sweep = |name: &str, more: &[&str], code: u8| {
-        let out = folder.path(name);
-        let all = [
-            &[
-                "sweep",
-                "kepler",
-                "--vary",
-                "h=0.1,0.05,0.025",
-                "--out",
-                &out,
-            ],
-            more,
-        ]
-        .concat();
-        assert_eq!(shipped(&all).code, code);
-        let rows = rows(&format!("{out}/sweep.csv"));
+    let sweep = |name: &str, more: &str, code: u8| {
+        let vary = "sweep kepler --vary h=0.1,0.05,0.025";
+        folder
+            .clebsch(&format!("{vary} --out @{name} {more}"))
+            .ended(code);
+        let rows = folder.samples(&format!("{name}/sweep.csv")).rows;
         rows.iter().map(|row| [row[3], row[4]]).collect::<Vec<_>>()
     };
     assert_eq!(
         // The energy leaves the bound of the case with the longest step.
-        sweep("until", &["--until", "2"], 3),
+        sweep("until", "--until 2", 3),
         [[20.0, 2.0], [40.0, 2.0], [80.0, 2.0]]
     );
     assert_eq!(
-        sweep("steps", &["--steps", "4"], 0),
+        sweep("steps", "--steps 4", 0),
         [[4.0, 0.4], [4.0, 0.2], [4.0, 0.1]]
     );
 }
@@ -232,23 +144,18 @@ fn a_sweep_over_the_step_keeps_the_time() {
 #[test]
 fn orders_are_measured_against_the_limit() {
     let folder = Folder::new("options-converge");
-    let out = folder.path("converged");
-    let done = shipped(&[
-        "converge", "kepler", "--h", "0.1", "--until", "10", "--out", &out,
-    ]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let levels = rows(&format!("{out}/convergence.csv"));
+    folder.runs("converge kepler --h 0.1 --until 10 --out @converged");
+    let levels = folder.samples("converged/convergence.csv").rows;
     assert_eq!(levels.len(), 6);
     for (level, row) in levels.iter().enumerate() {
         let steps = 100 << level;
         assert_eq!(row[1], f64::from(steps));
-        let run = folder.path(&format!("run-{level}"));
-        let (h, steps) = (format!("{}", row[0]), steps.to_string());
-        shipped(&[
-            "run", "kepler", "--h", &h, "--steps", &steps, "--every", &steps, "--check", "none",
-            "--out", &run,
-        ]);
-        let last = rows(&format!("{run}/trajectory.csv")).pop().expect("a row");
+        folder.clebsch(&format!(
+            "run kepler --h {} --steps {steps} --every {steps} --check none --out @run-{level}",
+            row[0]
+        ));
+        let samples = folder.samples(&format!("run-{level}/trajectory.csv"));
+        let last = samples.rows.last().expect("a row");
         let (sine, cosine) = 10_f64.sin_cos();
         let exact = [cosine, 0.8 * sine, 0.6 * sine];
         let distance = exact
@@ -266,17 +173,12 @@ fn orders_are_measured_against_the_limit() {
             );
         }
     }
-    assert!(
-        fs::read_to_string(format!("{out}/convergence.svg"))
-            .expect("a plot")
-            .contains("order 2")
-    );
-    let order = |arguments: &[&str]| {
-        let done = shipped(&[&["converge"], arguments, &["--json"]].concat());
-        let json: serde_json::Value = serde_json::from_str(&done.out).expect(&done.err);
+    assert!(folder.read("converged/convergence.svg").contains("order 2"));
+    let order = |words: &str| {
+        let json = clebsch(&format!("converge {words} --json")).json();
         json["levels"][3]["orders"][0].as_f64().expect("an order")
     };
-    let fourth = order(&["kepler", "--order", "4", "--h", "0.2", "--until", "10"]);
+    let fourth = order("kepler --order 4 --h 0.2 --until 10");
     assert!((fourth - 4.0).abs() < 0.1, "{fourth}");
     // The mass at the first end of a step alone.
     let text =
@@ -284,14 +186,14 @@ fn orders_are_measured_against_the_limit() {
     let file = folder.write("uneven.clebsch", text);
     let case = "model = \"uneven\"\nh = 0.01\nsteps = 100\n[parameters]\nm = 1.0\n[initial]\nx = 1.0\nmomentum = 0.5\n";
     folder.write("uneven.toml", case);
-    let first = order(&[&file]);
+    let first = order(&file);
     assert!((first - 1.0).abs() < 0.1, "{first}");
 }
 
 #[test]
 fn a_run_prints_as_much_as_it_is_asked_to() {
-    let run = |more: &[&str]| shipped(&[&["run", "heavy-top", "--steps", "20"], more].concat());
-    let (quiet, plain, verbose) = (run(&["--quiet"]), run(&[]), run(&["--verbose"]));
+    let run = |more: &str| clebsch(&format!("run heavy-top --steps 20 {more}"));
+    let (quiet, plain, verbose) = (run("--quiet"), run(""), run("--verbose"));
     assert_eq!(
         (quiet.code, quiet.out.as_str(), quiet.err.as_str()),
         (0, "", "")
@@ -308,67 +210,44 @@ fn a_run_prints_as_much_as_it_is_asked_to() {
             .ends_with(plain.out.split_once('\n').expect("lines").1)
     );
     // A bound that is exceeded is still told.
-    let exceeded = shipped(&["run", "kepler", "--h", "0.2", "--quiet"]);
-    assert_eq!((exceeded.code, exceeded.out.as_str()), (3, ""));
-    assert!(
-        exceeded.err.contains("bound exceeded: energy"),
-        "{}",
-        exceeded.err
-    );
+    clebsch("run kepler --h 0.2 --quiet")
+        .exits(3)
+        .prints_nothing()
+        .says("bound exceeded: energy");
 }
 
 #[test]
 fn invariants_are_looked_at_where_it_was_asked() {
     let run = |every: &str| {
-        let done = shipped(&[
-            "run",
-            "kepler:eccentric",
-            "--steps",
-            "1000",
-            "--every",
-            every,
-            "--json",
-        ]);
-        let json: serde_json::Value = serde_json::from_str(&done.out).expect("JSON");
+        let json = clebsch(&format!(
+            "run kepler:eccentric --steps 1000 --every {every} --json"
+        ))
+        .json();
         json["results"]["invariants"][0]["worst_drift"]
             .as_f64()
             .expect("a drift")
     };
     // The energy swings: the last node is not its farthest.
     assert!(run("1") > run("1000"));
-    let told = shipped(&["run", "kepler", "--steps", "100", "--every", "10"]);
-    assert!(
-        told.out.contains("drifts: at one node in 10 and the last"),
-        "{}",
-        told.out
-    );
+    clebsch("run kepler --steps 100 --every 10").prints("drifts: at one node in 10 and the last");
 }
 
 #[test]
 fn long_samples_are_text_where_that_is_asked_for() {
     let folder = Folder::new("options-csv");
-    let run = |name: &str, more: &[&str]| {
+    let run = |name: &str, more: &str| {
         let out = folder.path(name);
-        let all = [
-            "run",
-            "toda-chain:two-solitons",
-            "--steps",
-            "2000",
-            "--check",
-            "none",
-            "--out",
-            &out,
-        ];
-        let done = shipped(&[&all[..], more].concat());
-        assert_eq!(done.code, 0, "{}", done.err);
+        folder.runs(&format!(
+            "run toda-chain:two-solitons --steps 2000 --check none --out @{name} {more}"
+        ));
         fs::metadata(format!("{out}/trajectory.csv")).is_ok()
     };
     // 2001 samples of 258 numbers.
     assert_eq!(
         [
-            run("long", &[]),
-            run("asked", &["--csv"]),
-            run("few", &["--every", "10"])
+            run("long", ""),
+            run("asked", "--csv"),
+            run("few", "--every 10")
         ],
         [false, true, true]
     );
@@ -376,13 +255,9 @@ fn long_samples_are_text_where_that_is_asked_for() {
 
 #[test]
 fn many_sites_are_compared_as_one_quantity() {
-    let done = shipped(&["compare", "toda-chain", "--steps", "10"]);
-    assert!(
-        done.out.contains("error q  error momentum_q"),
-        "{}",
-        done.out
-    );
-    assert!(!done.out.contains("q_0"), "{}", done.out);
+    clebsch("compare toda-chain --steps 10")
+        .prints("error q  error momentum_q")
+        .never_prints("q_0");
 }
 
 /// Two bodies that fall on each other meet between two nodes, which no step sees.
@@ -391,23 +266,19 @@ fn an_energy_that_is_lost_is_told_with_its_node() {
     let folder = Folder::new("options-lost");
     let text = "model TwoBody { param G, M, m: Real; field X, Y: Vec<3>; let u = next(X) - X; let v = next(Y) - Y; let d = Y - X;
         lagrangian = (M*dot(u, u) + m*dot(v, v))/(2*h) + h*G*M*m/sqrt(dot(d, d)); }";
-    let file = folder.write("two-body.clebsch", text);
+    folder.write("two-body.clebsch", text);
     let case = |y: &str, momentum: &str| {
         format!(
             "model = \"two-body\"\nh = 0.01\nsteps = 300\n[parameters]\nG = 1.0\nM = 1.0\nm = 1.0\n[initial]\nX = [0, 0, 0]\n\
              Y = {y}\nmomentum_X = [0, 0, 0]\nmomentum_Y = {momentum}\n"
         )
     };
-    let fall = folder.write("fall.toml", &case("[1, 0, 0]", "[0, 0, 0]"));
-    let done = shipped(&["run", &file, "--case", &fall]);
-    assert!(
-        done.err
-            .contains("warning: the energy is lost from node 79 (time 0.79) on"),
-        "{}",
-        done.err
-    );
-    let json = shipped(&["run", &file, "--case", &fall, "--json"]);
-    let json: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
+    folder.write("fall.toml", &case("[1, 0, 0]", "[0, 0, 0]"));
+    folder
+        .clebsch("run @two-body.clebsch --case @fall.toml")
+        .says("warning: the energy is lost from node 79 (time 0.79) on");
+    let json = folder.clebsch("run @two-body.clebsch --case @fall.toml --json");
+    let json = json.json();
     assert_eq!(json["results"]["invariants"][0]["lost_at"], 79);
     assert!(
         json["warnings"][0]
@@ -415,9 +286,10 @@ fn an_energy_that_is_lost_is_told_with_its_node() {
             .is_some_and(|w| w.contains("reduce h"))
     );
     // Bodies that pass at a distance keep theirs.
-    let pass = folder.write("pass.toml", &case("[1, 0, 0]", "[0, 0.5, 0]"));
-    let done = shipped(&["run", &file, "--case", &pass]);
-    assert!(!done.err.contains("is lost"), "{}", done.err);
+    folder.write("pass.toml", &case("[1, 0, 0]", "[0, 0.5, 0]"));
+    folder
+        .clebsch("run @two-body.clebsch --case @pass.toml")
+        .never_says("is lost");
 }
 
 /// A momentum that is not projected is of first order at its node, while the motion is of second order.
@@ -432,16 +304,15 @@ fn what_is_of_lower_order_at_its_node_is_told() {
         hold λ: dot(x, x) = 1;
         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*m*g*x[2]*(1 + A*sin(w*t));
     }";
-    let file = folder.write("shaken.clebsch", text);
+    folder.write("shaken.clebsch", text);
     let case = "model = \"shaken\"\nh = 0.02\nsteps = 50\n[parameters]\nm = 2\ng = 9.81\nA = 0.1\nw = 2\n[initial]\n\
                 x = [0.6, -0.8]\nvelocity = [0.2, 0.15]\nt = 0\n";
     folder.write("shaken.toml", case);
-    let done = shipped(&["converge", &file]);
+    let done = folder.clebsch("converge @shaken.clebsch");
     let said =
         "measured order below 2: `momentum` (1.00); `x` converges with the order of the step";
-    assert!(done.out.contains(said), "{}{}", done.out, done.err);
-    let done = shipped(&["converge", &file, "--json"]);
-    let json: serde_json::Value = serde_json::from_str(&done.out).expect(&done.err);
+    done.prints(said);
+    let json = folder.clebsch("converge @shaken.clebsch --json").json();
     for (at, order) in [(0, 2.0), (1, 1.0)] {
         let fitted = json["fitted_orders"][at].as_f64().expect("an order");
         assert!((fitted - order).abs() < 0.05, "{}", json["fitted_orders"]);

@@ -8,28 +8,22 @@
 mod example;
 
 use self::example::gallery;
-use super::common::{Folder, on, program};
+use crate::common::{Folder, clebsch, on, runs};
 use std::fs;
 
 #[test]
 fn it_lists_runs_and_derives_its_models() {
-    let done = on(&gallery(), &["list"]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    assert!(
-        done.out.contains("\ncompass  rigid   swinging  "),
-        "{}",
-        done.out
-    );
+    let done = on(&gallery(), &["list"]).succeeds();
+    done.prints("\ncompass  rigid   swinging  ");
 
     let folder = Folder::new("own_models");
     let case = folder.write("my.toml", &on(&gallery(), &["case", "compass"]).out);
     let out = folder.path("out");
     let run = ["run", "compass", "--case", &case, "--out", &out];
     let done = on(&gallery(), &run);
-    assert_eq!((done.code, done.err.as_str()), (0, ""), "{}", done.out);
+    done.ended(0).says_nothing();
     // The energy oscillates in its bound, and is not constant: the body does swing.
-    let json = fs::read_to_string(format!("{out}/run.json")).expect("run.json");
-    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let json = folder.json("out/run.json");
     let invariants = json["results"]["invariants"]
         .as_array()
         .expect("invariants");
@@ -39,11 +33,10 @@ fn it_lists_runs_and_derives_its_models() {
         .expect("a number");
     assert!(drift > 1e-6 && drift < 1e-2, "{drift:e}");
 
-    let done = on(&gallery(), &["derive", "compass"]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    let done = on(&gallery(), &["derive", "compass"]).succeeds();
     assert!(done.out.starts_with("Compass: "), "{}", done.out);
     // The shipped models are not among them.
-    assert_eq!(on(&gallery(), &["run", "heavy-top"]).code, 2);
+    on(&gallery(), &["run", "heavy-top"]).ended(2);
 }
 
 #[test]
@@ -67,20 +60,12 @@ fn a_new_model_has_a_name_that_models_can_have() {
     let folder = Folder::new("own-models-names");
     for name in ["Some", "Vec", "Self", "none", "result", "T"] {
         let path = folder.path(name);
-        let done = program(&["new", &path]);
-        assert_eq!(done.code, 2, "{name}");
-        assert!(
-            done.err
-                .contains("give the model another name, such as my-"),
-            "{name}: {}",
-            done.err
-        );
+        clebsch(&format!("new {path}")).refuses("give the model another name, such as my-");
     }
     assert!(folder.names().is_empty(), "{:?}", folder.names());
     for name in ["String", "my-some", "h", "f64", "model", "super"] {
         let path = folder.path(name);
-        assert_eq!(program(&["new", &path]).code, 0, "{name}");
-        let run = program(&["run", &format!("{path}.clebsch"), "--steps", "2"]);
-        assert_eq!(run.code, 0, "{name}: {}", run.err);
+        runs(&format!("new {path}"));
+        runs(&["run", &format!("{path}.clebsch"), "--steps", "2"]);
     }
 }

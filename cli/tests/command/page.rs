@@ -1,7 +1,7 @@
 //! The page of a run: one file that needs no other, with data that its view reads. That it draws is tested in a browser
 //! by `cli/tests/browser.sh`.
 
-use crate::common::{Folder, clebsch};
+use crate::common::{Folder, rotor};
 
 /// The text between the tags of the element with this identity.
 fn data(page: &str) -> serde_json::Value {
@@ -13,9 +13,8 @@ fn data(page: &str) -> serde_json::Value {
 fn page(folder: &Folder, arguments: &[&str]) -> String {
     let out = folder.path("out");
     let all = [&["run"], arguments, &["--out", &out]].concat();
-    let done = clebsch(&all);
-    assert_eq!(done.code, 0, "{}", done.err);
-    std::fs::read_to_string(format!("{out}/run.html")).expect("a page")
+    rotor(&all).succeeds();
+    folder.read("out/run.html")
 }
 
 #[test]
@@ -111,8 +110,7 @@ fn a_body_of_a_segment_is_midway_between_its_nodes() {
         let model = folder.write("rod.clebsch", &rod(statements, "segments"));
         let page = page(&folder, &[&model, "--case", "sample", "--steps", "5"]);
         let (bodies, points) = first(&data(&page));
-        let run = std::fs::read_to_string(folder.path("out/run.json")).expect("results");
-        let run: serde_json::Value = serde_json::from_str(&run).expect("JSON");
+        let run = folder.json("out/run.json");
         let given = |name: String| -> Vec<f64> {
             let value = run["parameters"][&name].as_array();
             let value = value.unwrap_or_else(|| panic!("{name}: {run}")).iter();
@@ -172,7 +170,7 @@ fn the_end_of_a_run_is_shown() {
     let folder = Folder::new("page-end");
     let scene = data(&page(&folder, &["harmonic-rotor", "--steps", "1999"]));
     let times = scene["times"].as_array().expect("times");
-    let run = std::fs::read_to_string(folder.path("out/trajectory.csv")).expect("samples");
+    let run = folder.read("out/trajectory.csv");
     let rows: Vec<&str> = run.lines().filter(|l| !l.starts_with('#')).collect();
     let shown = times
         .last()
@@ -191,7 +189,7 @@ fn the_end_of_a_run_is_shown() {
 #[test]
 fn words_of_a_user_cannot_end_an_element() {
     let folder = Folder::new("page-words");
-    let sample = clebsch(&["case", "harmonic-rotor"]).out;
+    let sample = rotor("case harmonic-rotor").out;
     let case: Vec<String> = sample
         .lines()
         .map(|line| match line.starts_with("doc = ") {

@@ -1,6 +1,6 @@
 //! Pictures of attitudes, and those for a paper.
 
-use super::common::{Folder, on};
+use crate::common::{Folder, has, on};
 use clebsch_cli::gallery::Gallery;
 use std::fs;
 
@@ -9,8 +9,7 @@ fn picture(folder: &Folder, name: &str, arguments: &[&str]) -> impl Fn(&str) -> 
     let mut all = vec!["run"];
     all.extend(arguments);
     all.extend(["--out", &out]);
-    let done = on(&Gallery::shipped(), &all);
-    assert_eq!(done.code, 0, "{}", done.err);
+    on(&Gallery::shipped(), &all).succeeds();
     move |file: &str| fs::read_to_string(format!("{out}/{file}")).unwrap_or_default()
 }
 
@@ -19,9 +18,10 @@ fn attitudes_are_drawn_on_spheres() {
     let folder = Folder::new("spheres");
     let top = picture(&folder, "top", &["heavy-top", "--steps", "500"]);
     let svg = top("attitude.svg");
-    for words in ["Λ e₃: the body axis", "Γ on |Γ| = 1", "μ in the ball |μ| ≤"] {
-        assert!(svg.contains(words), "{words}");
-    }
+    has(
+        &svg,
+        ["Λ e₃: the body axis", "Γ on |Γ| = 1", "μ in the ball |μ| ≤"],
+    );
     assert!(
         !svg.contains("kinetic"),
         "a momentum that changes its length has no sphere"
@@ -35,9 +35,7 @@ fn attitudes_are_drawn_on_spheres() {
     let planet = picture(&folder, "planet", &["kepler", "--steps", "500"]);
     assert!(planet("attitude.svg").is_empty() && planet("angles.svg").is_empty());
     let angles = top("angles.svg");
-    for words in ["precession", "nutation", "spin"] {
-        assert!(angles.contains(words), "{words}");
-    }
+    has(&angles, ["precession", "nutation", "spin"]);
 }
 
 #[test]
@@ -91,7 +89,7 @@ fn pictures_for_a_paper_are_there_as_pdf() {
             "{name} has no text"
         );
     }
-    let json = fs::read_to_string(folder.path("top/run.json")).expect("written");
+    let json = folder.read("top/run.json");
     assert!(json.contains("attitude.pdf"));
 }
 
@@ -167,10 +165,8 @@ fn panels_of_fields_are_named_as_the_model_documents_them() {
     }";
     let case = "model = \"two\"\nh = 0.05\nsteps = 30\n[parameters]\nm = 1.0\n[initial]\ny = [1.0, 0.0]\nmomentum_y = [0.0, 0.5]\n\
                 z = 0.0\nmomentum_z = 1.0\n";
-    let out = folder.path("out");
-    let done = super::ran::run(&folder, model, case, &["--out", &out]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let svg = fs::read_to_string(format!("{out}/fields.svg")).expect("is drawn");
+    crate::ran::run(&folder, model, case, "--out @out").succeeds();
+    let svg = folder.read("out/fields.svg");
     let lines: Vec<&str> = svg.lines().map(str::trim).collect();
     assert!(lines.contains(&"y") && lines.contains(&"z: height of the lid"));
     assert!(!svg.contains("y: "));

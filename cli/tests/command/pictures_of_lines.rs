@@ -1,11 +1,7 @@
 //! Pictures of what lines have at their sites: maps, chosen spheres, what is zero.
 
-use crate::common::{Folder, program as clebsch};
+use crate::common::{Folder, has, runs, text_of};
 use std::fs;
-
-fn shipped(file: &str) -> String {
-    format!("{}/../models/lattices/{file}", env!("CARGO_MANIFEST_DIR"))
-}
 
 /// Runs a shipped model from such a case; gives its pictures by their names.
 fn drawn(
@@ -14,19 +10,18 @@ fn drawn(
     case: &str,
     more: &[&str],
 ) -> impl Fn(&str) -> String + use<> {
-    let (case, out) = (folder.write("case.toml", case), folder.path("out"));
-    let model = shipped(&format!("{model}.clebsch"));
+    let case = folder.write("case.toml", case);
+    let out = folder.path("out");
     let mut all = vec!["run", &model, "--case", &case, "--steps", "100"];
     all.extend(["--force", "--out", &out]);
     all.extend(more);
-    let done = clebsch(&all);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+    runs(&all);
     move |name: &str| fs::read_to_string(format!("{out}/{name}.svg")).unwrap_or_default()
 }
 
 /// The shipped cantilever with five sections.
 fn cantilever() -> String {
-    let text = fs::read_to_string(shipped("geometrically-exact-rod.toml")).expect("is shipped");
+    let text = text_of("lattices/geometrically-exact-rod.toml");
     let (before, rest) = text.split_once("m = [").expect("masses");
     let (_, after) = rest.split_once("]\n").expect("their end");
     let masses = "m = [0.03125, 0.0625, 0.0625, 0.0625, 0.0625, 0.03125]\n";
@@ -49,13 +44,14 @@ fn rods_have_maps_of_their_angles_and_some_of_their_spheres() {
     let folder = Folder::new("pictures-of-a-rod");
     let wide = drawn(&folder, "geometrically-exact-rod", &cantilever(), &[]);
     let angles = wide("angles");
-    for words in [
-        "nutation θ of Λ = R₃(φ) R₁(θ) R₃(ψ), in rad",
-        "φ + ψ of Λ, in rad",
-        "site i",
-    ] {
-        assert!(angles.contains(words), "{words}");
-    }
+    has(
+        &angles,
+        [
+            "nutation θ of Λ = R₃(φ) R₁(θ) R₃(ψ), in rad",
+            "φ + ψ of Λ, in rad",
+            "site i",
+        ],
+    );
     // Sections of a straight rod are upright, where precession and spin alone tell nothing.
     assert!(!angles.contains("precession") && !angles.contains("spin"));
     assert!(!angles.contains("Λ_4") && height(&angles) < 1000.0);
@@ -68,12 +64,13 @@ fn rods_have_maps_of_their_angles_and_some_of_their_spheres() {
     // In a plane: what stays zero is said, and the frames of momenta with the same letter otherwise are told.
     let momentum = wide("momentum");
     assert_eq!(momentum.matches("zero throughout").count(), 5);
-    for words in [
-        "μ₂, momentum of Λ, body frame",
-        "m₂, momentum of Λ, space frame",
-    ] {
-        assert!(momentum.contains(words), "{words}");
-    }
+    has(
+        &momentum,
+        [
+            "μ₂, momentum of Λ, body frame",
+            "m₂, momentum of Λ, space frame",
+        ],
+    );
     let numbers: Vec<&str> = momentum.split('>').map(str::trim).collect();
     assert!(!numbers.iter().any(|own| own.starts_with("−0.5")));
 
@@ -100,14 +97,15 @@ fn a_chain_in_space_is_drawn_in_planes_of_its_components() {
                 momentum_x = [0.0, 0.0, 0.0]\n";
     let own = drawn(&folder, "hanging-chain", flat, &[]);
     let svg = own("snapshots");
-    for words in [
-        "shape of x, components 1 and 3",
-        "component 1 to the right, 3 up",
-        "x₁",
-        "x₃",
-    ] {
-        assert!(svg.contains(words), "{words}");
-    }
+    has(
+        &svg,
+        [
+            "shape of x, components 1 and 3",
+            "component 1 to the right, 3 up",
+            "x₁",
+            "x₃",
+        ],
+    );
     assert!(!svg.contains("below") && !svg.contains("x₂"));
     // At the start it is level.
     let line = svg.split("<polyline").nth(1).expect("the first shape");
@@ -138,7 +136,7 @@ fn a_chain_in_space_is_drawn_in_planes_of_its_components() {
 #[test]
 fn a_few_bodies_have_their_angles_against_time() {
     let folder = Folder::new("pictures-of-few-bodies");
-    let case = fs::read_to_string(shipped("coupled-tops.toml")).expect("is shipped");
+    let case = text_of("lattices/coupled-tops.toml");
     let three = case.replace("i = 6", "i = 2");
     let few = drawn(&folder, "coupled-tops", &three, &[]);
     assert!(few("angles").contains("φ precession") && few("angles").contains("Λ_2: nutation"));

@@ -1,6 +1,6 @@
 //! Pictures of columns of a finished run.
 
-use super::common::{Folder, shipped};
+use crate::common::{Folder, clebsch, runs, table};
 use std::fs;
 
 /// A run of the eccentric orbit, in this folder.
@@ -14,7 +14,7 @@ fn orbit(out: &str) {
         "--out",
         out,
     ];
-    assert_eq!(shipped(&run).code, 0);
+    runs(&run);
 }
 
 #[test]
@@ -22,134 +22,61 @@ fn columns_are_drawn_against_time_and_each_other() {
     let folder = Folder::new("plot");
     let out = folder.path("run");
     orbit(&out);
-    let listed = shipped(&["plot", &out]);
-    for column in ["  X.1 to X.3\n", "  invariant_energy\n", "  time\n"] {
-        assert!(listed.out.contains(column), "{}", listed.out);
-    }
-    let orbit = folder.path("orbit.svg");
-    let done = shipped(&["plot", &out, "--x", "X.1", "--y", "X_2", "--out", &orbit]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    assert!(
-        fs::read_to_string(&orbit)
-            .expect("a picture")
-            .contains("X_2 against X.1")
-    );
+    let listed = folder.clebsch("plot @run");
+    listed.prints(["  X.1 to X.3\n", "  invariant_energy\n", "  time\n"]);
+    folder.runs("plot @run --x X.1 --y X_2 --out @orbit.svg");
+    assert!(folder.read("orbit.svg").contains("X_2 against X.1"));
     // Drawn anew over itself; never over another file.
-    assert_eq!(
-        shipped(&["plot", &out, "--y", "X", "--out", &orbit]).code,
-        0
-    );
-    let other = folder.write("other.svg", "<svg>mine</svg>");
-    let refused = shipped(&["plot", &out, "--y", "X", "--out", &other]);
-    assert_eq!(refused.code, 2);
-    assert_eq!(fs::read_to_string(&other).expect("it"), "<svg>mine</svg>");
+    folder.runs("plot @run --y X --out @orbit.svg");
+    folder.write("other.svg", "<svg>mine</svg>");
+    folder.clebsch("plot @run --y X --out @other.svg").exits(2);
+    assert_eq!(folder.read("other.svg"), "<svg>mine</svg>");
     // Several orbits, each against its own column; all against one otherwise.
-    let two = [
-        "plot", &out, "--x", "X.1", "--y", "X.2", "--x", "X.2", "--y", "X.3", "--out", &orbit,
-    ];
-    assert_eq!(shipped(&two).code, 0);
-    let picture = fs::read_to_string(&orbit).expect("a picture");
+    folder.runs("plot @run --x X.1 --y X.2 --x X.2 --y X.3 --out @orbit.svg");
+    let picture = folder.read("orbit.svg");
     assert!(picture.contains("X.2 against X.1") && picture.contains("X.3 against X.2"));
-    let odd = shipped(&["plot", &out, "--x", "X.1", "--x", "X.2", "--y", "X"]);
-    assert!(
-        odd.err.contains("2 columns along x and 3 along y"),
-        "{}",
-        odd.err
-    );
-    let png = shipped(&["plot", &out, "--y", "X", "--out", &folder.path("a.png")]);
-    assert!(png.err.contains("ends in .svg"), "{}", png.err);
+    folder
+        .clebsch("plot @run --x X.1 --x X.2 --y X")
+        .says("2 columns along x and 3 along y");
+    folder
+        .clebsch("plot @run --y X --out @a.png")
+        .says("ends in .svg");
     // In the folder of the run, which may still be replaced.
-    let done = shipped(&[
-        "plot",
-        &out,
-        "--y",
-        "X",
-        "--y",
-        "invariant_energy",
-        "--from",
-        "2",
-        "--to",
-        "3",
-    ]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let picture = fs::read_to_string(format!("{out}/plot-X-invariant_energy.svg"));
-    assert!(picture.expect("a picture").contains("time 2 to 3"));
-    let again = [&run[..], &["--force"]].concat();
-    assert_eq!(shipped(&again).code, 0, "{}", shipped(&again).err);
-    for (arguments, words) in [
-        (&["--y", "Y"][..], "the run has no column `Y`"),
-        (
-            &["--y", "X.4"],
-            "`X.4` names no single column of `X`; give a component, X.1 to X.3",
-        ),
-        (&["--y", "X", "--from", "1e9"], "the run has times 0 to "),
-    ] {
-        let done = shipped(&[&["plot", &out], arguments].concat());
-        assert_eq!(done.code, 2, "{arguments:?}");
-        assert!(done.err.contains(words), "{}", done.err);
+    folder.runs("plot @run --y X --y invariant_energy --from 2 --to 3");
+    let picture = folder.read("run/plot-X-invariant_energy.svg");
+    assert!(picture.contains("time 2 to 3"));
+    folder.runs("run kepler:eccentric --steps 500 --quiet --out @run --force");
+    for [arguments, words] in table(
+        "
+        --y Y            | the run has no column `Y`
+        --y X.4          | `X.4` names no single column of `X`; give a component, X.1 to X.3
+        --y X --from 1e9 | the run has times 0 to
+",
+    ) {
+        folder
+            .clebsch(&format!("plot @run {arguments}"))
+            .refuses(words);
     }
-    let nothing = shipped(&["plot", &folder.path("."), "--y", "X"]);
-    assert!(nothing.err.contains("no trajectory.npz"), "{}", nothing.err);
+    clebsch(&format!("plot {} --y X", folder.path("."))).says("no trajectory.npz");
 }
 
 #[test]
 fn sites_are_counted_from_zero() {
     let folder = Folder::new("plot-sites");
-    let out = folder.path("run");
-    assert_eq!(
-        shipped(&[
-            "run",
-            "toda-chain",
-            "--steps",
-            "5",
-            "--quiet",
-            "--out",
-            &out
-        ])
-        .code,
-        0
-    );
-    let listed = shipped(&["plot", &out]);
-    assert!(listed.out.contains("  q_0 to q_31\n"), "{}", listed.out);
-    let done = shipped(&["plot", &out, "--x", "momentum_q_31", "--y", "q_0"]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    folder.runs("run toda-chain --steps 5 --quiet --out @run");
+    folder.clebsch("plot @run").prints("  q_0 to q_31\n");
+    folder.runs("plot @run --x momentum_q_31 --y q_0");
     // A first site that an end holds is no column, and the others keep their numbers.
     let held = folder.path("held");
-    assert_eq!(
-        shipped(&[
-            "run",
-            "hanging-chain:swing",
-            "--steps",
-            "5",
-            "--quiet",
-            "--out",
-            &held
-        ])
-        .code,
-        0
-    );
-    let listed = shipped(&["plot", &held]);
-    assert!(listed.out.contains("  x_1.1 to x_"), "{}", listed.out);
-    let done = shipped(&["plot", &held, "--y", "x_0.1"]);
-    assert!(
-        done.err.contains(
-            "an end prescribes `x_0`, so the run has no such column; give a site and a component, x_1.1 to x_20.3"
-        ),
-        "{}",
-        done.err
-    );
-    let done = shipped(&["plot", &out, "--y", "q_32"]);
-    assert!(
-        done.err.contains("give a site, q_0 to q_31"),
-        "{}",
-        done.err
-    );
-    let done = shipped(&["plot", &held, "--y", "lambda"]);
-    assert!(
-        done.err.contains("give a site, lambda_0 to lambda_19"),
-        "{}",
-        done.err
-    );
+    folder.runs("run hanging-chain:swing --steps 5 --quiet --out @held");
+    folder.clebsch("plot @held").prints("  x_1.1 to x_");
+    folder.clebsch("plot @held --y x_0.1").says("an end prescribes `x_0`, so the run has no such column; give a site and a component, x_1.1 to x_20.3");
+    folder
+        .clebsch("plot @run --y q_32")
+        .says("give a site, q_0 to q_31");
+    folder
+        .clebsch("plot @held --y lambda")
+        .says("give a site, lambda_0 to lambda_19");
     // Of a vector at a site all components; lists and brackets.
     for (name, labels) in [
         ("x_10", &["x_10.1", "x_10.2", "x_10.3"][..]),
@@ -168,8 +95,7 @@ fn curves(run: &str, folder: &Folder, names: &[&str]) -> (String, Vec<Vec<[f64; 
     let out = folder.path("curves.svg");
     let mut arguments = vec!["plot", run, "--out", &out];
     arguments.extend(names.iter().flat_map(|name| ["--y", name]));
-    let done = shipped(&arguments);
-    assert_eq!(done.code, 0, "{}", done.err);
+    runs(&arguments);
     let svg = fs::read_to_string(&out).expect("a picture");
     let of_line = |text: &str| -> Vec<[f64; 2]> {
         let points = text.split("points=\"").nth(1).unwrap_or_default();
@@ -196,7 +122,7 @@ fn a_multiplier_begins_where_a_step_has_found_it() {
         "--out",
         &out,
     ];
-    assert_eq!(shipped(&run).code, 0);
+    runs(&run);
     let left = |name: &str| curves(&out, &folder, &[name]).1[0].clone();
     assert_eq!(left("x_1.1").len(), 6);
     let multiplier = left("lambda_3");
@@ -244,9 +170,8 @@ fn columns_are_found_as_the_table_names_them() {
     let case = "model = \"turns\"\nh = 0.01\nsteps = 3\n[labels]\ni = 2\n[parameters]\nJ = { I = [2, 3, 4] }\nk = 1\n[initial]\n\
                 R = { axis = [0, 0, 1], angle = 0.3 }\nangular_velocity_R = [1, 0.2, 0]\n";
     let out = folder.path("out");
-    let done = super::ran::run(&folder, model, case, &["--out", &out]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let table = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
+    crate::ran::run(&folder, model, case, "--out @out").succeeds();
+    let table = folder.read("out/trajectory.csv");
     let names = table.lines().next().unwrap_or_default().split(',');
     let own: Vec<&str> = names.filter(|name| name.starts_with("relative_")).collect();
     assert!(own.contains(&"relative_R_0_R_1_11"), "{own:?}");
@@ -255,7 +180,6 @@ fn columns_are_found_as_the_table_names_them() {
         let arguments = [
             "plot", &out, "--x", name, "--y", "R_0_11", "--out", &picture,
         ];
-        let done = super::common::program(&arguments);
-        assert_eq!(done.code, 0, "{name}: {}", done.err);
+        runs(&arguments);
     }
 }

@@ -1,7 +1,7 @@
 //! Starts without size: at rest, or without forces. What has no scale is measured absolutely, and what
 //! is no number stops the run at its node.
 
-use super::common::{Folder, clebsch, on};
+use crate::common::{Folder, on, rotor};
 use clebsch::card::Kind;
 use clebsch_cli::gallery::Gallery;
 
@@ -44,14 +44,12 @@ fn no_model_exceeds_a_bound_from_rest_or_without_forces() {
         }
         for entry in &gallery.entries {
             let name = entry.card.kebab;
-            let what = format!("{name}, rest {rest}, free {free}");
-            let done = on(&gallery, &["run", name, "--steps", STEPS]);
-            assert_eq!(done.code, 0, "{what}: {}\n{}", done.err, done.out);
-            assert!(!done.out.contains("NaN"), "{what}: {}", done.out);
+            let done = on(&gallery, &["run", name, "--steps", STEPS]).succeeds();
+            done.never_prints("NaN");
             // A free body at rest has nothing that has a size.
             if name == "free-body" && rest {
                 let words = "absolute, as the scale is zero: ";
-                assert!(done.out.contains(words), "{what}: {}", done.out);
+                done.prints(words);
             }
         }
     }
@@ -60,17 +58,15 @@ fn no_model_exceeds_a_bound_from_rest_or_without_forces() {
 #[test]
 fn absolute_drifts_are_said_and_judged() {
     let folder = Folder::new("absolute");
-    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let text = rotor("case harmonic-rotor").out;
     let rest = text.replace(", 1.5]", ", 0.0]");
     assert_ne!(rest, text);
     let file = folder.write("rest.toml", &rest);
     let run = ["run", "harmonic-rotor", "--case", &file, "--steps", "20"];
-    let done = clebsch(&run);
-    assert_eq!(done.code, 0, "{}", done.err);
+    let done = rotor(&run).succeeds();
     let words = "\nabsolute, as the scale is zero: energy\n";
-    assert!(done.out.contains(words), "{}", done.out);
-    let done = clebsch(&[&run[..], &["--json"]].concat());
-    let json: serde_json::Value = serde_json::from_str(&done.out).expect("JSON");
+    done.prints(words);
+    let json = rotor(&[&run[..], &["--json"]].concat()).json();
     let energy = &json["results"]["invariants"][0];
     assert_eq!(energy["absolute"], true);
     assert_eq!(energy["worst_drift"], 0.0);
@@ -99,8 +95,7 @@ fn what_is_zero_by_a_parameter_is_told_and_not_praised() {
     let run = |g: &str| {
         let case = case(g);
         let run = ["run", &file, "--case", &case, "--force", "--out", &out];
-        let done = clebsch(&run);
-        assert_eq!(done.code, 0, "{}{}", done.out, done.err);
+        let done = rotor(&run).succeeds();
         done.out
     };
     let told = "zero in every term with g = 0, so that nothing is tested: ";
@@ -128,7 +123,7 @@ fn what_is_zero_by_a_parameter_is_told_and_not_praised() {
 fn what_is_no_number_stops_the_run_at_its_node() {
     let folder = Folder::new("no_number");
     // The square of this momentum is infinite, and the step so short that it is made.
-    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let text = rotor("case harmonic-rotor").out;
     let large = text
         .replace(", 1.5]", ", 1e200]")
         .replace("h = 0.05", "h = 1e-300");
@@ -144,8 +139,7 @@ fn what_is_no_number_stops_the_run_at_its_node() {
         "--out",
         &out,
     ];
-    let done = clebsch(&run);
-    assert_eq!(done.code, 1, "{}\n{}", done.err, done.out);
+    let done = rotor(&run).exits(1);
     let words = "clebsch: at node 0 (time 0) the invariant `energy` is inf: ";
     assert!(done.err.starts_with(words), "{}", done.err);
     assert_eq!(folder.names(), ["large.toml"]);
@@ -156,7 +150,7 @@ fn what_is_no_number_stops_the_run_at_its_node() {
 #[test]
 fn a_held_rod_at_rest_falls() {
     let folder = Folder::new("held-rod-at-rest");
-    let model = folder.write(
+    folder.write(
         "rod.clebsch",
         "model InextensibleRod {
             label i in 0..N step s; param m: Real at nodes; param I0: Sym<3> at segments; param C0: Sym<3>; param g: Vec<3>;
@@ -166,19 +160,19 @@ fn a_held_rod_at_rest_falls() {
                        + (h/s)*tr(C0*Λ^T*next(Λ, i));
         }",
     );
-    let sample = clebsch(&["case", &model]);
-    assert_eq!(sample.code, 0, "{}", sample.err);
+    let sample = folder.rotor("case @rod.clebsch").succeeds();
     let short = sample.out.replace("i = 8", "i = 2");
-    let case = folder.write("case.toml", &short);
-    let done = clebsch(&["run", &model, "--case", &case, "--steps", "20"]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    folder.write("case.toml", &short);
+    folder
+        .rotor("run @rod.clebsch --case @case.toml --steps 20")
+        .succeeds();
 }
 
 /// A ring in a plane that stands still, forces of neighbours and the reaction of a sum in balance: what rounding leaves of momenta
 /// is measured by these forces, whether loops over sites run or bodies.
 #[test]
 fn totals_of_a_line_at_rest_are_measured_by_the_impulses_that_cancel() {
-    let folder = Folder::new("line at rest");
+    let folder = Folder::new("line-at-rest");
     for n in [4, 40] {
         let model = format!(
             "model Still {{
@@ -198,9 +192,9 @@ fn totals_of_a_line_at_rest_are_measured_by_the_impulses_that_cancel() {
              momentum_q = [0.0, 0.0]\n"
         );
         let case = folder.write("still.toml", &case);
-        let done = clebsch(&["run", &model, "--case", &case, "--json"]);
-        assert_eq!(done.code, 0, "{}\n{}", done.err, done.out);
-        let json: serde_json::Value = serde_json::from_str(&done.out).expect("JSON");
+        let json = rotor(&format!("run {model} --case {case} --json"))
+            .succeeds()
+            .json();
         let all = json["results"]["invariants"].as_array().expect("a list");
         let angular = all.iter().find(|v| {
             let name = v["name"].as_str().unwrap_or("");

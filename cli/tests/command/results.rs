@@ -1,6 +1,6 @@
 //! What a run leaves behind: complete, repeatable, readable files, or nothing.
 
-use super::common::{Folder, clebsch, on};
+use crate::common::{Folder, has, on, rotor};
 use clebsch_cli::gallery::Gallery;
 use std::fs;
 
@@ -34,11 +34,12 @@ fn names(path: &str) -> Vec<String> {
 #[test]
 fn the_same_run_writes_the_same_bytes() {
     let folder = Folder::new("same_bytes");
-    let (first, second) = (folder.path("first"), folder.path("deep/er/second"));
+    let first = folder.path("first");
+    let second = folder.path("deep/er/second");
     for out in [&first, &second] {
-        let done = clebsch(&["run", "harmonic-rotor", "--every", "7", "--out", out]);
-        assert_eq!(done.code, 0, "{}", done.err);
-        assert!(done.out.contains("\nwritten to "), "{}", done.out);
+        rotor(&format!("run harmonic-rotor --every 7 --out {out}"))
+            .succeeds()
+            .prints("\nwritten to ");
     }
     assert_eq!(names(&first), FILES);
     for file in FILES {
@@ -53,8 +54,8 @@ fn the_same_run_writes_the_same_bytes() {
 fn run_json_says_what_ran_and_what_came_out() {
     let folder = Folder::new("run_json");
     let out = folder.path("out");
-    clebsch(&["run", "harmonic-rotor", "--steps", "50", "--out", &out]);
-    let text = fs::read_to_string(format!("{out}/run.json")).expect("run.json");
+    folder.rotor("run harmonic-rotor --steps 50 --out @out");
+    let text = folder.read("out/run.json");
     let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(json["version"], env!("CARGO_PKG_VERSION"));
     assert_eq!(json["model"], "harmonic-rotor");
@@ -75,23 +76,23 @@ fn run_json_says_what_ran_and_what_came_out() {
 #[test]
 fn a_left_bound_is_code_three_and_the_results_are_written() {
     let folder = Folder::new("left_bound");
-    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let text = rotor("case harmonic-rotor").out;
     let file = folder.write(
         "tight.toml",
         &text.replace("energy = 0.001", "energy = 1e-5"),
     );
     let out = folder.path("out");
-    let done = clebsch(&["run", "harmonic-rotor", "--case", &file, "--out", &out]);
-    assert_eq!(done.code, 3, "{}", done.err);
-    assert!(done.out.contains("1e-5  EXCEEDED  "), "{}", done.out);
+    let done = folder
+        .rotor("run harmonic-rotor --case @tight.toml --out @out")
+        .exits(3);
+    done.prints("1e-5  EXCEEDED  ");
     assert_eq!(done.err, "clebsch: bound exceeded: energy\n");
     assert_eq!(names(&out), FILES);
-    let json = fs::read_to_string(format!("{out}/run.json")).expect("run.json");
+    let json = folder.read("out/run.json");
     assert!(json.contains("\"kept\": false"));
     // The same where the run is found complete.
     let arguments = ["run", "harmonic-rotor", "--case", &file, "--out", &out];
-    let again = clebsch(&[&arguments[..], &["--resume"]].concat());
-    assert_eq!(again.code, 3, "{}", again.err);
+    let again = rotor(&[&arguments[..], &["--resume"]].concat()).exits(3);
     assert!(again.out.starts_with("complete already: "), "{}", again.out);
     assert_eq!(again.err, "clebsch: a bound was exceeded, see run.json\n");
 }
@@ -100,23 +101,14 @@ fn a_left_bound_is_code_three_and_the_results_are_written() {
 fn an_existing_folder_is_kept_unless_forced() {
     let folder = Folder::new("existing");
     let out = folder.path("out");
-    assert_eq!(clebsch(&["run", "harmonic-rotor", "--out", &out]).code, 0);
-    let before = fs::read(format!("{out}/trajectory.csv")).expect("csv");
+    folder.rotor("run harmonic-rotor --out @out").ended(0);
+    let before = folder.bytes("out/trajectory.csv");
     let again = ["run", "harmonic-rotor", "--steps", "9", "--out", &out];
-    let done = clebsch(&again);
-    assert_eq!(done.code, 2);
-    assert!(
-        done.err.contains("this exists; give --force to replace it"),
-        "{}",
-        done.err
-    );
-    assert_eq!(
-        fs::read(format!("{out}/trajectory.csv")).expect("csv"),
-        before
-    );
-    let done = clebsch(&[&again[..], &["--force"]].concat());
-    assert_eq!(done.code, 0, "{}", done.err);
-    let after = fs::read_to_string(format!("{out}/trajectory.csv")).expect("csv");
+    let done = rotor(&again).exits(2);
+    done.says("this exists; give --force to replace it");
+    assert_eq!(folder.bytes("out/trajectory.csv"), before);
+    rotor(&[&again[..], &["--force"]].concat()).succeeds();
+    let after = folder.read("out/trajectory.csv");
     assert_eq!(after.lines().count(), 11);
     assert_eq!(names(&out), FILES);
     assert_eq!(folder.names(), ["out"]);
@@ -128,27 +120,22 @@ fn force_never_removes_what_no_run_wrote() {
     let out = folder.path("out");
     fs::create_dir(&out).expect("a folder");
     fs::write(format!("{out}/thesis.tex"), "years of work").expect("a file");
-    let done = clebsch(&["run", "harmonic-rotor", "--out", &out, "--force"]);
-    assert_eq!(done.code, 2);
-    assert!(done.err.contains("it holds `thesis.tex`"), "{}", done.err);
+    let done = folder
+        .rotor("run harmonic-rotor --out @out --force")
+        .exits(2);
+    done.says("it holds `thesis.tex`");
     assert_eq!(names(&out), ["thesis.tex"]);
-    let file = folder.write("file", "a file");
-    let done = clebsch(&["run", "harmonic-rotor", "--out", &file, "--force"]);
-    assert_eq!(done.code, 2);
-    assert!(
-        done.err.contains("this exists and is no folder"),
-        "{}",
-        done.err
-    );
+    folder.write("file", "a file");
+    folder
+        .rotor("run harmonic-rotor --out @file --force")
+        .refuses("this exists and is no folder");
 }
 
 #[test]
 fn a_refused_file_system_is_code_one() {
     let folder = Folder::new("refused");
     let file = folder.write("file", "not a folder");
-    let done = clebsch(&["run", "harmonic-rotor", "--out", &format!("{file}/out")]);
-    assert_eq!(done.code, 1);
-    assert!(done.err.contains("file/out"), "{}", done.err);
+    rotor(&["run", "harmonic-rotor", "--out", &format!("{file}/out")]).fails("file/out");
     assert_eq!(folder.names(), ["file"]);
 }
 
@@ -157,7 +144,7 @@ fn plots_are_plain_svg() {
     let folder = Folder::new("plots");
     let out = folder.path("out");
     // A million swings: the plots show the first ones and say so.
-    clebsch(&["run", "harmonic-rotor", "--steps", "100000", "--out", &out]);
+    folder.rotor("run harmonic-rotor --steps 100000 --out @out");
     for (file, words) in [
         (
             "momentum.svg",
@@ -194,18 +181,18 @@ fn fields_are_plotted_as_fields() {
     let folder = Folder::new("fields");
     let out = folder.path("out");
     let run = ["run", "kepler", "--steps", "300", "--out", &out];
-    let done = on(&Gallery::shipped(), &run);
-    assert_eq!((done.code, done.err.as_str()), (0, ""));
+    on(&Gallery::shipped(), &run).succeeds().says_nothing();
     let files = names(&out);
     assert!(files.contains(&"fields.svg".to_owned()), "{files:?}");
     assert!(!files.contains(&"advected.svg".to_owned()), "{files:?}");
-    let svg = fs::read_to_string(format!("{out}/fields.svg")).expect("the plot");
-    for word in [
-        "kepler, case circular: fields",
-        "X₁",
-        "X₃",
-        "place of the planet",
-    ] {
-        assert!(svg.contains(word), "{word:?} is missing");
-    }
+    let svg = folder.read("out/fields.svg");
+    has(
+        &svg,
+        [
+            "kepler, case circular: fields",
+            "X₁",
+            "X₃",
+            "place of the planet",
+        ],
+    );
 }

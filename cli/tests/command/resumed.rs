@@ -2,38 +2,25 @@
 //! alone, to the last byte. The program itself is run, killed and run again.
 #![cfg(unix)]
 
-use super::common::Folder;
+use crate::common::{Done, Folder, process_in};
+use crate::signals::{begun, command, ended_by, wait_for};
 use std::collections::BTreeMap;
 use std::fs;
-use std::process::{Child, Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Child, Stdio};
 
 /// What is run: a free body whose solver keeps constants of its own, a forced one, one solved by Newton's method, steps
 /// that are composed, one whose factor is seen from the body, and a lattice read from its file.
-const RUNS: [&[&str]; 6] = [
-    &[
-        "free-body",
-        "--steps",
-        "300000",
-        "--every",
-        "100",
-        "--order",
-        "6",
-    ],
-    &["heavy-top", "--steps", "100000", "--every", "7"],
-    &["kirchhoff-body", "--steps", "20000", "--every", "3"],
-    &[
-        "coupled-bodies",
-        "--steps",
-        "2000",
-        "--every",
-        "5",
-        "--order",
-        "4",
-    ],
-    &["ellipsoid-spatial", "--steps", "20000", "--every", "11"],
-    &["LATTICE", "--steps", "300", "--every", "4"],
+const RUNS: [&str; 6] = [
+    "free-body --steps 300000 --every 100 --order 6",
+    "heavy-top --steps 100000 --every 7",
+    "kirchhoff-body --steps 20000 --every 3",
+    "coupled-bodies --steps 2000 --every 5 --order 4",
+    "ellipsoid-spatial --steps 20000 --every 11",
+    "models/lattices/coupled-tops.clebsch --case models/lattices/coupled-tops.toml --steps 300 --every 4",
 ];
+
+/// Checkpoints as often as can be.
+const OFTEN: &str = "--resume --checkpoint 0.001";
 
 /// How many kills a run is given before it is left to end: `CLEBSCH_KILLS`, or few.
 fn kills() -> u32 {
@@ -41,49 +28,31 @@ fn kills() -> u32 {
     asked.and_then(|text| text.parse().ok()).unwrap_or(6)
 }
 
-fn lattice() -> String {
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/lattices/");
-    format!("{root}{LATTICE}.clebsch")
+fn run(words: &str, out: &str, more: &str) -> Done {
+    process_in(".", &format!("run {words} --out {out} {more}"))
 }
 
-const LATTICE: &str = "coupled-tops";
-
-fn command(arguments: &[&str], out: &str, more: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_clebsch"));
-    command.arg("run");
-    for argument in arguments {
-        match *argument {
-            "LATTICE" => {
-                let file = lattice();
-                let case = file.replace(".clebsch", ".toml");
-                command.args([file, "--case".to_owned(), case]);
-            }
-            other => {
-                command.arg(other);
-            }
-        }
+/// Signals meet a run one by one, each when it has come somewhat farther than at the one before; tells how many met it at work.
+fn met(words: &str, signals: &[&str], kills: u32, [whole, out]: [&str; 2]) -> u32 {
+    let samples = fs::metadata(format!("{whole}/trajectory.npz"))
+        .expect("written")
+        .len();
+    let (mut seed, mut stopped) = (7, 0);
+    for (kill, signal) in (0..kills).zip(signals.iter().cycle()) {
+        let mut child = begun(&format!("run {words} --out {out} {OFTEN}"));
+        let part = (f64::from(kill) + random(&mut seed)) / f64::from(kills + 1);
+        let least = samples as f64 * part;
+        wait_for(&mut child, out, "samples.bin", |bytes| {
+            bytes.len() as f64 > least
+        });
+        let code = ended_by(signal, child);
+        assert!(
+            matches!(code, Some(0 | 130 | 143) | None),
+            "{words}: {code:?}"
+        );
+        stopped += u32::from(code != Some(0));
     }
-    command.args(["--out", out]).args(more);
-    command
-}
-
-fn run(arguments: &[&str], out: &str, more: &[&str]) -> Output {
-    command(arguments, out, more).output().expect("runs")
-}
-
-fn begun(arguments: &[&str], out: &str, more: &[&str]) -> Child {
-    let mut command = command(arguments, out, more);
-    command.stdout(Stdio::null()).stderr(Stdio::null());
-    command.spawn().expect("starts")
-}
-
-fn send(signal: &str, child: &Child) {
-    let id = child.id().to_string();
-    // It may have ended by itself.
-    let _ = Command::new("kill")
-        .args([signal, &id])
-        .stderr(Stdio::null())
-        .status();
+    stopped
 }
 
 /// All files of a folder.
@@ -113,53 +82,31 @@ fn random(seed: &mut u64) -> f64 {
     (*seed >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Kills the run at random moments of its whole length, then lets it end.
+/// Runs that are met by signals again and again end as one that is left alone.
 fn killed_and_resumed(signals: &[&str]) {
     let folder = Folder::new(&format!("resumed{}", signals.concat()));
-    let mut seed = 7;
-    // Together they take somewhat longer than the run.
-    let most = 3.0 / f64::from(kills());
     let mut all = 0;
-    for (number, arguments) in RUNS.iter().enumerate() {
-        let what = arguments.join(" ");
-        let whole = folder.path(&format!("whole-{number}"));
-        let from = Instant::now();
-        let done = run(arguments, &whole, &[]);
-        assert!(
-            done.status.success(),
-            "{what}: {}",
-            String::from_utf8_lossy(&done.stderr)
-        );
-        let length = from.elapsed();
-        let out = folder.path(&format!("killed-{number}"));
-        let mut stopped = 0;
-        let kills = kills();
-        for kill in 0..kills {
-            let mut child = begun(arguments, &out, &["--resume", "--checkpoint", "0.001"]);
-            std::thread::sleep(length.mul_f64(most * random(&mut seed)));
-            send(signals[kill as usize % signals.len()], &child);
-            let status = child.wait().expect("ends");
-            stopped += u32::from(!status.success());
-        }
-        println!("{what}: {stopped} of {kills} kills met it at work");
-        all += stopped;
-        let done = run(arguments, &out, &["--resume"]);
-        assert!(
-            done.status.success(),
-            "{what}: {}",
-            String::from_utf8_lossy(&done.stderr)
-        );
-        same(&whole, &out, &what);
+    for (number, words) in RUNS.into_iter().enumerate() {
+        let [whole, out] = ["whole", "killed"].map(|name| folder.path(&format!("{name}-{number}")));
+        run(words, &whole, "").ended(0);
+        all += met(words, signals, kills(), [&whole, &out]);
+        run(words, &out, "--resume").ended(0);
+        same(&whole, &out, words);
     }
     assert_eq!(folder.names().len(), 2 * RUNS.len(), "{:?}", folder.names());
-    assert!(all as usize >= RUNS.len(), "{all} kills met a run at work");
+    assert!(
+        all as usize >= RUNS.len(),
+        "{all} signals met a run at work"
+    );
 }
 
+/// Long, since six runs are met by six signals each, and gone on with.
 #[test]
 fn killed_runs_end_bit_equal() {
     killed_and_resumed(&["-KILL"]);
 }
 
+/// Long, since six runs are met by six signals each, and gone on with.
 #[test]
 fn interrupted_runs_end_bit_equal() {
     killed_and_resumed(&["-INT", "-TERM"]);
@@ -177,8 +124,6 @@ fn particles() -> usize {
 fn a_fluid_of_particles_that_is_killed_or_interrupted_ends_bit_equal() {
     let folder = Folder::new("resumed-fluid");
     let cells = (particles() as f64 / 4.0).sqrt().round() as usize;
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/fluids/");
-    let model = format!("{root}particle-mesh-2d.clebsch");
     let case = format!(
         "model = \"ParticleMesh2D\"\nname = \"killed\"\ndoc = \"a bump in a channel\"\nh = {}\nsteps = 12\n\
          [labels]\na = {}\nn = [{cells}, {cells}]\n[domain]\nlengths = [1.0, 1.0]\nwalls = [\"solid\", \"periodic\"]\n\
@@ -188,57 +133,26 @@ fn a_fluid_of_particles_that_is_killed_or_interrupted_ends_bit_equal() {
         4 * cells * cells,
         2.0 / cells as f64,
     );
-    let case = folder.write("case.toml", &case);
-    let arguments = [&model[..], "--case", &case, "--every", "12"];
-    let whole = folder.path("whole");
-    let from = Instant::now();
-    let done = run(&arguments, &whole, &[]);
-    let told = String::from_utf8_lossy(&done.stderr).into_owned();
-    assert!(done.status.success(), "{told}");
-    let length = from.elapsed();
-    let out = folder.path("out");
-    let mut seed = 11;
-    let mut stopped = 0;
-    for signal in ["-KILL", "-INT", "-KILL"] {
-        let mut child = begun(&arguments, &out, &["--resume", "--checkpoint", "0.001"]);
-        let wait = length.mul_f64(0.3 + 0.4 * random(&mut seed));
-        std::thread::sleep(wait);
-        let asked = Instant::now();
-        send(signal, &child);
-        let status = child.wait().expect("ends");
-        println!(
-            "{signal} after {wait:.1?}: {status}, {:.1?} later",
-            asked.elapsed()
-        );
-        // A signal before the first step ends the program: there is nothing to be kept yet.
-        assert!(matches!(status.code(), Some(0 | 130) | None), "{status}");
-        stopped += u32::from(!status.success());
-    }
-    assert!(stopped > 0, "no signal met the run at work");
-    let from = Instant::now();
-    let done = run(&arguments, &out, &["--resume"]);
-    let told = String::from_utf8_lossy(&done.stderr).into_owned();
-    assert!(done.status.success(), "{told}");
-    println!(
-        "the whole run took {length:.1?}, the last part {:.1?}",
-        from.elapsed()
+    folder.write("case.toml", &case);
+    let words = format!(
+        "models/fluids/particle-mesh-2d.clebsch --case {} --every 1",
+        folder.path("case.toml")
     );
+    let [whole, out] = ["whole", "out"].map(|name| folder.path(name));
+    run(&words, &whole, "").ended(0);
+    let stopped = met(&words, &["-KILL", "-INT", "-KILL"], 3, [&whole, &out]);
+    assert!(stopped > 0, "no signal met the run at work");
+    run(&words, &out, "--resume").ended(0);
     same(&whole, &out, "a fluid");
 }
 
-/// A run of a heavy top that takes minutes, once its folder is there and its work has begun.
-fn long(out: &str, hidden: impl Fn() -> bool, more: &[&str]) -> Child {
-    let child = begun(
-        &["heavy-top", "--steps", "2000000000", "--every", "1000000"],
-        out,
-        more,
-    );
-    let from = Instant::now();
-    while !hidden() && from.elapsed() < Duration::from_secs(20) {
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    assert!(hidden(), "nothing was begun");
-    std::thread::sleep(Duration::from_millis(300));
+/// A run of a heavy top that takes minutes.
+const LONG: &str = "heavy-top --steps 2000000000 --every 1000";
+
+/// It, once it has written something into this file of its hidden folder.
+fn long(out: &str, file: &str, more: &str) -> Child {
+    let mut child = begun(&format!("run {LONG} --out {out} {more}"));
+    wait_for(&mut child, out, file, |bytes| !bytes.is_empty());
     child
 }
 
@@ -247,11 +161,8 @@ fn an_interrupted_run_writes_what_there_is_and_says_so() {
     for (signal, code, name) in [("-INT", 130, "SIGINT"), ("-TERM", 143, "SIGTERM")] {
         let folder = Folder::new(&format!("interrupted{signal}"));
         let out = folder.path("new/out");
-        let hidden =
-            || fs::read_dir(folder.path("new")).is_ok_and(|mut list| list.next().is_some());
-        let mut child = long(&out, hidden, &[]);
-        send(signal, &child);
-        assert_eq!(child.wait().expect("ends").code(), Some(code));
+        let child = long(&out, "samples.bin", "");
+        assert_eq!(ended_by(signal, child), Some(code));
         let files = contents(&out);
         for file in [
             "trajectory.csv",
@@ -272,25 +183,9 @@ fn an_interrupted_run_writes_what_there_is_and_says_so() {
 fn a_checkpoint_that_is_damaged_or_of_another_run_is_refused() {
     let folder = Folder::new("refused-checkpoint");
     let out = folder.path("out");
-    let hidden = || folder.names().iter().any(|name| name.contains("partial"));
-    let mut child = long(&out, hidden, &[]);
-    send("-TERM", &child);
-    child.wait().expect("ends");
+    ended_by("-TERM", long(&out, "samples.bin", ""));
     let before = contents(&out);
-    let again = |more: &[&str]| {
-        let steps = ["heavy-top", "--steps", "2000000000", "--every", "1000000"];
-        let done = run(&steps, &out, more);
-        (
-            done.status.code(),
-            String::from_utf8_lossy(&done.stderr).into_owned(),
-        )
-    };
-    let (code, message) = again(&["--resume", "--h", "0.01"]);
-    assert_eq!(code, Some(2), "{message}");
-    assert!(
-        message.contains("h = 0.1 there, h = 0.01 here"),
-        "{message}"
-    );
+    run(LONG, &out, "--resume --h 0.01").refuses("h = 0.1 there, h = 0.01 here");
     assert!(before == contents(&out), "nothing was changed");
     for (file, says) in [
         ("checkpoint", "its checksum"),
@@ -306,66 +201,34 @@ fn a_checkpoint_that_is_damaged_or_of_another_run_is_refused() {
         };
         bytes[place] ^= 1;
         fs::write(&path, &bytes).expect("written");
-        let (code, message) = again(&["--resume"]);
-        assert_eq!(code, Some(2), "{message}");
-        assert!(message.contains(says), "{message}");
+        run(LONG, &out, "--resume").refuses(says);
         // Where the checkpoint itself is whole, the folder was taken up, and is put back.
         fs::write(&path, &before[file]).expect("put back");
     }
-    let (code, message) = again(&[]);
-    assert_eq!(code, Some(2), "{message}");
-    assert!(message.contains("--force"), "{message}");
+    run(LONG, &out, "").refuses("--force");
 }
 
 #[test]
 fn a_killed_run_is_not_begun_anew_by_mistake() {
     let folder = Folder::new("killed-not-lost");
     let out = folder.path("out");
-    let hidden = || folder.names().iter().any(|name| name.contains("partial"));
-    let mut child = long(&out, hidden, &["--checkpoint", "0.01"]);
-    let going_on = run(
-        &["heavy-top", "--steps", "2000000000", "--every", "1000000"],
-        &out,
-        &["--resume"],
-    );
-    let message = String::from_utf8_lossy(&going_on.stderr).into_owned();
-    assert!(message.contains("still going on"), "{message}");
-    send("-KILL", &child);
-    child.wait().expect("ends");
-    let short = ["heavy-top", "--steps", "10"];
-    let done = run(&short, &out, &[]);
-    let message = String::from_utf8_lossy(&done.stderr).into_owned();
-    assert_eq!(done.status.code(), Some(2), "{message}");
-    assert!(message.contains("--resume"), "{message}");
+    let child = long(&out, "checkpoint", "--checkpoint 0.01");
+    run(LONG, &out, "--resume").says("still going on");
+    ended_by("-KILL", child);
+    let short = "heavy-top --steps 10";
+    run(short, &out, "").refuses("--resume");
     // By force it is, and the hidden folder goes.
-    assert!(run(&short, &out, &["--force"]).status.success());
+    run(short, &out, "--force").ended(0);
     assert_eq!(folder.names(), ["out"]);
     // A run that is complete is left as it is, and another one is told apart.
     let before = contents(&out);
-    assert!(run(&short, &out, &["--resume"]).status.success());
-    let other = run(&["heavy-top", "--steps", "11"], &out, &["--resume"]);
-    let message = String::from_utf8_lossy(&other.stderr).into_owned();
-    assert_eq!(other.status.code(), Some(2), "{message}");
-    assert!(
-        message.contains(
-            "this run is complete, with steps = 10; to go on from its end, start a new run"
-        ),
-        "{message}"
-    );
-    assert!(
-        message.contains("trajectory.npz\", sample = -1 }"),
-        "{message}"
-    );
-    let other = run(
-        &["heavy-top", "--steps", "11", "--h", "0.003"],
-        &out,
-        &["--resume"],
-    );
-    let message = String::from_utf8_lossy(&other.stderr).into_owned();
-    assert!(
-        message.contains("it holds another run, with another `h`"),
-        "{message}"
-    );
+    run(short, &out, "--resume").ended(0);
+    run("heavy-top --steps 11", &out, "--resume").refuses([
+        "this run is complete, with steps = 10; to go on from its end, start a new run",
+        "trajectory.npz\", sample = -1 }",
+    ]);
+    let other = run("heavy-top --steps 11 --h 0.003", &out, "--resume");
+    other.says("it holds another run, with another `h`");
     assert!(before == contents(&out));
 }
 
@@ -373,16 +236,12 @@ fn a_killed_run_is_not_begun_anew_by_mistake() {
 fn results_are_kept_when_nobody_reads_the_output() {
     let folder = Folder::new("closed-output");
     let out = folder.path("out");
-    let mut command = command(&["heavy-top", "--steps", "1000"], &out, &[]);
     // The end that would be read is closed before anything is written.
     let (reader, writer) = std::io::pipe().expect("a pipe");
     drop(reader);
-    let mut child = command
-        .stdout(writer)
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("starts");
-    child.wait().expect("ends");
+    let mut command = command(&format!("run heavy-top --steps 1000 --out {out}"));
+    let mut child = command.stdout(writer).stderr(Stdio::null()).spawn();
+    child.as_mut().expect("starts").wait().expect("ends");
     let files = contents(&out);
     let json = String::from_utf8_lossy(&files["run.json"]).into_owned();
     assert!(json.contains("\"complete\": true"), "{json}");

@@ -1,7 +1,7 @@
 //! The natural scale of an invariant: the sum of the absolute values of its terms, the largest along the run. What is
 //! only rounding of the terms exceeds no bound, whatever the terms were at the start.
 
-use super::common::{Folder, clebsch, on};
+use crate::common::{Folder, on, runs};
 use clebsch_cli::gallery::Gallery;
 use serde_json::Value;
 
@@ -56,16 +56,8 @@ fn an_angular_momentum_about_the_origin_has_the_scale_of_the_lever_arm_reached()
         let (code, json) = json(&Gallery::shipped(), &[&run[..], &["--out", &out]].concat());
         assert_eq!(code, 0, "{case}: {}", invariant(&json, name));
         // The distance at the end times the linear momentum across the vertical, in whose direction it is.
-        let text = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("a file");
-        let mut lines = text.lines();
-        let names: Vec<&str> = lines.next().expect("names").split(',').collect();
-        let last: Vec<f64> = lines
-            .last()
-            .expect("a sample")
-            .split(',')
-            .map(|n| n.parse().expect("a number"))
-            .collect();
-        let at = |name: &str| last[names.iter().position(|n| *n == name).expect("a column")];
+        let samples = folder.samples("out/trajectory.csv");
+        let at = |name: &str| samples.end(name);
         let length = |of: [&str; 3]| of.map(at).iter().map(|x| x * x).sum::<f64>().sqrt();
         let away = length(["G_14", "G_24", "G_34"]);
         let linear = length(["body_momentum_4", "body_momentum_5", "body_momentum_6"]);
@@ -220,9 +212,7 @@ fn a_total_is_measured_as_a_whole_along_a_line_of_any_length() {
              body_momentum_q = [0.1, 0.0, 0.2]\n"
         );
         let case = folder.write("own.toml", &case);
-        let done = clebsch(&["run", &model, "--case", &case, "--json"]);
-        assert_eq!(done.code, 0, "{n}: {}{}", done.out, done.err);
-        let object: Value = serde_json::from_str(&done.out).expect("one JSON object");
+        let object = runs(&format!("run {model} --case {case} --json")).json();
         let all = object["results"]["invariants"].as_array().expect("a list");
         let total = all.iter().find(|own| own["name"] == "total_body_momentum");
         let scale = total

@@ -1,7 +1,7 @@
 //! What the page of a run shows: bodies where they are, what constraints join, the ground, the colours of particles; and how
 //! its script draws them, on a canvas that writes SVG, where Node is there to run it.
 
-use super::common::{Folder, program, shipped};
+use crate::common::{Folder, runs};
 use serde_json::Value;
 use std::process::Command;
 
@@ -9,8 +9,7 @@ use std::process::Command;
 fn of_shipped(folder: &Folder, model: &str, steps: &str) -> Value {
     let out = folder.path("out");
     let all = ["run", model, "--steps", steps, "--out", &out];
-    let done = shipped(&[all.as_slice(), &["--stability-limit", "0"]].concat());
-    assert_eq!(done.code, 0, "{}", done.err);
+    runs(&[all.as_slice(), &["--stability-limit", "0"]].concat());
     data(&read(folder))
 }
 
@@ -27,13 +26,12 @@ fn page(folder: &Folder, model: &str, case: &str) -> String {
             all.extend(["--case", &path]);
         }
     }
-    let done = program(&all);
-    assert_eq!(done.code, 0, "{}", done.err);
+    runs(&all);
     read(folder)
 }
 
 fn read(folder: &Folder) -> String {
-    std::fs::read_to_string(folder.path("out/run.html")).expect("a page")
+    folder.read("out/run.html")
 }
 
 /// The data of its view.
@@ -151,8 +149,7 @@ fn a_body_without_a_place_is_beside_the_others() {
     // One body seen from another is none.
     let folder = Folder::new("scene-seen-from");
     let out = folder.path("out");
-    let done = shipped(&["run", "coupled-bodies", "--steps", "40", "--out", &out]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    runs(&format!("run coupled-bodies --steps 40 --out {out}"));
     let scene = data(&read(&folder));
     assert_eq!(scene["bodies"].as_array().map(Vec::len), Some(2));
 }
@@ -243,9 +240,7 @@ fn a_plane_that_holds_a_point_is_no_link() {
 #[test]
 fn ends_that_are_held_are_shown_on_the_ground() {
     let folder = Folder::new("scene-ends");
-    let out = folder.path("out");
-    let done = shipped(&["run", "hanging-chain", "--steps", "20", "--out", &out]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    folder.runs("run hanging-chain --steps 20 --out @out");
     let scene = data(&read(&folder));
     let supports = scene["supports"].as_array().expect("a list");
     assert_eq!(supports.len(), 1);
@@ -275,7 +270,7 @@ fn particles_have_colours_with_a_scale() {
             "{name}"
         );
         // The picture names what is coloured, above the scale and in its title.
-        let svg = std::fs::read_to_string(folder.path("out/particles.svg")).expect("a picture");
+        let svg = folder.read("out/particles.svg");
         let (title, above) = match name {
             "grid" => ("S = smooth(H, alpha)", "\nS\n"),
             _ => ("phi = helmholtz_depth(X, m, alpha)", "\nphi\n"),

@@ -1,8 +1,8 @@
 //! `--set` takes what a case file takes: rotations by any of their forms, inertias, matrices, and entries of a table. A case may
 //! leave the number of steps to an option.
 
-use super::common::{Folder, program, shipped};
-use super::ran::run;
+use crate::common::{Folder, clebsch, runs};
+use crate::ran::run;
 
 const TOP: &str = "model Top {
     param J: Sym<3>;
@@ -16,26 +16,19 @@ const TOP: &str = "model Top {
 const CASE: &str = "model = \"top\"\nh = 0.01\n[parameters]\nJ = { I = [2.0,\n  3.0, 4.0] }\nk = 1\n[initial]\n\
                     R = { axis = [0, 0, 1], angle = 0.5 }\nangular_velocity = [1, 0, 0.2]\n";
 
-fn csv(out: &str) -> Vec<Vec<String>> {
-    let text = std::fs::read_to_string(format!("{out}/trajectory.csv")).expect("is written");
-    let rows = text.lines();
-    rows.map(|row| row.split(',').map(str::to_owned).collect())
-        .collect()
-}
-
 /// The first row after the head, and the parameters.
-fn start(name: &str, set: &[&str]) -> (Vec<f64>, serde_json::Value) {
+fn start(name: &str, set: &str) -> (Vec<f64>, serde_json::Value) {
     let folder = Folder::new(&format!("set-values-{name}"));
+    let model = folder.write("top.clebsch", TOP);
+    let case = folder.write("top.toml", CASE);
     let out = folder.path("out");
-    let mut more = vec!["--steps", "1", "--out", &out];
-    more.extend(set.iter().flat_map(|value| ["--set", value]));
-    let done = run(&folder, TOP, CASE, &more);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let row = &csv(&out)[1];
-    let json = std::fs::read_to_string(format!("{out}/run.json")).expect("is written");
-    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
-    let numbers = row[2..11].iter().map(|x| x.parse().expect("a number"));
-    (numbers.collect(), json["parameters"].clone())
+    let run = [
+        "run", &model, "--case", &case, "--steps", "1", "--out", &out,
+    ];
+    runs(&[&run[..], &["--set", set]].concat());
+    let row = &folder.samples("out/trajectory.csv").rows[0];
+    let json = folder.json("out/run.json");
+    (row[2..11].to_vec(), json["parameters"].clone())
 }
 
 #[test]
@@ -55,7 +48,7 @@ fn rotations_are_set_in_every_form() {
     .into_iter()
     .enumerate()
     {
-        let (found, _) = start(&n.to_string(), &[value]);
+        let (found, _) = start(&n.to_string(), value);
         for (x, y) in found.iter().zip(about_z) {
             assert!((x - y).abs() < 1e-15, "{value}: {found:?}");
         }
@@ -73,13 +66,13 @@ fn inertias_and_matrices_are_set() {
     .into_iter()
     .enumerate()
     {
-        let (_, parameters) = start(&format!("inertia-{n}"), &[value]);
+        let (_, parameters) = start(&format!("inertia-{n}"), value);
         for (i, x) in diagonal.into_iter().enumerate() {
             assert_eq!(parameters["J"][i][i], x, "{value}: {parameters}");
         }
     }
     // The cases of compiled models have no text.
-    let done = shipped(&[
+    let done = clebsch(&[
         "run",
         "heavy-top",
         "--steps",
@@ -88,35 +81,17 @@ fn inertias_and_matrices_are_set() {
         "--set",
         "I=[1, 2, 2.5]",
     ]);
-    let json: serde_json::Value = serde_json::from_str(&done.out).expect("JSON");
+    let json = done.json();
     assert_eq!(json["parameters"]["J"][0][0], 1.75, "{}", done.err);
 }
 
 #[test]
 fn an_entry_of_a_rotation_is_varied() {
     let folder = Folder::new("set-values-vary");
-    let model = folder.write("top.clebsch", TOP);
+    folder.write("top.clebsch", TOP);
     folder.write("top.toml", CASE);
-    let out = folder.path("out");
-    let done = program(&[
-        "sweep",
-        &model,
-        "--until",
-        "0.02",
-        "--vary",
-        "R.angle=0:pi:3",
-        "--out",
-        &out,
-    ]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let text = std::fs::read_to_string(format!("{out}/sweep.csv")).expect("is written");
-    let rows: Vec<Vec<&str>> = text.lines().map(|row| row.split(',').collect()).collect();
-    let at = rows[0].iter().position(|name| *name == "R_11");
-    let at = at.expect("a column");
-    let ends: Vec<f64> = rows[1..]
-        .iter()
-        .map(|row| row[at].parse().expect("a number"))
-        .collect();
+    folder.runs("sweep @top.clebsch --until 0.02 --vary R.angle=0:pi:3 --out @out");
+    let ends = folder.samples("out/sweep.csv").column("R_11");
     for (end, angle) in ends.iter().zip([0.0_f64, 0.5, 1.0]) {
         let expected = (angle * std::f64::consts::PI).cos();
         assert!((end - expected).abs() < 1e-2, "{ends:?}");
@@ -126,16 +101,10 @@ fn an_entry_of_a_rotation_is_varied() {
 #[test]
 fn the_number_of_steps_may_be_an_option() {
     let folder = Folder::new("set-values-steps");
-    let done = run(&folder, TOP, CASE, &["--until", "0.05"]);
-    assert!(
-        done.out.contains("5 steps, to time 0.05"),
-        "{}{}",
-        done.out,
-        done.err
-    );
-    let done = run(&folder, TOP, CASE, &[]);
-    assert_eq!(done.code, 2);
+    let done = run(&folder, TOP, CASE, "--until 0.05");
+    done.prints("5 steps, to time 0.05");
+    let done = run(&folder, TOP, CASE, "").exits(2);
     let said =
         "case.toml: missing key `steps`: the number of steps; or give --until T or --steps N";
-    assert!(done.err.contains(said), "{}", done.err);
+    done.says(said);
 }

@@ -1,7 +1,7 @@
 //! No order of events loses results: what someone else puts in the way during a run stays, and the
 //! results of the run stay, too.
 
-use super::common::{Done, Folder, clebsch, on};
+use crate::common::{Done, Folder, on, rotor};
 use clebsch::StepError;
 use clebsch::card::{Card, OpenError, Settings, Trajectory};
 use clebsch_cli::gallery::{Citations, Entry, Gallery};
@@ -52,19 +52,19 @@ fn open(
     initial: &[Vec<f64>],
     settings: Settings,
 ) -> Result<Box<dyn Trajectory>, OpenError> {
-    let own = (super::common::CARD.open)(parameters, initial, settings)?;
+    let own = (crate::rotor::CARD.open)(parameters, initial, settings)?;
     Ok(Box::new(Interrupted(own)))
 }
 
 /// Runs with `event` in the middle; 20 steps, so that the results are told from those of other runs.
 fn run_while(event: impl FnOnce() + 'static, out: &str, more: &[&str]) -> Done {
-    let mut card = super::common::CARD;
-    card.open = open;
+    let mut card = crate::rotor::CARD;
+    card.open = &open;
     let gallery = Gallery {
         entries: vec![Entry {
             card,
             citations: Citations::NONE,
-            cases: vec![super::common::case()],
+            cases: vec![crate::rotor::case()],
         }],
         files: Vec::new(),
     };
@@ -94,13 +94,12 @@ fn steps_in(folder: &str) -> u64 {
 
 /// An earlier run of 5 steps at `out`.
 fn earlier(out: &str) {
-    let done = clebsch(&["run", "harmonic-rotor", "--steps", "5", "--out", out]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    rotor(&format!("run harmonic-rotor --steps 5 --out {out}")).succeeds();
 }
 
 /// The run stopped with code 1, its results are in `kept`, and the message says so.
 fn kept_beside(done: &Done, kept: &str) {
-    assert_eq!(done.code, 1, "{}", done.err);
+    done.ended(1);
     let words = format!("; the results are in {kept}\n");
     assert!(done.err.ends_with(&words), "{}", done.err);
     assert_eq!(steps_in(kept), 20);
@@ -111,7 +110,7 @@ fn kept_beside(done: &Done, kept: &str) {
 fn results_of_a_run_that_stopped_are_kept_beside_a_folder_made_meanwhile() {
     let folder = Folder::new("made_and_stopped");
     let out = folder.path("out");
-    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let text = rotor("case harmonic-rotor").out;
     let file = folder.write("stiff.toml", &text.replace("kappa = 1.0", "kappa = -200.0"));
     let made = out.clone();
     let event = move || fs::create_dir(&made).expect("a folder");
@@ -123,7 +122,7 @@ fn results_of_a_run_that_stopped_are_kept_beside_a_folder_made_meanwhile() {
         done.err
     );
     let made = "made by someone else during the run";
-    assert!(done.err.contains(made), "{}", done.err);
+    done.says(made);
     assert_eq!(folder.names(), ["out", "out-2", "stiff.toml"]);
 }
 
@@ -139,11 +138,7 @@ fn a_folder_made_meanwhile_is_left_as_it_is() {
     };
     let done = run_while(event, &out, &[]);
     kept_beside(&done, &folder.path("out-2"));
-    assert!(
-        done.err.contains("made by someone else during the run"),
-        "{}",
-        done.err
-    );
+    done.says("made by someone else during the run");
     assert_eq!(
         fs::read_to_string(&thesis).expect("the file"),
         "years of work"
@@ -201,8 +196,7 @@ fn force_replaces_only_what_stood_there_at_the_start() {
     // Nothing happens: replaced.
     let out = folder.path("quiet");
     earlier(&out);
-    let done = run_while(|| {}, &out, &["--force"]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    run_while(|| {}, &out, &["--force"]).succeeds();
     assert_eq!(steps_in(&out), 20);
     // A foreign file is put into it.
     let out = folder.path("foreign");
@@ -231,7 +225,7 @@ fn force_replaces_only_what_stood_there_at_the_start() {
             &other,
             "--force",
         ];
-        assert_eq!(clebsch(&arguments).code, 0);
+        rotor(&arguments).ended(0);
     };
     let done = run_while(event, &out, &["--force"]);
     kept_beside(&done, &format!("{out}-2"));
@@ -244,19 +238,18 @@ fn force_replaces_only_what_stood_there_at_the_start() {
         fs::remove_dir_all(&other).expect("removed");
         fs::create_dir(&other).expect("a folder");
     };
-    let done = run_while(event, &out, &["--force"]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    run_while(event, &out, &["--force"]).succeeds();
     assert_eq!(steps_in(&out), 20);
     // It is gone: nothing is to be replaced.
     let out = folder.path("gone");
     earlier(&out);
     let other = out.clone();
-    let done = run_while(
+    run_while(
         move || fs::remove_dir_all(other).expect("removed"),
         &out,
         &["--force"],
-    );
-    assert_eq!(done.code, 0, "{}", done.err);
+    )
+    .succeeds();
     assert_eq!(steps_in(&out), 20);
     assert_eq!(
         folder.names(),
@@ -279,9 +272,9 @@ fn a_folder_of_the_name_of_a_file_of_a_run_is_not_replaced() {
     earlier(&out);
     fs::remove_file(format!("{out}/run.json")).expect("removed");
     fs::create_dir(format!("{out}/run.json")).expect("a folder");
-    let done = clebsch(&["run", "harmonic-rotor", "--out", &out, "--force"]);
-    assert_eq!(done.code, 2, "{}", done.err);
-    assert!(done.err.contains("it holds `run.json`"), "{}", done.err);
+    folder
+        .rotor("run harmonic-rotor --out @out --force")
+        .refuses("it holds `run.json`");
     assert!(Path::new(&out).join("run.json").is_dir());
 }
 
@@ -329,7 +322,7 @@ fn many_runs_at_once_lose_nothing() {
                         vec!["run", "harmonic-rotor", "--steps", &steps, "--out", out];
                     arguments.extend(force.then_some("--force"));
                     together.wait();
-                    clebsch(&arguments).code
+                    rotor(&arguments).code
                 })
             };
             let runs: Vec<_> = (0..RUNS).map(start).collect();
@@ -404,14 +397,13 @@ fn what_a_killed_run_left_behind_is_removed_by_the_next() {
                     == n
             };
             assert!(hidden("1"));
-            let inner = run_while(|| (), &inner, &[]);
-            assert_eq!(inner.code, 0, "{}", inner.err);
+            run_while(|| (), &inner, &[]).succeeds();
             assert!(hidden("1"), "that of the run around it");
         },
         &out,
         &[],
     );
-    assert_eq!(done.code, 1, "{}", done.err);
+    done.ended(1);
     assert_eq!(
         folder.names(),
         [

@@ -2,7 +2,7 @@
 //! they load, environments, brackets and dollar signs pair, what is cited stands in the bibliography, and every
 //! reference has its label.
 
-use super::common::{Folder, shipped};
+use crate::common::{Folder, clebsch, runs};
 use std::collections::BTreeSet;
 
 /// Commands of LaTeX itself, and Greek letters.
@@ -120,28 +120,25 @@ fn compiles(what: &str, text: &str) {
 
 #[test]
 fn every_shipped_model_is_a_document_that_compiles_by_itself() {
-    let done = shipped(&["list", "--json"]);
-    let json: serde_json::Value = serde_json::from_str(&done.out).expect("JSON");
+    let done = clebsch("list --json");
+    let json = done.json();
     let models = json["models"].as_array().expect("a list");
     for model in models {
         let name = model["model"].as_str().expect("a name");
-        let done = shipped(&["derive", name, "--standalone"]);
-        assert_eq!(done.code, 0, "{name}: {}", done.err);
+        let done = runs(&format!("derive {name} --standalone"));
         compiles(name, &done.out);
     }
-    let top = shipped(&["derive", "heavy-top", "--standalone", "--explain"]);
+    let top = clebsch("derive heavy-top --standalone --explain");
     compiles("heavy-top with its proof", &top.out);
-    for said in [
+    top.prints([
         "\\bibitem{dixon2007} M. F. Dixon, \\emph{Geometric integrators for continuum dynamics}",
         "\\bibitem{holm1998} D. D. Holm, J. E. Marsden and T. S. Ratiu",
         "the diamond of Holm, Marsden and Ratiu~\\cite{holm1998}, for whom",
         "Proof.~Each~step",
-    ] {
-        assert!(top.out.contains(said), "{said}\n{}", top.out);
-    }
-    let free = shipped(&["derive", "free-body", "--standalone", "--no-thesis"]);
+    ]);
+    let free = clebsch("derive free-body --standalone --no-thesis");
     compiles("free-body without the thesis", &free.out);
-    assert!(!free.out.contains("dixon2007"), "{}", free.out);
+    free.never_prints("dixon2007");
 }
 
 #[test]
@@ -151,15 +148,14 @@ fn only_models_of_the_gallery_cite_whatever_the_structure_of_a_file() {
         .expect("a model")
         .card
         .source;
-    let file = folder.write("own.clebsch", text);
+    folder.write("own.clebsch", text);
     for format in ["text", "latex", "markdown", "json"] {
-        let own = shipped(&["derive", &file, "--format", format]);
-        assert_eq!(own.code, 0, "{}", own.err);
-        let bare = shipped(&["derive", "heavy-top", "--no-thesis", "--format", format]);
+        let own = folder.runs(&format!("derive @own.clebsch --format {format}"));
+        let bare = clebsch(&format!("derive heavy-top --no-thesis --format {format}"));
         assert_eq!(own.out, bare.out);
         let cites = |out: &str| ["thesis", "dixon2007", "section 2.7.1"].map(|w| out.contains(w));
         assert_eq!(cites(&own.out), [false; 3], "{}", own.out);
-        let gallery = shipped(&["derive", "heavy-top", "--format", format]);
+        let gallery = clebsch(&format!("derive heavy-top --format {format}"));
         assert!(cites(&gallery.out).contains(&true), "{}", gallery.out);
     }
 }
@@ -179,16 +175,10 @@ fn names_of_all_kinds_compile() {
 }";
     let file = folder.write("own.clebsch", model);
     for more in [&[][..], &["--explain"], &["--format", "latex"]] {
-        let done = shipped(&[&["derive", &file, "--standalone"], more].concat());
-        assert_eq!(done.code, 0, "{}", done.err);
+        let done = runs(&[&["derive", &file, "--standalone"], more].concat());
         compiles("a model of one's own", &done.out);
     }
-    let done = shipped(&["derive", &file, "--standalone", "--format", "markdown"]);
-    assert_eq!(done.code, 2);
-    assert!(
-        done.err
-            .contains("`--standalone` prints LaTeX, not markdown; leave `--format` out"),
-        "{}",
-        done.err
-    );
+    folder
+        .clebsch("derive @own.clebsch --standalone --format markdown")
+        .refuses("`--standalone` prints LaTeX, not markdown; leave `--format` out");
 }

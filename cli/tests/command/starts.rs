@@ -2,13 +2,12 @@
 //! left out, and the first step is the one that the discrete equations have. Its numbers were solved for in forty digits
 //! by Newton's method on equations typed by hand.
 
-use crate::common::{Done, Folder, clebsch, gallery, on, program};
+use crate::common::{Done, Folder, Samples, on, rotor};
 use crate::ran::run;
+use crate::rotor::gallery;
 use clebsch::card::{OpenError, Settings, Trajectory};
-use std::collections::HashMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
 
 /// How many inquiries were made of the rotor, one test at a time.
 static INQUIRIES: AtomicUsize = AtomicUsize::new(0);
@@ -17,62 +16,56 @@ static ALONE: Mutex<()> = Mutex::new(());
 /// How many runs have a folder.
 static RUNS: AtomicUsize = AtomicUsize::new(0);
 
-/// The rotor, whose inquiries take a tenth of a second.
-fn slowly(
+/// The rotor, whose inquiries are counted.
+fn counted(
     parameters: &[Vec<f64>],
     initial: &[Vec<f64>],
     settings: Settings,
 ) -> Result<Box<dyn Trajectory>, OpenError> {
     if settings.inquiry {
         INQUIRIES.fetch_add(1, Ordering::SeqCst);
-        std::thread::sleep(Duration::from_millis(100));
     }
-    (crate::common::CARD.open)(parameters, initial, settings)
+    (crate::rotor::CARD.open)(parameters, initial, settings)
 }
 
 /// A run of it, and the inquiries made.
-fn slow(arguments: &[&str]) -> (Done, usize) {
+fn inquired(words: &str) -> (Done, usize) {
     let _alone = ALONE.lock();
     INQUIRIES.store(0, Ordering::SeqCst);
     let mut gallery = gallery();
-    gallery.entries[0].card.open = slowly;
-    let done = on(&gallery, arguments);
+    gallery.entries[0].card.open = &counted;
+    let done = on(&gallery, words);
     (done, INQUIRIES.load(Ordering::SeqCst))
 }
 
 #[test]
-fn the_search_for_the_stability_limit_ends_after_a_second() {
-    let (done, inquiries) = slow(&["run", "harmonic-rotor", "--steps", "1"]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let told = "stability limit of the step size: not found within 1 s; --stability-limit SECONDS searches longer";
-    assert!(done.out.contains(told), "{}", done.out);
-    assert!((1..=10).contains(&inquiries), "{inquiries}");
+fn the_search_for_the_stability_limit_ends_when_its_time_is_over() {
+    let run = |seconds: &str| {
+        let words = "run harmonic-rotor --steps 1 --stability-limit";
+        inquired(&format!("{words} {seconds}"))
+    };
+    let (cut, inquiries) = run("1e-9");
+    cut.ended(0);
+    let told = "stability limit of the step size: not found within 1e-9 s; --stability-limit SECONDS searches longer";
+    cut.prints(told);
+    let (found, all) = run("600");
+    found.ended(0).never_prints("not found within");
+    assert!(inquiries < all, "{inquiries} {all}");
+    rotor("run --help").prints("only reported; 0 skips the search [default: 1]");
     // The trajectory is the one of a run without a search.
-    let (unsearched, inquiries) = slow(&[
-        "run",
-        "harmonic-rotor",
-        "--steps",
-        "1",
-        "--stability-limit",
-        "0",
-    ]);
+    let (unsearched, inquiries) = run("0");
     assert_eq!(inquiries, 0);
-    assert!(
-        !unsearched.out.contains("stability limit"),
-        "{}",
-        unsearched.out
-    );
-    assert_eq!(done.out.replace(&format!("{told}\n"), ""), unsearched.out);
+    unsearched.never_prints("stability limit");
+    assert_eq!(cut.out.replace(&format!("{told}\n"), ""), unsearched.out);
     for wrong in ["-1", "nan", "soon"] {
-        let refused = clebsch(&["run", "harmonic-rotor", "--stability-limit", wrong]);
-        assert_eq!(refused.code, 2, "{wrong}");
+        rotor(&format!("run harmonic-rotor --stability-limit {wrong}")).exits(2);
     }
 }
 
 #[test]
 fn values_are_judged_before_anything_is_searched_for() {
     let folder = Folder::new("judged-first");
-    let case = clebsch(&["case", "harmonic-rotor"]).out;
+    let case = rotor("case harmonic-rotor").out;
     let wrong: Vec<&str> = case
         .lines()
         .map(|line| match line.starts_with("Lambda = ") {
@@ -81,43 +74,25 @@ fn values_are_judged_before_anything_is_searched_for() {
         })
         .collect();
     let wrong = folder.write("wrong.toml", &wrong.join("\n"));
-    let (done, inquiries) = slow(&["run", "harmonic-rotor", "--case", &wrong]);
+    let (done, inquiries) = inquired(&format!("run harmonic-rotor --case {wrong}"));
     assert_eq!((done.code, inquiries), (2, 0), "{}", done.err);
 }
 
-/// The last node of a run, by the names of its columns.
-fn last(model: &str, case: &str, steps: &str) -> HashMap<String, f64> {
-    let run = RUNS.fetch_add(1, Ordering::SeqCst);
-    let folder = Folder::new(&format!("starts-{run}"));
-    let (model, case) = (
-        folder.write("model.clebsch", model),
-        folder.write("case.toml", case),
-    );
-    let out = folder.path("out");
-    let done = program(&[
-        "run", &model, "--case", &case, "--steps", steps, "--out", &out,
-    ]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let table = std::fs::read_to_string(folder.path("out/trajectory.csv")).expect("written");
-    let mut lines = table.lines().filter(|line| !line.starts_with('#'));
-    let head = lines.next().expect("a head").split(',');
-    let numbers = lines.next_back().expect("a node").split(',');
-    head.zip(numbers)
-        .map(|(name, x)| (name.to_owned(), x.parse().unwrap_or(f64::NAN)))
-        .collect()
+/// The numbers of a run of so many steps.
+fn ran(model: &str, case: &str, steps: u32) -> Samples {
+    let number = RUNS.fetch_add(1, Ordering::SeqCst);
+    let folder = Folder::new(&format!("starts-{number}"));
+    run(&folder, model, case, &format!("--steps {steps} --out @out")).ended(0);
+    folder.samples("out/trajectory.csv")
 }
 
 /// The first step of a model has these numbers, to rounding.
 fn starts(model: &str, case: &str, wanted: &[(&str, f64)]) {
-    let found = last(model, case, "1");
+    let found = ran(model, case, 1);
     for (name, wanted) in wanted {
-        let x = found
-            .get(*name)
-            .unwrap_or_else(|| panic!("{name}: {:?}", found.keys()));
-        assert!(
-            (x - wanted).abs() < 4e-14 * (1.0 + wanted.abs()),
-            "{name}: {x} {wanted}"
-        );
+        let x = found.end(name);
+        let is_near = (x - wanted).abs() < 4e-14 * (1.0 + wanted.abs());
+        assert!(is_near, "{name}: {x} {wanted}");
     }
 }
 
@@ -391,14 +366,14 @@ k = 1.0
 x = "i"
 momentum_x = 0.1"#
         );
-        let found = last(model, &case, "20");
+        let found = ran(model, &case, 20);
         for (name, wanted) in [
             ("x_0", 0.039_933_181_895_467_36),
             ("momentum_x_0", 0.298_670_386_813_991_1),
             ("x_1", 1.020_066_727_258_567_6),
             ("invariant_energy", 0.505 * f64::from(n) + 0.005),
         ] {
-            let x = found[name];
+            let x = found.end(name);
             assert!(
                 (x - wanted).abs() < 1e-13 * (1.0 + f64::from(n)),
                 "{n} {name}: {x} {wanted}"
@@ -419,14 +394,11 @@ fn a_mass_of_zero_and_a_step_backwards_are_answered_with_what_to_do() {
              [initial]\nx1 = 0.6\nx2 = 0.2\n"
         )
     };
-    let done = run(&folder, model, &case("0.0"), &[]);
-    assert_eq!(done.code, 1, "{}{}", done.out, done.err);
+    let done = run(&folder, model, &case("0.0"), "").exits(1);
     let said = "if a mass or an inertia is zero, give it a small positive value";
-    assert!(done.err.contains(said), "{}", done.err);
-    let done = run(&folder, model, &case("1e-3"), &[]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    let done = run(&folder, model, &case("1.0"), &["--h=-0.01"]);
-    assert_eq!(done.code, 2, "{}{}", done.out, done.err);
+    done.says(said);
+    run(&folder, model, &case("1e-3"), "").succeeds();
+    let done = run(&folder, model, &case("1.0"), "--h=-0.01").exits(2);
     let said = "to run backwards in time, reverse all initial momenta";
-    assert!(done.err.contains(said), "{}", done.err);
+    done.says(said);
 }

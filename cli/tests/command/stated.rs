@@ -1,24 +1,20 @@
 //! The verdict by the action as stated: every model file with its cases holds, what is not judged is said not to be, and the numbers
 //! stand in the object too.
 
-use crate::common::{Folder, program as clebsch};
+use crate::common::{Folder, clebsch, models, runs};
 use serde_json::Value;
-
-fn shipped(file: &str) -> String {
-    format!("{}/../models/{file}", env!("CARGO_MANIFEST_DIR"))
-}
 
 /// The verdict on a few steps of every case of a model file.
 fn judged(name: &str, steps: &str, words: &str) {
-    let model = shipped(&format!("{name}.clebsch"));
-    let own = std::path::PathBuf::from(shipped(&format!("{name}.toml")));
-    let folder = std::fs::read_dir(shipped(name)).into_iter().flatten();
+    let own = std::path::PathBuf::from(models(&format!("{name}.toml")));
+    let folder = std::fs::read_dir(models(name)).into_iter().flatten();
     let mut cases: Vec<_> = folder.flatten().map(|entry| entry.path()).collect();
     cases.push(own);
     for case in cases.iter().filter(|case| case.is_file()) {
         let case = case.display().to_string();
-        let done = clebsch(&["run", &model, "--case", &case, "--steps", steps]);
-        assert_eq!(done.code, 0, "{case}: {}{}", done.out, done.err);
+        let done = runs(&format!(
+            "run models/{name}.clebsch --case {case} --steps {steps}"
+        ));
         let line = done.out.split("action as stated: ").nth(1);
         let line = line.unwrap_or_else(|| panic!("{case}: {}", done.out));
         assert!(line.contains(words), "{case}: {line}");
@@ -62,16 +58,7 @@ judged! {
 #[test]
 fn the_steps_that_are_judged_are_those_asked_for() {
     let object = |check: &str| -> Value {
-        let done = clebsch(&[
-            "run",
-            "heavy-top",
-            "--steps",
-            "300",
-            "--check",
-            check,
-            "--json",
-        ]);
-        assert_eq!(done.code, 0, "{}", done.err);
+        let done = runs(&format!("run heavy-top --steps 300 --check {check} --json"));
         done.out.parse().expect("an object")
     };
     let of = |check: &str| object(check)["results"]["action_as_stated"].clone();
@@ -85,11 +72,8 @@ fn the_steps_that_are_judged_are_those_asked_for() {
     );
     assert_eq!(of("all")["judged"], 300);
     assert!(of("none").is_null());
-    let done = clebsch(&["run", "free-body", "--steps", "10", "--order", "4"]);
-    assert!(
-        done.out
-            .contains("action as stated: not judged: a step of order 4 has modified moments")
-    );
+    clebsch("run free-body --steps 10 --order 4")
+        .prints("action as stated: not judged: a step of order 4 has modified moments");
 }
 
 /// Of a composed step each of the steps that it is made of is judged, by its own length: the same of bodies that are compiled,
@@ -99,21 +83,19 @@ fn the_parts_of_a_composed_step_are_judged() {
     for (model, case) in [
         ("heavy-top".to_owned(), None),
         (
-            shipped("elastic/neo-hooke.clebsch"),
+            models("elastic/neo-hooke.clebsch"),
             Some("elastic/neo-hooke.toml"),
         ),
         (
-            shipped("lattices/sine-gordon.clebsch"),
+            models("lattices/sine-gordon.clebsch"),
             Some("lattices/sine-gordon.toml"),
         ),
     ] {
         for order in ["4", "8"] {
-            let case = case.map(shipped);
+            let case = case.map(models);
             let mut words = vec!["run", &model, "--steps", "30", "--order", order, "--json"];
             words.extend(case.iter().flat_map(|c| ["--case", c.as_str()]));
-            let done = clebsch(&words);
-            assert_eq!(done.code, 0, "{model} {order}: {}", done.err);
-            let object: Value = done.out.parse().expect("an object");
+            let object = runs(&words).json();
             let judged = &object["results"]["action_as_stated"];
             assert_eq!(judged["judged"], 30, "{model} {order}");
             let ratio = judged["worst"]["ratio"].as_f64();
@@ -131,15 +113,11 @@ fn a_body_at_rest_is_no_failure_of_the_check() {
     let folder = Folder::new("stated-at-rest");
     let text = "model Rest { param m, k: Real; field x: Vec<3>;
         lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - (h*k/2)*dot(x, x); }";
-    let model = folder.write("rest.clebsch", text);
+    folder.write("rest.clebsch", text);
     let case = "model = \"rest\"\nh = 0.1\nsteps = 20\n[parameters]\nm = 1.3\nk = 0.7\n\
         [initial]\nx = [0.0, 0.0, 0.0]\nmomentum = [0.0, 0.0, 0.0]\n";
     let case = folder.write("rest.toml", case);
-    let done = clebsch(&["run", &model, "--case", &case]);
-    assert_eq!(done.code, 0, "{}{}", done.out, done.err);
-    assert!(
-        done.out.contains("20 steps judged, largest residual 0 of"),
-        "{}",
-        done.out
-    );
+    folder
+        .runs(&format!("run @rest.clebsch --case {case}"))
+        .prints("20 steps judged, largest residual 0 of");
 }

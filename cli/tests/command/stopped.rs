@@ -1,7 +1,7 @@
 //! Runs that do not come to their end: refused before the first step they leave nothing, stopped after it they leave
 //! what was computed, and say so wherever it is read.
 
-use super::common::{Done, Folder, clebsch, on};
+use crate::common::{Done, Folder, on, rotor};
 use clebsch_cli::gallery::Gallery;
 use serde_json::Value;
 use std::fs;
@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// A torque so stiff that the rotor outruns its step after some steps.
 fn failing(folder: &Folder) -> String {
-    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    let text = rotor("case harmonic-rotor").out;
     folder.write(
         "failing.toml",
         &text.replace("kappa = 1.0", "kappa = -400.0"),
@@ -17,7 +17,7 @@ fn failing(folder: &Folder) -> String {
 }
 
 fn run(file: &str, more: &[&str]) -> Done {
-    clebsch(&[&["run", "harmonic-rotor", "--case", file][..], more].concat())
+    rotor(&[&["run", "harmonic-rotor", "--case", file][..], more].concat())
 }
 
 fn read(folder: &str, name: &str) -> String {
@@ -43,15 +43,14 @@ fn a_run_that_stops_leaves_what_it_computed_marked_as_stopped() {
     let file = failing(&folder);
     for every in ["1", "4"] {
         let out = folder.path(&format!("new/out-{every}"));
-        let done = run(&file, &["--every", every, "--out", &out]);
-        assert_eq!(done.code, 1);
+        let done = run(&file, &["--every", every, "--out", &out]).exits(1);
         let node = node_of(&done.err);
         assert!(node > 4, "{}", done.err);
         // On the terminal.
         let said = format!("stopped at node {node} (time ");
-        assert!(done.out.contains(&said), "{}", done.out);
-        assert!(done.out.contains("\nenergy "), "{}", done.out);
-        assert!(done.out.contains("written to "), "{}", done.out);
+        done.prints(&said);
+        done.prints("\nenergy ");
+        done.prints("written to ");
         // In the manifest.
         let manifest = json(&read(&out, "run.json"));
         let stopped = &manifest["results"]["stopped"];
@@ -89,8 +88,7 @@ fn a_run_that_stops_leaves_what_it_computed_marked_as_stopped() {
 fn it_says_so_without_files_and_as_json() {
     let folder = Folder::new("stopped_json");
     let file = failing(&folder);
-    let done = run(&file, &["--json"]);
-    assert_eq!(done.code, 1);
+    let done = run(&file, &["--json"]).exits(1);
     assert_eq!(done.out.lines().count(), 1, "{}", done.out);
     let object = json(&done.out);
     assert_eq!(object["exit_code"], 1);
@@ -98,7 +96,7 @@ fn it_says_so_without_files_and_as_json() {
     assert_eq!(object["error"], object["results"]["stopped"]["why"]);
     assert_eq!(object["results"]["stopped"]["node"], node_of(&done.err));
     // A run that comes to its end says that it did not stop.
-    let done = clebsch(&["run", "harmonic-rotor", "--json"]);
+    let done = rotor("run harmonic-rotor --json");
     assert_eq!(json(&done.out)["results"]["stopped"], Value::Null);
 }
 
@@ -107,19 +105,14 @@ fn a_run_that_stops_keeps_the_earlier_results() {
     let folder = Folder::new("stopped_force");
     let file = failing(&folder);
     let out = folder.path("out");
-    assert_eq!(clebsch(&["run", "harmonic-rotor", "--out", &out]).code, 0);
+    folder.rotor("run harmonic-rotor --out @out").ended(0);
     let before = read(&out, "run.json");
-    let done = run(&file, &["--out", &out, "--force"]);
-    assert_eq!(done.code, 1);
+    let done = run(&file, &["--out", &out, "--force"]).exits(1);
     assert_eq!(read(&out, "run.json"), before);
     // Its own are beside them.
     assert_eq!(folder.names(), ["failing.toml", "out", "out-2"]);
     let kept = folder.path("out-2");
-    assert!(
-        done.out.contains(&format!("written to {kept}: ")),
-        "{}",
-        done.out
-    );
+    done.prints(&format!("written to {kept}: "));
     let manifest = json(&read(&kept, "run.json"));
     assert_eq!(manifest["results"]["stopped"]["node"], node_of(&done.err));
 }
@@ -128,16 +121,12 @@ fn a_run_that_stops_keeps_the_earlier_results() {
 fn a_run_refused_before_its_first_step_leaves_nothing() {
     let folder = Folder::new("refused_start");
     let out = folder.path("new/out");
-    let done = clebsch(&["run", "harmonic-rotor", "--h", "10", "--out", &out]);
-    assert_eq!(done.code, 1);
-    assert!(
-        done.err.contains("cannot take the first step"),
-        "{}",
-        done.err
-    );
+    folder
+        .rotor("run harmonic-rotor --h 10 --out @new/out")
+        .fails("cannot take the first step");
     assert!(folder.names().is_empty());
     // What stood there stays.
-    assert_eq!(clebsch(&["run", "harmonic-rotor", "--out", &out]).code, 0);
+    folder.rotor("run harmonic-rotor --out @new/out").ended(0);
     let before = read(&out, "run.json");
     let run = [
         "run",
@@ -148,7 +137,7 @@ fn a_run_refused_before_its_first_step_leaves_nothing() {
         &out,
         "--force",
     ];
-    assert_eq!(clebsch(&run).code, 1);
+    rotor(&run).ended(1);
     assert_eq!(read(&out, "run.json"), before);
     assert_eq!(folder.names(), ["new"]);
 }
@@ -194,22 +183,16 @@ fn a_refused_first_step_says_what_is_wrong_with_the_kinetic_energy() {
         let run = ["run", model, "--steps", "5"];
         let done = on(&gallery, &run);
         let words = format!("the kinetic energy at the start is {sort}: ");
-        assert!(
-            done.err.contains(&words),
-            "{model}: {}\n{}",
-            done.err,
-            done.out
-        );
+        done.says(&words);
         if done.err.contains("cannot take the first step: ") {
-            assert_eq!(done.code, 1);
+            done.ended(1);
             refused += 1;
             let done = on(&gallery, &[&run[..], &["--json"]].concat());
             let object = json(&done.out);
             let said = object["error"].as_str().expect("a message");
             assert!(said.contains(&words), "{model}: {said}");
             // Other commands that begin with a step.
-            let done = on(&gallery, &["compare", model, "--steps", "5"]);
-            assert!(done.err.contains(&words), "{model}: {}", done.err);
+            on(&gallery, &["compare", model, "--steps", "5"]).says(&words);
         }
     }
     assert!(refused >= 2, "{refused} first steps were refused");
@@ -229,8 +212,7 @@ fn a_comparison_that_stops_leaves_what_it_computed() {
             "--every",
             every,
         ];
-        let done = clebsch(&[&arguments[..], &["--out", &out]].concat());
-        assert_eq!(done.code, 1, "{}", done.err);
+        let done = rotor(&[&arguments[..], &["--out", &out]].concat()).exits(1);
         let node = node_of(&done.err);
         let said = format!("gave up at node {}: no step from node {node} ", node + 1);
         let words = done.out.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -251,8 +233,7 @@ fn a_comparison_that_stops_leaves_what_it_computed() {
         assert_eq!(times.len() as u64, node / step, "{text}");
         assert!(Path::new(&format!("{out}/comparison.svg")).exists());
         // The same as an object.
-        let done = clebsch(&[&arguments[..], &["--json"]].concat());
-        assert_eq!(done.code, 1);
+        let done = rotor(&[&arguments[..], &["--json"]].concat()).exits(1);
         let object = json(&done.out);
         assert_eq!(object["exit_code"], 1);
         assert!(

@@ -1,6 +1,6 @@
 //! Sweeps: what is varied, and that neither parts nor kills change a byte of the table.
 
-use super::common::{Done, Folder, shipped as clebsch};
+use crate::common::{Done, Folder, Samples, clebsch, runs, table};
 use std::fs;
 
 const FILES: [&str; 3] = ["sweep.csv", "sweep.json", "sweep.npz"];
@@ -21,47 +21,24 @@ fn same(one: &str, other: &str) {
 
 fn column(folder: &str, name: &str) -> Vec<f64> {
     let text = fs::read_to_string(format!("{folder}/sweep.csv")).expect("there");
-    let mut lines = text.lines();
-    let header = lines.next().expect("a header");
-    let at = header
-        .split(',')
-        .position(|n| n == name)
-        .unwrap_or_else(|| panic!("{name} in {header}"));
-    let cell = |line: &str| {
-        line.split(',')
-            .nth(at)
-            .expect("a cell")
-            .parse()
-            .expect("a number")
-    };
-    lines.map(cell).collect()
+    Samples::of(&text).column(name)
 }
 
 #[test]
 fn a_row_is_the_run_of_its_point() {
     let folder = Folder::new("sweep-rows");
     let out = folder.path("sweep");
-    let done = sweep(&out, &[]);
-    assert_eq!(done.code, 1, "{}", done.err);
-    assert!(done.out.contains("15 points"), "{}", done.out);
-    assert!(
-        done.out
-            .contains("10 complete, 0 stopped before their end, 5 refused"),
-        "{}",
-        done.out
-    );
+    let done = sweep(&out, &[]).exits(1);
+    done.prints("15 points");
+    done.prints("10 complete, 0 stopped before their end, 5 refused");
     // The step of 5 is the third value of the axis that varies first.
-    assert!(
-        done.err.contains("the first refused point, 2: "),
-        "{}",
-        done.err
-    );
+    done.says("the first refused point, 2: ");
     let values = column(&out, "gU.z");
     assert_eq!(values[..4], [0.0, 0.0, 0.0, 0.25]);
     assert_eq!(column(&out, "h")[..4], [0.1, 0.05, 5.0, 0.1]);
     assert_eq!(column(&out, "status")[..4], [0.0, 0.0, 2.0, 0.0]);
     // The same point by a case file: number four of the grid.
-    let case = clebsch(&["case", "heavy-top"]).out;
+    let case = clebsch("case heavy-top").out;
     let lines = case.lines().map(|line| match line.starts_with("gU = ") {
         true => "gU = [0.0, 0.0, 0.25]".to_owned(),
         false => line.to_owned(),
@@ -69,21 +46,8 @@ fn a_row_is_the_run_of_its_point() {
     let text: Vec<String> = lines.collect();
     let file = folder.path("case.toml");
     fs::write(&file, text.join("\n")).expect("written");
-    let run = folder.path("run");
-    let done = clebsch(&[
-        "run",
-        "heavy-top",
-        "--case",
-        &file,
-        "--steps",
-        "200",
-        "--h",
-        "0.1",
-        "--out",
-        &run,
-    ]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let text = fs::read_to_string(format!("{run}/trajectory.csv")).expect("there");
+    folder.runs("run heavy-top --case @case.toml --steps 200 --h 0.1 --out @run");
+    let text = folder.read("run/trajectory.csv");
     let (header, last) = (
         text.lines().next().expect("a header"),
         text.lines().last().expect("a row"),
@@ -122,8 +86,7 @@ fn along_a_line_the_names_are_those_of_the_case_file() {
         let arguments = [
             "sweep", &model, "--case", &case, "--out", &out, "--force", "--vary", vary,
         ];
-        let done = clebsch(&arguments);
-        assert_eq!(done.code, 0, "{vary}: {}", done.err);
+        runs(&arguments);
         ["x_0_1", "x_1_1", "x_2_1", "x_2_2"].map(|name| *column(&out, name).last().expect("a row"))
     };
     // One step moves by h p/m, at the end by h^2 F/(2 m) beside that.
@@ -140,20 +103,18 @@ fn along_a_line_the_names_are_those_of_the_case_file() {
     near(last("F.2=0,4"), [0.1, 0.1, 0.105, 0.02]);
     near(last("F_N.2=0,4"), [0.1, 0.1, 0.105, 0.02]);
     near(last("momentum_x.1=0,3"), [0.3, 0.3, 0.305, 0.0]);
-    for (vary, more, says) in [
-        (
-            "m=1,2",
-            "m_2=3",
-            "--vary m_2: given twice, since --vary m sets the same number",
-        ),
-        ("F.1=1", "F_N.1=1", "sets the same number"),
-        ("F=1", "k=1", "`F` has 2 numbers; name one, such as F.1"),
-        ("q=1", "k=1", "it has m, k, F, x, momentum_x and the step h"),
-    ] {
+    for [vary, more, says] in table(
+        "
+        m=1,2 | m_2=3   | --vary m_2: given twice, since --vary m sets the same number
+        F.1=1 | F_N.1=1 | sets the same number
+        F=1   | k=1     | `F` has 2 numbers; name one, such as F.1
+        q=1   | k=1     | it has m, k, F, x, momentum_x and the step h
+",
+    ) {
         let (out, start) = (folder.path("none"), ["sweep", &model, "--case", &case]);
         let done =
-            clebsch(&[&start[..], &["--out", &out, "--vary", vary, "--vary", more]].concat());
-        assert_eq!(done.code, 2, "{vary}: {}", done.err);
+            clebsch(&[&start[..], &["--out", &out, "--vary", vary, "--vary", more]].concat())
+                .exits(2);
         let all = done.err.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(all.contains(says), "{vary}: {all}");
     }
@@ -168,8 +129,7 @@ fn parts_are_joined_to_the_table_of_the_whole() {
         .map(|part| folder.path(&format!("part-{part}")))
         .collect();
     for (part, out) in parts.iter().enumerate() {
-        let done = sweep(out, &["--shard", &format!("{}/4", part + 1)]);
-        assert_eq!(done.code, 1, "{}", done.err);
+        sweep(out, &["--shard", &format!("{}/4", part + 1)]).exits(1);
     }
     let collect = |parts: &[&String], out: &str| {
         let mut all = vec!["collect", "--out", out];
@@ -178,14 +138,11 @@ fn parts_are_joined_to_the_table_of_the_whole() {
     };
     let joined = folder.path("joined");
     let [a, b, c, d] = [&parts[0], &parts[1], &parts[2], &parts[3]];
-    let done = collect(&[c, a, d, b], &joined);
-    assert_eq!(done.code, 1, "{}", done.err);
+    collect(&[c, a, d, b], &joined).exits(1);
     same(&whole, &joined);
     // What is not the whole, or not of one sweep, is said.
     let refused = |parts: &[&String], says: &str| {
-        let done = collect(parts, &folder.path("none"));
-        assert_eq!(done.code, 2, "{}", done.err);
-        assert!(done.err.contains(says), "{}", done.err);
+        collect(parts, &folder.path("none")).refuses(says);
     };
     refused(&[a, b, d], "is missing: 3 of 4");
     refused(&[a, b, b, c, d], "given twice");
@@ -193,7 +150,7 @@ fn parts_are_joined_to_the_table_of_the_whole() {
     let other = folder.path("other");
     assert_eq!(sweep(&other, &["--shard", "4/4", "--order", "4"]).code, 1);
     // Orders are no part of a case; the columns are the same, and so is what they hold not.
-    let text = fs::read_to_string(format!("{other}/sweep.json")).expect("there");
+    let text = folder.read("other/sweep.json");
     assert!(text.contains("\"order\": 4"), "{text}");
     refused(&[a, b, c, &other], "of another sweep");
     let csv = format!("{d}/sweep.csv");
@@ -225,66 +182,33 @@ fn wrong_axes_are_named() {
         };
         let mut all = vec!["sweep", "heavy-top", "--out", &out, "--vary", vary];
         all.extend(more);
-        let done = clebsch(&all);
-        assert_eq!(done.code, 2, "{vary}: {}", done.err);
-        assert!(done.err.contains(says), "{vary}: {}", done.err);
+        clebsch(&all).refuses(says);
     }
-    let twice = clebsch(&[
-        "sweep",
-        "heavy-top",
-        "--out",
-        &out,
-        "--vary",
-        "gU.z=1",
-        "--vary",
-        "gU.3=2",
-    ]);
-    assert_eq!(twice.code, 2, "{}", twice.err);
-    assert!(twice.err.contains("given twice"), "{}", twice.err);
+    folder
+        .clebsch("sweep heavy-top --out @out --vary gU.z=1 --vary gU.3=2")
+        .refuses("given twice");
     assert!(folder.names().is_empty());
 }
 
 #[cfg(unix)]
 #[test]
 fn killed_sweeps_go_on_with_what_is_left() {
-    use std::process::{Command, Stdio};
-    use std::time::{Duration, Instant};
+    use crate::signals::{begun, ended_by, succeeds, wait_for, written};
     let folder = Folder::new("sweep-killed");
-    let command = |out: &str| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_clebsch"));
-        command.args([
-            "sweep",
-            "heavy-top",
-            "--steps",
-            "30000",
-            "--vary",
-            "gU.z=0:1:60",
-        ]);
-        command
-            .args(["--out", out, "--resume"])
-            .stdout(Stdio::null())
-            .stderr(Stdio::null());
-        command
+    let [whole, out] = ["whole", "killed"].map(|name| folder.path(name));
+    let words = |out: &str| {
+        format!("sweep heavy-top --steps 30000 --vary gU.z=0:1:60 --resume --out {out}")
     };
-    let whole = folder.path("whole");
-    let from = Instant::now();
-    assert!(command(&whole).status().expect("runs").success());
-    let length = from.elapsed();
-    let out = folder.path("killed");
-    for (kill, signal) in ["-KILL", "-INT", "-KILL", "-TERM"].into_iter().enumerate() {
-        let mut child = command(&out).spawn().expect("starts");
-        std::thread::sleep(
-            length
-                .mul_f64(0.2 + 0.15 * kill as f64)
-                .max(Duration::from_millis(250)),
-        );
-        let _ = Command::new("kill")
-            .args([signal, &child.id().to_string()])
-            .stderr(Stdio::null())
-            .status();
-        child.wait().expect("ends");
+    assert!(succeeds(&words(&whole)));
+    for signal in ["-KILL", "-INT", "-KILL", "-TERM"] {
+        let before = written(&out, "samples.bin");
+        let mut child = begun(&words(&out));
+        // There is something to be gone on from, and more than before.
+        wait_for(&mut child, &out, "checkpoint", |bytes| !bytes.is_empty());
+        wait_for(&mut child, &out, "samples.bin", |bytes| bytes != before);
+        ended_by(signal, child);
     }
-    assert!(command(&out).status().expect("runs").success());
+    assert!(succeeds(&words(&out)));
     same(&whole, &out);
     assert_eq!(folder.names(), ["killed", "whole"]);
 }
@@ -293,23 +217,9 @@ fn killed_sweeps_go_on_with_what_is_left() {
 fn a_sweep_none_of_whose_points_starts_fails_with_the_reason() {
     let folder = Folder::new("sweep-refused");
     let out = folder.path("sweep");
-    let done = clebsch(&[
-        "sweep",
-        "heavy-top",
-        "--vary",
-        "h=5,6",
-        "--steps",
-        "3",
-        "--out",
-        &out,
-    ]);
-    assert_eq!(done.code, 1, "{}{}", done.out, done.err);
-    assert!(
-        done.err
-            .contains("no point could be started; the first refused point, 0: "),
-        "{}",
-        done.err
-    );
+    folder
+        .clebsch("sweep heavy-top --vary h=5,6 --steps 3 --out @sweep")
+        .fails("no point could be started; the first refused point, 0: ");
     assert_eq!(column(&out, "status"), [2.0, 2.0]);
 }
 
@@ -330,9 +240,9 @@ fn a_sweep_ends_with_the_code_of_a_run() {
         folder.write("spring.toml", &case);
         let out = folder.path(&format!("out-{code}"));
         let arguments = ["sweep", &model, "--vary", "k=1,2", "--out", &out];
-        assert_eq!(clebsch(&arguments).code, code);
+        clebsch(&arguments).ended(code);
         let again = [&arguments[..], &["--resume"]].concat();
-        assert_eq!(clebsch(&again).code, code);
-        assert_eq!(clebsch(&["run", &model]).code, code);
+        clebsch(&again).ended(code);
+        clebsch(&format!("run {model}")).ended(code);
     }
 }

@@ -1,6 +1,7 @@
 //! What fits a terminal, what helps at it, and what is read from it.
 
-use super::common::{Folder, clebsch, gallery, on, with};
+use crate::common::{Folder, on, rotor, with};
+use crate::rotor::gallery;
 use clebsch_cli::gallery::Gallery;
 
 const COMMANDS: [&str; 12] = [
@@ -24,8 +25,7 @@ fn fits(text: &str, width: usize, what: &str) {
 fn help_fits_and_has_examples() {
     for width in [40, 60, 80, 100, 200] {
         let help = |arguments: &[&str]| {
-            let done = with(&gallery(), arguments, "", Some(width));
-            assert_eq!(done.code, 0);
+            let done = with(&gallery(), arguments, "", Some(width)).succeeds();
             fits(&done.out, width.min(100), &format!("{arguments:?}"));
             done.out
         };
@@ -40,14 +40,14 @@ fn help_fits_and_has_examples() {
         assert!(short.contains("Examples:\n"));
     }
     // Without a terminal lines are those of a page.
-    fits(&clebsch(&["run", "--help"]).out, 100, "no terminal");
+    fits(&rotor("run --help").out, 100, "no terminal");
 }
 
 /// Every example of the help runs, on the shipped models.
 #[test]
 fn examples_of_the_help_are_understood() {
     for command in COMMANDS {
-        let help = clebsch(&[command, "--help"]).out;
+        let help = rotor(&format!("{command} --help")).out;
         let examples = help.split("Examples:\n").nth(1).expect("examples");
         for line in examples
             .lines()
@@ -82,8 +82,7 @@ fn derivations_fit() {
             let page = on(&gallery, arguments).out;
             for width in [40, 60, 80, 132] {
                 let what = format!("{arguments:?}, {width}");
-                let done = with(&gallery, arguments, "", Some(width));
-                assert_eq!(done.code, 0, "{}", done.err);
+                let done = with(&gallery, arguments, "", Some(width)).succeeds();
                 fits(&done.out, width, &what);
                 // Headings are underlined by as many letters as they have: only what is no rule is compared.
                 let lines = |text: &str| -> Vec<String> {
@@ -116,16 +115,14 @@ fn derivations_fit() {
 #[test]
 fn tables_fit() {
     for width in [60, 80, 120] {
-        let done = with(&Gallery::shipped(), &["list"], "", Some(width));
-        assert_eq!(done.code, 0);
+        let done = with(&Gallery::shipped(), &["list"], "", Some(width)).succeeds();
         fits(&done.out, width, "list");
         for entry in Gallery::shipped().entries {
-            assert!(done.out.contains(entry.card.kebab));
+            done.prints(entry.card.kebab);
         }
         for model in ["heavy-top", "kirchhoff-body", "coupled-bodies"] {
             let run = ["run", model, "--steps", "20"];
-            let done = with(&Gallery::shipped(), &run, "", Some(width));
-            assert_eq!(done.code, 0, "{}", done.err);
+            let done = with(&Gallery::shipped(), &run, "", Some(width)).succeeds();
             fits(&done.out, width, model);
             // The same words as without a limit.
             let wide = on(&Gallery::shipped(), &run).out;
@@ -133,16 +130,11 @@ fn tables_fit() {
                 .split_whitespace()
                 .filter(|word| word.chars().count() < 14)
             {
-                assert!(
-                    done.out.contains(word),
-                    "{model}, {width}: {word}\n{}",
-                    done.out
-                );
+                done.prints(word);
             }
         }
         let compare = ["compare", "heavy-top", "--steps", "10"];
-        let done = with(&Gallery::shipped(), &compare, "", Some(width));
-        assert_eq!(done.code, 0, "{}", done.err);
+        let done = with(&Gallery::shipped(), &compare, "", Some(width)).succeeds();
         fits(&done.out, width, "compare");
     }
 }
@@ -150,43 +142,32 @@ fn tables_fit() {
 #[test]
 fn what_was_meant_is_understood_or_answered() {
     let folder = Folder::new("meant");
-    let million = clebsch(&["run", "harmonic-rotor", "--steps", "2e3", "--json"]);
-    assert_eq!(million.code, 0, "{}", million.err);
-    assert!(million.out.contains("\"steps\":2000"), "{}", million.out);
-    let text = clebsch(&["case", "harmonic-rotor"]).out;
+    rotor("run harmonic-rotor --steps 2e3 --json")
+        .succeeds()
+        .prints("\"steps\":2000");
+    let text = rotor("case harmonic-rotor").out;
     let file = folder.write("case.toml", &text.replace("steps = 2000", "steps = 1e2"));
-    let done = clebsch(&["run", "harmonic-rotor", "--case", &file, "--json"]);
-    assert!(done.out.contains("\"steps\":100"), "{}", done.err);
+    let done = folder.rotor("run harmonic-rotor --case @case.toml --json");
+    done.prints("\"steps\":100");
     for wrong in ["1e-3", "1.5", "1e300", "1e"] {
-        let done = clebsch(&["run", "harmonic-rotor", "--steps", wrong]);
-        assert_eq!(done.code, 2, "{wrong}");
-        assert!(
-            done.err
-                .contains("give a whole number, such as 20000 or 2e4"),
-            "{}",
-            done.err
-        );
+        rotor(&format!("run harmonic-rotor --steps {wrong}"))
+            .refuses("give a whole number, such as 20000 or 2e4");
     }
 
     let run = format!("clebsch run harmonic-rotor --case {file}");
     for command in ["derive", "run", "compare", "case"] {
-        let done = clebsch(&[command, &file]);
-        assert_eq!(done.code, 2);
-        assert!(done.err.contains("is a case file"), "{}", done.err);
-        assert!(done.err.contains(&run), "{}", done.err);
+        folder
+            .rotor(&format!("{command} @case.toml"))
+            .refuses("is a case file")
+            .says(&run);
     }
-    let done = clebsch(&["derive", "nowhere.toml"]);
-    assert!(
-        done.err.contains("clebsch run MODEL --case nowhere.toml"),
-        "{}",
-        done.err
-    );
+    let done = rotor("derive nowhere.toml");
+    done.says("clebsch run MODEL --case nowhere.toml");
 
     let model = folder.write("my.clebsch", "model My {}");
     for name in [model.as_str(), "nowhere.clebsch"] {
-        let done = clebsch(&["run", name]);
-        assert_eq!(done.code, 2);
-        assert_eq!(done.err, clebsch(&["derive", name]).err);
+        let done = rotor(&format!("run {name}")).exits(2);
+        assert_eq!(done.err, rotor(&format!("derive {name}")).err);
     }
 }
 
@@ -288,8 +269,7 @@ fn vectors_of_six_are_derived_in_parts() {
         ("-", SPRING),
     ] {
         let derive = ["derive", name];
-        let done = with(&Gallery::shipped(), &derive, input, None);
-        assert_eq!(done.code, 0, "{}", done.err);
+        let done = with(&Gallery::shipped(), &derive, input, None).succeeds();
         let inclusions: Vec<&str> = done.out.lines().filter(|line| line.contains('ι')).collect();
         assert!(inclusions.is_empty(), "{name}: {inclusions:#?}");
         if name != "body-n" {
@@ -299,19 +279,13 @@ fn vectors_of_six_are_derived_in_parts() {
                 false => "M",
             };
             let [angular, linear] = ["ang", "lin"].map(|part| format!("{part}({edge}_"));
-            for words in [
+            done.prints([
                 &*angular,
                 &*linear,
                 "ang(μ_k) = ",
                 "lin(μ_k) = ",
                 "ang and lin",
-            ] {
-                assert!(
-                    done.out.contains(words),
-                    "{name}: {words} is missing in\n{}",
-                    done.out
-                );
-            }
+            ]);
             let page = [&derive[..], &["--format", "latex"]].concat();
             let page = with(&Gallery::shipped(), &page, input, None).out;
             assert!(!page.contains("\\iota"), "{name}");

@@ -1,8 +1,8 @@
 //! Starts at which the action is not a number: the message names the site of the bad value and what of the statement is not
 //! finite there, along chains that are written out and along those that run by loops.
 
-use super::common::Folder;
-use super::ran::run;
+use crate::common::Folder;
+use crate::ran::run;
 
 const FIELD: &str = "model E {
     label i in 0..N;
@@ -12,8 +12,7 @@ const FIELD: &str = "model E {
 }";
 
 fn refused(name: &str, model: &str, case: &str) -> String {
-    let done = run(&Folder::new(name), model, case, &[]);
-    assert_eq!(done.code, 1, "{}{}", done.out, done.err);
+    let done = run(&Folder::new(name), model, case, "").exits(1);
     done.err
 }
 

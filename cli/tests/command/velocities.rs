@@ -1,7 +1,7 @@
 //! Initial values as velocities: their momenta are those of the discrete Legendre transform, compared with closed forms; what
 //! gives no momenta is told with what to write.
 
-use crate::common::{Folder, clebsch, shipped};
+use crate::common::Folder;
 use crate::ran::{Ran, run};
 
 /// Eight roundings of a sum of terms of this size.
@@ -86,25 +86,24 @@ fn angular_velocities_are_those_of_the_body_or_of_space() {
             "model = \"heavy-top\"\nh = 0.01\nsteps = 2\n[parameters]\nJ = {{ I = [2.0, 2.0, 1.0] }}\ngU = [0, 0, 1]\nz = [0, 0, 1]\n\
              [initial]\nLambda = {{ axis = [1, 0, 0], angle = \"pi/6\" }}\n{start}\n"
         );
-        let file = folder.write("top.toml", &case);
-        shipped(&["run", "heavy-top", "--case", &file, "--check", "all"])
+        folder.write("top.toml", &case);
+        folder.clebsch("run heavy-top --case @top.toml --check all")
     };
-    let done = of("angular_velocity = [0, 0.2, 5]");
-    assert_eq!(done.code, 0, "{}", done.err);
+    let done = of("angular_velocity = [0, 0.2, 5]").succeeds();
     let said = "initial body_momentum from angular_velocity: (0, 0.4, 5)";
-    assert!(done.out.contains(said), "{}", done.out);
+    done.prints(said);
     // The third axis of space is (0, 1/2, sqrt(3)/2) in the body.
     let done = of("spatial_angular_velocity_Lambda = [0, 0, 2]");
     let said = "initial body_momentum from spatial_angular_velocity_Lambda: (0, 2, 1.7320508)";
-    assert!(done.out.contains(said), "{}", done.out);
+    done.prints(said);
     let done = of("angular_velocity = [0, 0.2, 5]\nbody_momentum = [0, 0, 1]");
     let said =
         "top.toml:10: initial.angular_velocity: is given beside body_momentum: give one of them";
-    assert!(done.err.contains(said), "{}", done.err);
+    done.says(said);
     let done = of("omega = [0, 0.2, 5]");
     let said = "unknown key `omega` in [initial]; velocities are given by `angular_velocity` (in the axes of the body), \
                 `spatial_angular_velocity` (in those of space)";
-    assert!(done.err.contains(said), "{}", done.err);
+    done.says(said);
 }
 
 #[test]
@@ -196,14 +195,12 @@ fn what_is_not_given_rests_and_has_the_momentum_of_coupled_velocities() {
     assert!((ran.at("momentum_b", 0) - expected).abs() < 1e-13);
     let folder = Folder::new("velocities-mixed");
     let mixed = format!("{case}momentum_b = 0.1\n");
-    let done = run(&folder, model, &mixed, &[]);
-    assert_eq!(done.code, 2, "{}", done.out);
+    let done = run(&folder, model, &mixed, "").exits(2);
     let said = "initial.velocity_a: the momentum depends on the velocity of `b` too";
-    assert!(done.err.contains(said), "{}", done.err);
+    done.says(said);
     // Where nothing couples them, one may be given by its velocity and another one by its momentum.
     let apart = model.replace("+ m2*l^2*cos(between)*da*db", "");
-    let done = run(&folder, &apart, &mixed, &[]);
-    assert_eq!(done.code, 0, "{}", done.err);
+    run(&folder, &apart, &mixed, "").succeeds();
 }
 
 #[test]
@@ -241,14 +238,14 @@ fn along_a_line_velocities_are_values_expressions_or_lists() {
 #[test]
 fn printed_cases_of_chains_name_velocities() {
     let folder = Folder::new("velocities-printed");
-    let model = folder.write(
+    folder.write(
         "chain.clebsch",
         "model Chain { label i in 0..N; param m, k: Real; field q: Real at nodes;
          lagrangian = m*(next(q) - q)^2/(2*h) - (h*k/2)*(next(q, i) - q)^2; }",
     );
-    let printed = clebsch(&["case", &model]);
+    let printed = folder.clebsch("case @chain.clebsch");
     let said = "momentum_q = 0.0     # or velocity_q\n";
-    assert!(printed.out.contains(said), "{}", printed.out);
+    printed.prints(said);
 }
 
 #[test]
@@ -270,11 +267,10 @@ fn velocities_that_leave_a_constraint_are_refused() {
         near(ran.at(&format!("momentum_{}", i + 1), 0), 2.0 * v, 1.0);
     }
     let folder = Folder::new("velocities-across");
-    let done = run(&folder, model, &case("[0.4, 0.1, 0]"), &[]);
-    assert_eq!(done.code, 2, "{}", done.out);
+    let done = run(&folder, model, &case("[0.4, 0.1, 0]"), "").exits(2);
     let said = "case.toml:10: initial.velocity_x: the velocities leave the constraint `λ`: its left side less its right side changes \
                 at the rate 0.480000";
-    assert!(done.err.contains(said), "{}", done.err);
+    done.says(said);
 }
 
 /// Particles beside another field: both start with velocities.
@@ -330,41 +326,29 @@ fn every_configuration_of_a_fluid_has_a_velocity() {
 #[test]
 fn a_sweep_keeps_velocities_and_varies_them() {
     let folder = Folder::new("velocities-sweep");
-    let model = folder.write("kepler.clebsch", KEPLER);
-    let case = folder.write(
+    folder.write("kepler.clebsch", KEPLER);
+    folder.write(
         "case.toml",
         "model = \"kepler\"\nh = 0.01\nsteps = 1\n[parameters]\nm = 1\nk = 1\n[initial]\nx = [1, 0]\nvelocity_x = [0, 1]\n",
     );
-    let out = folder.path("out");
     let vary = |what: &str| {
-        clebsch(&[
-            "sweep", &model, "--case", &case, "--vary", what, "--out", &out, "--force",
-        ])
+        folder.clebsch(&format!(
+            "sweep @kepler.clebsch --case @case.toml --vary {what} --out @out --force"
+        ))
     };
     // The energy m (v^2/2 - 1) at the start, and how far it is kept, are those of the momentum at each point.
-    let columns = |name: &str| -> Vec<f64> {
-        let table = std::fs::read_to_string(format!("{out}/sweep.csv")).expect("is written");
-        let mut lines = table.lines();
-        let head: Vec<&str> = lines.next().expect("a head").split(',').collect();
-        let at = head.iter().position(|n| *n == name);
-        let at = at.unwrap_or_else(|| panic!("no {name} in {head:?}"));
-        let each = lines.map(|l| l.split(',').nth(at).expect("a cell"));
-        each.map(|x| x.parse().expect("a number")).collect()
-    };
-    let done = vary("m=1,2");
-    assert_eq!(done.code, 0, "{}", done.err);
+    let columns = |name: &str| folder.samples("out/sweep.csv").column(name);
+    vary("m=1,2").succeeds();
     for (m, p) in [1.0, 2.0].into_iter().zip(columns("momentum_2")) {
         assert!((p - m).abs() < 1e-3 * m, "{p}");
     }
-    let done = vary("velocity_x.2=1,3");
-    assert_eq!(done.code, 0, "{}", done.err);
+    vary("velocity_x.2=1,3").succeeds();
     for (v, p) in [1.0, 3.0].into_iter().zip(columns("momentum_2")) {
         assert!((p - v).abs() < 1e-3, "{p}");
     }
-    let done = vary("momentum.2=1,3");
-    assert_eq!(done.code, 2, "{}", done.out);
+    let done = vary("momentum.2=1,3").exits(2);
     let said = "the case gives velocity_x instead; set that";
-    assert!(done.err.contains(said), "{}", done.err);
+    done.says(said);
 }
 
 #[test]
@@ -397,15 +381,10 @@ fn a_velocity_that_no_momentum_knows_is_refused() {
         let case = format!(
             "model = \"{name}\"\nh = 0.01\nsteps = 5\n[parameters]\nm = 2\n[initial]\n{start}\n"
         );
-        let done = run(&folder, model, &case, &[]);
-        assert_eq!(done.code, 2, "{}", done.out);
+        let done = run(&folder, model, &case, "").exits(2);
         let said = format!("{key}: no momentum depends on this velocity, so it would be lost");
         let example = "as in `m*(next(x) - x)^2/(2*h)`";
-        assert!(
-            done.err.contains(&said) && done.err.contains(example),
-            "{}",
-            done.err
-        );
+        done.says(&said).says(example);
     }
     // The velocity of one is known by the momentum of the other.
     let crossed = "model Crossed {

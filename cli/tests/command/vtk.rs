@@ -1,7 +1,7 @@
 //! Files for ParaView: every array is there, decoded from base64, with as many numbers as its points or cells; they are
 //! the numbers of the trajectory; they go where other results go, and are removed with them.
 
-use crate::common::{Done, Folder, clebsch, program};
+use crate::common::{Done, Folder, clebsch, names_in, rotor};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -70,8 +70,8 @@ impl Read {
 /// Files of models are run by processes of their own.
 fn of(model: &str, arguments: &[&str]) -> Done {
     match model.ends_with(".clebsch") {
-        true => program(arguments),
-        false => clebsch(arguments),
+        true => clebsch(arguments),
+        false => rotor(arguments),
     }
 }
 
@@ -80,8 +80,7 @@ fn run(model: &str, case: Option<&str>, more: &[&str], out: &str) {
     let mut arguments = vec!["run", model, "--vtk", "--out", out];
     arguments.extend(case.iter().flat_map(|case| ["--case", *case]));
     arguments.extend(more);
-    let done = of(model, &arguments);
-    assert_eq!(done.code, 0, "{model}: {}{}", done.out, done.err);
+    of(model, &arguments).succeeds();
 }
 
 /// The times and files of a collection, which are all there.
@@ -241,13 +240,8 @@ fn a_body_is_a_point_with_its_axes() {
     run("harmonic-rotor", None, &["--steps", "10"], &out);
     let files = members(&out, "bodies");
     assert_eq!(files.len(), 11);
-    let csv = fs::read_to_string(format!("{out}/trajectory.csv")).expect("a table");
-    let head: Vec<&str> = csv.lines().next().expect("a head").split(',').collect();
-    let row: Vec<&str> = csv.lines().last().expect("a row").split(',').collect();
-    let of = |name: &str| -> f64 {
-        let at = head.iter().position(|h| *h == name).expect("a column");
-        row[at].parse().expect("a number")
-    };
+    let samples = folder.samples("out/trajectory.csv");
+    let of = |name: &str| samples.end(name);
     let read = Read::of(&files[10].1);
     assert_eq!(read.count("Points"), 1);
     for (axis, name) in ["d1", "d2", "d3"].iter().enumerate() {
@@ -265,14 +259,6 @@ fn the_folder_is_replaced_with_the_other_results_and_never_with_what_is_not_of_a
     let folder = Folder::new("vtk-force");
     let out = folder.path("out");
     run("harmonic-rotor", None, &["--steps", "10"], &out);
-    let names = |path: &str| -> Vec<String> {
-        let all = fs::read_dir(path).expect("a folder").flatten();
-        let mut all: Vec<String> = all
-            .map(|e| e.file_name().to_string_lossy().into_owned())
-            .collect();
-        all.sort();
-        all
-    };
     let first = fs::read(format!("{out}/vtk/bodies-05.vtp")).expect("a file");
     // The same bytes again, fewer files with fewer samples, none where none are asked for.
     run("harmonic-rotor", None, &["--steps", "10", "--force"], &out);
@@ -285,7 +271,7 @@ fn the_folder_is_replaced_with_the_other_results_and_never_with_what_is_not_of_a
         &out,
     );
     assert_eq!(
-        names(&format!("{out}/vtk")),
+        names_in(format!("{out}/vtk")),
         ["bodies-0.vtp", "bodies-1.vtp", "bodies.pvd"]
     );
     fs::write(format!("{out}/vtk/notes.txt"), "mine").expect("written");
@@ -298,27 +284,16 @@ fn the_folder_is_replaced_with_the_other_results_and_never_with_what_is_not_of_a
         "--out",
         &out,
     ];
-    let done = clebsch(&arguments);
-    assert_eq!(done.code, 2, "{}", done.err);
-    assert!(done.err.contains("notes.txt"), "{}", done.err);
+    let done = rotor(&arguments).exits(2);
+    done.says("notes.txt");
     fs::remove_file(format!("{out}/vtk/notes.txt")).expect("removed");
-    let done = clebsch(&arguments);
-    assert_eq!(done.code, 0, "{}", done.err);
+    rotor(&arguments).succeeds();
     assert!(!Path::new(&format!("{out}/vtk")).exists());
     assert_eq!(folder.names(), ["out"]);
     // What was written without them has none to go on with.
-    let done = clebsch(&[
-        "run",
-        "harmonic-rotor",
-        "--steps",
-        "10",
-        "--vtk",
-        "--resume",
-        "--out",
-        &out,
-    ]);
-    assert_eq!(done.code, 2, "{}", done.err);
-    assert!(done.err.contains("without --vtk"), "{}", done.err);
+    folder
+        .rotor("run harmonic-rotor --steps 10 --vtk --resume --out @out")
+        .refuses("without --vtk");
 }
 
 #[test]
@@ -329,81 +304,49 @@ fn a_long_run_has_about_a_thousand_samples_with_its_last() {
     let times: Vec<f64> = members(&out, "bodies").iter().map(|(t, _)| *t).collect();
     // Every third of 2501, and the last one.
     assert_eq!(times.len(), 835);
-    let csv = fs::read_to_string(format!("{out}/trajectory.csv")).expect("a table");
-    let last = csv.lines().last().expect("a row").split(',').nth(1);
-    let last: f64 = last.expect("a time").parse().expect("a number");
+    let last = folder.samples("out/trajectory.csv").end("time");
     assert_eq!(times.last().copied(), Some(last));
 }
 
 #[test]
 fn what_is_not_seen_is_refused_before_it_runs() {
     let folder = Folder::new("vtk-nothing");
-    let model = folder.write(
+    folder.write(
         "number.clebsch",
         "model Number { param m, c: Real; field q: Real; lagrangian = m*(next(q) - q)^2/(2*h) - h*c*q^2/2; }",
     );
-    let done = program(&[
-        "run",
-        &model,
-        "--case",
-        "sample",
-        "--vtk",
-        "--out",
-        &folder.path("out"),
-    ]);
-    assert_eq!(done.code, 2, "{}", done.err);
-    assert!(done.err.contains("nothing that is seen"), "{}", done.err);
+    folder
+        .clebsch(&format!(
+            "run @number.clebsch --case sample --vtk --out {}",
+            folder.path("out")
+        ))
+        .refuses("nothing that is seen");
     assert!(!Path::new(&folder.path("out")).exists());
     // Without a folder there is nowhere to write to.
-    assert_eq!(clebsch(&["run", "harmonic-rotor", "--vtk"]).code, 2);
+    rotor("run harmonic-rotor --vtk").ended(2);
 }
 
 /// Interrupted, a run leaves the files up to there; gone on with, those of a run that was left alone.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_is_gone_on_with_to_the_same_files() {
-    use std::process::{Command, Stdio};
-    use std::time::Duration;
+    use crate::signals::{begun, ended_by, succeeds, wait_for};
     let folder = Folder::new("vtk-resumed");
-    let (whole, out) = (folder.path("whole"), folder.path("out"));
-    let command = |out: &str, more: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_clebsch"));
-        command.args([
-            "run",
-            "heavy-top",
-            "--steps",
-            "4000000",
-            "--every",
-            "400000",
-            "--vtk",
-        ]);
-        command.args(["--out", out]).args(more);
-        command.stdout(Stdio::null()).stderr(Stdio::null());
-        command
+    let [whole, out] = ["whole", "out"].map(|name| folder.path(name));
+    let words = |out: &str, more: &str| {
+        format!("run heavy-top --steps 4000000 --every 400000 --vtk --out {out} {more}")
     };
-    assert!(command(&whole, &[]).status().expect("runs").success());
-    let mut child = command(&out, &[]).spawn().expect("starts");
-    std::thread::sleep(Duration::from_millis(500));
-    let id = child.id().to_string();
-    let _ = Command::new("kill").args(["-INT", &id]).status();
-    let _ = child.wait();
+    assert!(succeeds(&words(&whole, "")));
+    let mut child = begun(&words(&out, "--checkpoint 0.001"));
+    wait_for(&mut child, &out, "checkpoint", |bytes| !bytes.is_empty());
+    ended_by("-INT", child);
     // Whether it was met in the middle or had come to its end.
-    assert!(
-        command(&out, &["--resume"])
-            .status()
-            .expect("runs")
-            .success()
-    );
-    let contents = |folder: &str| -> BTreeMap<String, Vec<u8>> {
-        let all = fs::read_dir(format!("{folder}/vtk"))
-            .expect("a folder")
-            .flatten();
-        let file = |e: fs::DirEntry| {
-            let bytes = fs::read(e.path()).expect("a file");
-            (e.file_name().to_string_lossy().into_owned(), bytes)
-        };
-        all.map(file).collect()
+    assert!(succeeds(&words(&out, "--resume")));
+    let contents = |name: &str| -> Vec<(String, Vec<u8>)> {
+        let files = names_in(folder.path(&format!("{name}/vtk"))).into_iter();
+        let file = |file: String| (folder.bytes(&format!("{name}/vtk/{file}")), file);
+        files.map(file).map(|(bytes, file)| (file, bytes)).collect()
     };
-    assert!(contents(&whole) == contents(&out));
-    assert_eq!(contents(&out).len(), 12);
+    assert!(contents("whole") == contents("out"));
+    assert_eq!(contents("out").len(), 12);
 }

@@ -7,7 +7,7 @@ use crate::cards::named;
 use crate::constants::Constants;
 use crate::opened::Text;
 use crate::{Refused, text};
-use clebsch::card::{Card, Field, Invariant, Kind, Open};
+use clebsch::card::{Card, Field, Invariant, Kind};
 use clebsch_core::derive::warnings::Warning;
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::{Choice, ExpandedModel, Kind as QuantityKind, Lattice};
@@ -71,7 +71,6 @@ impl Carded {
         choice: &Choice,
         model: Arc<LineModel>,
         source: &str,
-        open: Open,
     ) -> Result<(Self, Vec<Warning>), Refused> {
         let (statement, as_stated) = stated;
         let restated = match model.coordinates.as_slice() {
@@ -104,7 +103,7 @@ impl Carded {
         let whole = Text::of_derivation(d)?;
         let none = BTreeMap::new();
         let name = whole.derivation.spec.name.clone();
-        let card = Constants::new(&whole.program, &name, &none).card(open, |_| None)?;
+        let card = Constants::new(&whole.program, &name, &none).card()?;
         let warnings = unfolded.told(&short, &whole.derivation.warnings);
         let expander = Short {
             lattice,

@@ -38,7 +38,7 @@ static CARD: Card = Card {
         rows: 1,
         conserved: Conserved::Exactly,
     },
-    open: |_, _, _| {
+    open: &|_, _, _| {
         Ok(Box::new(Counter {
             node: 0,
             stop: u64::MAX,
@@ -46,7 +46,7 @@ static CARD: Card = Card {
     },
     solvers: &[],
     dimensions: &[],
-    sized: |_| None,
+    sized: &|_| None,
 };
 
 /// Counts; its invariant dips at node 5 only; refuses to go beyond `stop`.

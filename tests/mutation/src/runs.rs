@@ -1,5 +1,5 @@
 //! The tests of a judge: each timed once without a mutant, then asked quickest first, since the first that
-//! fails decides.
+//! fails decides. Clocks order the tests and bound the wait for one that hangs; they change no other verdict.
 
 use crate::build::{JUDGES, Judge};
 use crate::place;

@@ -219,8 +219,8 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let dimensions = dimensions(d);
     let dimensions = (!dimensions.is_empty()).then(|| quote!(dimensions: &[#(#dimensions),*],));
     let (sized, sized_by) = match d.spec.dimensions.is_empty() {
-        true => (TokenStream::new(), quote!(only_size::<Self>)),
-        false => (sized(d), quote!(Self::sized)),
+        true => (TokenStream::new(), quote!(&only_size::<Self>)),
+        false => (sized(d), quote!(&Self::sized)),
     };
     let orders = match (preprocessed, super::invariants::composes(d)) {
         (true, _) => quote!(orders: &[2, 4, 6, 8, 10], preprocessed: true,),
@@ -254,7 +254,7 @@ pub fn card(d: &Derivation, names: &Names) -> TokenStream {
                 discrete_energy: #discrete_energy,
                 #solvers
                 #dimensions
-                ..Card::plain(open::<Self>, #sized_by)
+                ..Card::plain(&open::<Self>, #sized_by)
             };
 
             #sized
