@@ -2,6 +2,7 @@
 //! test costs.
 
 mod attitudes;
+mod bits;
 mod book;
 mod case_files;
 mod cases;
