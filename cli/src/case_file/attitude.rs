@@ -3,7 +3,7 @@
 
 mod tables;
 
-use super::value::{Nameless, Numbers, Shape, entries, number, row, shape};
+use super::value::{self, Nameless, Numbers, Shape, entries, number, row, shape};
 use clebsch::card::{Field, Kind};
 use clebsch::groups::Rotation;
 use clebsch::nalgebra::{DMatrix, Matrix3};
@@ -200,7 +200,9 @@ fn motion(
                 ));
             }
             let inner = |key: &str, field: Field| {
-                let own = table.get(key).map(|v| numbers_of(&field, v.get_ref(), of));
+                let own = table
+                    .get(key)
+                    .map(|v| value::numbers(&field, v.get_ref(), of));
                 own.map(|read| read.map_err(|why| format!("{key}: {why}")))
                     .transpose()
             };
@@ -231,10 +233,6 @@ fn homogeneous(all: &[f64], n: usize) -> Vec<f64> {
     let own = assembled(&orthonormal(block, n), &place);
     let last = (0..=n).map(|j| at(n, j));
     own.into_iter().take(n * (n + 1)).chain(last).collect()
-}
-
-fn numbers_of(field: &Field, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Vec<f64>, String> {
-    super::value::numbers(field, value, of)
 }
 
 /// The homogeneous matrix of a rotation and a position.

@@ -1,28 +1,22 @@
 //! The tables `[parameters]` and `[initial]` of a case. Takes a table and the fields of a card; gives the numbers of each field, in
 //! order, and how configurations start whose momenta are not given.
 
-use super::at_sites::{AtSites, Here};
+use super::at_sites::AtSites;
 use super::copies::Base;
-use super::from_npz::{self, Arrays, Fault, Wanted};
-use super::inertia;
+use super::from_npz::Arrays;
 use super::keys::quantity_of;
 use super::location::File;
 use super::motion::{Motion, Start};
 use super::scope::Scope;
-use super::sites;
-use super::table::{Found, Key, Table};
+use super::table::{Found, Table};
 use super::taken_as::TakenAs;
-use super::value::{expected, is_element};
-use super::velocity::{self, Way};
+use super::value::expected;
+use super::velocity::Way;
 use crate::models::fields::is_momentum;
 use crate::terminal::failure::Failure;
-use crate::words::plain::shown;
-use crate::words::suggestion::{did_you_mean, slip};
 use clebsch::card::{Card, Field};
 use std::collections::{BTreeMap, HashSet};
-use std::ops::Range;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 
 /// Reads tables of a case.
 pub(super) struct Fields<'a> {
@@ -41,11 +35,7 @@ pub(super) struct Fields<'a> {
     pub quantities: HashSet<(&'static str, &'static str)>,
 }
 
-/// What expressions read.
-const READS: &str = ": an expression of a site reads its label, the number of sites, and numbers of the case that are the same at \
-                     all sites";
-
-impl<'a> Fields<'a> {
+impl Fields<'_> {
     /// The numbers of all parameters and initial values of a card.
     pub(super) fn read(
         &mut self,
@@ -225,133 +215,6 @@ impl<'a> Fields<'a> {
         Ok(())
     }
 
-    /// Numbers that were computed for all particles of a fluid, and the line of what gave them.
-    fn of_fluid(&self, name: &str, place: Option<(&str, usize)>) -> Option<(&'a [f64], usize)> {
-        self.sites?.fluid.as_ref()?.numbers(name, place)
-    }
-
-    /// Numbers that are those of a field as they are.
-    fn plain(
-        &self,
-        field: &Field,
-        (table, written): (&str, &str),
-        numbers: &[f64],
-        line: usize,
-    ) -> Result<Vec<f64>, Failure> {
-        let fits = field.cols == 1 && field.rows == numbers.len();
-        let why = match numbers.iter().find(|x| !x.is_finite()) {
-            None if fits => return Ok(numbers.to_vec()),
-            None => format!(
-                "expected {}, found {} numbers",
-                expected(field),
-                numbers.len()
-            ),
-            Some(x) => format!("{x} is not a finite number"),
-        };
-        let message = format!("{table}.{written}: {why}");
-        Err(self.file.wrong_at(line.max(1), &message))
-    }
-
-    /// The numbers of a field from the value that was found; `written` is its key with its site.
-    fn valued(
-        &self,
-        found: &Found<'_, '_, '_>,
-        (field, base): (&Field, Option<&Base<'_>>),
-        taken_as: TakenAs,
-        written: &str,
-    ) -> Result<Vec<f64>, Failure> {
-        let own = &*found.key.name;
-        let wrong = |key: &str, why: &str, at: &Range<usize>| {
-            let message = format!("{}.{}: {why}", found.table, shown(key));
-            self.file.wrong(Some(at), &message)
-        };
-        let span = found.value.span();
-        let base = base.filter(|_| found.key.of_sites);
-        let at = self
-            .sites
-            .zip(base)
-            .map(|(sites, base)| sites.at(field, base));
-        let (value, is_listed) = match at {
-            Some(at) if !from_npz::is_meant(found.value.get_ref()) => {
-                sites::at(&at, found.value).map_err(|why| wrong(own, &why, &span))?
-            }
-            _ => (found.value, false),
-        };
-        let inside = inertia::inside(field, value.get_ref());
-        let inside = inside.filter(|_| taken_as == TakenAs::Itself);
-        let (value, taken_as, dot) = match inside {
-            Some(inertia) => (inertia, TakenAs::Inertia, ".I"),
-            None => (value, taken_as, ""),
-        };
-        if from_npz::is_meant(value.get_ref()) {
-            let read = self.of_array(field, base, taken_as, own, value);
-            return read.map_err(|fault| wrong(&format!("{own}{dot}"), &fault.why, &fault.at));
-        }
-        let here = Here {
-            scope: self.scope,
-            sites: self.sites,
-            base,
-        };
-        taken_as
-            .value(field, value.get_ref(), &here)
-            .map_err(|why| {
-                let Some(sites) = self.sites else {
-                    return wrong(&format!("{own}{dot}"), &self.scope.explained(why), &span);
-                };
-                // What is wrong at every site alike is a matter of the key as it was written.
-                let other = |table: &DeTable<'_>| !table.contains_key("I");
-                let is_whole = is_element(field) || value.get_ref().as_table().is_some_and(other);
-                let unvalued = match is_whole {
-                    true => Some(why.clone()),
-                    false => sites::unvalued(value.get_ref(), &here),
-                };
-                match (unvalued, base) {
-                    (None, _) => {
-                        // The site is named, so that the expression is known.
-                        let why = why.rsplit_once("\": ").map_or(why.as_str(), |(_, why)| why);
-                        wrong(&format!("{written}{dot}"), why, &span)
-                    }
-                    (Some(why), None) => wrong(own, &self.scope.explained(why), &span),
-                    (Some(why), Some(base)) => {
-                        let listed = match is_listed {
-                            true => format!("at {} = {}, ", sites.index(base), base.site),
-                            false => String::new(),
-                        };
-                        let is_missing = why.ends_with("has no value here");
-                        let reads = if is_missing { READS } else { "" };
-                        wrong(own, &format!("{listed}{why}{reads}"), &span)
-                    }
-                }
-            })
-    }
-
-    /// The value of a copy, or of what belongs to no site, from an array of a file.
-    fn of_array(
-        &self,
-        field: &Field,
-        base: Option<&Base<'_>>,
-        taken_as: TakenAs,
-        named: &str,
-        value: &Spanned<DeValue<'_>>,
-    ) -> Result<Vec<f64>, Fault> {
-        let values = from_npz::shapes(&taken_as.of_array(field));
-        let base = base.filter(|b| !b.end);
-        let group = base.and_then(|b| self.sites?.group(b.of));
-        let may_move = base.is_some_and(|b| b.is_momentum);
-        let wanted = Wanted {
-            values: &values,
-            sites: group.map(|g| &g.sites[..]),
-            moving: group.filter(|_| may_move).map(|g| &g.moving[..]),
-        };
-        let taken = self.arrays.take(value, named, wanted)?;
-        let numbers = taken.at(base.map_or(0, |b| b.site));
-        let read = numbers.and_then(|numbers| taken_as.array(field, numbers, taken.shape()));
-        read.map_err(|why| Fault {
-            why,
-            at: value.span(),
-        })
-    }
-
     fn missing(&self, table: &Table<'_, '_>, field: &Field, base: Option<&Base<'_>>) -> Failure {
         let what = expected(field);
         let name = table.name;
@@ -370,83 +233,6 @@ impl<'a> Fields<'a> {
             ),
         };
         self.file.wrong(None, &message)
-    }
-
-    /// Refuses keys that no field has.
-    fn known(&self, table: &Table<'_, '_>) -> Result<(), Failure> {
-        let Some(values) = table.values else {
-            return Ok(());
-        };
-        // Of a configuration whose every copy is given nothing is initial, and of an alternative
-        // that is not chosen nothing is asked.
-        let is_left = |sites: &AtSites<'_>, key: &str| match table.name {
-            "initial" => sites.group(key).is_some(),
-            _ => sites.stated.of_other_ends(key),
-        };
-        let seen = self.seen.get(table.name);
-        let is_own = |key: &str| {
-            let is_seen = seen.is_some_and(|seen| seen.contains(key));
-            is_seen || self.sites.is_some_and(|sites| is_left(sites, key))
-        };
-        if values.keys().all(|key| is_own(key.get_ref())) {
-            return Ok(());
-        }
-        let names = self.names(table);
-        let mut known: Vec<&str> = names.iter().map(String::as_str).collect();
-        let left = values.keys().map(|key| key.get_ref().as_ref());
-        let left: Vec<&str> = left.filter(|key| is_own(key)).collect();
-        let place = format!("in [{}]", table.name);
-        if self.sites.is_some() {
-            known.sort_unstable();
-            let listed = known.clone();
-            known.extend(left);
-            let otherwise = |asked: &str| Some(did_you_mean(asked, listed.iter().copied()));
-            return self.file.known_keys(values, &known, &place, &otherwise);
-        }
-        let otherwise = |asked: &str| {
-            // `"Λ"` is how the model writes it, but files use the ASCII name.
-            let written = table.fields.iter().find(|field| field.name == asked);
-            let near = written.map(|field| field.ascii);
-            if let Some(near) = near.or_else(|| slip(asked, &known)) {
-                return Some(format!("; did you mean `{near}`?"));
-            }
-            velocity::is_meant(asked)
-                .then(|| table.how_to_move())
-                .flatten()
-        };
-        self.file.known_keys(values, &known, &place, &otherwise)
-    }
-
-    /// The keys that the fields of a table may have, in their order.
-    fn names(&self, table: &Table<'_, '_>) -> Vec<String> {
-        let fluid = self.sites.and_then(|sites| sites.fluid.as_ref());
-        let mut names: Vec<String> = fluid
-            .iter()
-            .flat_map(|f| f.used())
-            .map(str::to_owned)
-            .collect();
-        let mut known: HashSet<String> = names.iter().cloned().collect();
-        let mut put = |key: Key<'_>| {
-            if !known.contains(&*key.name) {
-                known.insert(key.name.to_string());
-                names.push(key.name.into_owned());
-            }
-        };
-        for (index, field) in table.fields.iter().enumerate() {
-            let base = self.sites.and_then(|sites| sites.base(field));
-            let base = base.as_ref();
-            if self
-                .of_fluid(field.ascii, base.map(|b| (&*b.key, b.site)))
-                .is_some()
-            {
-                continue;
-            }
-            let end = base.and_then(|base| self.sites?.at_end(base));
-            table.keys(field, base, end).for_each(&mut put);
-            let ways = table.ways(index, base).flat_map(|(_, _, keys)| keys);
-            ways.flatten().for_each(&mut put);
-        }
-        names
     }
 
     fn see(&mut self, found: &Found<'_, '_, '_>) {

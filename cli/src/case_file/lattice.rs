@@ -7,8 +7,7 @@ use super::remarks::remark;
 use super::sample as fluid;
 use super::space::Space;
 use super::stated::Stated;
-use super::velocity::Way;
-use super::write::{bounds, comment};
+use super::write::{bounds, comment, instead};
 use crate::models::fields::{is_momentum, sample_entry, turns};
 use crate::models::held::{OF_HELD, has_holds};
 use crate::words::plain::shown;
@@ -91,21 +90,14 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
                 .get(&at)
                 .filter(|_| table == "initial")
                 .and_then(|own| fields.get(*own))
-                .map_or_else(String::new, |element| instead(element, field, key));
+                .map_or_else(String::new, |element| {
+                    format!("     # or {}", instead(element, field, key))
+                });
             let _ = writeln!(text, "{key} = {value}{or}");
         }
     }
     bounds(&mut text, card, &[]);
     text
-}
-
-/// The velocities that may stand in the place of the momenta under a key.
-fn instead(element: &Field, momentum: &Field, key: &str) -> String {
-    let ways = Way::ALL
-        .into_iter()
-        .filter(|way| way.is_of(element, momentum));
-    let keys: Vec<String> = ways.filter_map(|way| way.key(key)).collect();
-    format!("     # or {}", keys.join(", "))
 }
 
 /// How the line may end.

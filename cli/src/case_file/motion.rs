@@ -444,17 +444,22 @@ pub(super) fn elements(fields: &[Field]) -> HashMap<usize, usize> {
 }
 
 /// A statement, its sizes by name, and what a case adds to it.
-type Statement = (Model, Vec<(String, usize)>, Setup);
+pub(crate) type Statement = (Model, Vec<(String, usize)>, Setup);
 
-/// The statement of a case, its sizes, and what the case adds to it; none if its text is not at hand.
-fn stated(card: &Card, choice: Option<&Choice>, case: &Case) -> Option<Statement> {
+/// The statement of a case, its sizes, and what the case adds to it, with states of these fields; none if its text is not at hand.
+pub(crate) fn statement(
+    card: &Card,
+    choice: Option<&Choice>,
+    case: &Case,
+    state: &[Field],
+) -> Option<Statement> {
     let model = pipeline::parse_source(card.source).ok()?;
     let sizes = card.dimensions.iter();
     let sizes: Vec<_> = sizes.map(|d| (d.name.to_owned(), d.value)).collect();
     let fields = card.parameters.iter().map(|f| (f.name, f.rows, f.cols));
     let parameters = fields.zip(case.parameters.iter().map(Vec::as_slice));
-    let initial = card.initial.iter().map(|f| (f.name, f.rows, f.cols));
-    let mut setup = Setup::new(case.h, parameters, initial);
+    let state = state.iter().map(|f| (f.name, f.rows, f.cols));
+    let mut setup = Setup::new(case.h, parameters, state);
     if let Some(choice) = choice {
         setup.counts.clone_from(&choice.counts);
         (setup.periodic, setup.ends) = (choice.periodic, choice.ends);
@@ -464,7 +469,7 @@ fn stated(card: &Card, choice: Option<&Choice>, case: &Case) -> Option<Statement
 
 /// What evaluates the action of a case.
 fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendre, String> {
-    let found = stated(card, choice, case);
+    let found = statement(card, choice, case, card.initial);
     let (model, sizes, setup) = found.ok_or_else(|| "its text is not at hand".to_owned())?;
     Legendre::new(&model, &sizes, setup)
 }
@@ -475,7 +480,7 @@ fn onto(card: &Card, choice: Option<&Choice>, case: &mut Case) -> Option<String>
     if !card.source.contains("hold") {
         return None;
     }
-    let (model, sizes, setup) = stated(card, choice, case)?;
+    let (model, sizes, setup) = statement(card, choice, case, card.initial)?;
     let node: Vec<f64> = case.initial.iter().flatten().copied().collect();
     let moved = onto_constraints(&model, &sizes, &setup, &node).ok()??;
     let mut numbers = moved.node.into_iter();
@@ -492,7 +497,7 @@ fn onto(card: &Card, choice: Option<&Choice>, case: &mut Case) -> Option<String>
 
 /// Where the action of a start is not a number, if that is found.
 pub(crate) fn undefined(card: &Card, choice: Option<&Choice>, case: &Case) -> Option<Undefined> {
-    let (model, sizes, setup) = stated(card, choice, case)?;
+    let (model, sizes, setup) = statement(card, choice, case, card.initial)?;
     let node: Vec<f64> = case.initial.iter().flatten().copied().collect();
     Undefined::find(&model, &sizes, &setup, &node).ok()?
 }

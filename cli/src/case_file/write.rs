@@ -69,7 +69,9 @@ fn table(text: &mut String, name: &str, fields: &[Field], values: &[Vec<f64>]) {
     let elements = elements(fields);
     for (at, (field, numbers)) in fields.iter().zip(values).enumerate() {
         let element = elements.get(&at).and_then(|own| fields.get(*own));
-        let or = element.map_or_else(String::new, |element| instead(element, field));
+        let keys = element.map(|element| instead(element, field, field.ascii));
+        let keys = keys.filter(|keys| !keys.is_empty());
+        let or = keys.map_or_else(String::new, |keys| format!("; or give {keys}"));
         comment(text, &format!("{}{or}", about(field)));
         let _ = writeln!(text, "{} = {}", field.ascii, value(field, numbers));
     }
@@ -101,16 +103,13 @@ pub(super) fn bounds(text: &mut String, card: &Card, given: &[(String, f64)]) {
     }
 }
 
-/// The velocities that may stand in the place of a momentum.
-fn instead(element: &Field, momentum: &Field) -> String {
+/// The keys of velocities that may stand in the place of a momentum with this key.
+pub(super) fn instead(element: &Field, momentum: &Field, key: &str) -> String {
     let ways = Way::ALL
         .into_iter()
         .filter(|way| way.is_of(element, momentum));
-    let keys: Vec<String> = ways.filter_map(|way| way.key(momentum.ascii)).collect();
-    match keys.is_empty() {
-        true => String::new(),
-        false => format!("; or give {}", keys.join(", ")),
-    }
+    let keys: Vec<String> = ways.filter_map(|way| way.key(key)).collect();
+    keys.join(", ")
 }
 
 /// Shape and frame of a field, then the model's own words.

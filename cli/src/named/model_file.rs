@@ -55,7 +55,7 @@ pub(crate) fn read(
         (WhichCase::Named(_), None) => vec![sample(&card, &name)],
         (WhichCase::Named(_), Some((stated, choice))) => {
             let text = case_file::write_lattice(&card, &stated, &choice, &name);
-            vec![sample_on_lattice(&text, &stated, &card)?]
+            vec![case_file::read_of("sample", &text, &card, Some(&stated))?.case]
         }
     };
     Ok(Entry {
@@ -71,12 +71,6 @@ fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>,
         None => Ok(case_file::default_choice(stated)),
         Some((file, text)) => case_file::choice(file, text, stated),
     }
-}
-
-/// The sample case of a model with labels.
-fn sample_on_lattice(text: &str, stated: &Stated, card: &Card) -> Result<Case, Failure> {
-    let located = case_file::read_of("sample", text, card, Some(stated))?;
-    Ok(located.case)
 }
 
 /// Values that are admissible for most models, and of no further meaning.

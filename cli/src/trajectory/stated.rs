@@ -1,14 +1,14 @@
 //! The verdict by the action as stated: a trajectory whose chosen steps are judged by `clebsch-check`, which shares nothing with
 //! derivation and emission but the text. Takes a card, a plan and a trajectory; gives the same trajectory, watched.
 
+use crate::case_file::statement;
 use crate::plan::Plan;
 use clebsch::StepError;
 use clebsch::card::{Card, Trajectory};
 use clebsch::integrate::Halvings;
 use clebsch::kinetic::KineticWarning;
 use clebsch::saved::{Saved, Words};
-use clebsch_check::{Chosen, Judge, Judged, Setup, Verdict, Which};
-use clebsch_core::pipeline;
+use clebsch_check::{Chosen, Judge, Judged, Verdict, Which};
 use serde_json::{Value, json};
 
 /// A trajectory whose steps are judged.
@@ -57,18 +57,9 @@ fn judge(card: &Card, plan: &Plan) -> Result<Judge, String> {
     if let Some(order) = modified {
         return Err(format!("a step of order {order} has modified moments"));
     }
-    let model = pipeline::parse_source(card.source);
-    let model = model.map_err(|_| "the text of the model is not at hand".to_owned())?;
-    let sizes = card.dimensions.iter();
-    let sizes: Vec<_> = sizes.map(|d| (d.name.to_owned(), d.value)).collect();
-    let fields = card.parameters.iter().map(|f| (f.name, f.rows, f.cols));
-    let parameters = fields.zip(plan.case.parameters.iter().map(Vec::as_slice));
-    let observables = card.observables.iter().map(|f| (f.name, f.rows, f.cols));
-    let mut setup = Setup::new(plan.case.h, parameters, observables);
-    if let Some(choice) = &plan.choice {
-        setup.counts.clone_from(&choice.counts);
-        (setup.periodic, setup.ends) = (choice.periodic, choice.ends);
-    }
+    let found = statement(card, plan.choice.as_ref(), &plan.case, card.observables);
+    let (model, sizes, setup) =
+        found.ok_or_else(|| "the text of the model is not at hand".to_owned())?;
     Judge::new(&model, &sizes, setup)
 }
 
