@@ -1,7 +1,7 @@
 //! What a grid takes from the symmetries of the plane: the force on all particles together, which vanishes without a grid,
 //! and the torque, which vanishes for a smoother that prefers no direction.
 
-use crate::common::*;
+use super::common::*;
 use clebsch::mesh::*;
 use clebsch::nalgebra::SVector;
 use core::f64::consts::TAU;

@@ -1,7 +1,7 @@
 //! Forces of particles: the gradient of the discrete potential `V = (c0²/2) Σ w H (S H)`, composed of pull-backs as a
 //! stepper does, beside the derivatives of V by dual numbers and by central differences.
 
-use crate::common::*;
+use super::common::*;
 use clebsch::mesh::*;
 use clebsch::nalgebra::SVector;
 use clebsch::{Dual, Real};

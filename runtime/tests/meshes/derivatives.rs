@@ -1,8 +1,5 @@
 //! Derivatives of functionals of meshes, by central differences and by dual numbers.
 
-// Not every test takes all of it.
-#![allow(dead_code)]
-
 use clebsch::Dual;
 use clebsch::mesh::{Domain, Functional, Setting};
 use clebsch::nalgebra::SVector;

@@ -1,8 +1,8 @@
 //! What chapter 5 of the thesis prints about particles on a grid, beside what is right: each test evaluates both, and the
 //! printed form is off while the right one holds to rounding.
 
-use crate::common::*;
-use crate::depth::spline;
+use super::common::*;
+use super::depth::spline;
 use clebsch::mesh::*;
 use clebsch::nalgebra::{Matrix4, Vector4};
 use clebsch::{Dual, Real};

@@ -1,14 +1,11 @@
 //! What is seen on a mesh: gradient, divergence, curl, circulation, distances and boxes of a grid, by identities and
 //! by definitions.
 
-mod cut;
-mod derivatives;
-
+use super::cut::cell;
+use super::derivatives::{Plane, numbers, random};
 use clebsch::mesh::placement::{Jitter, lattice};
 use clebsch::mesh::{Domain, MeshError, Voronoi};
 use core::f64::consts::TAU;
-use cut::cell;
-use derivatives::{Plane, numbers, random};
 
 const UNIT: [f64; 2] = [1.0, 1.0];
 

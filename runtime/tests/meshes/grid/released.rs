@@ -1,8 +1,8 @@
 //! What a run of particles on a grid owes to its smoother and to its start: a round hill released at rest stays round by the
 //! smoother that prefers no direction; vortices in balance with the smoothed depth, whose gradient is the force, send out no waves.
 
-use crate::common::*;
-use crate::verlet::Run;
+use super::common::*;
+use super::verlet::Run;
 use clebsch::mesh::*;
 use clebsch::nalgebra::SVector;
 use core::f64::consts::TAU;

@@ -1,6 +1,6 @@
 //! Deposit against images of particles that are written out, and the mass on the grid.
 
-use crate::common::*;
+use super::common::*;
 use clebsch::Dual;
 use clebsch::line::Threads;
 use clebsch::mesh::*;

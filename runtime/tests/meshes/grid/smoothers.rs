@@ -1,7 +1,7 @@
 //! Smoothers: eigenfunctions with their exact factors, the inner product in which each is its own adjoint, and scalars
 //! with derivatives beside plain numbers.
 
-use crate::common::*;
+use super::common::*;
 use clebsch::mesh::*;
 use clebsch::{DoubleDouble, Dual, Real};
 use core::f64::consts::PI;

@@ -2,13 +2,11 @@
 //! at random places, and the printed form is off while the right one holds to rounding. What is wanted is differentiated
 //! by dual numbers through the areas of cells.
 
-mod derivatives;
-
+use super::derivatives::{Plane, numbers, setting};
 use clebsch::Dual;
 use clebsch::mesh::placement::{Jitter, lattice};
 use clebsch::mesh::{Domain, Functional, Voronoi, voronoi_area};
 use clebsch::nalgebra::SVector;
-use derivatives::{Plane, numbers, setting};
 
 type Along = SVector<Dual<1>, 2>;
 

@@ -1,6 +1,6 @@
 //! Particles beyond walls, put back by mirror images.
 
-use crate::common::*;
+use super::common::*;
 use clebsch::mesh::*;
 use clebsch::nalgebra::SVector;
 use clebsch::{Dual, Real};

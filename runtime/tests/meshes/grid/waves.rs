@@ -1,7 +1,7 @@
 //! The limit of steps, beside steps within it and beyond.
 
-use crate::common::*;
-use crate::verlet::Run;
+use super::common::*;
+use super::verlet::Run;
 use clebsch::mesh::*;
 
 /// The largest velocity after 400 steps of particles of a periodic line that are disturbed by rounding alone.

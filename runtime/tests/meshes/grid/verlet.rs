@@ -1,8 +1,8 @@
 //! Particle-mesh shallow water stepped by hand (Stoermer-Verlet, and with rotation the exact flow of the magnetic part
 //! between kicks): energy over many steps, mass, walls.
 
-use crate::common::*;
-use crate::smoothers::naive;
+use super::common::*;
+use super::smoothers::naive;
 use clebsch::ParameterError;
 use clebsch::mesh::*;
 use clebsch::nalgebra::SVector;

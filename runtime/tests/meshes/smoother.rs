@@ -1,8 +1,9 @@
 //! Depths that are smoothed twice, or by a kernel: the equations they solve, exact derivatives, lakes at rest, waves, and
 //! what becomes of forces where neighbours change.
 
-mod derivatives;
-
+use super::derivatives::{
+    Plane, against_differences, against_duals, numbers, random, second_derivatives, seeds, setting,
+};
 use clebsch::Dual;
 use clebsch::line::Threads;
 use clebsch::mesh::placement::{Jitter, hexagonal, lattice};
@@ -11,9 +12,6 @@ use clebsch::mesh::{
 };
 use clebsch::nalgebra::SVector;
 use clebsch::saved::{Saved, Words};
-use derivatives::{
-    Plane, against_differences, against_duals, numbers, random, second_derivatives, seeds, setting,
-};
 
 /// A smoothed depth in plain numbers.
 trait Depth:

@@ -1,8 +1,9 @@
 //! The smoothed depth and the repulsion of near particles, against dense linear algebra, sums over all pairs, known
 //! potentials and the linear theory of waves.
 
-mod derivatives;
-
+use super::derivatives::{
+    Plane, against_differences, against_duals, numbers, random, second_derivatives, seeds, setting,
+};
 use clebsch::Dual;
 use clebsch::line::Threads;
 use clebsch::mesh::placement::{Jitter, hexagonal, lattice, scattered};
@@ -11,9 +12,6 @@ use clebsch::mesh::{
 };
 use clebsch::nalgebra::{DMatrix, DVector};
 use clebsch::saved::{Saved, Words};
-use derivatives::{
-    Plane, against_differences, against_duals, numbers, random, second_derivatives, seeds, setting,
-};
 
 /// The bricks whose potentials are known.
 fn bricks() -> Vec<Plane> {

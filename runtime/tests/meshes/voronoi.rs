@@ -1,14 +1,13 @@
 //! Voronoi cells on the periodic plane, by formulas that share nothing with the mesh: cells cut out of half-planes,
 //! differences of areas and moments, known potentials.
 
-mod cut;
-mod derivatives;
-
+use super::cut::cell;
+use super::derivatives::{
+    Plane, against_differences, against_duals, numbers, random, seeds, setting,
+};
 use clebsch::mesh::placement::{Jitter, hexagonal, lattice, scattered};
 use clebsch::mesh::{Domain, Functional, MeshError, Setting, Voronoi, second_moment, voronoi_area};
 use clebsch::{Dual, Real};
-use cut::cell;
-use derivatives::{Plane, against_differences, against_duals, numbers, random, seeds, setting};
 
 fn areas_of(lengths: [f64; 2], at: &[Plane]) -> Result<Vec<f64>, MeshError> {
     let mut area = voronoi_area::<f64>::new(&setting(lengths, at.len()), ()).unwrap();
