@@ -2,7 +2,7 @@
 //! One binary, since linking is most of what a test costs.
 
 // Models are stated in Greek letters, as in the papers.
-#![allow(mixed_script_confusables)]
+#![allow(mixed_script_confusables, confusable_idents)]
 // Some models are of first order or without a limit on purpose, of which the macro warns by this lint.
 #![allow(deprecated)]
 
@@ -17,6 +17,7 @@ mod documents;
 mod equations_of_a_step;
 mod expansion;
 mod generated_fresh;
+mod held;
 mod kinetic_analogy;
 mod latex;
 mod lattices;
@@ -24,9 +25,9 @@ mod meant;
 mod mutation;
 mod oracle_groups;
 mod oracle_interpreted;
+mod oracle_self;
 mod prose;
 mod quoted_figures;
-mod random_mixed;
 mod reduction;
 mod reduction_of_motions;
 mod reference_numbers;

@@ -1,9 +1,6 @@
 //! Held constraints: equations with reactions against the variation of the action with multipliers, by dual
 //! numbers at random points that are no solutions; the motion on the constraints, with multipliers that are forces.
 
-// The fields of the models are Greek letters, as in the papers.
-#![allow(mixed_script_confusables, confusable_idents)]
-
 mod hinge;
 
 use clebsch::card::Settings;

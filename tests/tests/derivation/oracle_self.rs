@@ -11,14 +11,19 @@ use clebsch_oracle::oracle::action::{
 };
 use clebsch_oracle::oracle::dual::{Dual, Number};
 use clebsch_oracle::oracle::points::Source;
-use clebsch_oracle::oracle::random::RandomLagrangian;
-use clebsch_oracle::oracle::random::sample::Sample;
 use clebsch_oracle::oracle::square::{Square, cross, dot, vee};
+use clebsch_oracle::oracle::wide::grid::Grid;
+use clebsch_oracle::oracle::wide::point::Node;
+use clebsch_oracle::oracle::wide::{Model, Point};
 use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::sizes::{DIFFERENTIATED, WRITTEN};
 use std::array::from_fn;
 
 /// Rounding of a few hundred operations, each of a relative error of 1e-16, on the natural scale.
 const ROUNDING: f64 = 1e-13;
+
+/// How far apart differences over 1e-3 and 2e-3 are at a kink, of the scale.
+const KINK: f64 = 1e-5;
 
 fn expected(value: &[f64], reference: &[f64], scale: f64, tolerance: f64, what: &str) {
     assert_eq!(value.len(), reference.len(), "{what}");
@@ -108,39 +113,61 @@ fn hand_typed_variations_are_derivatives_of_the_action() {
     agrees_with_differences::<3, 1, EllipsoidConvective<3>>(&entries(), 5);
 }
 
+/// The same of a random model, along straight lines, with how far the two differences are apart: an action is a function of
+/// matrices, on the group or not.
+fn differences_of(point: &Point<'_>, nodes: &[Node; 3]) -> Vec<[f64; 2]> {
+    let total = |here: &Node| -> f64 {
+        let before: f64 = point.edge(&nodes[0], here).iter().sum();
+        before + point.edge(here, &nodes[2]).iter().sum::<f64>()
+    };
+    let along = |(body, tangent): &(usize, Grid<f64>)| {
+        let at = |epsilon: f64| {
+            let mut here = nodes[1].clone();
+            here[*body] = here[*body].plus(&tangent.scaled(epsilon));
+            total(&here)
+        };
+        let slope = |epsilon: f64| (at(epsilon) - at(-epsilon)) / (2.0 * epsilon);
+        let (coarse, fine) = (slope(2e-3), slope(1e-3));
+        [(4.0 * fine - coarse) / 3.0, (fine - coarse).abs()]
+    };
+    point.directions(&nodes[1]).iter().map(along).collect()
+}
+
 #[test]
 fn random_variations_are_derivatives_of_the_action() {
-    let mut worst: f64 = 0.0;
-    for seed in 0..300 {
-        let lagrangian = RandomLagrangian::of_seed(seed);
+    let (mut worst, mut kinks): (f64, usize) = (0.0, 0);
+    for seed in 0..DIFFERENTIATED {
+        let model = Model::of_seed(seed);
         let mut source = Source::seeded(seed + 1_000_000);
         for _ in 0..3 {
-            let sample = Sample::draw(&lagrangian, &mut source);
-            let nodes = from_fn(|_| [source.orthogonal()]);
-            let exact = stationarity(&sample, &nodes, &rotations());
-            assert!(exact.scale.is_finite(), "{}", lagrangian.text());
-            let approximate = differences(&sample, &nodes, &rotations());
+            let step = source.between(0.2, 1.0);
+            let point = Point::draw(&model, &mut source, step);
+            let nodes: [Node; 3] = from_fn(|_| point.node(&mut source));
+            let exact = point.stationarity(&nodes);
+            assert!(exact.scale.is_finite(), "{}", model.text());
             let action: f64 = [(0, 1), (1, 2)]
                 .iter()
-                .flat_map(|&(a, b)| sample.edge(&nodes[a], &nodes[b]))
+                .flat_map(|&(a, b)| point.edge(&nodes[a], &nodes[b]))
                 .map(|summand: f64| summand.abs())
                 .sum();
             // Differences lose 1e-16/1e-3 of the action itself and (1e-3)^4 of its fifth derivative, which
             // for products of many factors is up to 1e4 times the first.
             let scale = exact.scale + action;
-            expected(
-                &exact.derivative,
-                &approximate,
-                scale,
-                1e-7,
-                &lagrangian.text(),
-            );
-            for (a, b) in exact.derivative.iter().zip(&approximate) {
+            let text = model.text();
+            let bent = text.contains("abs(") || text.contains("sign(");
+            for (a, [b, apart]) in exact.derivative.iter().zip(differences_of(&point, &nodes)) {
+                // A kink of `abs` or `sign` lies between the places: smooth actions leave (1e-3)^2 of their third derivative.
+                if bent && apart > KINK * scale {
+                    kinks += 1;
+                    continue;
+                }
+                expected(&[*a], &[b], scale, 1e-7, &text);
                 worst = worse(worst, (a - b).abs() / scale);
             }
         }
     }
-    println!("worst disagreement with differences: {worst:e}");
+    println!("worst disagreement with differences: {worst:e}, {kinks} kinks");
+    assert!(kinks < 10, "{kinks}");
 }
 
 #[test]
@@ -327,26 +354,26 @@ fn dual_numbers_differentiate() {
 
 #[test]
 fn random_models_are_varied() {
-    let mut count = [0usize; 8];
-    for seed in 0..200 {
-        let lagrangian = RandomLagrangian::of_seed(seed);
-        let text = lagrangian.text();
+    let mut count = [0usize; 9];
+    for seed in 0..WRITTEN {
+        let text = Model::of_seed(seed).text();
         let features = [
-            lagrangian.side == Side::Space,
+            text.contains("= V*g"),
             text.contains("node "),
             text.contains("scale "),
             text.contains("inv(") || text.contains("^-1"),
-            text.contains("Sym<3>;") && text.contains("advected"),
+            text.contains("Sym<") && text.contains("advected"),
             text.contains("exp(") || text.contains("log(") || text.contains("sqrt("),
             text.contains("let "),
-            text.contains("next(") && text.contains("det("),
+            text.contains("next(q"),
+            text.contains("det("),
         ];
         for (counter, feature) in count.iter_mut().zip(features) {
             *counter += usize::from(feature);
         }
     }
     println!(
-        "spatial, one-sided, scaled, inverses, symmetric, functions, named, determinants: {count:?}"
+        "spatial, one-sided, scaled, inverses, symmetric, functions, named, ends, determinants: {count:?}"
     );
     assert!(count.iter().all(|&counter| counter >= 10), "{count:?}");
 }
