@@ -17,7 +17,6 @@ use clebsch_models::fluids::shallow_water_2d::*;
 use clebsch_models::fluids::shallow_water_2d_regularised::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Instant;
 
 type Data = BTreeMap<&'static str, Vec<f64>>;
 
@@ -88,15 +87,10 @@ macro_rules! compared {
         let numbers = |name: &str| data.get(name).cloned();
         let mut line: LineTrajectory = read.start(&$choice, H, &numbers).expect("starts");
         let (mut state, mut work) = model.start($initial, H).expect("starts");
-        let (mut built, mut interpreted) = (0.0, 0.0);
         for step in 0..=STEPS {
             if step > 0 {
-                let now = Instant::now();
                 model.step(&mut state, &mut work).expect("steps");
-                built += now.elapsed().as_secs_f64();
-                let now = Instant::now();
                 line.step().expect("steps");
-                interpreted += now.elapsed().as_secs_f64();
             }
             assert_eq!(line.node(), state.node());
             let seen = |line: &mut LineTrajectory, name| bits(&line.observe(name).expect("is seen"));
@@ -114,8 +108,6 @@ macro_rules! compared {
         }
         let seen: Vec<String> = read.observers().collect();
         assert_eq!(seen.len(), 2 + [$($name),*].len(), "{seen:?}");
-        let share = 1e9 / (STEPS as f64 * data["m"].len() as f64);
-        eprintln!("{}: {:.0} ns a step and particle compiled, {:.0} read", read.name(), built * share, interpreted * share);
         work.reflections_or_none()
     }};
 }

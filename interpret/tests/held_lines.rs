@@ -13,25 +13,25 @@ mod compiled;
 use beside::{bits, choice, start};
 use clebsch::card::{Field, Settings};
 use clebsch_interpret::lines::LineModel;
-use compiled::{Case, held, sums};
+use compiled::{Case, held, springs, sums};
 
 #[test]
 fn held_lines_equal_the_compiled_ones_to_the_last_bit() {
-    beside::equal_to_the_last_bit(held::all().into_iter());
-    beside::equal_to_the_last_bit(sums::all().into_iter());
+    beside::equal_to_the_last_bit(held::all());
+    beside::equal_to_the_last_bit(sums::all());
 }
 
 #[test]
 fn held_lines_move_as_their_bodies_do() {
-    beside::move_as_bodies_do(held::all().into_iter(), 3);
-    beside::move_as_bodies_do(sums::all().into_iter(), 3);
+    beside::move_as_bodies_do(held::all(), 3);
+    beside::move_as_bodies_do(sums::all(), 3);
 }
 
 #[test]
 fn totals_about_what_ends_hold_equal_the_compiled_ones_and_those_of_bodies() {
-    beside::equal_to_the_last_bit(compiled::strung::all().into_iter());
-    beside::move_as_bodies_do(compiled::strung::all().into_iter(), 5);
-    let (source, make, _) = compiled::strung::all().remove(0);
+    beside::equal_to_the_last_bit([springs::line()]);
+    beside::move_as_bodies_do([springs::line()], 5);
+    let strung = springs::line();
     for (ends, name) in [
         (["pinned", "free"], "total_momentum_angular_about_X"),
         (["free", "pinned"], "total_momentum_angular_about_X"),
@@ -40,13 +40,13 @@ fn totals_about_what_ends_hold_equal_the_compiled_ones_and_those_of_bodies() {
     ] {
         // More sites than are written out: the card lists the total, and it does not drift.
         let case = Case::new(60, Some(ends));
-        let chosen = choice(source, case.n, case.ends);
-        let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("a card");
+        let data = (strung.data)(&case);
+        let settings = Settings::step(case.h);
+        let (card, _) = beside::opened(strung.source, &case, &data, settings);
         let listed = card.invariants.iter().any(|i| i.name == name);
         assert!(listed, "{ends:?}: {:?}", card.invariants);
-        let model = LineModel::read(source).expect("is read");
-        let (_, data) = make(&case);
-        let mut line = start(&model, source, &case, &data);
+        let model = LineModel::read(strung.source).expect("is read");
+        let mut line = start(&model, strung.source, &case, &data);
         let total = |line: &mut clebsch_interpret::lines::LineTrajectory| {
             line.total(name).expect("is conserved")
         };
@@ -65,38 +65,26 @@ fn totals_about_what_ends_hold_equal_the_compiled_ones_and_those_of_bodies() {
 /// The order of composed steps, of places and momenta; and a step that cannot be made leaves the line where it was.
 #[test]
 fn composed_steps_have_their_order() {
-    let of_held = held::all().remove(1);
-    let of_rod = compiled::all()
-        .into_iter()
-        .find(|(source, ..)| *source == compiled::ROD);
+    let [_, of_held, _] = held::all();
+    let of = |source: &str| {
+        let mut all = compiled::all().into_iter();
+        all.find(|own| own.source == source).expect("is here")
+    };
     let lines = [
-        ((compiled::TODA, compiled::toda as _), Case::new(40, None)),
-        (
-            of_rod
-                .map(|(source, make, _)| (source, make))
-                .expect("is here"),
-            Case::new(40, Some(["clamped", "load"])),
-        ),
-        (
-            (of_held.0, of_held.1),
-            Case::new(5, Some(["pinned", "free"])),
-        ),
+        (of(compiled::TODA), Case::new(40, None)),
+        (of(compiled::ROD), Case::new(40, Some(["clamped", "load"]))),
+        (of_held, Case::new(5, Some(["pinned", "free"]))),
     ];
-    for ((source, make), case) in lines {
-        let (_, data) = make(&case);
-        let chosen = choice(source, case.n, case.ends);
-        let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("a card");
+    for (own, case) in lines {
+        let data = (own.data)(&case);
+        let (card, _) = beside::opened(own.source, &case, &data, Settings::step(case.h));
         assert_eq!(card.orders, [2, 4, 6, 8], "{}", card.name);
-        let (parameters, initial) = (
-            beside::values(card.parameters, &data),
-            beside::values(card.initial, &data),
-        );
         let end = |order: u32, steps: u32| {
             let settings = Settings {
                 order: Some(order),
                 ..Settings::step(0.16 / f64::from(steps))
             };
-            let mut line = (card.open)(&parameters, &initial, settings).expect("starts");
+            let (_, mut line) = beside::opened(own.source, &case, &data, settings);
             for _ in 0..steps {
                 line.step().expect("steps");
             }
@@ -134,20 +122,14 @@ fn composed_steps_have_their_order() {
 fn a_composed_step_that_is_refused_leaves_the_line_where_it_was() {
     let source = compiled::WATER;
     let case = Case::new(40, None);
-    let (_, calm) = compiled::water(&case);
+    let calm = compiled::water(&case);
     // Particles that run into one another.
     let wild = calm.with("momentum_X", |p| p.iter_mut().for_each(|p| *p *= 400.0));
-    let chosen = choice(source, case.n, case.ends);
-    let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("a card");
-    let (parameters, initial) = (
-        beside::values(card.parameters, &wild),
-        beside::values(card.initial, &wild),
-    );
     let settings = Settings {
         order: Some(4),
         ..Settings::step(0.02)
     };
-    let mut line = (card.open)(&parameters, &initial, settings).expect("starts");
+    let (card, mut line) = beside::opened(source, &case, &wild, settings);
     let mut seen = vec![0.0; card.observable_count()];
     let refused = (0..1000).find_map(|node| {
         line.observe(&mut seen);
@@ -163,10 +145,10 @@ fn a_composed_step_that_is_refused_leaves_the_line_where_it_was() {
 
 #[test]
 fn a_held_line_is_written_down_and_goes_on_to_the_last_bit() {
-    beside::go_on(held::all().into_iter());
-    beside::go_on(sums::all().into_iter());
-    beside::go_on_composed(held::all().into_iter());
-    beside::go_on_composed(sums::all().into_iter());
+    beside::go_on(held::all());
+    beside::go_on(sums::all());
+    beside::go_on_composed(held::all());
+    beside::go_on_composed(sums::all());
 }
 
 #[test]
@@ -186,26 +168,7 @@ fn a_wrong_sign_of_what_is_held_is_seen() {
         ),
     ];
     for (source, term, rest) in wrong {
-        let mutated = source.replacen(term, rest, 1);
-        assert_ne!(mutated, source, "{term}");
-        let model = LineModel::read(&mutated).expect("is read");
-        let all = held::all();
-        let (_, make, _) = all
-            .iter()
-            .find(|(own, ..)| *own == source)
-            .expect("is here");
-        let case = Case::new(5, Some(["free", "free"]));
-        let (mut built, data) = make(&case);
-        let mut line = start(&model, &mutated, &case, &data);
-        for _ in 0..3 {
-            built.step().expect("steps");
-            line.step().expect("steps");
-        }
-        let differs = model.observers().any(|name| {
-            let read = line.observe(&name).expect("is observed");
-            bits(&read) != bits(&built.seen(&name))
-        });
-        assert!(differs, "{term}");
+        beside::another_term_is_seen(&held::all(), source, term, rest);
     }
 }
 
@@ -213,14 +176,9 @@ fn a_wrong_sign_of_what_is_held_is_seen() {
 fn data_off_a_constraint_are_refused_at_their_site() {
     let model = LineModel::read(held::CHAIN).expect("is read");
     let case = Case::new(50, Some(["pinned", "free"]));
-    let all = held::all();
-    let (_, make, _) = &all[1];
-    let (_, data) = make(&case);
-    let chosen = choice(held::CHAIN, case.n, case.ends);
-    let refused = |data: &compiled::Data| {
-        let started = model.start(&chosen, case.h, &|name| data.get(name));
-        started.map(|_| ()).expect_err("is refused").to_string()
-    };
+    let [_, own, _] = held::all();
+    let data = (own.data)(&case);
+    let refused = |data: &compiled::Data| beside::refused(&model, held::CHAIN, &case, data);
     let off = refused(&data.with("a", |a| a[31] *= 1.001));
     assert!(
         off.contains("site 31") && off.contains("off the constraint"),
@@ -237,12 +195,10 @@ fn data_off_a_constraint_are_refused_at_their_site() {
 fn a_site_without_mass_is_told_as_such() {
     let model = LineModel::read(held::ROD).expect("is read");
     let case = Case::new(50, Some(["free", "free"]));
-    let (_, data) = (held::all()[0].1)(&case);
-    let chosen = choice(held::ROD, case.n, case.ends);
+    let [own, _, _] = held::all();
+    let data = (own.data)(&case);
     let refused = |name: &'static str, change: fn(&mut Vec<f64>)| {
-        let data = data.with(name, change);
-        let started = model.start(&chosen, case.h, &|name| data.get(name));
-        started.map(|_| ()).expect_err("is refused").to_string()
+        beside::refused(&model, held::ROD, &case, &data.with(name, change))
     };
     let told = refused("m", |m| m[31] = 0.0);
     for part in ["site 31", "`φ`", "mass is zero", "positive mass"] {
@@ -254,9 +210,9 @@ fn a_site_without_mass_is_told_as_such() {
 /// Rows of a long line come from the short one: every multiplier has its place, constraints of all sites are told together.
 #[test]
 fn the_card_of_a_long_held_line_tells_multipliers_and_constraints() {
-    for ((source, ..), multiplier) in held::all().iter().zip(["n", "lambda"]) {
-        let chosen = choice(source, 60, Some(["pinned", "free"]));
-        let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("is read");
+    for (own, multiplier) in held::all().iter().zip(["n", "lambda"]) {
+        let chosen = choice(own.source, 60, Some(["pinned", "free"]));
+        let (card, _) = clebsch_interpret::card_on_lattice(own.source, &chosen).expect("is read");
         let own = card.observables.iter().map(|f| f.ascii);
         let held: Vec<&str> = own
             .filter(|n| n.rsplit_once('_').is_some_and(|(k, _)| k == multiplier))
@@ -279,15 +235,11 @@ fn the_card_of_a_long_held_line_tells_multipliers_and_constraints() {
 /// What sums hold is told without a site, and a sum that no motion changes is refused.
 #[test]
 fn data_off_a_sum_are_refused_with_the_equation() {
-    let (source, make, _) = sums::all().swap_remove(0);
-    let model = LineModel::read(source).expect("is read");
+    let [own, _] = sums::all();
+    let model = LineModel::read(own.source).expect("is read");
     let case = Case::new(50, None);
-    let (_, data) = make(&case);
-    let chosen = choice(source, case.n, case.ends);
-    let refused = |data: &compiled::Data| {
-        let started = model.start(&chosen, case.h, &|name| data.get(name));
-        started.map(|_| ()).expect_err("is refused").to_string()
-    };
+    let data = (own.data)(&case);
+    let refused = |data: &compiled::Data| beside::refused(&model, own.source, &case, data);
     let off = refused(&data.with("X", |x| x[0] += 0.1));
     for wanted in ["p", "off the constraint", "∑_{i=0}^{N-1} s Λ_{i,k} E₃ = X"] {
         assert!(off.contains(wanted), "{off}");

@@ -11,15 +11,15 @@ mod beside;
 #[path = "lines/compiled.rs"]
 mod compiled;
 
-use beside::{bits, choice, same, split, start};
+use beside::{choice, same, split, start};
 use clebsch::card::{Field, Invariant};
 use clebsch_core::expr::symbol::ascii;
 use clebsch_interpret::lines::{LineModel, NoLine};
-use compiled::{Case, Data};
+use compiled::{Case, Data, Line, TodaLine, WaterLine, newton, together};
 
 #[test]
 fn every_line_of_the_gallery_equals_the_compiled_one_to_the_last_bit() {
-    beside::equal_to_the_last_bit(compiled::all().into_iter().chain(compiled::by_newton()));
+    beside::equal_to_the_last_bit(compiled::all().into_iter().chain(newton::all()));
 }
 
 #[test]
@@ -27,25 +27,18 @@ fn the_site_of_a_wrong_value_is_named() {
     let source = compiled::TODA;
     let model = LineModel::read(source).expect("is read");
     let case = Case::new(50, None);
-    let (_, numbers) = compiled::toda(&case);
-    let started = |numbers: &Data| {
-        let choice = choice(source, case.n, case.ends);
-        let started = model.start(&choice, case.h, &|name| numbers.get(name));
-        started.map(|_| ()).expect_err("is refused").to_string()
-    };
+    let numbers = compiled::toda(&case);
+    let started = |data: &Data| beside::refused(&model, source, &case, data);
+    let compiled = |data: &Data| TodaLine::of(&case, data).err().unwrap_or_default();
     let wrong = numbers.with("q", |q| q[37] = f64::NAN);
-    assert_eq!(
-        started(&wrong),
-        compiled::refused(&case, &wrong),
-        "a number at site 37"
-    );
+    assert_eq!(started(&wrong), compiled(&wrong), "a number at site 37");
     assert!(started(&wrong).contains("site 37"), "{}", started(&wrong));
     let short = numbers.with("momentum_q", |q| q.truncate(49));
-    assert_eq!(started(&short), compiled::refused(&case, &short));
+    assert_eq!(started(&short), compiled(&short));
     assert!(started(&short).contains("49 sites"), "{}", started(&short));
     // A step that is refused: neighbours so far apart that the force is not a number.
     let far = numbers.with("q", |q| q[20] = 1e200);
-    assert_eq!(started(&far), compiled::refused(&case, &far));
+    assert_eq!(started(&far), compiled(&far));
     // Not at the one before it, which a step spoils too.
     assert!(started(&far).contains("site 20:"), "{}", started(&far));
     let none = numbers.without("q");
@@ -58,9 +51,9 @@ fn a_step_that_is_refused_is_refused_alike_and_leaves_the_state() {
     let source = compiled::WATER;
     let model = LineModel::read(source).expect("is read");
     let case = Case::new(12, None);
-    let (_, calm) = compiled::water(&case);
+    let calm = compiled::water(&case);
     let wild = calm.with("momentum_X", |p| p.iter_mut().for_each(|p| *p *= 400.0));
-    let mut built = compiled::shallow_water(&case, &wild);
+    let mut built = WaterLine::of(&case, &wild).expect("starts");
     let mut line = start(&model, source, &case, &wild);
     let refused = (0..1000).find_map(|_| {
         let (one, other) = (built.step(), line.step().map_err(|e| e.to_string()));
@@ -74,22 +67,17 @@ fn a_step_that_is_refused_is_refused_alike_and_leaves_the_state() {
 
 #[test]
 fn a_step_beyond_a_fold_is_refused_alike_and_names_its_site() {
-    let source = compiled::newton::Steep::<f64>::SOURCE;
+    let source = newton::Steep::<f64>::SOURCE;
     let model = LineModel::read(source).expect("is read");
     let case = Case {
         h: 0.5,
         ..Case::new(12, None)
     };
-    let (_, calm) = compiled::newton::steep(&Case::new(12, None));
+    let calm = newton::steep(&Case::new(12, None));
     let wild = calm.with("q", |q| q[7] = 40.0).with("k", |k| k[0] = -0.8);
-    let told = compiled::newton::steep_line(&case, &wild).map(|_| ());
+    let told = newton::SteepLine::of(&case, &wild).map(|_| ());
     let told = told.expect_err("is refused");
-    let choice = choice(source, case.n, case.ends);
-    let started = model.start(&choice, case.h, &|name| wild.get(name));
-    assert_eq!(
-        started.map(|_| ()).expect_err("is refused").to_string(),
-        told
-    );
+    assert_eq!(beside::refused(&model, source, &case, &wild), told);
     assert!(
         told.contains("site 7") && told.contains("percent"),
         "{told}"
@@ -98,7 +86,7 @@ fn a_step_beyond_a_fold_is_refused_alike_and_names_its_site() {
 
 #[test]
 fn every_line_moves_as_its_bodies_do() {
-    beside::move_as_bodies_do(compiled::all().into_iter(), 5);
+    beside::move_as_bodies_do(compiled::all(), 5);
 }
 
 #[test]
@@ -114,50 +102,25 @@ fn a_term_that_is_left_out_is_seen() {
         ),
     ];
     for (source, term, rest) in without {
-        let mutated = source.replacen(term, rest, 1);
-        assert_ne!(mutated, source, "{term}");
-        let model = LineModel::read(&mutated).expect("is read");
-        let (_, make, _) = compiled::all()
-            .into_iter()
-            .find(|(own, ..)| *own == source)
-            .expect("is in the gallery");
-        let case = Case::new(5, Some(["free", "free"]));
-        let (mut built, data) = make(&case);
-        let mut line = start(&model, &mutated, &case, &data);
-        for _ in 0..3 {
-            built.step().expect("steps");
-            line.step().expect("steps");
-        }
-        let differs = model.observers().any(|name| {
-            let read = line.observe(&name).expect("is observed");
-            bits(&read) != bits(&built.seen(&name))
-        });
-        assert!(differs, "{term}");
+        beside::another_term_is_seen(&compiled::all(), source, term, rest);
     }
 }
 
 #[test]
 fn velocities_of_all_sites_are_found_together_to_the_last_bit_and_as_those_of_bodies() {
-    beside::equal_to_the_last_bit(compiled::together::all().into_iter());
-    beside::move_as_bodies_do(compiled::together::all().into_iter(), 5);
-    beside::go_on(compiled::together::all().into_iter());
+    beside::equal_to_the_last_bit(together::all());
+    beside::move_as_bodies_do(together::all(), 5);
+    beside::go_on(together::all());
 }
 
 #[test]
 fn bodies_whose_velocities_are_joined_run_with_sixty_segments() {
-    let (source, make, _) = compiled::together::all().remove(0);
+    let own = together::all().remove(0);
     let case = Case::new(60, None);
-    let (_, data) = make(&case);
-    let chosen = choice(source, case.n, case.ends);
-    let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("a card");
+    let settings = clebsch::card::Settings::step(case.h);
+    let (card, mut line) = beside::opened(own.source, &case, &(own.data)(&case), settings);
     let told = "one for every number of sites";
     assert!(card.summary.contains(told), "{}", card.summary);
-    let (parameters, initial) = (
-        beside::values(card.parameters, &data),
-        beside::values(card.initial, &data),
-    );
-    let settings = clebsch::card::Settings::step(case.h);
-    let mut line = (card.open)(&parameters, &initial, settings).expect("starts");
     line.step().expect("steps");
     let mut sums = vec![f64::NAN; card.invariant_count()];
     line.invariants(&mut sums);
@@ -166,7 +129,7 @@ fn bodies_whose_velocities_are_joined_run_with_sixty_segments() {
 
 #[test]
 fn a_line_is_written_down_and_goes_on_to_the_last_bit() {
-    beside::go_on(compiled::all().into_iter());
+    beside::go_on(compiled::all());
 }
 
 #[test]
@@ -193,7 +156,7 @@ fn what_loops_over_sites_do_not_take_is_run_body_by_body_or_refused_at_once() {
 #[test]
 fn the_card_of_a_long_line_says_what_that_of_its_bodies_says() {
     // The same observables and invariants, those of given sites left out.
-    for (source, _, cases) in compiled::all() {
+    for Line { source, cases, .. } in compiled::all() {
         let model = LineModel::read(source).expect("is read");
         let observed = |f: &Field| model.observers().any(|o| ascii(&o) == split(f).0);
         for case in cases.iter().filter(|c| c.n == 12) {

@@ -10,62 +10,44 @@ mod beside;
 #[path = "lines/compiled.rs"]
 mod compiled;
 
-use beside::{bits, choice, start, values};
+use beside::{choice, values};
 use clebsch::card::Settings;
 use clebsch_interpret::lines::LineModel;
 use compiled::{Case, quaternions};
 
 #[test]
 fn lines_in_quaternions_equal_the_compiled_ones_to_the_last_bit() {
-    beside::equal_to_the_last_bit(quaternions::all().into_iter());
+    beside::equal_to_the_last_bit(quaternions::all());
 }
 
 #[test]
 fn lines_in_quaternions_move_as_their_bodies_do() {
-    beside::move_as_bodies_do(quaternions::all().into_iter(), 5);
+    beside::move_as_bodies_do(quaternions::all(), 5);
 }
 
 #[test]
 fn a_line_in_quaternions_is_written_down_and_goes_on_to_the_last_bit() {
-    beside::go_on(quaternions::all().into_iter());
+    beside::go_on(quaternions::all());
 }
 
 #[test]
 fn a_term_that_is_left_out_is_seen() {
+    let all = quaternions::all();
     let rod = (quaternions::ROD, "\n        - (2*h/s)*dot(U, K*U)", "");
-    let own = quaternions::all().into_iter().next_back().expect("a line");
-    for (source, term, rest) in [rod, (own.0, "(4 * c * h / s) * re (U)", "0")] {
-        let mutated = match source.contains(term) {
-            true => source.replacen(term, rest, 1),
-            false => source.replacen("(4*c*h/s)*re(U)", "0", 1),
-        };
-        assert_ne!(mutated, source, "{term}");
-        let model = LineModel::read(&mutated).expect("is read");
-        let all = quaternions::all();
-        let found = all.iter().find(|(own, ..)| *own == source);
-        let (_, make, _) = found.expect("is here");
-        let case = Case::new(5, Some(["free", "free"]));
-        let (mut built, data) = make(&case);
-        let mut line = start(&model, &mutated, &case, &data);
-        for _ in 0..3 {
-            built.step().expect("steps");
-            line.step().expect("steps");
-        }
-        let differs = model.observers().any(|name| {
-            let read = line.observe(&name).expect("is observed");
-            bits(&read) != bits(&built.seen(&name))
-        });
-        assert!(differs, "{term}");
+    let spins = (all[1].source, "(4*c*h/s)*re(U)", "0");
+    for (source, term, rest) in [rod, spins] {
+        beside::another_term_is_seen(&all, source, term, rest);
     }
 }
 
 /// Attitudes that turn once around a ring: told alike by the built line, the one that is read and its bodies.
 #[test]
 fn an_odd_number_of_turns_around_a_ring_is_told_alike() {
-    let (source, make, _) = quaternions::all().into_iter().next_back().expect("a line");
+    let [_, own] = quaternions::all();
+    let source = own.source;
     let model = LineModel::read(source).expect("is read");
     let case = Case::new(12, None);
-    let (_, data) = make(&case);
+    let data = (own.data)(&case);
     for (turns, is_told) in [(1.0, true), (2.0, false)] {
         let once = data.with("q", |q| {
             for (i, q) in q.chunks_mut(4).enumerate() {
@@ -74,7 +56,7 @@ fn an_odd_number_of_turns_around_a_ring_is_told_alike() {
             }
         });
         let chosen = choice(source, case.n, case.ends);
-        let built = quaternions::twisted_of(&case, &once).err();
+        let built = (own.make)(&case, &once).err();
         let read = model.start(&chosen, case.h, &|name| once.get(name));
         let read = read.err().map(|e| e.to_string());
         assert_eq!(read, built, "{turns}");

@@ -16,16 +16,18 @@ mod oracle {
     pub mod wide;
 }
 
-/// Models in the suite: all groups, functions and statements by turns, and a little more.
-const MODELS: u64 = 60;
+#[allow(dead_code)]
+#[path = "../oracle/src/sizes.rs"]
+mod sizes;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo::rerun-if-env-changed=CLEBSCH_RANDOM_MODELS");
     println!("cargo::rerun-if-env-changed=CLEBSCH_RANDOM_FIRST");
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=../oracle/src/oracle");
+    println!("cargo::rerun-if-changed=../oracle/src/sizes.rs");
     let given = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
-    let count = given("CLEBSCH_RANDOM_MODELS").unwrap_or(MODELS);
+    let count = given("CLEBSCH_RANDOM_MODELS").unwrap_or(sizes::COMPILED);
     let first = given("CLEBSCH_RANDOM_FIRST").unwrap_or(0);
     let mut text = String::new();
     let mut table = String::new();
@@ -56,15 +58,7 @@ fn write_model(out: &mut String, model: &Model, seed: u64) -> std::fmt::Result {
             .collect()
     };
     let parameters = fields(&|role| matches!(role, Role::Parameter), "0");
-    let configuration = fields(
-        &|role| match role {
-            Role::Element(_) => true,
-            Role::Advected { definition, .. } => definition.is_none(),
-            Role::Relative { defined, .. } => !defined,
-            Role::Parameter | Role::Velocity(_) => false,
-        },
-        "level",
-    );
+    let configuration = fields(&Role::is_given, "level");
     writeln!(out, "/// A random model.\npub mod m{seed} {{")?;
     writeln!(
         out,
@@ -74,7 +68,7 @@ fn write_model(out: &mut String, model: &Model, seed: u64) -> std::fmt::Result {
     writeln!(out, "clebsch::model! {{ pub {} }}", model.text())?;
     writeln!(
         out,
-        "pub fn residual(h: f64, given: &Given<'_>) -> Result<Vec<f64>, String> {{\n\
+        "pub fn residual(h: f64, given: &Given) -> Result<Vec<f64>, String> {{\n\
          let model = {name}::<f64>::new({name}Parameters {{ {parameters} }}).map_err(|e| e.to_string())?;\n\
          let at = |level: i8| -> Result<{name}Configuration<f64>, String> {{ Ok({name}Configuration {{ {configuration} }}) }};\n\
          Ok(model.balance(h, &at(-1)?, &at(0)?, &at(1)?).iter().copied().collect())\n}}"

@@ -137,16 +137,28 @@ pub fn energies(bodies: &dyn Trajectory, line: &mut LineTrajectory) -> [f64; 2] 
     [sums[at], kinetic + potential]
 }
 
+/// The card of a line and its trajectory of these data.
+pub fn opened(
+    source: &str,
+    case: &Case,
+    data: &Data,
+    settings: Settings,
+) -> (Card, Box<dyn Trajectory>) {
+    let chosen = choice(source, case.n, case.ends);
+    let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("a card");
+    let (parameters, initial) = (values(card.parameters, data), values(card.initial, data));
+    let line = (card.open)(&parameters, &initial, settings);
+    (card, line.expect("starts"))
+}
+
 /// Lines from their text equal the compiled ones to the last bit.
-pub fn equal_to_the_last_bit(lines: impl Iterator<Item = Line>) {
-    for (source, make, cases) in lines {
-        let model = LineModel::read(source).expect("is read");
-        for case in cases {
-            let data = make(&case);
-            let (built, numbers) = &data;
-            let mut built = built.clone_box();
+pub fn equal_to_the_last_bit(lines: impl IntoIterator<Item = Line>) {
+    for own in lines {
+        let model = LineModel::read(own.source).expect("is read");
+        for case in &own.cases {
+            let (mut built, numbers) = own.made(case);
             let what = format!("{} {case:?}", model.name());
-            let mut line = start(&model, source, &case, numbers);
+            let mut line = start(&model, own.source, case, &numbers);
             same(&mut line, &*built, &model, &what);
             for step in 1..=200 {
                 let what = format!("{what} step {step}");
@@ -162,11 +174,12 @@ pub fn equal_to_the_last_bit(lines: impl Iterator<Item = Line>) {
 }
 
 /// Lines move as their bodies do, written out.
-pub fn move_as_bodies_do(lines: impl Iterator<Item = Line>, sites: usize) {
-    for (source, make, cases) in lines {
+pub fn move_as_bodies_do(lines: impl IntoIterator<Item = Line>, sites: usize) {
+    for own in lines {
+        let source = own.source;
         let model = LineModel::read(source).expect("is read");
-        for case in cases.iter().filter(|c| c.n == sites) {
-            let (_, data) = make(case);
+        for case in own.cases.iter().filter(|c| c.n == sites) {
+            let data = (own.data)(case);
             let chosen = choice(source, case.n, case.ends);
             let (card, _) =
                 clebsch_interpret::card_body_by_body(source, &chosen).expect("is written out");
@@ -194,11 +207,12 @@ pub fn move_as_bodies_do(lines: impl Iterator<Item = Line>, sites: usize) {
 }
 
 /// Lines are written down and go on to the last bit.
-pub fn go_on(lines: impl Iterator<Item = Line>) {
-    for (source, make, cases) in lines {
+pub fn go_on(lines: impl IntoIterator<Item = Line>) {
+    for own in lines {
+        let source = own.source;
         let model = LineModel::read(source).expect("is read");
-        let case = cases.last().expect("has cases");
-        let (_, data) = make(case);
+        let case = own.cases.last().expect("has cases");
+        let data = (own.data)(case);
         let mut whole = start(&model, source, case, &data);
         for _ in 0..20 {
             whole.step().expect("steps");
@@ -222,45 +236,68 @@ pub fn go_on(lines: impl Iterator<Item = Line>) {
 }
 
 /// The same of composed steps, by the card, of which a process opens some dozens and no more.
-pub fn go_on_composed(lines: impl Iterator<Item = Line>) {
-    for (source, make, cases) in lines {
-        let case = cases.last().expect("has cases");
-        let (_, data) = make(case);
-        one_goes_on_composed(source, case, &data);
+pub fn go_on_composed(lines: impl IntoIterator<Item = Line>) {
+    for own in lines {
+        let case = own.cases.last().expect("has cases");
+        let data = (own.data)(case);
+        let start = |order| {
+            let settings = Settings {
+                order,
+                ..Settings::step(case.h)
+            };
+            opened(own.source, case, &data, settings)
+        };
+        let (card, _) = start(None);
+        if !card.orders.contains(&4) {
+            continue;
+        }
+        let [(_, mut whole), (_, mut again)] = [start(Some(4)), start(Some(4))];
+        for _ in 0..5 {
+            whole.step().expect("steps");
+        }
+        let mut words = Words::gathered();
+        whole.words(&mut words);
+        again.words(&mut Words::given(
+            words.into_list().expect("is written down"),
+        ));
+        let seen = [whole, again].map(|mut line| {
+            for _ in 0..5 {
+                line.step().expect("steps");
+            }
+            let mut all = vec![0.0; card.observable_count()];
+            line.observe(&mut all);
+            all
+        });
+        for list in &seen {
+            assert!(list.iter().all(|x| x.is_finite()), "{}", card.name);
+        }
+        assert!(bits(&seen[0]) == bits(&seen[1]), "{}", card.name);
     }
 }
 
-fn one_goes_on_composed(source: &str, case: &Case, data: &Data) {
-    let chosen = choice(source, case.n, case.ends);
-    let (card, _) = clebsch_interpret::card_on_lattice(source, &chosen).expect("a card");
-    if !card.orders.contains(&4) {
-        return;
+/// A statement with another term, run beside the compiled line that has the right one, shows other numbers.
+pub fn another_term_is_seen(lines: &[Line], source: &str, term: &str, rest: &str) {
+    let mutated = source.replacen(term, rest, 1);
+    assert_ne!(mutated, source, "{term}");
+    let model = LineModel::read(&mutated).expect("is read");
+    let own = lines.iter().find(|own| own.source == source);
+    let case = Case::new(5, Some(["free", "free"]));
+    let (mut built, data) = own.expect("is here").made(&case);
+    let mut line = start(&model, &mutated, &case, &data);
+    for _ in 0..3 {
+        built.step().expect("steps");
+        line.step().expect("steps");
     }
-    let settings = Settings {
-        order: Some(4),
-        ..Settings::step(case.h)
-    };
-    let (parameters, initial) = (values(card.parameters, data), values(card.initial, data));
-    let start = || (card.open)(&parameters, &initial, settings).expect("starts");
-    let (mut whole, mut again) = (start(), start());
-    for _ in 0..5 {
-        whole.step().expect("steps");
-    }
-    let mut words = Words::gathered();
-    whole.words(&mut words);
-    again.words(&mut Words::given(
-        words.into_list().expect("is written down"),
-    ));
-    let seen = [whole, again].map(|mut line| {
-        for _ in 0..5 {
-            line.step().expect("steps");
-        }
-        let mut all = vec![0.0; card.observable_count()];
-        line.observe(&mut all);
-        all
+    let differs = model.observers().any(|name| {
+        let read = line.observe(&name).expect("is observed");
+        bits(&read) != bits(&built.seen(&name))
     });
-    for list in &seen {
-        assert!(list.iter().all(|x| x.is_finite()), "{}", card.name);
-    }
-    assert!(bits(&seen[0]) == bits(&seen[1]), "{}", card.name);
+    assert!(differs, "{term}");
+}
+
+/// What a line says of data that it does not start with.
+pub fn refused(model: &Arc<LineModel>, source: &str, case: &Case, data: &Data) -> String {
+    let chosen = choice(source, case.n, case.ends);
+    let started = model.start(&chosen, case.h, &|name| data.get(name));
+    started.map(|_| ()).expect_err("is refused").to_string()
 }

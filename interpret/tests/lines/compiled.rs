@@ -1,8 +1,8 @@
 //! The compiled lines of the gallery with random data, and the same data as numbers.
 
 use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
-use clebsch::of_numbers::OfNumbers;
-use clebsch::{BodyMomentum, Rotation};
+use clebsch::of_numbers::{OfNumbers, Shown};
+use clebsch::{BodyMomentum, Rotation, UnitQuaternion};
 use clebsch_models::lattices::coupled_tops::*;
 use clebsch_models::lattices::geometrically_exact_rod::*;
 use clebsch_models::lattices::shallow_water_1d::*;
@@ -61,35 +61,55 @@ impl Data {
         own
     }
 
-    fn number(&self, name: &str) -> f64 {
-        self.0[name][0]
+    /// The value that a field of the compiled line takes.
+    fn value<T: Value>(&self, name: &'static str) -> T {
+        T::of(name, &self.0[name])
     }
+}
 
-    fn numbers(&self, name: &str) -> Vec<f64> {
-        self.0[name].clone()
+/// A value at one site.
+trait Entry: OfNumbers {
+    const NUMBERS: usize;
+}
+
+impl Entry for f64 {
+    const NUMBERS: usize = 1;
+}
+impl<const R: usize, const C: usize> Entry for SMatrix<f64, R, C> {
+    const NUMBERS: usize = R * C;
+}
+impl Entry for Rotation {
+    const NUMBERS: usize = 9;
+}
+impl Entry for UnitQuaternion {
+    const NUMBERS: usize = 4;
+}
+impl Entry for BodyMomentum {
+    const NUMBERS: usize = 3;
+}
+
+/// The value of a field of a compiled line: one, or one for each site.
+trait Value {
+    fn of(name: &'static str, numbers: &[f64]) -> Self;
+}
+
+impl<T: Entry> Value for T {
+    fn of(name: &'static str, numbers: &[f64]) -> Self {
+        T::of_numbers(name, numbers).expect("is a value")
     }
+}
 
-    fn arrays<const R: usize, const C: usize>(&self, name: &str) -> Vec<SMatrix<f64, R, C>> {
-        let each = self.0[name].chunks(R * C);
-        each.map(SMatrix::from_row_slice).collect()
-    }
-
-    fn array<const R: usize, const C: usize>(&self, name: &str) -> SMatrix<f64, R, C> {
-        SMatrix::from_row_slice(&self.0[name])
-    }
-
-    fn rotations(&self, name: &'static str) -> Vec<Rotation> {
-        let each = self.0[name].chunks(9);
-        each.map(|m| OfNumbers::of_numbers(name, m).expect("a rotation"))
+impl<T: Entry> Value for Vec<T> {
+    fn of(name: &'static str, numbers: &[f64]) -> Self {
+        numbers
+            .chunks(T::NUMBERS)
+            .map(|own| T::of(name, own))
             .collect()
     }
+}
 
-    fn momenta(&self, name: &str) -> Vec<BodyMomentum> {
-        self.arrays::<3, 1>(name)
-            .into_iter()
-            .map(BodyMomentum)
-            .collect()
-    }
+fn shown(list: impl Iterator<Item: Shown>) -> Vec<f64> {
+    list.flat_map(Shown::numbers).collect()
 }
 
 /// A sequence of numbers between -1 and 1 (a linear congruence of 64 bits, Knuth).
@@ -130,32 +150,81 @@ pub trait Compiled {
     fn clone_box(&self) -> Box<dyn Compiled>;
 }
 
-type Named = Vec<(&'static str, Vec<f64>)>;
+/// Totals by their names.
+pub type Named = Vec<(&'static str, Vec<f64>)>;
 
+/// A compiled line by the names of its fields: what it takes, how it ends, and what it shows. Ends are the variants of the
+/// emitted types in lower case.
 macro_rules! compiled {
-    ($ty:ident, $model:ty, $state:ty, $work:ty, $seen:expr, $totals:expr) => {
+    (
+        $line:ident: $model:ident $parameters:ident $sites:ident $ends:ident $initial:ident $state:ident $work:ident,
+        takes [$($parameter:ident)*] starts [$($start:ident)*],
+        $(ring [$($around:ident)*],)?
+        $(first $first:ident [$($a:ident($($at_a:ident)?))*],)?
+        $(last $last:ident [$($b:ident($($at_b:ident)?))*],)?
+        fields [$($field:ident)*] groups [$($group:ident)*] $(sums [$($sum:ident)*])?
+        totals [$($total:ident $told:literal)*]
+    ) => {
         #[derive(Clone)]
-        struct $ty($model, $state, $work);
+        pub struct $line($model, $state, $work);
 
-        impl Compiled for $ty {
+        impl $line {
+            /// The line of these data, or why they are refused.
+            pub fn of(case: &Case, data: &Data) -> Result<Box<dyn Compiled>, String> {
+                let ends = match case.ends {
+                    $(None => $ends::Ring { $($around: data.value(stringify!($around)),)* },)?
+                    #[allow(unused_variables)]
+                    Some([first, last]) => $ends::Open {
+                        $(first: match first {
+                            $(end if end == stringify!($a).to_lowercase() => $first::$a {
+                                $($at_a: data.value(stringify!($at_a)),)?
+                            },)*
+                            end => panic!("no line begins {end}"),
+                        },)?
+                        $(last: match last {
+                            $(end if end == stringify!($b).to_lowercase() => $last::$b {
+                                $($at_b: data.value(stringify!($at_b)),)?
+                            },)*
+                            end => panic!("no line ends {end}"),
+                        },)?
+                    },
+                    #[allow(unreachable_patterns)]
+                    None => panic!("is no ring"),
+                };
+                let parameters = $parameters { $($parameter: data.value(stringify!($parameter)),)* };
+                let model = $model::new(parameters, $sites { N: case.n, ends }).map_err(|e| e.to_string())?;
+                let initial = $initial { $($start: data.value(stringify!($start)),)* };
+                let (state, work) = model.start(initial, case.h).map_err(|e| e.to_string())?;
+                Ok(Box::new(Self(model, state, work)))
+            }
+        }
+
+        impl Compiled for $line {
             fn step(&mut self) -> Result<(), String> {
-                let $ty(model, state, work) = self;
+                let $line(model, state, work) = self;
                 model.step(state, work).map_err(|e| e.to_string())
             }
             fn node(&self) -> u64 {
                 self.1.node()
             }
             fn seen(&self, name: &str) -> Vec<f64> {
-                let seen: fn(&$state, &str) -> Vec<f64> = $seen;
-                seen(&self.1, name)
+                $(if name == stringify!($field) {
+                    return shown(self.1.$field().iter().copied());
+                })*
+                $(if name == stringify!($group) {
+                    return shown(self.1.$group());
+                })*
+                $($(if name == stringify!($sum) {
+                    return self.1.$sum().as_slice().to_vec();
+                })*)?
+                Vec::new()
             }
             fn energies(&self) -> [f64; 2] {
                 let (kinetic, potential) = self.0.energies(&self.1);
                 [kinetic, potential]
             }
             fn totals(&self) -> Named {
-                let totals: fn(&$model, &$state) -> Named = $totals;
-                totals(&self.0, &self.1)
+                vec![$(($told, self.0.$total(&self.1).numbers().collect()),)*]
             }
             fn clone_box(&self) -> Box<dyn Compiled> {
                 Box::new(self.clone())
@@ -170,205 +239,141 @@ pub mod held;
 pub mod newton;
 #[path = "quaternions.rs"]
 pub mod quaternions;
-#[path = "strung.rs"]
-pub mod strung;
+#[path = "springs.rs"]
+pub mod springs;
 #[path = "sums.rs"]
 pub mod sums;
 #[path = "together.rs"]
 pub mod together;
 
-fn flat<const R: usize>(list: &[SMatrix<f64, R, 1>]) -> Vec<f64> {
-    list.iter().flat_map(|x| x.as_slice().to_vec()).collect()
-}
-
-fn turned(list: impl Iterator<Item = Rotation>) -> Vec<f64> {
-    list.flat_map(|r| r.matrix().transpose().as_slice().to_vec())
-        .collect()
-}
-
 compiled!(
-    TodaLine,
-    TodaChain,
-    TodaChainState,
-    TodaChainWorkspace,
-    |s, name| match name {
-        "q" => flat(s.q()),
-        "momentum_q" => flat(s.momentum_q()),
-        _ => Vec::new(),
-    },
-    |m, s| vec![("total_momentum", vec![m.total_momentum(s)])]
+    TodaLine: TodaChain TodaChainParameters TodaChainSites TodaChainEnds TodaChainInitial TodaChainState TodaChainWorkspace,
+    takes [m a b] starts [q momentum_q],
+    ring [L],
+    fields [q momentum_q] groups []
+    totals [total_momentum "total_momentum"]
 );
 compiled!(
-    SineLine,
-    SineGordon,
-    SineGordonState,
-    SineGordonWorkspace,
-    |s, name| match name {
-        "u" => flat(s.u()),
-        "momentum_u" => flat(s.momentum_u()),
-        _ => Vec::new(),
-    },
-    |_, _| Vec::new()
+    SineLine: SineGordon SineGordonParameters SineGordonSites SineGordonEnds SineGordonInitial SineGordonState SineGordonWorkspace,
+    takes [s w k] starts [u momentum_u],
+    ring [L], first SineGordonFirst [Free() Pinned()], last SineGordonLast [Free() Pinned()],
+    fields [u momentum_u] groups []
+    totals []
 );
 compiled!(
-    WaterLine,
-    ShallowWater1D,
-    ShallowWater1DState,
-    ShallowWater1DWorkspace,
-    |s, name| match name {
-        "X" => flat(s.X()),
-        "momentum_X" => flat(s.momentum_X()),
-        "Y" => flat(s.Y()),
-        "momentum_Y" => flat(s.momentum_Y()),
-        _ => Vec::new(),
-    },
-    |m, s| vec![
-        ("total_momentum_X", vec![m.total_momentum_X(s)]),
-        ("momentum_Y", vec![m.momentum_Y(s)])
-    ]
+    WaterLine: ShallowWater1D ShallowWater1DParameters ShallowWater1DSites ShallowWater1DEnds ShallowWater1DInitial
+        ShallowWater1DState ShallowWater1DWorkspace,
+    takes [m g f] starts [X momentum_X Y momentum_Y],
+    ring [L],
+    fields [X momentum_X Y momentum_Y] groups []
+    totals [total_momentum_X "total_momentum_X" momentum_Y "momentum_Y"]
 );
 compiled!(
-    TopsLine,
-    CoupledTops,
-    CoupledTopsState,
-    CoupledTopsWorkspace,
-    |s, name| match name {
-        "Λ" => turned(s.Λ()),
-        "body_momentum_Λ" => flat(&s.body_momentum_Λ().map(|m| m.0).collect::<Vec<_>>()),
-        "spatial_momentum_Λ" => flat(&s.spatial_momentum_Λ().map(|m| m.0).collect::<Vec<_>>()),
-        _ => Vec::new(),
-    },
-    |m, s| vec![("total_momentum_z", vec![m.total_momentum_z(s)])]
+    TopsLine: CoupledTops CoupledTopsParameters CoupledTopsSites CoupledTopsEnds CoupledTopsInitial CoupledTopsState
+        CoupledTopsWorkspace,
+    takes [s J C gU z] starts [Λ body_momentum_Λ],
+    ring [],
+    fields [] groups [Λ body_momentum_Λ spatial_momentum_Λ]
+    totals [total_momentum_z "total_momentum_z"]
 );
 compiled!(
-    RodLine,
-    GeometricallyExactRod,
-    GeometricallyExactRodState,
-    GeometricallyExactRodWorkspace,
-    |s, name| match name {
-        "φ" => flat(s.φ()),
-        "momentum_φ" => flat(s.momentum_φ()),
-        "Λ" => turned(s.Λ()),
-        "body_momentum_Λ" => flat(&s.body_momentum_Λ().map(|m| m.0).collect::<Vec<_>>()),
-        "spatial_momentum_Λ" => flat(&s.spatial_momentum_Λ().map(|m| m.0).collect::<Vec<_>>()),
-        _ => Vec::new(),
-    },
-    |m, s| vec![
-        (
-            "total_momentum_angular_g",
-            vec![m.total_momentum_angular_g(s)]
-        ),
-        (
-            "total_momentum_angular_g_about_phi",
-            vec![m.total_momentum_angular_g_about_phi(s)]
-        ),
-        (
-            "total_momentum_phi_across_g",
-            m.total_momentum_phi_across_g(s).as_slice().to_vec()
-        ),
+    RodLine: GeometricallyExactRod GeometricallyExactRodParameters GeometricallyExactRodSites GeometricallyExactRodEnds
+        GeometricallyExactRodInitial GeometricallyExactRodState GeometricallyExactRodWorkspace,
+    takes [s m J S B g] starts [φ momentum_φ Λ body_momentum_Λ],
+    ring [X],
+    first GeometricallyExactRodFirst [Free() Pinned() Clamped(Λw)],
+    last GeometricallyExactRodLast [Free() Pinned() Clamped(Λw) Load(force)],
+    fields [φ momentum_φ] groups [Λ body_momentum_Λ spatial_momentum_Λ]
+    totals [
+        total_momentum_angular_g "total_momentum_angular_g"
+        total_momentum_angular_g_about_phi "total_momentum_angular_g_about_phi"
+        total_momentum_phi_across_g "total_momentum_phi_across_g"
     ]
 );
 
-pub type Made = (Box<dyn Compiled>, Data);
+/// A compiled line of some data, or why they are refused.
+pub type Make = fn(&Case, &Data) -> Result<Box<dyn Compiled>, String>;
 
-fn toda_chain(case: &Case, data: &Data) -> Result<TodaLine, String> {
-    let parameters = TodaChainParameters {
-        m: data.number("m"),
-        a: data.number("a"),
-        b: data.number("b"),
-    };
-    let ends = match case.ends {
-        None => TodaChainEnds::Ring {
-            L: data.number("L"),
-        },
-        Some(_) => TodaChainEnds::Open,
-    };
-    let sites = TodaChainSites { N: case.n, ends };
-    let model = TodaChain::new(parameters, sites).map_err(|e| e.to_string())?;
-    let initial = TodaChainInitial {
-        q: data.arrays("q"),
-        momentum_q: data.arrays("momentum_q"),
-    };
-    let started = model.start(initial, case.h);
-    let (state, work) = started.map_err(|e| e.to_string())?;
-    Ok(TodaLine(model, state, work))
+/// A line with data.
+#[derive(Clone)]
+pub struct Line {
+    /// The text of its model.
+    pub source: &'static str,
+    /// The compiled line.
+    pub make: Make,
+    /// Random data.
+    pub data: fn(&Case) -> Data,
+    /// The numbers of its sites and its ends.
+    pub cases: Vec<Case>,
 }
 
-/// What the compiled chain says of data that are wrong.
-pub fn refused(case: &Case, data: &Data) -> String {
-    match toda_chain(case, data) {
-        Ok(_) => String::new(),
-        Err(why) => why,
+impl Line {
+    /// The compiled line with its data.
+    pub fn made(&self, case: &Case) -> (Box<dyn Compiled>, Data) {
+        let data = (self.data)(case);
+        ((self.make)(case, &data).expect("starts"), data)
     }
 }
 
+/// Numbers around another one.
+fn about(middle: f64, list: Vec<f64>) -> Vec<f64> {
+    list.iter().map(|x| middle + x).collect()
+}
+
+/// Places along the last axis, as far apart as half of it, with some disorder.
+fn along(list: Vec<f64>) -> Vec<f64> {
+    let each = list.into_iter().enumerate();
+    each.map(|(k, x)| match k % 3 {
+        2 => x + 0.5 * (k / 3) as f64,
+        _ => x,
+    })
+    .collect()
+}
+
+/// Matrices of so many sections, of which every third is alike.
+fn by_threes(n: usize, one: [f64; 9]) -> Vec<f64> {
+    let each = (0..n).map(|i| 1.0 + 0.1 * (i % 3) as f64);
+    each.flat_map(|x| one.map(|y| x * y)).collect()
+}
+
+/// Poinsot's matrix of a section.
+const SECTION: [f64; 9] = [0.3, 0.0, 0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 0.5];
+
 /// Toda's chain.
-pub fn toda(case: &Case) -> Made {
+pub fn toda(case: &Case) -> Data {
     let mut r = Random(1 + case.n as u64);
-    let data = Data(BTreeMap::from([
+    Data(BTreeMap::from([
         ("m", vec![1.3]),
         ("a", vec![0.7]),
         ("b", vec![1.1]),
         ("L", vec![0.3]),
         ("q", r.list(case.nodes(), 0.5)),
         ("momentum_q", r.list(case.nodes(), 1.0)),
-    ]));
-    let line = toda_chain(case, &data).expect("a chain");
-    (Box::new(line), data)
+    ]))
 }
 
-fn sine(case: &Case) -> Made {
+fn sine(case: &Case) -> Data {
     let mut r = Random(2 + case.n as u64);
-    let data = Data(BTreeMap::from([
+    Data(BTreeMap::from([
         ("s", vec![0.4]),
         ("k", vec![1.7]),
         ("L", vec![6.0]),
-        (
-            "w",
-            r.list(case.nodes(), 0.2).iter().map(|x| 0.5 + x).collect(),
-        ),
+        ("w", about(0.5, r.list(case.nodes(), 0.2))),
         ("u", r.list(case.nodes(), 1.0)),
         ("momentum_u", r.list(case.nodes(), 0.5)),
-    ]));
-    let ends = match case.ends {
-        None => SineGordonEnds::Ring {
-            L: data.number("L"),
-        },
-        Some([first, last]) => SineGordonEnds::Open {
-            first: match first {
-                "pinned" => SineGordonFirst::Pinned,
-                _ => SineGordonFirst::Free,
-            },
-            last: match last {
-                "pinned" => SineGordonLast::Pinned,
-                _ => SineGordonLast::Free,
-            },
-        },
-    };
-    let parameters = SineGordonParameters {
-        s: data.number("s"),
-        w: data.numbers("w"),
-        k: data.number("k"),
-    };
-    let model = SineGordon::new(parameters, SineGordonSites { N: case.n, ends }).expect("a line");
-    let initial = SineGordonInitial {
-        u: data.arrays("u"),
-        momentum_u: data.arrays("momentum_u"),
-    };
-    let (state, work) = model.start(initial, case.h).expect("starts");
-    (Box::new(SineLine(model, state, work)), data)
+    ]))
 }
 
 /// Shallow water.
-pub fn water(case: &Case) -> Made {
+pub fn water(case: &Case) -> Data {
     let mut r = Random(3 + case.n as u64);
     let places = r.list(case.nodes(), 0.1).into_iter().enumerate();
     let places: Vec<f64> = places.map(|(i, x)| i as f64 + x).collect();
-    let masses: Vec<f64> = r.list(case.nodes(), 0.2).iter().map(|x| 1.0 + x).collect();
+    let masses = about(1.0, r.list(case.nodes(), 0.2));
     // Nearly at rest: momenta across the channel are those of the turning frame.
     let turning = masses.iter().zip(&places).map(|(m, x)| 0.6 * m * x);
     let across = r.list(case.nodes(), 0.05).into_iter().zip(turning);
-    let data = Data(BTreeMap::from([
+    Data(BTreeMap::from([
         ("g", vec![0.9]),
         ("f", vec![0.6]),
         ("L", vec![case.n as f64]),
@@ -377,38 +382,12 @@ pub fn water(case: &Case) -> Made {
         ("momentum_Y", across.map(|(x, y)| x + y).collect()),
         ("m", masses),
         ("X", places),
-    ]));
-    (shallow_water(case, &data), data)
+    ]))
 }
 
-/// Shallow water of these data.
-pub fn shallow_water(case: &Case, data: &Data) -> Box<dyn Compiled> {
-    let ends = match case.ends {
-        None => ShallowWater1DEnds::Ring {
-            L: data.number("L"),
-        },
-        Some(_) => ShallowWater1DEnds::Open,
-    };
-    let parameters = ShallowWater1DParameters {
-        m: data.numbers("m"),
-        g: data.number("g"),
-        f: data.number("f"),
-    };
-    let model =
-        ShallowWater1D::new(parameters, ShallowWater1DSites { N: case.n, ends }).expect("water");
-    let initial = ShallowWater1DInitial {
-        X: data.arrays("X"),
-        momentum_X: data.arrays("momentum_X"),
-        Y: data.arrays("Y"),
-        momentum_Y: data.arrays("momentum_Y"),
-    };
-    let (state, work) = model.start(initial, case.h).expect("starts");
-    Box::new(WaterLine(model, state, work))
-}
-
-fn tops(case: &Case) -> Made {
+fn tops(case: &Case) -> Data {
     let mut r = Random(4 + case.n as u64);
-    let data = Data(BTreeMap::from([
+    Data(BTreeMap::from([
         ("s", vec![0.8]),
         ("J", vec![0.6, 0.05, 0.02, 0.05, 0.5, 0.01, 0.02, 0.01, 0.9]),
         ("C", vec![0.3, 0.04, 0.0, 0.04, 0.2, 0.03, 0.0, 0.03, 0.4]),
@@ -416,53 +395,23 @@ fn tops(case: &Case) -> Made {
         ("z", vec![0.0, 0.6, 0.8]),
         ("Λ", r.turns(case.nodes(), 0.7)),
         ("body_momentum_Λ", r.list(3 * case.nodes(), 1.0)),
-    ]));
-    let parameters = CoupledTopsParameters {
-        s: data.number("s"),
-        J: data.array("J"),
-        C: data.array("C"),
-        gU: data.array("gU"),
-        z: data.array("z"),
-    };
-    let ends = match case.ends {
-        None => CoupledTopsEnds::Ring,
-        Some(_) => CoupledTopsEnds::Open,
-    };
-    let model = CoupledTops::new(parameters, CoupledTopsSites { N: case.n, ends }).expect("tops");
-    let initial = CoupledTopsInitial {
-        Λ: data.rotations("Λ"),
-        body_momentum_Λ: data.momenta("body_momentum_Λ"),
-    };
-    let (state, work) = model.start(initial, case.h).expect("starts");
-    (Box::new(TopsLine(model, state, work)), data)
+    ]))
 }
 
-fn rod(case: &Case) -> Made {
+fn rod(case: &Case) -> Data {
     let (n, nodes) = (case.n, case.nodes());
     let mut r = Random(5 + n as u64);
-    let inertia = |i: usize| 1.0 + 0.1 * (i % 3) as f64;
-    let inertia = (0..n).flat_map(|i| {
-        let x = inertia(i);
-        [0.3 * x, 0.0, 0.0, 0.0, 0.4 * x, 0.0, 0.0, 0.0, 0.5 * x]
-    });
-    let places = r.list(3 * nodes, 0.1).into_iter().enumerate();
-    let places = places.map(|(k, x)| {
-        if k % 3 == 2 {
-            x + 0.5 * (k / 3) as f64
-        } else {
-            x
-        }
-    });
+    let places = along(r.list(3 * nodes, 0.1));
     let wall = r.turns(1, 0.2);
-    let data = Data(BTreeMap::from([
+    Data(BTreeMap::from([
         ("s", vec![0.5]),
-        ("m", r.list(nodes, 0.1).iter().map(|x| 0.5 + x).collect()),
-        ("J", inertia.collect()),
+        ("m", about(0.5, r.list(nodes, 0.1))),
+        ("J", by_threes(n, SECTION)),
         ("S", vec![2.0, 0.1, 0.2, 0.1, 2.5, 0.0, 0.2, 0.0, 3.0]),
         ("B", vec![0.5, 0.0, 0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 0.7]),
         ("g", vec![0.0, 0.1, -0.3]),
         ("force", vec![0.2, -0.1, 0.3]),
-        ("φ", places.collect()),
+        ("φ", places),
         ("momentum_φ", r.list(3 * nodes, 0.2)),
         ("Λ", r.turns(n, 0.3)),
         ("body_momentum_Λ", r.list(3 * n, 0.2)),
@@ -470,48 +419,16 @@ fn rod(case: &Case) -> Made {
         ("Λw_0", wall.clone()),
         ("Λw_N", wall),
         ("X", vec![0.1, 0.05, 0.5 * n as f64]),
-    ]));
-    let ends = match case.ends {
-        None => GeometricallyExactRodEnds::Ring { X: data.array("X") },
-        Some([first, last]) => GeometricallyExactRodEnds::Open {
-            first: match first {
-                "free" => GeometricallyExactRodFirst::Free,
-                "pinned" => GeometricallyExactRodFirst::Pinned,
-                _ => GeometricallyExactRodFirst::Clamped {
-                    Λw: data.array("Λw"),
-                },
-            },
-            last: match last {
-                "free" => GeometricallyExactRodLast::Free,
-                "pinned" => GeometricallyExactRodLast::Pinned,
-                "clamped" => GeometricallyExactRodLast::Clamped {
-                    Λw: data.array("Λw"),
-                },
-                _ => GeometricallyExactRodLast::Load {
-                    force: data.array("force"),
-                },
-            },
-        },
-    };
-    let parameters = GeometricallyExactRodParameters {
-        s: data.number("s"),
-        m: data.numbers("m"),
-        J: data.arrays("J"),
-        S: data.array("S"),
-        B: data.array("B"),
-        g: data.array("g"),
-    };
-    let model = GeometricallyExactRod::new(parameters, GeometricallyExactRodSites { N: n, ends })
-        .expect("a rod");
-    let initial = GeometricallyExactRodInitial {
-        φ: data.arrays("φ"),
-        momentum_φ: data.arrays("momentum_φ"),
-        Λ: data.rotations("Λ"),
-        body_momentum_Λ: data.momenta("body_momentum_Λ"),
-    };
-    let (state, work) = model.start(initial, case.h).expect("starts");
-    (Box::new(RodLine(model, state, work)), data)
+    ]))
 }
+
+/// Every first end with every last one.
+fn pairs(first: &[&'static str], last: &[&'static str]) -> Vec<[&'static str; 2]> {
+    let each = first.iter();
+    each.flat_map(|a| last.iter().map(|b| [*a, *b])).collect()
+}
+
+const FREE: [[&str; 2]; 1] = [["free", "free"]];
 
 const COUNTS: [usize; 5] = [2, 3, 5, 12, 50];
 
@@ -526,48 +443,25 @@ fn cases(ring: bool, ends: &[[&'static str; 2]]) -> Vec<Case> {
         .collect()
 }
 
-/// The text of a model, its compiled line with data, and numbers of sites.
-pub type Line = (&'static str, fn(&Case) -> Made, Vec<Case>);
-
 /// Every compiled line, with the numbers of its sites and its ends.
 pub fn all() -> Vec<Line> {
-    let free = [["free", "free"]];
-    let pinned = [
-        ["free", "free"],
-        ["pinned", "free"],
-        ["free", "pinned"],
-        ["pinned", "pinned"],
-    ];
+    let pinned = pairs(&["free", "pinned"], &["free", "pinned"]);
     let mut of_rod = cases(true, &pinned);
-    for first in ["free", "pinned", "clamped"] {
-        for last in ["free", "clamped", "load"] {
-            of_rod.push(Case::new(5, Some([first, last])));
-        }
-    }
+    let held = pairs(&["free", "pinned", "clamped"], &["free", "clamped", "load"]);
+    of_rod.extend(held.into_iter().map(|ends| Case::new(5, Some(ends))));
     // A ring of shallow water has two neighbours on either side.
-    let water_cases = cases(true, &free).into_iter().filter(|c| c.n > 2).collect();
+    let of_water = cases(true, &FREE).into_iter().filter(|c| c.n > 2).collect();
+    let line = |source, make, data, cases| Line {
+        source,
+        make,
+        data,
+        cases,
+    };
     vec![
-        (TODA, toda, cases(true, &free)),
-        (TOPS, tops, cases(true, &free)),
-        (SINE, sine, cases(true, &pinned)),
-        (ROD, rod, of_rod),
-        (WATER, water, water_cases),
-    ]
-}
-
-/// Those whose sites are solved by Newton's method; cards of lines are few in a process.
-pub fn by_newton() -> Vec<Line> {
-    let free = ["free", "free"];
-    vec![
-        (
-            newton::Beads::<f64>::SOURCE,
-            newton::beads,
-            cases(true, &[free]),
-        ),
-        (
-            newton::Steep::<f64>::SOURCE,
-            newton::steep,
-            cases(true, &[free, ["pinned", "free"]]),
-        ),
+        line(TODA, TodaLine::of, toda, cases(true, &FREE)),
+        line(TOPS, TopsLine::of, tops, cases(true, &FREE)),
+        line(SINE, SineLine::of, sine, cases(true, &pinned)),
+        line(ROD, RodLine::of, rod, of_rod),
+        line(WATER, WaterLine::of, water, of_water),
     ]
 }

@@ -1,11 +1,8 @@
-//! Lines with held constraints, compiled, with data that are on them: a rod that cannot be stretched, a chain of rigid
-//! links.
+//! Lines with held constraints, with data that are on them: a rod that cannot be stretched, a chain of rigid links.
 
-use super::{Case, Compiled, Data, Line, Made, Named, Random, cases, flat, turned};
-use clebsch::nalgebra::{Matrix3, Vector3};
+use super::*;
 use clebsch_models::lattices::hanging_chain::*;
 use clebsch_models::lattices::kirchhoff_rod::*;
-use std::collections::BTreeMap;
 
 pub const ROD: &str = include_str!("../../../models/lattices/kirchhoff-rod.clebsch");
 pub const CHAIN: &str = include_str!("../../../models/lattices/hanging-chain.clebsch");
@@ -30,88 +27,51 @@ clebsch::model! {
 }
 
 compiled!(
-    ChargedLine,
-    ChargedLinks,
-    ChargedLinksState,
-    ChargedLinksWorkspace,
-    |s, name| match name {
-        "X" => flat(s.X()),
-        "momentum_X" => flat(s.momentum_X()),
-        "q" => flat(s.q()),
-        "momentum_q" => flat(s.momentum_q()),
-        "λ" => flat(s.λ()),
-        "κ" => flat(s.κ()),
-        _ => Vec::new(),
-    },
-    |m, s| vec![
-        ("constraint_kappa", vec![m.constraint_κ(s)]),
-        ("constraint_lambda", vec![m.constraint_λ(s)]),
-        ("constraint_rate_kappa", vec![m.constraint_rate_κ(s)]),
-        ("constraint_rate_lambda", vec![m.constraint_rate_λ(s)]),
-    ]
-);
-
-compiled!(
-    RodLine,
-    KirchhoffRod,
-    KirchhoffRodState,
-    KirchhoffRodWorkspace,
-    |s, name| match name {
-        "φ" => flat(s.φ()),
-        "momentum_φ" => flat(s.momentum_φ()),
-        "n" => flat(s.n()),
-        "Λ" => turned(s.Λ()),
-        "body_momentum_Λ" => flat(&s.body_momentum_Λ().map(|m| m.0).collect::<Vec<_>>()),
-        "spatial_momentum_Λ" => flat(&s.spatial_momentum_Λ().map(|m| m.0).collect::<Vec<_>>()),
-        _ => Vec::new(),
-    },
-    |m, s| vec![
-        ("constraint_n", vec![m.constraint_n(s)]),
-        ("constraint_rate_n", vec![m.constraint_rate_n(s)]),
-        (
-            "total_momentum_angular_g",
-            vec![m.total_momentum_angular_g(s)]
-        ),
-        (
-            "total_momentum_angular_g_about_phi",
-            vec![m.total_momentum_angular_g_about_phi(s)]
-        ),
-        (
-            "total_momentum_phi_across_g",
-            m.total_momentum_phi_across_g(s).as_slice().to_vec()
-        ),
+    ChargedLine: ChargedLinks ChargedLinksParameters ChargedLinksSites ChargedLinksEnds ChargedLinksInitial
+        ChargedLinksState ChargedLinksWorkspace,
+    takes [m a f b e] starts [X momentum_X q momentum_q],
+    ring [],
+    fields [X momentum_X q momentum_q λ κ] groups []
+    totals [
+        constraint_κ "constraint_kappa"
+        constraint_λ "constraint_lambda"
+        constraint_rate_κ "constraint_rate_kappa"
+        constraint_rate_λ "constraint_rate_lambda"
     ]
 );
 compiled!(
-    ChainLine,
-    HangingChain,
-    HangingChainState,
-    HangingChainWorkspace,
-    |s, name| match name {
-        "x" => flat(s.x()),
-        "momentum_x" => flat(s.momentum_x()),
-        "λ" => flat(s.λ()),
-        _ => Vec::new(),
-    },
-    |m, s| vec![
-        ("constraint_lambda", vec![m.constraint_λ(s)]),
-        ("constraint_rate_lambda", vec![m.constraint_rate_λ(s)]),
-        (
-            "total_momentum_angular_about_x_g",
-            vec![m.total_momentum_angular_about_x_g(s)]
-        ),
+    KirchhoffLine: KirchhoffRod KirchhoffRodParameters KirchhoffRodSites KirchhoffRodEnds KirchhoffRodInitial
+        KirchhoffRodState KirchhoffRodWorkspace,
+    takes [s m J B g] starts [φ momentum_φ Λ body_momentum_Λ],
+    ring [X],
+    first KirchhoffRodFirst [Free() Pinned() Clamped(Λw)], last KirchhoffRodLast [Free() Pinned() Load(force)],
+    fields [φ momentum_φ n] groups [Λ body_momentum_Λ spatial_momentum_Λ]
+    totals [
+        constraint_n "constraint_n"
+        constraint_rate_n "constraint_rate_n"
+        total_momentum_angular_g "total_momentum_angular_g"
+        total_momentum_angular_g_about_phi "total_momentum_angular_g_about_phi"
+        total_momentum_phi_across_g "total_momentum_phi_across_g"
+    ]
+);
+compiled!(
+    ChainLine: HangingChain HangingChainParameters HangingChainSites HangingChainEnds HangingChainInitial
+        HangingChainState HangingChainWorkspace,
+    takes [m a g] starts [x momentum_x],
+    ring [], first HangingChainFirst [Free() Pinned()], last HangingChainLast [Free() Pinned()],
+    fields [x momentum_x λ] groups []
+    totals [
+        constraint_λ "constraint_lambda"
+        constraint_rate_λ "constraint_rate_lambda"
+        total_momentum_angular_about_x_g "total_momentum_angular_about_x_g"
     ]
 );
 
-fn rod(case: &Case) -> Made {
+fn rod(case: &Case) -> Data {
     let (n, nodes) = (case.n, case.nodes());
     let mut r = Random(6 + n as u64);
-    let moments = |i: usize| {
-        let x = 1.0 + 0.1 * (i % 3) as f64;
-        [0.3 * x, 0.0, 0.0, 0.0, 0.4 * x, 0.0, 0.0, 0.0, 0.5 * x]
-    };
     let turns = r.turns(n, 0.3);
-    let masses: Vec<f64> = r.list(nodes, 0.1).iter().map(|x| 0.5 + x).collect();
+    let masses = about(0.5, r.list(nodes, 0.1));
     let mut places = vec![Vector3::new(0.1, -0.2, 0.3)];
     let mut momenta: Vec<f64> = Vec::new();
     // Sections that spin about their own axes alone leave the line as it is.
@@ -120,10 +80,10 @@ fn rod(case: &Case) -> Made {
         momenta.extend([0.0, 0.0, 0.3 * r.number()]);
     }
     let across = places[n] - places[0];
-    let data = Data(BTreeMap::from([
+    Data(BTreeMap::from([
         ("s", vec![0.5]),
         ("m", masses),
-        ("J", (0..n).flat_map(moments).collect()),
+        ("J", by_threes(n, SECTION)),
         ("B", vec![0.5, 0.0, 0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 0.7]),
         ("g", vec![0.0, 0.1, -0.3]),
         ("X", across.as_slice().to_vec()),
@@ -139,45 +99,10 @@ fn rod(case: &Case) -> Made {
         ("Λ", turns),
         ("body_momentum_Λ", momenta),
         ("Λw", r.turns(1, 0.2)),
-    ]));
-    let ends = match case.ends {
-        None => KirchhoffRodEnds::Ring { X: data.array("X") },
-        Some([first, last]) => KirchhoffRodEnds::Open {
-            first: match first {
-                "free" => KirchhoffRodFirst::Free,
-                "pinned" => KirchhoffRodFirst::Pinned,
-                _ => KirchhoffRodFirst::Clamped {
-                    Λw: data.array("Λw"),
-                },
-            },
-            last: match last {
-                "free" => KirchhoffRodLast::Free,
-                "pinned" => KirchhoffRodLast::Pinned,
-                _ => KirchhoffRodLast::Load {
-                    force: data.array("force"),
-                },
-            },
-        },
-    };
-    let parameters = KirchhoffRodParameters {
-        s: data.number("s"),
-        m: data.numbers("m"),
-        J: data.arrays("J"),
-        B: data.array("B"),
-        g: data.array("g"),
-    };
-    let model = KirchhoffRod::new(parameters, KirchhoffRodSites { N: n, ends }).expect("a rod");
-    let initial = KirchhoffRodInitial {
-        φ: data.arrays("φ"),
-        momentum_φ: data.arrays("momentum_φ"),
-        Λ: data.rotations("Λ"),
-        body_momentum_Λ: data.momenta("body_momentum_Λ"),
-    };
-    let (state, work) = model.start(initial, case.h).expect("starts");
-    (Box::new(RodLine(model, state, work)), data)
+    ]))
 }
 
-fn chain(case: &Case) -> Made {
+fn chain(case: &Case) -> Data {
     let (n, nodes) = (case.n, case.nodes());
     let mut r = Random(7 + n as u64);
     let mut places = vec![Vector3::new(0.1, -0.2, 0.3)];
@@ -192,13 +117,13 @@ fn chain(case: &Case) -> Made {
     }
     let places = &places[..nodes];
     let length = |i: usize| (places[(i + 1) % nodes] - places[i]).norm();
-    let masses: Vec<f64> = r.list(nodes, 0.1).iter().map(|x| 0.5 + x).collect();
+    let masses = about(0.5, r.list(nodes, 0.1));
     let free = case.ends.is_none_or(|ends| ends == ["free", "free"]);
     let moving = masses.iter().flat_map(|m| match free {
         true => [0.2 * m, -0.1 * m, 0.3 * m],
         false => [0.0; 3],
     });
-    let data = Data(BTreeMap::from([
+    Data(BTreeMap::from([
         ("momentum_x", moving.collect()),
         ("a", (0..n).map(length).collect()),
         ("g", vec![0.3, 0.1, -0.8]),
@@ -207,35 +132,10 @@ fn chain(case: &Case) -> Made {
             places.iter().flat_map(|x| x.as_slice().to_vec()).collect(),
         ),
         ("m", masses),
-    ]));
-    let ends = match case.ends {
-        None => HangingChainEnds::Ring,
-        Some([first, last]) => HangingChainEnds::Open {
-            first: match first {
-                "pinned" => HangingChainFirst::Pinned,
-                _ => HangingChainFirst::Free,
-            },
-            last: match last {
-                "pinned" => HangingChainLast::Pinned,
-                _ => HangingChainLast::Free,
-            },
-        },
-    };
-    let parameters = HangingChainParameters {
-        m: data.numbers("m"),
-        a: data.numbers("a"),
-        g: data.array("g"),
-    };
-    let model = HangingChain::new(parameters, HangingChainSites { N: n, ends }).expect("a chain");
-    let initial = HangingChainInitial {
-        x: data.arrays("x"),
-        momentum_x: data.arrays("momentum_x"),
-    };
-    let (state, work) = model.start(initial, case.h).expect("starts");
-    (Box::new(ChainLine(model, state, work)), data)
+    ]))
 }
 
-fn charged(case: &Case) -> Made {
+fn charged(case: &Case) -> Data {
     let (n, nodes) = (case.n, case.nodes());
     let mut r = Random(8 + n as u64);
     let mut places = vec![[0.3, -0.2]];
@@ -254,8 +154,8 @@ fn charged(case: &Case) -> Made {
     };
     // At rest: momenta are those that the field gives.
     let (f, b) = (0.7, 0.2);
-    let data = Data(BTreeMap::from([
-        ("m", r.list(nodes, 0.2).iter().map(|x| 1.0 + x).collect()),
+    Data(BTreeMap::from([
+        ("m", about(1.0, r.list(nodes, 0.2))),
         ("a", (0..n).map(length).collect()),
         ("f", vec![f]),
         ("b", vec![b]),
@@ -273,55 +173,36 @@ fn charged(case: &Case) -> Made {
                 .collect(),
         ),
         ("momentum_q", vec![0.0; nodes]),
-    ]));
-    let ends = match case.ends {
-        None => ChargedLinksEnds::Ring,
-        Some(_) => ChargedLinksEnds::Open,
-    };
-    let parameters = ChargedLinksParameters {
-        m: data.numbers("m"),
-        a: data.numbers("a"),
-        f,
-        b,
-        e: data.number("e"),
-    };
-    let model = ChargedLinks::new(parameters, ChargedLinksSites { N: n, ends }).expect("links");
-    let initial = ChargedLinksInitial {
-        X: data.arrays("X"),
-        momentum_X: data.arrays("momentum_X"),
-        q: data.arrays("q"),
-        momentum_q: data.arrays("momentum_q"),
-    };
-    let (state, work) = model.start(initial, case.h).expect("starts");
-    (Box::new(ChargedLine(model, state, work)), data)
+    ]))
 }
 
 /// All of them, with the numbers of their sites and their ends.
-pub fn all() -> Vec<Line> {
-    let mut of_rod = Vec::new();
-    for first in ["free", "pinned", "clamped"] {
-        for last in ["free", "pinned", "load"] {
-            of_rod.push([first, last]);
-        }
-    }
-    let pinned = [
-        ["free", "free"],
-        ["pinned", "free"],
-        ["free", "pinned"],
-        ["pinned", "pinned"],
-    ];
+pub fn all() -> [Line; 3] {
+    let of_rod = pairs(&["free", "pinned", "clamped"], &["free", "pinned", "load"]);
+    let pinned = pairs(&["free", "pinned"], &["free", "pinned"]);
     // Two links between the same two beads hold one distance.
-    let of_chain = cases(true, &pinned).into_iter().filter(|c| c.n > 2);
-    vec![
-        (ROD, rod, cases(true, &of_rod)),
-        (CHAIN, chain, of_chain.collect()),
-        (
-            ChargedLinks::<f64>::SOURCE,
-            charged,
-            cases(true, &[["free", "free"]])
-                .into_iter()
-                .filter(|c| c.n > 2)
-                .collect(),
-        ),
+    let beyond_two = |ends: &[[&'static str; 2]]| {
+        let all = cases(true, ends).into_iter();
+        all.filter(|c| c.n > 2).collect()
+    };
+    [
+        Line {
+            source: ROD,
+            make: KirchhoffLine::of,
+            data: rod,
+            cases: cases(true, &of_rod),
+        },
+        Line {
+            source: CHAIN,
+            make: ChainLine::of,
+            data: chain,
+            cases: beyond_two(&pinned),
+        },
+        Line {
+            source: ChargedLinks::<f64>::SOURCE,
+            make: ChargedLine::of,
+            data: charged,
+            cases: beyond_two(&FREE),
+        },
     ]
 }

@@ -1,7 +1,6 @@
-//! Lines whose sites are solved by Newton's method, stated here, as built and from their text.
+//! Lines whose sites are solved by Newton's method, stated here.
 
-use super::{Case, Compiled, Data, Made, Named, Random, flat};
-use std::collections::BTreeMap;
+use super::*;
 
 clebsch::model! {
     /// Beads in the plane whose masses change with a number that moves as well.
@@ -32,50 +31,25 @@ clebsch::model! {
 }
 
 compiled!(
-    BeadsLine,
-    Beads,
-    BeadsState,
-    BeadsWorkspace,
-    |s, name| match name {
-        "q" => flat(s.q()),
-        "momentum_q" => flat(s.momentum_q()),
-        "X" => flat(s.X()),
-        "momentum_X" => flat(s.momentum_X()),
-        _ => Vec::new(),
-    },
-    |m, s| vec![
-        (
-            "total_momentum_X",
-            m.total_momentum_X(s).as_slice().to_vec()
-        ),
-        (
-            "total_momentum_X_angular",
-            m.total_momentum_X_angular(s)
-                .transpose()
-                .as_slice()
-                .to_vec()
-        ),
-    ]
+    BeadsLine: Beads BeadsParameters BeadsSites BeadsEnds BeadsInitial BeadsState BeadsWorkspace,
+    takes [m b k e] starts [q momentum_q X momentum_X],
+    ring [],
+    fields [q momentum_q X momentum_X] groups []
+    totals [total_momentum_X "total_momentum_X" total_momentum_X_angular "total_momentum_X_angular"]
 );
 compiled!(
-    SteepLine,
-    Steep,
-    SteepState,
-    SteepWorkspace,
-    |s, name| match name {
-        "q" => flat(s.q()),
-        "momentum_q" => flat(s.momentum_q()),
-        _ => Vec::new(),
-    },
-    |_, _| Vec::new()
+    SteepLine: Steep SteepParameters SteepSites SteepEnds SteepInitial SteepState SteepWorkspace,
+    takes [m k e] starts [q momentum_q],
+    ring [], first SteepFirst [Free() Pinned()],
+    fields [q momentum_q] groups []
+    totals []
 );
 
-/// Beads.
-pub fn beads(case: &Case) -> Made {
+fn beads(case: &Case) -> Data {
     let mut r = Random(6 + case.n as u64);
     let nodes = case.nodes();
-    let data = Data(BTreeMap::from([
-        ("m", r.list(nodes, 0.3).iter().map(|x| 1.0 + x).collect()),
+    Data(BTreeMap::from([
+        ("m", about(1.0, r.list(nodes, 0.3))),
         ("b", vec![0.7]),
         ("k", vec![0.9]),
         ("e", vec![0.4]),
@@ -83,64 +57,36 @@ pub fn beads(case: &Case) -> Made {
         ("momentum_q", r.list(nodes, 0.5)),
         ("X", r.list(2 * nodes, 1.0)),
         ("momentum_X", r.list(2 * nodes, 0.5)),
-    ]));
-    let parameters = BeadsParameters {
-        m: data.numbers("m"),
-        b: data.number("b"),
-        k: data.number("k"),
-        e: data.number("e"),
-    };
-    let ends = match case.ends {
-        None => BeadsEnds::Ring,
-        Some(_) => BeadsEnds::Open,
-    };
-    let model = Beads::new(parameters, BeadsSites { N: case.n, ends }).expect("beads");
-    let initial = BeadsInitial {
-        q: data.arrays("q"),
-        momentum_q: data.arrays("momentum_q"),
-        X: data.arrays("X"),
-        momentum_X: data.arrays("momentum_X"),
-    };
-    let (state, work) = model.start(initial, case.h).expect("starts");
-    (Box::new(BeadsLine(model, state, work)), data)
+    ]))
 }
 
 /// Numbers in a steep potential.
-pub fn steep(case: &Case) -> Made {
+pub fn steep(case: &Case) -> Data {
     let mut r = Random(7 + case.n as u64);
-    let data = Data(BTreeMap::from([
+    Data(BTreeMap::from([
         ("m", vec![1.2]),
         ("k", vec![0.8]),
         ("e", vec![0.4]),
         ("q", r.list(case.nodes(), 1.0)),
         ("momentum_q", r.list(case.nodes(), 0.5)),
-    ]));
-    let line = steep_line(case, &data).expect("starts");
-    (line, data)
+    ]))
 }
 
-/// The same of these data, or what is said of them.
-pub fn steep_line(case: &Case, data: &Data) -> Result<Box<dyn Compiled>, String> {
-    let parameters = SteepParameters {
-        m: data.number("m"),
-        k: data.number("k"),
-        e: data.number("e"),
-    };
-    let ends = match case.ends {
-        None => SteepEnds::Ring,
-        Some(["pinned", _]) => SteepEnds::Open {
-            first: SteepFirst::Pinned,
+/// All of them; cards of lines are few in a process.
+pub fn all() -> Vec<Line> {
+    let held = pairs(&["free", "pinned"], &["free"]);
+    vec![
+        Line {
+            source: Beads::<f64>::SOURCE,
+            make: BeadsLine::of,
+            data: beads,
+            cases: cases(true, &FREE),
         },
-        Some(_) => SteepEnds::Open {
-            first: SteepFirst::Free,
+        Line {
+            source: Steep::<f64>::SOURCE,
+            make: SteepLine::of,
+            data: steep,
+            cases: cases(true, &held),
         },
-    };
-    let model =
-        Steep::new(parameters, SteepSites { N: case.n, ends }).map_err(|e| e.to_string())?;
-    let initial = SteepInitial {
-        q: data.arrays("q"),
-        momentum_q: data.arrays("momentum_q"),
-    };
-    let (state, work) = model.start(initial, case.h).map_err(|e| e.to_string())?;
-    Ok(Box::new(SteepLine(model, state, work)))
+    ]
 }

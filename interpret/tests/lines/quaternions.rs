@@ -1,11 +1,7 @@
-//! Lines in unit quaternions as built and from their text, their signs given at random.
+//! Lines in unit quaternions, their signs given at random.
 
-use super::{Case, Compiled, Data, Line, Made, Named, Random, cases, flat};
-use clebsch::nalgebra::Vector3;
-use clebsch::of_numbers::OfNumbers;
-use clebsch::{Rotation, UnitQuaternion};
+use super::*;
 use clebsch_models::lattices::quaternion_rod::*;
-use std::collections::BTreeMap;
 
 pub const ROD: &str = include_str!("../../../models/lattices/quaternion-rod.clebsch");
 
@@ -35,50 +31,26 @@ clebsch::model! {
     }
 }
 
-fn components(list: impl Iterator<Item = UnitQuaternion>) -> Vec<f64> {
-    list.flat_map(|q| q.components()).collect()
-}
-
 compiled!(
-    RodInQuaternions,
-    QuaternionRod,
-    QuaternionRodState,
-    QuaternionRodWorkspace,
-    |s, name| match name {
-        "φ" => flat(s.φ()),
-        "momentum_φ" => flat(s.momentum_φ()),
-        "q" => components(s.q()),
-        "body_momentum_q" => flat(&s.body_momentum_q().map(|m| m.0).collect::<Vec<_>>()),
-        "spatial_momentum_q" => flat(&s.spatial_momentum_q().map(|m| m.0).collect::<Vec<_>>()),
-        _ => Vec::new(),
-    },
-    |m, s| vec![
-        (
-            "total_momentum_angular_g",
-            vec![m.total_momentum_angular_g(s)]
-        ),
-        (
-            "total_momentum_angular_g_about_phi",
-            vec![m.total_momentum_angular_g_about_phi(s)]
-        ),
-        (
-            "total_momentum_phi_across_g",
-            m.total_momentum_phi_across_g(s).as_slice().to_vec()
-        ),
+    RodInQuaternions: QuaternionRod QuaternionRodParameters QuaternionRodSites QuaternionRodEnds QuaternionRodInitial
+        QuaternionRodState QuaternionRodWorkspace,
+    takes [s m I S K g] starts [φ momentum_φ q body_momentum_q],
+    ring [X],
+    first QuaternionRodFirst [Free() Pinned() Clamped(qw)],
+    last QuaternionRodLast [Free() Pinned() Load(force)],
+    fields [φ momentum_φ] groups [q body_momentum_q spatial_momentum_q]
+    totals [
+        total_momentum_angular_g "total_momentum_angular_g"
+        total_momentum_angular_g_about_phi "total_momentum_angular_g_about_phi"
+        total_momentum_phi_across_g "total_momentum_phi_across_g"
     ]
 );
 compiled!(
-    TwistedLine,
-    Twisted,
-    TwistedState,
-    TwistedWorkspace,
-    |s, name| match name {
-        "q" => components(s.q()),
-        "body_momentum_q" => flat(&s.body_momentum_q().map(|m| m.0).collect::<Vec<_>>()),
-        "spatial_momentum_q" => flat(&s.spatial_momentum_q().map(|m| m.0).collect::<Vec<_>>()),
-        _ => Vec::new(),
-    },
-    |m, s| vec![("total_momentum_z", vec![m.total_momentum_z(s)])]
+    TwistedLine: Twisted TwistedParameters TwistedSites TwistedEnds TwistedInitial TwistedState TwistedWorkspace,
+    takes [s A b K c a z] starts [q body_momentum_q],
+    ring [], first TwistedFirst [Free() Held(qw)], last TwistedLast [Free() Held(qw)],
+    fields [] groups [q body_momentum_q spatial_momentum_q]
+    totals [total_momentum_z "total_momentum_z"]
 );
 
 /// Random unit quaternions of either sign.
@@ -92,12 +64,6 @@ fn turns(r: &mut Random, count: usize, size: f64) -> Vec<f64> {
     all
 }
 
-fn quaternions(data: &Data, name: &'static str) -> Vec<UnitQuaternion> {
-    let each = data.0[name].chunks(4);
-    each.map(|q| OfNumbers::of_numbers(name, q).expect("of unit length"))
-        .collect()
-}
-
 /// The matrix of a wall.
 fn wall(r: &mut Random) -> Vec<f64> {
     let q = turns(r, 1, 0.2);
@@ -105,119 +71,37 @@ fn wall(r: &mut Random) -> Vec<f64> {
     q.matrix().transpose().as_slice().to_vec()
 }
 
-fn rod(case: &Case) -> Made {
+fn rod(case: &Case) -> Data {
     let (n, nodes) = (case.n, case.nodes());
     let mut r = Random(8 + n as u64);
-    let inertia = (0..n).flat_map(|i| {
-        let x = 1.0 + 0.1 * (i % 3) as f64;
-        [0.9, 0.05, 0.0, 0.05, 0.8, 0.02, 0.0, 0.02, 0.7].map(|y| y * x)
-    });
-    let places = r.list(3 * nodes, 0.1).into_iter().enumerate();
-    let places = places.map(|(k, x)| {
-        if k % 3 == 2 {
-            x + 0.5 * (k / 3) as f64
-        } else {
-            x
-        }
-    });
-    let data = Data(BTreeMap::from([
+    let places = along(r.list(3 * nodes, 0.1));
+    let inertia = [0.9, 0.05, 0.0, 0.05, 0.8, 0.02, 0.0, 0.02, 0.7];
+    Data(BTreeMap::from([
         ("s", vec![0.5]),
-        ("m", r.list(nodes, 0.1).iter().map(|x| 0.5 + x).collect()),
-        ("I", inertia.collect()),
+        ("m", about(0.5, r.list(nodes, 0.1))),
+        ("I", by_threes(n, inertia)),
         ("S", vec![2.0, 0.1, 0.2, 0.1, 2.5, 0.0, 0.2, 0.0, 3.0]),
         ("K", vec![1.1, 0.05, 0.0, 0.05, 1.2, 0.1, 0.0, 0.1, 0.9]),
         ("g", vec![0.0, 0.1, -0.3]),
         ("X", vec![0.01, 0.02, 0.5 * n as f64]),
         ("force", vec![0.2, -0.1, 0.3]),
-        ("φ", places.collect()),
+        ("φ", places),
         ("momentum_φ", r.list(3 * nodes, 0.2)),
         ("q", turns(&mut r, n, 0.3)),
         ("body_momentum_q", r.list(3 * n, 0.2)),
         ("qw", wall(&mut r)),
-    ]));
-    let ends = match case.ends {
-        None => QuaternionRodEnds::Ring { X: data.array("X") },
-        Some([first, last]) => QuaternionRodEnds::Open {
-            first: match first {
-                "free" => QuaternionRodFirst::Free,
-                "pinned" => QuaternionRodFirst::Pinned,
-                _ => QuaternionRodFirst::Clamped {
-                    qw: data.array("qw"),
-                },
-            },
-            last: match last {
-                "free" => QuaternionRodLast::Free,
-                "pinned" => QuaternionRodLast::Pinned,
-                _ => QuaternionRodLast::Load {
-                    force: data.array("force"),
-                },
-            },
-        },
-    };
-    let parameters = QuaternionRodParameters {
-        s: data.number("s"),
-        m: data.numbers("m"),
-        I: data.arrays("I"),
-        S: data.array("S"),
-        K: data.array("K"),
-        g: data.array("g"),
-    };
-    let sites = QuaternionRodSites { N: n, ends };
-    let model = QuaternionRod::new(parameters, sites).expect("a rod");
-    let initial = QuaternionRodInitial {
-        φ: data.arrays("φ"),
-        momentum_φ: data.arrays("momentum_φ"),
-        q: quaternions(&data, "q"),
-        body_momentum_q: data.momenta("body_momentum_q"),
-    };
-    let (state, work) = model.start(initial, case.h).expect("starts");
-    (Box::new(RodInQuaternions(model, state, work)), data)
-}
-
-/// What the compiled line says of data, or the line.
-pub fn twisted_of(case: &Case, data: &Data) -> Result<Box<dyn Compiled>, String> {
-    let (first, last) = (data.array("qw"), data.array("qw"));
-    let ends = match case.ends {
-        None => TwistedEnds::Ring,
-        Some(ends) => TwistedEnds::Open {
-            first: match ends[0] {
-                "free" => TwistedFirst::Free,
-                _ => TwistedFirst::Held { qw: first },
-            },
-            last: match ends[1] {
-                "free" => TwistedLast::Free,
-                _ => TwistedLast::Held { qw: last },
-            },
-        },
-    };
-    let parameters = TwistedParameters {
-        s: data.number("s"),
-        A: data.arrays("A"),
-        b: data.numbers("b"),
-        K: data.array("K"),
-        c: data.number("c"),
-        a: data.array("a"),
-        z: data.array("z"),
-    };
-    let model = Twisted::new(parameters, TwistedSites { N: case.n, ends }).expect("a line");
-    let initial = TwistedInitial {
-        q: quaternions(data, "q"),
-        body_momentum_q: data.momenta("body_momentum_q"),
-    };
-    let started = model.start(initial, case.h);
-    let (state, work) = started.map_err(|e| e.to_string())?;
-    Ok(Box::new(TwistedLine(model, state, work)))
+    ]))
 }
 
 /// Bodies that see how they have come round.
-pub fn twisted(case: &Case) -> Made {
+fn twisted(case: &Case) -> Data {
     let nodes = case.nodes();
     let mut r = Random(9 + case.n as u64);
     let inertia = [1.5, 0.05, 0.02, 0.05, 1.4, 0.01, 0.02, 0.01, 1.9];
-    let data = Data(BTreeMap::from([
+    Data(BTreeMap::from([
         ("s", vec![0.8]),
         ("A", (0..nodes).flat_map(|_| inertia).collect()),
-        ("b", r.list(nodes, 0.2).iter().map(|x| 0.5 + x).collect()),
+        ("b", about(0.5, r.list(nodes, 0.2))),
         ("K", vec![0.6, 0.04, 0.0, 0.04, 0.5, 0.03, 0.0, 0.03, 0.7]),
         ("c", vec![0.4]),
         ("a", vec![0.1, -0.2, 0.7]),
@@ -225,26 +109,25 @@ pub fn twisted(case: &Case) -> Made {
         ("q", turns(&mut r, nodes, 0.4)),
         ("body_momentum_q", r.list(3 * nodes, 0.5)),
         ("qw", wall(&mut r)),
-    ]));
-    (twisted_of(case, &data).expect("starts"), data)
+    ]))
 }
 
 /// Every line in quaternions.
-pub fn all() -> Vec<Line> {
-    let mut of_rod = Vec::new();
-    for first in ["free", "pinned", "clamped"] {
-        for last in ["free", "pinned", "load"] {
-            of_rod.push([first, last]);
-        }
-    }
-    let held = [
-        ["free", "free"],
-        ["held", "free"],
-        ["free", "held"],
-        ["held", "held"],
-    ];
-    vec![
-        (ROD, rod, cases(true, &of_rod)),
-        (Twisted::<f64>::SOURCE, twisted, cases(true, &held)),
+pub fn all() -> [Line; 2] {
+    let of_rod = pairs(&["free", "pinned", "clamped"], &["free", "pinned", "load"]);
+    let held = pairs(&["free", "held"], &["free", "held"]);
+    [
+        Line {
+            source: ROD,
+            make: RodInQuaternions::of,
+            data: rod,
+            cases: cases(true, &of_rod),
+        },
+        Line {
+            source: Twisted::<f64>::SOURCE,
+            make: TwistedLine::of,
+            data: twisted,
+            cases: cases(true, &held),
+        },
     ]
 }

@@ -6,3 +6,4 @@ pub mod oracle;
 pub mod physics;
 pub mod printed;
 pub mod reference;
+pub mod sizes;

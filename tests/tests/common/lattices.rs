@@ -23,8 +23,6 @@ pub mod tops;
 use clebsch_core::Derivation;
 use clebsch_core::lattice::Lattice;
 use clebsch_core::pipeline::{derive_lattice, parse_source, representative};
-use clebsch_oracle::oracle::points::asked_for;
-use std::time::Instant;
 
 /// Agreement asked of each component, relative to the largest summand of the variation of its own site.
 /// A summand is rounded to some 1e-15 of what it is made of; differences of places along a line of 50
@@ -61,12 +59,6 @@ impl Ends {
 /// The natural ends of a line for which no other is stated.
 pub const FREE: Ends = Ends::Open("free", "free");
 
-/// Whether the typed action of so many segments is changed term by term: on longer lines by
-/// `LATTICE_CHANGES=12`, which takes a minute.
-fn is_changed(segments: usize) -> bool {
-    segments as u64 <= asked_for("LATTICE_CHANGES", 5)
-}
-
 /// Derives the model for so many sites of each label.
 pub fn derived(text: &str, counts: &[(&str, usize)], ends: Ends) -> Derivation {
     let model = parse_source(text).unwrap_or_else(|e| panic!("{text}\n{e}"));
@@ -82,11 +74,8 @@ pub fn derived(text: &str, counts: &[(&str, usize)], ends: Ends) -> Derivation {
             held.with_end(&lattice, true, last).unwrap()
         }
     };
-    let start = Instant::now();
     let found = derive_lattice(&model, &lattice, &choice);
     let (_, d) =
         found.unwrap_or_else(|e| panic!("{} {ends:?}\n{text}\n{e}", choice.words(&lattice)));
-    let (name, words, took) = (&d.spec.name, choice.words(&lattice), start.elapsed());
-    println!("{name} {words}: derived in {took:.1?}");
     d
 }

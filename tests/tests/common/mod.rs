@@ -1,9 +1,7 @@
 //! What the quick tests of derivations and those of many models share: the way from the oracle to the engine, typed
 //! actions of lines, and random models.
 
-pub mod groups;
 pub mod lagrangians;
 pub mod lattices;
-pub mod mixed;
 pub mod mutants;
 pub mod oracle_bridge;

@@ -1,13 +1,9 @@
 //! Residual programs with one summand removed or flipped, judged at points of which the oracle knows the variation of the
 //! action.
 
-use super::oracle_bridge::{AGREEMENT, assignment, disagreement};
+use super::oracle_bridge::{AGREEMENT, assignment};
 use clebsch_core::Derivation;
-use clebsch_oracle::oracle::action::Variation;
-use clebsch_oracle::oracle::points::Given;
-
-/// Points at which a mutant may be noticed; one is enough for nearly all.
-pub const POINTS: usize = 30;
+use clebsch_oracle::oracle::points::{Given, Variation};
 
 /// A point with what the oracle says about it.
 pub struct Judged {
@@ -27,7 +23,7 @@ pub fn survivors(derivation: &Derivation, points: &[Judged]) -> (usize, Vec<Stri
                 // A mutant that cannot be evaluated is noticed as well.
                 mutant
                     .residual(&values)
-                    .is_ok_and(|residual| disagreement(&point.oracle, &residual) <= AGREEMENT)
+                    .is_ok_and(|residual| point.oracle.disagreement(&residual) <= AGREEMENT)
             })
         })
         .map(|mutant| mutant.describe())

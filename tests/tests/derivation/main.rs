@@ -2,7 +2,7 @@
 //! One binary, since linking is most of what a test costs.
 
 // Models are stated in Greek letters, as in the papers.
-#![allow(mixed_script_confusables)]
+#![allow(mixed_script_confusables, confusable_idents)]
 // Some models are of first order or without a limit on purpose, of which the macro warns by this lint.
 #![allow(deprecated)]
 
@@ -18,6 +18,7 @@ mod equations_of_a_step;
 mod expansion;
 mod folders;
 mod generated_fresh;
+mod held;
 mod kinetic_analogy;
 mod latex;
 mod lattices;
@@ -25,9 +26,9 @@ mod meant;
 mod mutation;
 mod oracle_groups;
 mod oracle_interpreted;
+mod oracle_self;
 mod prose;
 mod quoted_figures;
-mod random_mixed;
 mod reduction;
 mod reduction_of_motions;
 mod reference_numbers;

@@ -2,8 +2,8 @@
 //! Takes each program with one summand removed or flipped; gives a disagreement with the oracle at some
 //! random point for every one of them. The mutant that nothing notices would be a term nobody tests.
 
-use super::common::mutants::{Judged, POINTS, survivors};
-use super::common::oracle_bridge::{AGREEMENT, assignment, disagreement};
+use super::common::mutants::{Judged, survivors};
+use super::common::oracle_bridge::{AGREEMENT, assignment};
 use clebsch_core::{Derivation, derive_source};
 use clebsch_oracle::oracle::action::bodies::{FreeBody, HeavyTop, Stated};
 use clebsch_oracle::oracle::action::coupled::CoupledBodies;
@@ -11,6 +11,7 @@ use clebsch_oracle::oracle::action::spatial::HeavyTopSpatial;
 use clebsch_oracle::oracle::action::{rotations, stationarity};
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::Square;
+use clebsch_oracle::sizes::MUTANT_POINTS;
 use std::array::from_fn;
 
 fn derive(text: &str) -> Derivation {
@@ -24,7 +25,7 @@ fn every_mutant_is_noticed<const G: usize, S: Stated<3, G>>(least: usize) {
     let text = S::text();
     let derivation = derive(&text);
     let mut source = Source::seeded(3);
-    let points: Vec<Judged> = (0..POINTS)
+    let points: Vec<Judged> = (0..MUTANT_POINTS)
         .map(|_| {
             let system = S::random(&mut source);
             let nodes: [[Square<f64, 3>; G]; 3] = from_fn(|_| S::node(&mut source));
@@ -38,7 +39,7 @@ fn every_mutant_is_noticed<const G: usize, S: Stated<3, G>>(least: usize) {
     for point in &points {
         let values = assignment(&point.given, point.step);
         let sound = derivation.residual(&values).unwrap_or_default();
-        assert!(disagreement(&point.oracle, &sound) <= AGREEMENT, "{text}");
+        assert!(point.oracle.disagreement(&sound) <= AGREEMENT, "{text}");
     }
     let (count, alive) = survivors(&derivation, &points);
     println!("{count} mutants");

@@ -2,8 +2,8 @@
 //! Takes hand-typed systems and a few random Lagrangians at random points that solve nothing; gives agreement
 //! to 1e-10 relative to the sum of the sizes of the summands.
 
-use super::common::lagrangians::agree_and_their_mutants_do_not;
-use super::common::oracle_bridge::{AGREEMENT, assignment, disagreement};
+use super::common::lagrangians::{agree_and_their_mutants_do_not, judge};
+use super::common::oracle_bridge::{AGREEMENT, assignment};
 use clebsch_core::derive_source;
 use clebsch_oracle::oracle::action::bodies::{
     FourDimensional, FreeBody, HeavyTop, QuadraticField, Stated, TwoVectors,
@@ -13,12 +13,14 @@ use clebsch_oracle::oracle::action::elastic::{EllipsoidConvective, EllipsoidSpat
 use clebsch_oracle::oracle::action::spatial::{FreeBodySpatial, HeavyTopSpatial};
 use clebsch_oracle::oracle::action::{rotations, stationarity};
 use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::sides::Side;
 use clebsch_oracle::oracle::square::Square;
+use clebsch_oracle::oracle::wide::Model;
+use clebsch_oracle::oracle::wide::model::{Action, Family, Kind, Role};
+use clebsch_oracle::oracle::wide::tree::Tree;
 use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::sizes::{DERIVED_QUICKLY, POINTS};
 use std::array::from_fn;
-
-/// Random points for every system.
-const POINTS: usize = 1000;
 
 fn agrees<const N: usize, const G: usize, S: Stated<N, G>>(basis: &[Square<f64, N>]) {
     let text = S::text();
@@ -37,7 +39,7 @@ fn agrees<const N: usize, const G: usize, S: Stated<N, G>>(basis: &[Square<f64, 
             Ok(engine) => engine,
             Err(error) => panic!("{text}\ncannot be evaluated: {error}"),
         };
-        let difference = disagreement(&oracle, &engine);
+        let difference = oracle.disagreement(&engine);
         worst = worse(worst, difference);
         assert!(
             difference <= AGREEMENT,
@@ -130,15 +132,30 @@ fn ellipsoid_spatial() {
     agrees::<3, 1, EllipsoidSpatial>(&entries());
 }
 
-/// The first of those of `tests/tests/many_models/`.
+/// One model of every group and product of groups; more are those of `tests/tests/many_models/`.
 #[test]
 fn random_lagrangians() {
-    agree_and_their_mutants_do_not(0..16);
+    agree_and_their_mutants_do_not(0..DERIVED_QUICKLY);
 }
 
-/// One further on whose derivation once went wrong: a determinant of a singular matrix, whose
-/// derivative is its adjugate and not the determinant times an inverse.
+/// The derivative of a determinant is its adjugate, of a singular matrix not the determinant times an inverse.
 #[test]
-fn a_random_lagrangian_that_was_hard() {
-    agree_and_their_mutants_do_not([1384].into_iter());
+fn the_determinant_of_a_singular_matrix() {
+    let mut model = Model::of("Singular".to_owned(), &[(Family::Rotation(3), Side::Space)]);
+    let role = Role::Advected {
+        body: 0,
+        action: Action::Forward,
+        turns: false,
+        definition: None,
+    };
+    let carried = model.add("q", Kind::Vector(3), role);
+    let j = model.parameter(Kind::Positive(3));
+    let skew = Tree::call("hat", model.letter(carried)).plus(model.parameter(Kind::Skew(3)));
+    let kinetic = Tree::call("tr", j.times(model.letter(model.bodies[0].element + 1)));
+    model.summands = vec![
+        (true, kinetic.over(Tree::Step)),
+        (false, Tree::Step.times(Tree::call("det", skew))),
+    ];
+    let (worst, _) = judge(&model, 1384).unwrap_or_else(|why| panic!("{why}"));
+    assert!(worst <= AGREEMENT, "{worst:e}");
 }

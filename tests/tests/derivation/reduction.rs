@@ -2,7 +2,7 @@
 //! residual is the variation of the action typed by hand, on either side, and their steps are those
 //! of the reduced statement. A wrong sign, factor or frame fails.
 
-use super::common::oracle_bridge::{AGREEMENT, assignment, disagreement};
+use super::common::oracle_bridge::{AGREEMENT, assignment};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Rotation, SpatialMomentum};
 use clebsch_core::{Derivation, derive_source};
@@ -54,7 +54,7 @@ fn worst<const N: usize, const G: usize, S: Stated<N, G>>(
             Ok(engine) => engine,
             Err(error) => panic!("{text}\ncannot be evaluated: {error}"),
         };
-        worst = worse(worst, disagreement(&oracle, &engine));
+        worst = worse(worst, oracle.disagreement(&engine));
     }
     worst
 }

@@ -2,7 +2,7 @@
 //! ends of a step. Their residuals are the variation of the action typed by hand and those of the
 //! reduced statement; their steps are those of the reduced model. What is stated wrongly disagrees.
 
-use super::common::oracle_bridge::{AGREEMENT, assignment, disagreement};
+use super::common::oracle_bridge::{AGREEMENT, assignment};
 use clebsch::nalgebra::{Matrix3, SVector, Vector3, Vector4};
 use clebsch::{BodyImpulse, BodyMomentum, Group, RigidMotion, Rotation, UnitQuaternion};
 use clebsch_core::print::{Format, Style, expression};
@@ -105,13 +105,13 @@ fn worst<const G: usize, A: DiscreteAction<4, G>>(
         let values = assignment(&given(&action, &nodes), ("h", h));
         let wanted = oracle(&action, &nodes);
         let found = d.residual(&values).expect("all values are given");
-        from_oracle = worse(from_oracle, disagreement(&wanted, &found));
+        from_oracle = worse(from_oracle, wanted.disagreement(&found));
         let second = other.residual(&values).expect("all values are given");
         let against = Variation {
             derivative: second,
             scale: wanted.scale,
         };
-        from_other = worse(from_other, disagreement(&against, &found));
+        from_other = worse(from_other, against.disagreement(&found));
     }
     println!("oracle {from_oracle:e}, the other statement {from_other:e}");
     (from_oracle, from_other)

@@ -8,12 +8,10 @@ mod memory;
 mod probe;
 mod tokens;
 
+use clebsch_oracle::sizes::FUZZED;
 use kinds::{judge, judge_mutated};
 use probe::{Input, probe_all};
 use std::sync::{Mutex, MutexGuard};
-
-/// Inputs of each kind.
-const INPUTS: u64 = 500;
 
 /// One kind at a time, which takes all threads.
 fn alone() -> MutexGuard<'static, ()> {
@@ -25,14 +23,14 @@ fn alone() -> MutexGuard<'static, ()> {
 #[test]
 fn random_token_streams() {
     let _turn = alone();
-    judge(&probe_all(0..INPUTS, kinds::stream));
+    judge(&probe_all(0..FUZZED, kinds::stream));
 }
 
 #[test]
 fn mutated_models() {
     let _turn = alone();
     let models = kinds::models();
-    judge_mutated(&probe_all(0..INPUTS, |number| {
+    judge_mutated(&probe_all(0..FUZZED, |number| {
         kinds::mutated(number, &models)
     }));
 }

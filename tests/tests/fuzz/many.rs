@@ -7,13 +7,14 @@ mod probe;
 mod tokens;
 
 use clebsch_oracle::oracle::points::asked_for;
+use clebsch_oracle::sizes::{FUZZED, FUZZED_LONG};
 use kinds::{judge, judge_mutated};
 use probe::probe_all;
 use std::ops::Range;
 
 /// Those of `main.rs`, and the last of each kind; a hundred thousand by `FUZZ_INPUTS=100000`.
 fn inputs() -> Range<u64> {
-    500..asked_for("FUZZ_INPUTS", 6_000)
+    FUZZED..asked_for("FUZZ_INPUTS", FUZZED_LONG)
 }
 
 /// One after the other, each on all threads.

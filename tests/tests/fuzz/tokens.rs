@@ -9,7 +9,7 @@ use clebsch_oracle::oracle::action::coupled::CoupledBodies;
 use clebsch_oracle::oracle::action::elastic::{EllipsoidConvective, EllipsoidSpatial};
 use clebsch_oracle::oracle::action::spatial::{FreeBodySpatial, HeavyTopSpatial};
 use clebsch_oracle::oracle::points::Source;
-use clebsch_oracle::oracle::random::RandomLagrangian;
+use clebsch_oracle::oracle::wide::Model;
 
 /// The longest text.
 const LONGEST: usize = 10_000;
@@ -268,7 +268,7 @@ pub fn models() -> Vec<String> {
         <EllipsoidConvective<3>>::text(),
         EllipsoidSpatial::text(),
     ];
-    models.extend((0..40).map(|seed| RandomLagrangian::of_seed(seed).text()));
+    models.extend((0..40).map(|seed| Model::of_seed(seed).text()));
     models
 }
 

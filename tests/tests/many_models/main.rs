@@ -3,8 +3,6 @@
 
 #[path = "../common/mod.rs"]
 mod common;
-mod groups;
 mod lagrangians;
 mod lattices;
-mod mixed;
 mod second_proof;

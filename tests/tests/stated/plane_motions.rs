@@ -4,8 +4,8 @@
 
 use clebsch::nalgebra::{Matrix2, Matrix3, SVector, Vector2, Vector3};
 use clebsch::{BodyPlaneImpulse, PlaneMotion, SpatialPlaneImpulse};
-use clebsch_oracle::oracle::action::plane::PlaneSum;
-use clebsch_oracle::oracle::action::{Side, TermSum, stationarity};
+use clebsch_oracle::oracle::action::plane::{PlaneSum, plane_twists};
+use clebsch_oracle::oracle::action::{Side, stationarity};
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::Square;
 use clebsch_oracle::physics::measure::worse;
@@ -97,28 +97,11 @@ fn square(a: &Matrix3<f64>) -> [Square<f64, 3>; 1] {
     [Square(from_fn(|i| from_fn(|j| a[(i, j)])))]
 }
 
-/// The action of the oracle for which a stepper is stated.
-fn action(side: Side, source: &mut Source) -> PlaneSum {
-    let mut action = PlaneSum::random(source, side, &[0, 5, 14, 15, 19]);
-    action.h = 0.05;
-    // Held near the origin, so that places round no more than velocities.
-    action.three = source.positive();
-    for (term, a) in &mut action.terms {
-        *a *= 0.05;
-        match *term {
-            0 => *a = 1.0,
-            14 => *a = -a.abs(),
-            _ => {}
-        }
-    }
-    action
-}
-
 /// The largest derivative of the action at a node, in units of its terms.
 fn worst_of(action: &PlaneSum, nodes: &[Matrix3<f64>]) -> f64 {
     let along = nodes.windows(3).map(|w| {
         let nodes = [square(&w[0]), square(&w[1]), square(&w[2])];
-        let found = stationarity(action, &nodes, &PlaneSum::basis());
+        let found = stationarity(action, &nodes, &plane_twists());
         let largest = found.derivative.iter().fold(0.0, |m, x| worse(m, x.abs()));
         largest / found.scale
     });
@@ -128,12 +111,12 @@ fn worst_of(action: &PlaneSum, nodes: &[Matrix3<f64>]) -> f64 {
 macro_rules! run_of {
     ($model:ident, $parameters:ident, $initial:ident, $momentum:ident, $kept:ident, $action:expr, $source:expr) => {{
         let action = $action;
-        let of = |term: usize| action.terms.iter().find(|(t, _)| *t == term).unwrap().1;
+        let [a5, a14, a15, a19] = action.weights;
         let model = $model::new($parameters {
-            a5: of(5),
-            a14: of(14),
-            a15: of(15),
-            a19: of(19),
+            a5,
+            a14,
+            a15,
+            a19,
             A: matrix(&action.general),
             K: matrix(&action.three),
             Q: matrix(&action.moments),
@@ -160,7 +143,7 @@ macro_rules! run_of {
 fn the_action_is_stationary_at_every_node() {
     let mut source = Source::seeded(81);
     for _ in 0..10 {
-        let body = action(Side::Body, &mut source);
+        let body = PlaneSum::random(&mut source, Side::Body, 0.05);
         let nodes = run_of!(
             BodySum,
             BodySumParameters,
@@ -172,7 +155,7 @@ fn the_action_is_stationary_at_every_node() {
         );
         let found = worst_of(&body, &nodes);
         assert!(found < 1e-12, "body: {found:e}");
-        let space = action(Side::Space, &mut source);
+        let space = PlaneSum::random(&mut source, Side::Space, 0.05);
         let nodes = run_of!(
             SpaceSum,
             SpaceSumParameters,
@@ -186,7 +169,7 @@ fn the_action_is_stationary_at_every_node() {
         assert!(found < 1e-12, "space: {found:e}");
         // A statement that is not the oracle's is found out.
         let mut other = space.clone();
-        other.terms[1].1 *= 1.01;
+        other.weights[0] *= 1.01;
         assert!(worst_of(&other, &nodes) > 1e-9);
     }
 }

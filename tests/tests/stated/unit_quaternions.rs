@@ -16,8 +16,8 @@ use clebsch_models::cayley_klein::{
 use clebsch_models::cayley_klein_spatial::{
     CayleyKleinSpatial, CayleyKleinSpatialInitial, CayleyKleinSpatialParameters,
 };
-use clebsch_oracle::oracle::action::quaternions::{self, QuaternionSum, halves, left};
-use clebsch_oracle::oracle::action::{DiscreteAction, Side, TermSum, stationarity};
+use clebsch_oracle::oracle::action::quaternions::{self, halves, left};
+use clebsch_oracle::oracle::action::{DiscreteAction, Side, stationarity};
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::Square;
 use clebsch_oracle::physics::measure::worse;
@@ -155,27 +155,17 @@ fn steps_of_tops_stated_here_do_so_too() {
     let mut source = Source::seeded(62);
     let (mut worst, mut apart, mut made) = (0.0_f64, 0.0_f64, 0);
     for _ in 0..4000 {
-        let mut action = QuaternionSum::random(&mut source, Side::Body, &[0, 1, 13, 14]);
+        let mut action = quaternions::QuaternionTop::random(&mut source);
         let h = action.h * 0.3;
         let b = source.between(-8.0, -2.0);
         action.h = h;
         // Coefficients as they stand before the terms, which are not all divided by the step.
-        let [a0, a13, a14] = [0, 2, 3].map(|i: usize| action.terms[i].1);
-        action.terms[1].1 = b / h;
+        action.weights[1] = b / h;
+        let [a0, _, a13, a14] = action.weights;
         let q = attitude(&mut source);
-        let given = action.given(&[node(&q), node(&q), node(&q)]);
-        let value = |name: &str| {
-            let found = given.iter().find(|g| g.name == name);
-            found.expect("given").data.clone()
-        };
-        let (S, vector) = (Matrix3::from_row_slice(&value("S")), |n: &str| {
-            Vector3::from_row_slice(&value(n))
-        });
-        let (u, z, momentum) = (
-            vector("u"),
-            vector("z"),
-            Vector3::from(source.vector::<3>()),
-        );
+        let S = Matrix3::from_fn(|i, j| action.symmetric.0[i][j]);
+        let (u, z) = (Vector3::from(action.lever), Vector3::from(action.vertical));
+        let momentum = Vector3::from(source.vector::<3>());
         // Not every random matrix is a body's.
         let Ok(body) = QuaternionTop::new(QuaternionTopParameters {
             a0,
@@ -215,7 +205,7 @@ fn steps_of_tops_stated_here_do_so_too() {
             .zip(other)
             .fold(apart, |m, (x, y)| worse(m, (x - y).abs()));
         assert!(off(&action, &displaced(seen, 1e-8)) > 1e-10);
-        action.terms[3].1 += 1e-3;
+        action.weights[3] += 1e-3;
         assert!(
             off(&action, &seen) > 10.0 * ROUNDING || u.cross(&(r.transpose() * z)).norm() < 1e-3
         );

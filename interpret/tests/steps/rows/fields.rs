@@ -49,6 +49,17 @@ fn angles<T: Number>(e: &Edge<'_, T>) -> T {
         + e.h * e.given.real("g") * height
 }
 
+/// Of two rows and three columns, with an inertia on either side.
+fn sheet<T: Number>(e: &Edge<'_, T>) -> T {
+    let (a, b) = (e.given.square::<2>("A"), e.given.square::<3>("B"));
+    let d: [T; 6] = e.changes("F");
+    let row = |i: usize| [0, 1, 2].map(|k| d[3 * i + k]);
+    let each = (0..4).map(|k| a.0[k / 2][k % 2] * dot(&row(k / 2), &b.apply(&row(k % 2))));
+    let kinetic = each.fold(of::<T>(0.0), |sum, x| sum + x) / (of::<T>(2.0) * e.h);
+    let k = e.given.real("k");
+    kinetic - e.h * k * e.at_nodes(|at| square(norm(&at.column::<6>("F"))))
+}
+
 fn matrix_fourth<T: Number>(e: &Edge<'_, T>) -> T {
     let d = e.changed::<2>("A");
     let size = (d * d.transpose()).trace();
@@ -178,6 +189,13 @@ pub const ROWS: &[Row] = &[
         action!(midpoint),
         &["m"],
     ),
+    Row::of(
+        "model Sheet { param A: Sym<2>; param B: Sym<3>; param k: Real; field F: Mat<2, 3>; let D = next(F) - F;
+            lagrangian = tr(A*D*B*D^T)/(2*h) - h*k*tr(F*F^T)^2; }",
+        action!(sheet),
+        &["A"],
+    )
+    .positive(&["B"]),
     Row::of(
         "model MagneticField { param m, k: Real; param B: Vec<3>; field x: Vec<3>; let d = next(x) - x;
             lagrangian = m*dot(d, d)/(2*h) + dot(cross(B, x), d)/2 - h*k*log(3 + dot(x, x)); }",

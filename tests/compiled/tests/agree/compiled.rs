@@ -6,7 +6,7 @@
 
 use clebsch::card::Card;
 use clebsch::nalgebra::SMatrix;
-use clebsch::{Linear, Orthogonal, RigidMotion, Rotation, UnitQuaternion};
+use clebsch::{Additive, Linear, Orthogonal, PlaneMotion, RigidMotion, Rotation, UnitQuaternion};
 
 include!(concat!(env!("OUT_DIR"), "/models.rs"));
 
@@ -34,22 +34,22 @@ pub struct Compiled {
     /// What it was made from.
     pub seed: u64,
     /// Its residual at three nodes, the step first.
-    pub residual: fn(f64, &Given<'_>) -> Result<Vec<f64>, String>,
+    pub residual: fn(f64, &Given) -> Result<Vec<f64>, String>,
     /// Its description, by which it is stepped.
     pub card: &'static Card,
 }
 
 /// Values by name and level, row by row.
 #[derive(Clone, Debug)]
-pub struct Given<'a>(pub Vec<(&'a str, i8, Vec<f64>)>);
+pub struct Given(pub Vec<(String, i8, Vec<f64>)>);
 
-impl Given<'_> {
+impl Given {
     /// The value in the type that is asked for.
     ///
     /// # Errors
     /// When there is none, or it is no such value.
     pub fn get<V: Typed>(&self, name: &str, level: i8) -> Result<V, String> {
-        let found = self.0.iter().find(|(n, l, _)| *n == name && *l == level);
+        let found = self.0.iter().find(|(n, l, _)| n == name && *l == level);
         let (.., data) = found.ok_or_else(|| format!("`{name}` is not given at {level}"))?;
         V::typed(data).ok_or_else(|| format!("`{name}` is no such value: {data:?}"))
     }
@@ -70,6 +70,18 @@ impl Typed for f64 {
 impl<const R: usize, const C: usize> Typed for SMatrix<f64, R, C> {
     fn typed(data: &[f64]) -> Option<Self> {
         (data.len() == R * C).then(|| Self::from_row_slice(data))
+    }
+}
+
+impl<const R: usize, const C: usize> Typed for Additive<R, C, f64> {
+    fn typed(data: &[f64]) -> Option<Self> {
+        SMatrix::typed(data).map(Self::new)
+    }
+}
+
+impl Typed for PlaneMotion<f64> {
+    fn typed(data: &[f64]) -> Option<Self> {
+        Self::from_matrix(&SMatrix::typed(data)?).ok()
     }
 }
 

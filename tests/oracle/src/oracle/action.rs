@@ -12,7 +12,7 @@ pub mod quaternions;
 pub mod spatial;
 
 use super::dual::{Dual, Number};
-use super::points::{Given, Source};
+pub use super::points::Variation;
 pub use super::sides::{NodeRule, Side};
 use super::square::{Square, hat};
 use crate::physics::measure::worse;
@@ -27,49 +27,6 @@ pub trait DiscreteAction<const N: usize, const G: usize> {
 
     /// The summands of the action of the edge from `tail` (node k) to `head` (node k+1).
     fn edge<T: Number>(&self, tail: &[Square<T, N>; G], head: &[Square<T, N>; G]) -> Vec<T>;
-}
-
-/// A sum of random terms on one group, with its text in the model language: the chart of a group, by
-/// which every test of derivations goes.
-pub trait TermSum<const N: usize>: DiscreteAction<N, 1> + Sized {
-    /// The terms by their text, the first one kinetic.
-    const TERMS: &'static [&'static str];
-    /// How many percent of the others a random choice takes.
-    const TAKEN: usize;
-
-    /// The basis of the Lie algebra, in the order of the momentum's coordinates.
-    fn basis() -> Vec<Square<f64, N>>;
-
-    /// A random element.
-    fn node(source: &mut Source) -> [Square<f64, N>; 1];
-
-    /// Random parameters for given terms.
-    fn random(source: &mut Source, side: Side, terms: &[usize]) -> Self;
-
-    /// The model. The carried quantities have definitions or not.
-    fn text(side: Side, terms: &[usize], defined: bool) -> String;
-
-    /// The step.
-    fn step(&self) -> f64;
-
-    /// Values of all names at three nodes.
-    fn given(&self, nodes: &[[Square<f64, N>; 1]; 3]) -> Vec<Given>;
-
-    /// A random choice of terms, the kinetic one among them.
-    fn choice(source: &mut Source) -> Vec<usize> {
-        let others = (1..Self::TERMS.len()).filter(|_| source.chance(Self::TAKEN));
-        std::iter::once(0).chain(others).collect()
-    }
-}
-
-/// A derivative with the size of what was added up to it.
-#[derive(Clone, Debug)]
-pub struct Variation {
-    /// The derivative along each direction, the groups one after the other.
-    pub derivative: Vec<f64>,
-    /// The natural scale: the sum over all summands of the size of each or of its largest derivative. The
-    /// directions turn by one radian, so that both are comparable; the size counts where derivatives cancel.
-    pub scale: f64,
 }
 
 /// The basis `hat(e1), hat(e2), hat(e3)` of the Lie algebra of SO(3).

@@ -7,10 +7,8 @@
 
 pub mod action;
 pub mod dual;
-pub mod eval;
 pub mod pair;
 pub mod points;
-pub mod random;
 pub mod sides;
 pub mod square;
 pub mod step;

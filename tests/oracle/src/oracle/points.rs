@@ -123,6 +123,31 @@ impl Source {
     }
 }
 
+/// A derivative with the size of what was added up to it.
+#[derive(Clone, Debug)]
+pub struct Variation {
+    /// The derivative along each direction, the configurations one after the other.
+    pub derivative: Vec<f64>,
+    /// The natural scale: the sum over all summands of the size of each or of its largest derivative. The
+    /// directions turn by one radian, so that both are comparable; the size counts where derivatives cancel.
+    pub scale: f64,
+}
+
+impl Variation {
+    /// The largest difference of a component, relative to the natural scale; infinite for different lengths
+    /// and for anything that is not finite, which must never pass as agreement.
+    #[must_use]
+    pub fn disagreement(&self, found: &[f64]) -> f64 {
+        if self.derivative.len() != found.len() {
+            return f64::INFINITY;
+        }
+        let each = self.derivative.iter().zip(found);
+        let each = each.map(|(expected, found)| (expected - found).abs() / self.scale);
+        let each = each.map(|x| if x.is_finite() { x } else { f64::INFINITY });
+        each.fold(0.0, |worst: f64, x| worst.max(x))
+    }
+}
+
 /// The value of one name of a model.
 #[derive(Clone, Debug)]
 pub struct Given {

@@ -12,4 +12,4 @@ pub mod unreduced;
 pub mod write;
 
 pub use model::Model;
-pub use point::{Point, Variation};
+pub use point::Point;

@@ -2,10 +2,9 @@
 //! two steps along the line, segments before and after a node, sums over stated sites, products of
 //! neighbours' velocities, and ends that hold a neighbour. Rings shorter than the terms are wide.
 
-use super::change::{changes_are_seen, unseen};
-use super::compare::agrees;
+use super::Ends;
+use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
-use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 
@@ -76,11 +75,6 @@ impl Beam {
 impl Typed for Beam {
     fn bodies(&self) -> &Bodies {
         &self.bodies
-    }
-
-    fn draw(&self, source: &mut Source) -> Vec<f64> {
-        let each = self.bodies.0.iter();
-        each.map(|_| source.between(-1.0, 1.0)).collect()
     }
 
     fn parameters(&self) -> Vec<Given> {
@@ -194,15 +188,7 @@ impl Typed for Beam {
 }
 
 pub fn check(segments: usize, ends: Ends) {
-    let mut source = Source::seeded(segments as u64);
-    let d = derived(TEXT, &[("i", segments)], ends);
-    let beam = Beam::of(segments, ends, &mut source);
-    agrees(&d, &beam, &mut source);
-    if segments == 3 {
-        let left = unseen(&d, &beam, &mut source);
-        assert!(left.is_empty(), "{left:?}");
-    }
-    if is_changed(segments) {
-        changes_are_seen(&d, &beam, &mut source);
-    }
+    judged(TEXT, &[("i", segments)], ends, |source| {
+        Beam::of(segments, ends, source)
+    });
 }

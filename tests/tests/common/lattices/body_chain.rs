@@ -1,9 +1,8 @@
 //! Bodies in a row whose kinetic energy joins the velocities of neighbours.
 
-use super::change::{changes_are_seen, unseen};
-use super::compare::agrees;
+use super::FREE;
+use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
-use super::{FREE, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
@@ -45,12 +44,6 @@ impl Typed for Chain {
         &self.bodies
     }
 
-    fn draw(&self, source: &mut Source) -> Vec<f64> {
-        let each = self.elements.iter();
-        each.flat_map(|_| source.orthogonal::<3>().0.concat())
-            .collect()
-    }
-
     fn parameters(&self) -> Vec<Given> {
         vec![
             Given::scalar("h", self.h),
@@ -80,16 +73,10 @@ impl Typed for Chain {
 }
 
 pub fn check(segments: usize) {
-    let mut source = Source::seeded(segments as u64);
-    let d = derived(TEXT, &[("i", segments)], FREE);
-    let chain = Chain::of(segments, &mut source);
-    agrees(&d, &chain, &mut source);
-    if segments == 3 {
-        let left = unseen(&d, &chain, &mut source);
-        assert!(left.is_empty(), "{left:?}");
-    }
-    if is_changed(segments) {
-        let (changes, constant) = changes_are_seen(&d, &chain, &mut source);
+    let (_, changes) = judged(TEXT, &[("i", segments)], FREE, |source| {
+        Chain::of(segments, source)
+    });
+    if let Some((changes, constant)) = changes {
         assert_eq!(constant, 0, "of {changes}");
     }
 }

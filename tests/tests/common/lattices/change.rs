@@ -1,12 +1,14 @@
 //! Changes that a comparison must see: of one sign or one range in the typed action, and of one summand in
 //! the derived residual.
 
-use super::AGREEMENT;
-use super::compare::{Variation, WHAT, disagreement, found, order, ordered, typed, values};
+use super::compare::{Variation, WHAT, agrees, disagreement, found, order, ordered, typed, values};
 use super::sum::{Sum, Typed};
+use super::{AGREEMENT, Ends, derived};
 use clebsch_core::{Assignment, Derivation};
 use clebsch_oracle::oracle::points::Source;
+use clebsch_oracle::oracle::points::asked_for;
 use clebsch_oracle::physics::measure::worse;
+use clebsch_oracle::sizes::CHANGED_SEGMENTS;
 
 /// What is changed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -28,9 +30,36 @@ fn varying(v: &Variation) -> usize {
     moves.count()
 }
 
+/// Whether the typed action of so many segments is changed term by term: on longer lines by
+/// `LATTICE_CHANGES=12`, which takes a minute.
+fn is_changed(segments: usize) -> bool {
+    segments as u64 <= asked_for("LATTICE_CHANGES", CHANGED_SEGMENTS)
+}
+
+/// The derivation of so many sites of each label, the last one's segments, agrees with the typed action, and changes of
+/// either are seen. The typed action; on short lines how many changes of it there are and how many move what is constant.
+pub fn judged<M: Typed>(
+    text: &str,
+    counts: &[(&str, usize)],
+    ends: Ends,
+    typed: impl Fn(&mut Source) -> M,
+) -> (M, Option<(usize, usize)>) {
+    let segments = counts.last().map_or(0, |(_, n)| *n);
+    let mut source = Source::seeded(segments as u64);
+    let d = derived(text, counts, ends);
+    let model = typed(&mut source);
+    agrees(&d, &model, &mut source);
+    if segments == 3 {
+        let left = unseen(&d, &model, &mut source);
+        assert!(left.is_empty(), "{left:?}");
+    }
+    let changes = is_changed(segments).then(|| changes_are_seen(&d, &model, &mut source));
+    (model, changes)
+}
+
 /// Every change of one sign or of one range by one site is seen, wherever it moves the action. How many
 /// changes there are, and how many of them only move what is constant.
-pub fn changes_are_seen(d: &Derivation, model: &impl Typed, source: &mut Source) -> (usize, usize) {
+fn changes_are_seen(d: &Derivation, model: &impl Typed, source: &mut Source) -> (usize, usize) {
     let nodes = [(); 3].map(|()| model.draw(source));
     let found = found(d, model, &nodes);
     let mut sum = Sum::new(Change::None);
@@ -63,7 +92,7 @@ pub fn changes_are_seen(d: &Derivation, model: &impl Typed, source: &mut Source)
 
 /// Every summand of the derived residual is seen: left out or with the other sign it disagrees with the
 /// typed action at one of a few random points. What describes those that do not.
-pub fn unseen(d: &Derivation, model: &impl Typed, source: &mut Source) -> Vec<String> {
+fn unseen(d: &Derivation, model: &impl Typed, source: &mut Source) -> Vec<String> {
     let points: Vec<(Assignment, Variation)> = (0..3)
         .map(|_| {
             let nodes = [(); 3].map(|()| model.draw(source));

@@ -2,10 +2,9 @@
 //! by its definition or by a value of its own. Neighbours are joined by velocities, by the elements and by
 //! what they carry.
 
-use super::change::{changes_are_seen, unseen};
-use super::compare::agrees;
+use super::Ends;
+use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
-use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::{Square, cross, dot};
@@ -77,12 +76,6 @@ impl Tops {
 impl Typed for Tops {
     fn bodies(&self) -> &Bodies {
         &self.bodies
-    }
-
-    fn draw(&self, source: &mut Source) -> Vec<f64> {
-        let each = self.bodies.0.iter();
-        each.flat_map(|_| source.orthogonal::<3>().0.concat())
-            .collect()
     }
 
     fn parameters(&self) -> Vec<Given> {
@@ -167,15 +160,7 @@ impl Typed for Tops {
 }
 
 pub fn check(segments: usize, ends: Ends) {
-    let mut source = Source::seeded(segments as u64);
-    let d = derived(TEXT, &[("i", segments)], ends);
-    let tops = Tops::of(segments, ends, &mut source);
-    agrees(&d, &tops, &mut source);
-    if segments == 3 {
-        let left = unseen(&d, &tops, &mut source);
-        assert!(left.is_empty(), "{left:?}");
-    }
-    if is_changed(segments) {
-        changes_are_seen(&d, &tops, &mut source);
-    }
+    judged(TEXT, &[("i", segments)], ends, |source| {
+        Tops::of(segments, ends, source)
+    });
 }

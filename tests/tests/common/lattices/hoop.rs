@@ -1,10 +1,9 @@
 //! A rod that closes to a ring, its frames turned in space, its places with an offset around the ring; and
 //! nodes that see the frames of both segments that they join.
 
-use super::change::{changes_are_seen, unseen};
-use super::compare::agrees;
+use super::Ends;
+use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
-use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
@@ -81,14 +80,6 @@ impl Typed for Hoop {
         &self.bodies
     }
 
-    fn draw(&self, source: &mut Source) -> Vec<f64> {
-        let each = self.bodies.0.iter().flat_map(|b| match b.kind {
-            Kind::Spatial => source.orthogonal::<3>().0.concat(),
-            _ => source.vector::<3>().to_vec(),
-        });
-        each.collect()
-    }
-
     fn parameters(&self) -> Vec<Given> {
         let mut all = vec![
             Given::scalar("h", self.h),
@@ -158,17 +149,9 @@ impl Typed for Hoop {
 }
 
 pub fn check(segments: usize, ends: Ends) {
-    let mut source = Source::seeded(segments as u64);
-    let d = derived(TEXT, &[("i", segments)], ends);
-    let hoop = Hoop::of(segments, ends, &mut source);
-    agrees(&d, &hoop, &mut source);
-    if segments == 3 {
-        let left = unseen(&d, &hoop, &mut source);
-        assert!(left.is_empty(), "{left:?}");
-    }
-    if is_changed(segments) {
-        changes_are_seen(&d, &hoop, &mut source);
-    }
+    judged(TEXT, &[("i", segments)], ends, |source| {
+        Hoop::of(segments, ends, source)
+    });
 }
 
 // Of 50 segments the derivation is larger than any is given.

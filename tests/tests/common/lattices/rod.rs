@@ -1,9 +1,8 @@
 //! The geometrically exact rod: places at nodes, frames at segments, and every pair of its ends.
 
-use super::change::{changes_are_seen, unseen};
-use super::compare::agrees;
+use super::Ends;
+use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
-use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
@@ -101,14 +100,6 @@ impl Typed for Rod {
         &self.bodies
     }
 
-    fn draw(&self, source: &mut Source) -> Vec<f64> {
-        let each = self.bodies.0.iter().flat_map(|b| match b.kind {
-            Kind::Rotation => source.orthogonal::<3>().0.concat(),
-            _ => source.vector::<3>().to_vec(),
-        });
-        each.collect()
-    }
-
     fn parameters(&self) -> Vec<Given> {
         let n = self.segments;
         let mut all = vec![
@@ -196,16 +187,10 @@ impl Typed for Rod {
 
 pub fn check(segments: usize, first: &'static str, last: &'static str) {
     let ends = Ends::Open(first, last);
-    let mut source = Source::seeded(segments as u64);
-    let d = derived(TEXT, &[("i", segments)], ends);
-    let rod = Rod::of(segments, ends, &mut source);
-    agrees(&d, &rod, &mut source);
-    if segments == 3 {
-        let left = unseen(&d, &rod, &mut source);
-        assert!(left.is_empty(), "{left:?}");
-    }
-    if is_changed(segments) {
-        let (changes, constant) = changes_are_seen(&d, &rod, &mut source);
+    let (rod, changes) = judged(TEXT, &[("i", segments)], ends, |source| {
+        Rod::of(segments, ends, source)
+    });
+    if let Some((changes, constant)) = changes {
         println!("{constant} of {changes} changes move what is held");
         // For each place that is held: the sign of its inertia and of its weight, either left out of its
         // sum, either put twice into it at the other end.

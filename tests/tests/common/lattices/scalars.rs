@@ -1,10 +1,9 @@
 //! Lines of numbers: the Toda chain with an offset around the ring, and a chain of pendulums (sine-Gordon)
 //! with free and held ends.
 
-use super::change::{changes_are_seen, unseen};
-use super::compare::agrees;
+use super::Ends;
+use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
-use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 
@@ -185,36 +184,24 @@ impl Typed for Pendulums {
 }
 
 pub fn toda(segments: usize, ends: Ends) {
-    let mut source = Source::seeded(segments as u64);
-    let d = derived(TODA, &[("i", segments)], ends);
-    let chain = Toda::of(segments, ends, &mut source);
-    agrees(&d, &chain, &mut source);
-    if segments == 3 {
-        let left = unseen(&d, &chain, &mut source);
-        assert!(left.is_empty(), "{left:?}");
-    }
-    if !is_changed(segments) {
+    let (_, changes) = judged(TODA, &[("i", segments)], ends, |source| {
+        Toda::of(segments, ends, source)
+    });
+    let Some((changes, constant)) = changes else {
         return;
-    }
-    let (changes, constant) = changes_are_seen(&d, &chain, &mut source);
+    };
     // The only site of a ring keeps its distance from itself.
     let alone = ends == Ends::Ring && segments == 1;
     assert_eq!(constant > 0, alone, "{constant} of {changes}");
 }
 
 pub fn pendulums(segments: usize, ends: Ends) {
-    let mut source = Source::seeded(segments as u64);
-    let d = derived(PENDULUMS, &[("i", segments)], ends);
-    let line = Pendulums::of(segments, ends, &mut source);
-    agrees(&d, &line, &mut source);
-    if segments == 3 {
-        let left = unseen(&d, &line, &mut source);
-        assert!(left.is_empty(), "{left:?}");
-    }
-    if !is_changed(segments) {
+    let (line, changes) = judged(PENDULUMS, &[("i", segments)], ends, |source| {
+        Pendulums::of(segments, ends, source)
+    });
+    let Some((changes, constant)) = changes else {
         return;
-    }
-    let (changes, constant) = changes_are_seen(&d, &line, &mut source);
+    };
     if ends != Ends::Ring {
         // For each angle that is held: two signs, two summands left out, two put twice. Where both are, the
         // torsion between them, of a sum one site too long.

@@ -1,9 +1,8 @@
 //! A set of particles without neighbours beside a line of numbers, both tied to one body.
 
-use super::change::{changes_are_seen, unseen};
-use super::compare::agrees;
+use super::Ends;
+use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, column, fixed, minus, number, turn};
-use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
@@ -67,14 +66,6 @@ impl Typed for Cloud {
         &self.bodies
     }
 
-    fn draw(&self, source: &mut Source) -> Vec<f64> {
-        let mut all = source.orthogonal::<3>().0.concat();
-        for _ in 0..3 * self.particles + self.nodes {
-            all.push(source.between(-1.0, 1.0));
-        }
-        all
-    }
-
     fn parameters(&self) -> Vec<Given> {
         let mut all = vec![
             Given::scalar("h", self.h),
@@ -136,16 +127,10 @@ impl Typed for Cloud {
 }
 
 pub fn check(particles: usize, segments: usize, ends: Ends) {
-    let mut source = Source::seeded(segments as u64);
-    let d = derived(TEXT, &[("a", particles), ("i", segments)], ends);
-    let cloud = Cloud::of(particles, segments, ends, &mut source);
-    agrees(&d, &cloud, &mut source);
-    if segments == 3 {
-        let left = unseen(&d, &cloud, &mut source);
-        assert!(left.is_empty(), "{left:?}");
-    }
-    if is_changed(segments) {
-        let (changes, constant) = changes_are_seen(&d, &cloud, &mut source);
+    let (_, changes) = judged(TEXT, &[("a", particles), ("i", segments)], ends, |source| {
+        Cloud::of(particles, segments, ends, source)
+    });
+    if let Some((changes, constant)) = changes {
         assert_eq!(constant, 0, "of {changes}");
     }
 }

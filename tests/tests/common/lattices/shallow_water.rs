@@ -1,10 +1,9 @@
 //! Particles of shallow water in a channel that closes on itself: depths by the second neighbours, an
 //! offset around the ring, and a term linear in velocities.
 
-use super::change::{changes_are_seen, unseen};
-use super::compare::agrees;
+use super::Ends;
+use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, number};
-use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 
@@ -118,18 +117,12 @@ impl Typed for Water {
 }
 
 pub fn check(segments: usize, ends: Ends) {
-    let mut source = Source::seeded(segments as u64);
-    let d = derived(TEXT, &[("i", segments)], ends);
-    let water = Water::of(segments, ends, &mut source);
-    agrees(&d, &water, &mut source);
-    if segments == 3 {
-        let left = unseen(&d, &water, &mut source);
-        assert!(left.is_empty(), "{left:?}");
-    }
-    if !is_changed(segments) {
+    let (_, changes) = judged(TEXT, &[("i", segments)], ends, |source| {
+        Water::of(segments, ends, source)
+    });
+    let Some((changes, constant)) = changes else {
         return;
-    }
-    let (changes, constant) = changes_are_seen(&d, &water, &mut source);
+    };
     // On a ring of one or two both neighbours are one particle, a fixed distance apart.
     let few = ends == Ends::Ring && segments <= 2;
     assert_eq!(constant > 0, few, "{constant} of {changes}");

@@ -2,7 +2,7 @@
 
 use super::change::Change;
 use clebsch_oracle::oracle::dual::Number;
-use clebsch_oracle::oracle::points::Given;
+use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::Square;
 use std::array::from_fn;
 
@@ -69,8 +69,16 @@ impl Bodies {
 pub trait Typed {
     fn bodies(&self) -> &Bodies;
 
-    /// Random configurations.
-    fn draw(&self, source: &mut clebsch_oracle::oracle::points::Source) -> Vec<f64>;
+    /// Random configurations, places and numbers between -1 and 1.
+    fn draw(&self, source: &mut Source) -> Vec<f64> {
+        let mut drawn = |body: &Body| match body.kind {
+            Kind::Rotation | Kind::Spatial => source.orthogonal::<3>().0.concat(),
+            kind => (0..kind.entries())
+                .map(|_| source.between(-1.0, 1.0))
+                .collect(),
+        };
+        self.bodies().0.iter().flat_map(&mut drawn).collect()
+    }
 
     /// Values of parameters and of the step.
     fn parameters(&self) -> Vec<Given>;

@@ -1,9 +1,8 @@
 //! Tops in a row, joined by elastic torques: a line and a ring.
 
-use super::change::{changes_are_seen, unseen};
-use super::compare::agrees;
+use super::Ends;
+use super::change::judged;
 use super::sum::{Bodies, Kind, Sum, Typed, around, fixed, number, turn};
-use super::{Ends, derived, is_changed};
 use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::{Given, Source};
 use clebsch_oracle::oracle::square::{Square, dot};
@@ -54,12 +53,6 @@ impl Typed for Tops {
         &self.bodies
     }
 
-    fn draw(&self, source: &mut Source) -> Vec<f64> {
-        let each = self.tops.iter();
-        each.flat_map(|_| source.orthogonal::<3>().0.concat())
-            .collect()
-    }
-
     fn parameters(&self) -> Vec<Given> {
         vec![
             Given::scalar("h", self.h),
@@ -101,16 +94,10 @@ impl Typed for Tops {
 }
 
 pub fn check(segments: usize, ends: Ends) {
-    let mut source = Source::seeded(segments as u64);
-    let d = derived(TEXT, &[("i", segments)], ends);
-    let tops = Tops::of(segments, ends, &mut source);
-    agrees(&d, &tops, &mut source);
-    if segments == 3 {
-        let left = unseen(&d, &tops, &mut source);
-        assert!(left.is_empty(), "{left:?}");
-    }
-    if is_changed(segments) {
-        let (changes, constant) = changes_are_seen(&d, &tops, &mut source);
+    let (_, changes) = judged(TEXT, &[("i", segments)], ends, |source| {
+        Tops::of(segments, ends, source)
+    });
+    if let Some((changes, constant)) = changes {
         // A ring of one top turns with its neighbour: itself.
         let alone = ends == Ends::Ring && segments == 1;
         assert_eq!(constant > 0, alone, "{constant} of {changes}");

@@ -15,7 +15,7 @@ pub const AROUND: [&str; 16] = [
 ];
 
 /// Functions of vectors and matrices, one for each turn.
-const WORDS: [&str; 13] = [
+const WORDS: [&str; 14] = [
     "vee",
     "I2",
     "cross",
@@ -29,6 +29,7 @@ const WORDS: [&str; 13] = [
     "diagonal",
     "next",
     "rectangular",
+    "component",
 ];
 /// Those of quaternions.
 const OF_QUATERNIONS: [&str; 4] = ["im", "quat", "rot", "re"];
@@ -75,10 +76,11 @@ pub fn kinetic(model: &mut Model, body: usize) -> Tree {
             let four = Tree::Product(vec![Tree::number("4"), c]);
             four.over(Tree::Step).times(Tree::call("re", v))
         }
-        Family::Motion => {
+        Family::Added(..) => added(model, body),
+        Family::Motion | Family::Plane => {
             let (j, m) = (
-                model.parameter(Kind::Positive(3)),
-                model.parameter(Kind::Positive(3)),
+                model.parameter(Kind::Positive(family.turned())),
+                model.parameter(Kind::Positive(family.turned())),
             );
             let turn = Tree::call("tr", j.times(Tree::call("rot", v.clone())));
             let shift = Tree::call("pos", v);
@@ -95,18 +97,36 @@ pub fn kinetic(model: &mut Model, body: usize) -> Tree {
     }
 }
 
+/// That of a field.
+pub fn added(model: &mut Model, body: usize) -> Tree {
+    let element = model.bodies[body].element;
+    let here = model.letter(element);
+    let shape = here.shape();
+    let m = model.parameter(Kind::Real);
+    let rate = Tree::Next(element, shape).minus(here);
+    let square = match shape {
+        SCALAR => rate.power(2, 1),
+        (_, 1) => Tree::Call("dot", vec![rate.clone(), rate]),
+        _ => Tree::call("tr", rate.clone().times(rate.transposed())),
+    };
+    let twice = Tree::Product(vec![Tree::number("2"), Tree::Step]);
+    // Subtracted, as the others are.
+    Tree::number("-1").times(m.times(square).over(twice))
+}
+
 /// What the group of a body may carry: kind, action, whether its rotation acts.
 fn carriable(source: &mut Source, family: Family) -> (Kind, Action, bool) {
     use Action::{Congruence, Conjugation, Dual, DualCongruence, Forward, Weight};
     let n = family.size();
+    let d = family.turned();
     let turned = [
-        (Kind::Vector(3), Forward, true),
-        (Kind::Vector(3), Forward, true),
-        (Kind::Symmetric(3), Congruence, true),
-        (Kind::Skew(3), Congruence, true),
-        (Kind::Matrix(3, 2), Forward, true),
-        (Kind::Matrix(3, 3), Conjugation, true),
-        (Kind::Element(Family::Rotation(3)), Forward, true),
+        (Kind::Vector(d), Forward, true),
+        (Kind::Vector(d), Forward, true),
+        (Kind::Symmetric(d), Congruence, true),
+        (Kind::Skew(d), Congruence, true),
+        (Kind::Matrix(d, 2), Forward, true),
+        (Kind::Matrix(d, d), Conjugation, true),
+        (Kind::Element(Family::Rotation(d)), Forward, true),
     ];
     let own: Vec<(Kind, Action, bool)> = match family {
         Family::Rotation(_) => vec![
@@ -122,14 +142,14 @@ fn carriable(source: &mut Source, family: Family) -> (Kind, Action, bool) {
             (Kind::Vector(4), Forward, false),
             (Kind::Element(family), Forward, false),
         ],
-        Family::Motion => vec![
-            (Kind::Vector(4), Forward, false),
-            (Kind::Vector(4), Dual, false),
-            (Kind::Symmetric(4), DualCongruence, false),
-            (Kind::Matrix(4, 4), Conjugation, false),
+        Family::Motion | Family::Plane => vec![
+            (Kind::Vector(n), Forward, false),
+            (Kind::Vector(n), Dual, false),
+            (Kind::Symmetric(n), DualCongruence, false),
+            (Kind::Matrix(n, n), Conjugation, false),
             (Kind::Element(family), Forward, false),
         ],
-        Family::Linear(_) => vec![
+        Family::Linear(_) | Family::Added(..) => vec![
             (Kind::Vector(n), Forward, false),
             (Kind::Vector(n), Dual, false),
             (Kind::Symmetric(n), Congruence, false),
@@ -140,7 +160,7 @@ fn carriable(source: &mut Source, family: Family) -> (Kind, Action, bool) {
             (Kind::Real, Weight, false),
         ],
     };
-    let turns = matches!(family, Family::Quaternion | Family::Motion);
+    let turns = family == Family::Quaternion || family.is_motion();
     let list: &[(Kind, Action, bool)] = match turns && source.chance(55) {
         true => &turned,
         false => &own,
@@ -151,9 +171,13 @@ fn carriable(source: &mut Source, family: Family) -> (Kind, Action, bool) {
 /// Adds what the groups carry.
 fn carried(model: &mut Model, source: &mut Source) {
     for body in 0..model.bodies.len() {
-        let count = 1 + source.below(2);
+        let family = model.bodies[body].family;
+        let count = if family.is_added() {
+            0
+        } else {
+            1 + source.below(2)
+        };
         for i in 0..count {
-            let family = model.bodies[body].family;
             let (kind, action, turns) = carriable(source, family);
             // An element of a group has no coordinates to define it by but its own.
             let definition = (source.chance(50) && !matches!(kind, Kind::Element(_)))
@@ -175,6 +199,7 @@ fn carried(model: &mut Model, source: &mut Source) {
         && a.family == b.family
         && a.side == Side::Body
         && b.side == Side::Body
+        && !a.family.is_added()
     {
         let role = Role::Relative {
             first: 0,
@@ -215,7 +240,7 @@ pub fn state(model: &mut Model, source: &mut Source, turn: usize) {
         let round = turn + turn / 16;
         let special = match model.bodies.iter().map(|b| b.family).collect::<Vec<_>>() {
             list if list.contains(&Family::Quaternion) => OF_QUATERNIONS[round % 4],
-            list if list.contains(&Family::Motion) => OF_MOTIONS[round % 2],
+            list if list.iter().any(|f| f.is_motion()) => OF_MOTIONS[round % 2],
             _ => WORDS[(round + 6) % WORDS.len()],
         };
         let word = match i {
@@ -227,13 +252,11 @@ pub fn state(model: &mut Model, source: &mut Source, turn: usize) {
             source,
             moving,
         };
-        // Normal forms of products of motions are long.
-        let motions = garden
-            .model
-            .bodies
-            .iter()
-            .filter(|b| b.family == Family::Motion);
-        let depth = if motions.count() > 1 { 1 } else { 2 };
+        // Normal forms of products of motions, and of three groups and fields, are long.
+        let bodies = garden.model.bodies.iter();
+        let motions = bodies.filter(|b| b.family == Family::Motion).count();
+        let many = motions > 1 || garden.model.bodies.len() > 2;
+        let depth = if many { 1 } else { 2 };
         let given = match i < 2 && depth == 2 {
             true => garden.word(word),
             false => None,
@@ -269,9 +292,15 @@ impl Garden<'_> {
         let mut fitting = Vec::new();
         for (index, l) in self.model.letters.iter().enumerate() {
             let (allowed, shifts) = match l.role {
-                // Reduced statements do not speak of elements.
-                Role::Element(_) => (false, false),
-                Role::Velocity(_) => (self.moving, false),
+                // Reduced statements do not speak of elements, but of fields.
+                Role::Element(body) => {
+                    let added = self.model.bodies[body].family.is_added();
+                    (added, added && self.moving)
+                }
+                Role::Velocity(body) => {
+                    let added = self.model.bodies[body].family.is_added();
+                    (self.moving && !added, false)
+                }
                 Role::Parameter => (true, false),
                 Role::Advected { .. } | Role::Relative { .. } => (true, self.moving),
             };
@@ -298,6 +327,8 @@ impl Garden<'_> {
             .iter()
             .flat_map(|b| match b.family {
                 Family::Quaternion | Family::Motion => vec![3, 3, 4],
+                Family::Plane => vec![2, 2, 3],
+                Family::Added(..) => vec![3],
                 other => vec![other.size()],
             })
             .collect();
@@ -339,14 +370,16 @@ impl Garden<'_> {
                 Tree::call("re", Tree::call("quat", v).times(q))
             }
             "pos" => {
-                let g = self.special(Family::Motion)?;
-                let v = self.vector(3, 1);
+                let g = self.special(Family::Motion);
+                let g = g.or_else(|| self.special(Family::Plane))?;
+                let v = self.vector(g.shape().0 - 1, 1);
                 Tree::Call("dot", vec![v, Tree::call("pos", g.power(-1, 1))])
             }
             "rot" => {
                 let motion = self.special(Family::Motion);
-                let g = motion.or_else(|| self.special(Family::Quaternion))?;
-                let a = self.matrix(3, 1);
+                let g = motion.or_else(|| self.special(Family::Quaternion));
+                let g = g.or_else(|| self.special(Family::Plane))?;
+                let a = self.matrix(if g.shape().0 == 3 { 2 } else { 3 }, 1);
                 Tree::call("tr", a.times(Tree::call("rot", g)))
             }
             "vee" | "hat" | "cross" => {
@@ -357,7 +390,10 @@ impl Garden<'_> {
                         let m = self.matrix(n, 1);
                         Tree::Call("dot", vec![Tree::call("vee", m), a])
                     }
-                    "hat" => Tree::Call("dot", vec![Tree::call("hat", a).times(b.clone()), b]),
+                    "hat" => {
+                        let c = self.vector(n, 0);
+                        Tree::Call("dot", vec![Tree::call("hat", a).times(b), c])
+                    }
                     _ => {
                         let c = self.vector(n, 0);
                         let product = Tree::Call("cross", vec![a, b]);
@@ -369,6 +405,11 @@ impl Garden<'_> {
                 let a = self.atom((n, 1))?;
                 let b = self.vector(n, 1);
                 Tree::Call("dot", vec![a, b])
+            }
+            "component" => {
+                let (a, b) = (self.vector(n, 1), self.matrix(n, 1));
+                let first = Tree::Component(Box::new(a), vec![1]);
+                first.times(Tree::Component(Box::new(b), vec![1, 1]))
             }
             "rectangular" => {
                 let f = self.model.parameter(Kind::Matrix(n, 2));
@@ -470,7 +511,7 @@ impl Garden<'_> {
                 Some(q) => Tree::call("im", q),
                 None => self.vector(n, next),
             },
-            11 if three => match self.special(Family::Motion) {
+            11 if n < 4 => match self.special(if three { Family::Motion } else { Family::Plane }) {
                 Some(g) => {
                     let g = if self.source.chance(30) {
                         g.power(-1, 1)
@@ -524,6 +565,10 @@ impl Garden<'_> {
                     None => self.matrix(n, next),
                 }
             }
+            14 if n == 2 => match self.special(Family::Plane) {
+                Some(g) => Tree::call("rot", g),
+                None => self.matrix(n, next),
+            },
             15 if n == 4 => Tree::call("quat", self.vector(3, next)),
             16 => self.scalar(0).times(self.matrix(n, next)),
             _ => match self.atom((n, n)) {

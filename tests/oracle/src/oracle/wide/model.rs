@@ -2,6 +2,7 @@
 //! Takes a seed; gives the tables that the text and the oracle are both made of.
 
 use super::grow;
+use super::point::Point;
 use super::tree::{Shape, Tree};
 use super::unreduced;
 use crate::oracle::points::Source;
@@ -18,6 +19,10 @@ pub enum Family {
     Motion,
     /// GL(n).
     Linear(usize),
+    /// SE(2), 3 x 3.
+    Plane,
+    /// A field: numbers, vectors or matrices that are added.
+    Added(usize, usize),
 }
 
 impl Family {
@@ -25,9 +30,31 @@ impl Family {
     #[must_use]
     pub fn size(self) -> usize {
         match self {
-            Self::Rotation(n) | Self::Linear(n) => n,
+            Self::Rotation(n) | Self::Linear(n) | Self::Added(n, _) => n,
             Self::Quaternion | Self::Motion => 4,
+            Self::Plane => 3,
         }
+    }
+
+    /// The dimension of the space that an element turns.
+    #[must_use]
+    pub fn turned(self) -> usize {
+        match self {
+            Self::Plane => 2,
+            _ => 3,
+        }
+    }
+
+    /// Whether an element turns space and moves it.
+    #[must_use]
+    pub fn is_motion(self) -> bool {
+        matches!(self, Self::Motion | Self::Plane)
+    }
+
+    /// Whether it is a field.
+    #[must_use]
+    pub fn is_added(self) -> bool {
+        matches!(self, Self::Added(..))
     }
 
     /// Whether the inverse is the transpose.
@@ -44,6 +71,10 @@ impl Family {
             Self::Quaternion => "SU<2>".to_owned(),
             Self::Motion => "SE<3>".to_owned(),
             Self::Linear(n) => format!("GL<{n}>"),
+            Self::Plane => "SE<2>".to_owned(),
+            Self::Added(1, 1) => Kind::Real.text(),
+            Self::Added(n, 1) => Kind::Vector(n).text(),
+            Self::Added(n, m) => Kind::Matrix(n, m).text(),
         }
     }
 }
@@ -78,6 +109,7 @@ impl Kind {
             Self::Vector(n) => (n, 1),
             Self::Symmetric(n) | Self::Positive(n) | Self::Skew(n) | Self::Diagonal(n) => (n, n),
             Self::Matrix(n, m) => (n, m),
+            Self::Element(Family::Added(n, m)) => (n, m),
             Self::Element(family) => (family.size(), family.size()),
         }
     }
@@ -147,6 +179,19 @@ pub enum Role {
     },
 }
 
+impl Role {
+    /// Whether a node holds the letter: what is computed from others is not given.
+    #[must_use]
+    pub fn is_given(&self) -> bool {
+        match self {
+            Self::Element(_) => true,
+            Self::Advected { definition, .. } => definition.is_none(),
+            Self::Relative { defined, .. } => !defined,
+            Self::Parameter | Self::Velocity(_) => false,
+        }
+    }
+}
+
 /// A letter.
 #[derive(Clone, Debug)]
 pub struct Letter {
@@ -184,11 +229,28 @@ pub struct Model {
     pub scale: Option<Tree>,
     /// The summands as typed; `true` subtracts.
     pub summands: Vec<(bool, Tree)>,
+    /// How the text is written, which changes no meaning.
+    pub style: Style,
+}
+
+/// How a text is written.
+#[derive(Clone, Debug)]
+pub struct Style {
+    /// The name of the time index.
+    pub time: &'static str,
+    /// The name of the step.
+    pub step: &'static str,
+    /// Whether only the parentheses stand that the precedence of the language asks for.
+    pub bare: bool,
+    /// Whether products are written without a sign where that is possible.
+    pub juxtaposed: bool,
+    /// A part of a summand that has a name of its own.
+    pub named: Option<Tree>,
 }
 
 /// Groups and products of groups, by turns.
-const GROUPS: [&[Family]; 16] = {
-    use Family::{Linear, Motion, Quaternion, Rotation};
+const GROUPS: [&[Family]; 20] = {
+    use Family::{Added, Linear, Motion, Plane, Quaternion, Rotation};
     [
         &[Rotation(3)],
         &[Motion],
@@ -196,65 +258,80 @@ const GROUPS: [&[Family]; 16] = {
         &[Linear(3)],
         &[Rotation(4)],
         &[Rotation(3), Rotation(3)],
-        &[Motion],
+        &[Plane],
         &[Linear(2)],
+        &[Added(3, 1), Rotation(3)],
         &[Rotation(3), Motion],
         &[Rotation(2)],
+        &[Motion, Added(1, 1)],
         &[Motion, Motion],
         &[Quaternion, Rotation(3)],
         &[Rotation(5)],
+        &[Linear(3), Added(3, 3), Added(3, 1)],
         &[Linear(3), Rotation(3)],
         &[Rotation(3), Quaternion, Rotation(2)],
+        &[Added(3, 1), Quaternion],
         &[Quaternion, Quaternion],
     ]
 };
 
 impl Model {
+    /// A model of these configurations, without an action.
+    #[must_use]
+    pub fn of(name: String, families: &[(Family, Side)]) -> Self {
+        let mut model = Model {
+            name,
+            bodies: Vec::new(),
+            letters: Vec::new(),
+            rule: NodeRule::Symmetric,
+            scale: None,
+            summands: Vec::new(),
+            style: Style {
+                time: "k",
+                step: "h",
+                bare: false,
+                juxtaposed: false,
+                named: None,
+            },
+        };
+        for (i, (family, side)) in families.iter().enumerate() {
+            let number = match families.len() {
+                1 => String::new(),
+                _ => (i + 1).to_string(),
+            };
+            let kind = Kind::Element(*family);
+            let element = model.add(&format!("g{number}"), kind, Role::Element(i));
+            model.add(&format!("V{number}"), kind, Role::Velocity(i));
+            model.bodies.push(Body {
+                family: *family,
+                side: *side,
+                element,
+            });
+        }
+        model
+    }
+
     /// The model of a seed.
     #[must_use]
     pub fn of_seed(seed: u64) -> Self {
         let mut source = Source::seeded(seed ^ 0x771d_e5ee);
         let turn = usize::try_from(seed).unwrap_or(0);
         let families = GROUPS[turn % GROUPS.len()];
-        let mut model = Model {
-            name: format!("Wide{seed}"),
-            bodies: Vec::new(),
-            letters: Vec::new(),
-            rule: match source.below(8) {
-                0 => NodeRule::Incoming,
-                1 => NodeRule::Outgoing,
-                _ => NodeRule::Symmetric,
-            },
-            scale: None,
-            summands: Vec::new(),
+        let rule = match source.below(8) {
+            0 => NodeRule::Incoming,
+            1 => NodeRule::Outgoing,
+            _ => NodeRule::Symmetric,
         };
-        for (i, family) in families.iter().enumerate() {
-            // Linear groups are stepped on either side; mixed sides are allowed in products.
-            let side = if source.chance(25) {
-                Side::Space
-            } else {
-                Side::Body
-            };
-            let number = match families.len() {
-                1 => String::new(),
-                _ => (i + 1).to_string(),
-            };
-            let element = model.add(
-                &format!("g{number}"),
-                Kind::Element(*family),
-                Role::Element(i),
-            );
-            model.add(
-                &format!("V{number}"),
-                Kind::Element(*family),
-                Role::Velocity(i),
-            );
-            model.bodies.push(Body {
-                family: *family,
-                side,
-                element,
+        // Linear groups are stepped on either side; mixed sides are allowed in products.
+        let bodies = families
+            .iter()
+            .map(|family| match source.chance(25) && !family.is_added() {
+                true => (*family, Side::Space),
+                false => (*family, Side::Body),
             });
-        }
+        let bodies: Vec<(Family, Side)> = bodies.collect();
+        let mut model = Self::of(format!("Wide{seed}"), &bodies);
+        model.rule = rule;
         // Every third model is stated by its configurations at both ends of the step.
         if (turn / GROUPS.len()) % 3 == 2 {
             unreduced::state(&mut model, &mut source, turn);
@@ -264,7 +341,43 @@ impl Model {
         if source.chance(15) {
             model.scale = Some(Tree::Product(vec![Tree::number("2"), Tree::Step]));
         }
+        // A summand without a variation tests only that the engine finds nothing.
+        let varied = (0..model.summands.len()).map(|k| model.varies(k));
+        let mut varied = varied.collect::<Vec<bool>>().into_iter();
+        model.summands.retain(|_| varied.next() == Some(true));
+        model.write_otherwise(&mut Source::seeded(seed ^ 0x57_1e));
         model
+    }
+
+    /// Chooses how the text is written.
+    fn write_otherwise(&mut self, source: &mut Source) {
+        if source.chance(10) {
+            (self.style.time, self.style.step) = ("i", "s");
+        }
+        self.style.bare = source.chance(50);
+        self.style.juxtaposed = source.chance(20);
+        let parts = self.summands.iter().flat_map(|(_, t)| t.compounds());
+        let parts: Vec<&Tree> = parts.collect();
+        if source.chance(45) {
+            self.style.named = source.choose(&parts).map(|t| (*t).clone());
+        }
+    }
+
+    /// Whether a summand alone has a variation at some of a few random points.
+    fn varies(&self, summand: usize) -> bool {
+        let alone = Model {
+            summands: vec![self.summands[summand].clone()],
+            scale: None,
+            ..self.clone()
+        };
+        let mut source = Source::seeded(7);
+        (0..3).any(|_| {
+            let point = Point::draw(&alone, &mut source, 0.5);
+            let nodes = std::array::from_fn(|_| point.node(&mut source));
+            let found = point.stationarity(&nodes).derivative;
+            // Values are of order one: what is left of an identity by rounding is far below. What is no number stays.
+            found.iter().any(|x| !(x.abs() <= 1e-9))
+        })
     }
 
     /// Adds a letter and says which it is.
@@ -318,6 +431,18 @@ impl Model {
             }
             _ => false,
         })
+    }
+
+    /// Whether a summand is a function of the end of the edge alone: it is a potential there, and momenta of nodes have
+    /// half of it.
+    #[must_use]
+    pub fn is_of_the_end(&self, summand: &Tree) -> bool {
+        let moves = |role: &Role| !matches!(role, Role::Parameter);
+        let here = summand.mentions(&|t| match t {
+            Tree::Letter(index, _) => self.letters.get(*index).is_some_and(|l| moves(&l.role)),
+            _ => false,
+        });
+        !here && summand.mentions(&|t| matches!(t, Tree::Next(..)))
     }
 
     /// Whether anything mentions the letter; configurations always stand.

@@ -6,18 +6,9 @@ use super::grid::Grid;
 use super::model::{Action, Family, Kind, Model, Role};
 use super::tree::{Edge, Tree};
 use crate::oracle::dual::{Dual, Number};
-use crate::oracle::points::Source;
+use crate::oracle::points::{Given, Source, Variation};
 use crate::oracle::sides::Side;
 use crate::oracle::square::Square;
-
-/// A derivative with the size of what was added up to it.
-#[derive(Clone, Debug)]
-pub struct Variation {
-    /// Along each direction, body after body.
-    pub derivative: Vec<f64>,
-    /// The sum over all summands of the size of each or of its largest derivative.
-    pub scale: f64,
-}
 
 /// A model at random values of its parameters.
 #[derive(Clone, Debug)]
@@ -66,6 +57,16 @@ pub fn element(source: &mut Source, family: Family) -> Grid<f64> {
                 (i, j) => turn.0[i][j],
             })
         }
+        Family::Plane => {
+            let (turn, shift) = (source.orthogonal::<2>(), source.vector::<2>());
+            Grid::from_entries(3, 3, |i, j| match (i, j) {
+                (2, 2) => 1.0,
+                (2, _) => 0.0,
+                (i, 2) => shift[i],
+                (i, j) => turn.0[i][j],
+            })
+        }
+        Family::Added(n, m) => any(source, n, m),
         // Near enough to the identity that the determinant is positive and the inverse tame.
         Family::Linear(n) => Grid::identity(n).plus(&any(source, n, n).scaled(0.3)),
     }
@@ -101,8 +102,18 @@ fn basis(family: Family) -> Vec<Grid<f64>> {
                 })
             })
             .collect(),
-        Family::Linear(n) => (0..n * n)
-            .map(|k| Grid::from_entries(n, n, |i, j| f64::from(u8::from(i * n + j == k))))
+        Family::Plane => (0..3)
+            .map(|k| {
+                Grid::from_entries(3, 3, |i, j| match (k, i, j) {
+                    (0, 1, 0) | (1, 0, 2) | (2, 1, 2) => 1.0,
+                    (0, 0, 1) => -1.0,
+                    _ => 0.0,
+                })
+            })
+            .collect(),
+        Family::Linear(n) => basis(Family::Added(n, n)),
+        Family::Added(n, m) => (0..n * m)
+            .map(|k| Grid::from_entries(n, m, |i, j| f64::from(u8::from(i * m + j == k))))
             .collect(),
     }
 }
@@ -184,7 +195,9 @@ impl<'a> Point<'a> {
                         };
                         let b = &self.model.bodies[body];
                         let g = match (turns, b.family) {
-                            (true, Family::Motion) => node[body].block(3, 3, (0, 0)),
+                            (true, family) if family.is_motion() => {
+                                node[body].block(family.turned(), family.turned(), (0, 0))
+                            }
                             (true, _) => node[body].covered(),
                             (false, _) => node[body].clone(),
                         };
@@ -202,11 +215,34 @@ impl<'a> Point<'a> {
             .collect()
     }
 
+    /// Parameters, configurations and what has no definition, at three nodes.
+    #[must_use]
+    pub fn given(&self, nodes: &[Node; 3]) -> Vec<Given> {
+        let mut list = Vec::new();
+        for (shift, node) in [-1, 0, 1].into_iter().zip(nodes) {
+            for (index, value) in self.letters(node).into_iter().enumerate() {
+                let letter = &self.model.letters[index];
+                let constant = matches!(letter.role, Role::Parameter) && shift == 0;
+                if self.model.uses(index) && (constant || letter.role.is_given()) {
+                    list.push(Given {
+                        name: letter.name.clone(),
+                        shift,
+                        rows: value.rows,
+                        cols: value.cols,
+                        data: value.data,
+                    });
+                }
+            }
+        }
+        list
+    }
+
     /// The summands of the action of one edge.
-    fn edge<T: Number>(&self, tail: &[Grid<T>], head: &[Grid<T>]) -> Vec<T> {
+    pub fn edge<T: Number>(&self, tail: &[Grid<T>], head: &[Grid<T>]) -> Vec<T> {
         let (mut here, next) = (self.letters(tail), self.letters(head));
         for (i, b) in self.model.bodies.iter().enumerate() {
             here[b.element + 1] = match b.side {
+                _ if b.family.is_added() => head[i].plus(&tail[i].each(|x| -x)),
                 Side::Body => tail[i].inverse().times(&head[i]),
                 Side::Space => head[i].times(&tail[i].inverse()),
             };
@@ -242,42 +278,72 @@ impl<'a> Point<'a> {
     /// The derivative of the action of both edges by each direction at the middle node.
     #[must_use]
     pub fn stationarity(&self, nodes: &[Node; 3]) -> Variation {
-        let steady = |node: &Node| -> Vec<Grid<Dual>> { node.iter().map(Grid::constant).collect() };
         let [before, here, after] = nodes;
         let (before, after) = (steady(before), steady(after));
+        self.varied(here, |varied| {
+            let mut summands = self.edge(&before, varied);
+            summands.extend(self.edge(varied, &after));
+            summands
+        })
+    }
+
+    /// The momenta at both ends of an edge: less the derivative at the tail, and the derivative at the head.
+    #[must_use]
+    pub fn momenta(&self, tail: &Node, head: &Node) -> [Variation; 2] {
+        let (from, to) = (steady(tail), steady(head));
+        let mut out = self.varied(tail, |varied| self.edge(varied, &to));
+        out.derivative.iter_mut().for_each(|x| *x = -*x);
+        [out, self.varied(head, |varied| self.edge(&from, varied))]
+    }
+
+    /// Along what a node is varied, body after body.
+    #[must_use]
+    pub fn directions(&self, node: &Node) -> Vec<(usize, Grid<f64>)> {
+        let bodies = self.model.bodies.iter().enumerate();
+        let all = bodies.flat_map(|(i, b)| {
+            let tangent = move |direction: Grid<f64>| match b.side {
+                _ if b.family.is_added() => direction,
+                Side::Body => node[i].times(&direction),
+                Side::Space => direction.times(&node[i]),
+            };
+            let own = basis(b.family).into_iter();
+            own.map(move |direction| (i, tangent(direction)))
+        });
+        all.collect()
+    }
+
+    /// The derivative of summands by each direction at a node.
+    fn varied(&self, node: &Node, summands: impl Fn(&[Grid<Dual>]) -> Vec<Dual>) -> Variation {
         let mut derivative = Vec::new();
         let mut largest: Vec<f64> = Vec::new();
-        for (i, b) in self.model.bodies.iter().enumerate() {
-            for direction in basis(b.family) {
-                let tangent = match b.side {
-                    Side::Body => here[i].times(&direction),
-                    Side::Space => direction.times(&here[i]),
+        for (i, tangent) in self.directions(node) {
+            let mut varied = steady(node);
+            varied[i] = Grid::from_entries(tangent.rows, tangent.cols, |r, c| Dual {
+                value: node[i].at(r, c),
+                slope: tangent.at(r, c),
+            });
+            let summands = summands(&varied);
+            largest.resize(summands.len(), 0.0);
+            for (size, s) in largest.iter_mut().zip(&summands) {
+                // A summand that is no number must not be lost in a maximum.
+                let own = s.slope.abs() + s.value.abs();
+                *size = if own.is_finite() {
+                    size.max(own)
+                } else {
+                    f64::NAN
                 };
-                let mut varied = steady(here);
-                varied[i] = Grid::from_entries(tangent.rows, tangent.cols, |r, c| Dual {
-                    value: here[i].at(r, c),
-                    slope: tangent.at(r, c),
-                });
-                let mut summands = self.edge(&before, &varied);
-                summands.extend(self.edge(&varied, &after));
-                largest.resize(summands.len(), 0.0);
-                for (size, s) in largest.iter_mut().zip(&summands) {
-                    // A summand that is no number must not be lost in a maximum.
-                    let own = s.slope.abs() + s.value.abs();
-                    *size = if own.is_finite() {
-                        size.max(own)
-                    } else {
-                        f64::NAN
-                    };
-                }
-                derivative.push(summands.iter().map(|s| s.slope).sum());
             }
+            derivative.push(summands.iter().map(|s| s.slope).sum());
         }
         Variation {
             derivative,
             scale: largest.iter().sum(),
         }
     }
+}
+
+fn steady(node: &Node) -> Vec<Grid<Dual>> {
+    node.iter().map(Grid::constant).collect()
 }
 
 /// A quantity acted on by `g`.

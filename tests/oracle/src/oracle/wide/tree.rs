@@ -11,7 +11,7 @@ pub type Shape = (usize, usize);
 pub const SCALAR: Shape = (1, 1);
 
 /// An expression.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Tree {
     /// As typed, and its value.
     Number(&'static str, f64),
@@ -118,6 +118,15 @@ impl Tree {
         }
     }
 
+    /// All parts of it, and theirs, that are made of others.
+    #[must_use]
+    pub fn compounds(&self) -> Vec<&Tree> {
+        let own = self.parts().into_iter();
+        own.filter(|part| !part.parts().is_empty())
+            .flat_map(|part| [vec![part], part.compounds()].concat())
+            .collect()
+    }
+
     /// Whether any part is as asked.
     pub fn mentions(&self, wanted: &dyn Fn(&Tree) -> bool) -> bool {
         wanted(self) || self.parts().into_iter().any(|p| p.mentions(wanted))
@@ -149,9 +158,11 @@ impl Tree {
                 match *name {
                     "inv" | "sym" | "skew" => (rows, cols),
                     "diag" => (rows, rows),
+                    "rot" if rows == 3 => (2, 2),
                     "hat" | "rot" => (3, 3),
                     "quat" => (4, 4),
-                    "vee" | "cross" | "im" | "pos" => (3, 1),
+                    "pos" => (rows - 1, 1),
+                    "vee" | "cross" | "im" => (3, 1),
                     _ => SCALAR,
                 }
             }
@@ -253,9 +264,10 @@ fn called<T: Number>(name: &str, shape: Shape, arguments: &[Grid<T>]) -> Option<
         }
         "quat" => Grid::quaternion(zero, [0, 1, 2].map(|i| a.at(i, 0))),
         // Of a motion the block; of a quaternion, whose last row is none of a motion, what it covers.
+        "rot" if a.rows == 3 => a.block(2, 2, (0, 0)),
         "rot" if is_motion(a) => a.block(3, 3, (0, 0)),
         "rot" => a.covered(),
-        "pos" => a.block(3, 1, (0, 3)),
+        "pos" => a.block(a.rows - 1, 1, (0, a.rows - 1)),
         "sqrt" => a.each(Number::sqrt),
         "exp" => a.each(Number::exp),
         "log" => a.each(Number::ln),

@@ -2,7 +2,7 @@
 //! Takes a model with its groups; adds kinetic terms and functions of numbers that parameters make
 //! invariant, each as a mechanician writes them.
 
-use super::grow::{AROUND, around};
+use super::grow::{AROUND, added, around};
 use super::model::{Family, Kind, Model};
 use super::tree::Tree;
 use crate::oracle::points::Source;
@@ -15,8 +15,9 @@ fn dot(a: Tree, b: Tree) -> Tree {
 /// Element and element at the end of the step.
 fn ends(model: &Model, body: usize) -> (Tree, Tree) {
     let element = model.bodies[body].element;
-    let size = model.bodies[body].family.size();
-    (model.letter(element), Tree::Next(element, (size, size)))
+    let here = model.letter(element);
+    let shape = here.shape();
+    (here, Tree::Next(element, shape))
 }
 
 /// Adds the summands.
@@ -30,7 +31,7 @@ pub fn state(model: &mut Model, source: &mut Source, turn: usize) {
             let mut name = AROUND[(turn * 5 + turn / AROUND.len() + i) % AROUND.len()];
             // The square of a square of sums has more terms than the engine multiplies out.
             let squares = !["exp", "sin", "cos", "sinh", "cosh", "tanh", "abs"].contains(&name);
-            if model.bodies[body].family == Family::Motion && squares {
+            if model.bodies[body].family.is_motion() && squares {
                 name = "tanh";
             }
             let weight = Tree::Step.over(Tree::number("4"));
@@ -82,8 +83,9 @@ fn kinetic(model: &mut Model, body: usize) -> Tree {
             let word = Tree::Product(vec![g.transposed(), next]);
             four.over(Tree::Step).times(Tree::call("re", word))
         }
-        Family::Motion => {
-            let j = model.parameter(Kind::Positive(3));
+        Family::Added(..) => added(model, body),
+        Family::Motion | Family::Plane => {
+            let j = model.parameter(Kind::Positive(family.turned()));
             let m = model.parameter(Kind::Real);
             let rot = |g: &Tree| Tree::call("rot", g.clone());
             let pos = |g: &Tree| Tree::call("pos", g.clone());
@@ -149,10 +151,37 @@ fn number(model: &mut Model, source: &mut Source, body: usize) -> Tree {
                 _ => dot(a, rot(next).minus(rot(g)).times(b)),
             }
         }
-        Family::Motion => {
+        Family::Added(1, 1) => match pick {
+            0 => g,
+            1 => next,
+            _ => next.plus(g),
+        },
+        // Seen from another body where there is one that turns it.
+        Family::Added(rows, 1) => {
+            let other = model.bodies.iter().position(|b| {
+                matches!(
+                    b.family,
+                    Family::Rotation(3) | Family::Quaternion | Family::Linear(3)
+                )
+            });
+            let a = model.parameter(Kind::Vector(rows));
+            match other.map(|other| (model.bodies[other].family, ends(model, other).0)) {
+                Some((Family::Quaternion, q)) => dot(Tree::call("rot", q).times(a), g),
+                Some((_, turn)) => dot(turn.times(a), g),
+                None => dot(a, next),
+            }
+        }
+        Family::Added(rows, cols) => {
             let (a, b) = (
-                model.parameter(Kind::Vector(3)),
-                model.parameter(Kind::Vector(3)),
+                model.parameter(Kind::Vector(rows)),
+                model.parameter(Kind::Vector(cols)),
+            );
+            dot(a, g.times(b))
+        }
+        Family::Motion | Family::Plane => {
+            let (a, b) = (
+                model.parameter(Kind::Vector(family.turned())),
+                model.parameter(Kind::Vector(family.turned())),
             );
             let (rot, pos) = (Tree::call("rot", g.clone()), Tree::call("pos", g));
             match pick {

@@ -1,60 +1,97 @@
-//! Writes a random model in the model language, with parentheses around everything compound.
+//! Writes a random model in the model language, with parentheses around everything compound or those that it needs.
 
-use super::model::{Action, Body, Letter, Model, Role};
+use super::model::{Action, Body, Letter, Model, Role, Style};
 use super::tree::Tree;
 use crate::oracle::sides::{NodeRule, Side};
 use std::fmt::Write;
 
+/// The name of a part.
+const NAMED: &str = "part";
+
+/// How tightly an expression binds, loosest first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Binding {
+    Sum,
+    Product,
+    Postfix,
+    Atom,
+}
+
 impl Tree {
-    /// The text, in parentheses where it is compound.
-    fn operand(&self, model: &Model) -> String {
-        let text = self.text(model);
+    fn binding(&self, model: &Model) -> Binding {
         match self {
-            Tree::Number(..)
-            | Tree::Step
-            | Tree::Identity(_)
-            | Tree::Axis(..)
-            | Tree::Letter(..)
-            | Tree::Next(..)
-            | Tree::Call(..) => text,
-            _ => format!("({text})"),
+            _ if model.style.named.as_ref() == Some(self) => Binding::Atom,
+            Tree::Number(typed, _) if typed.starts_with('-') => Binding::Sum,
+            Tree::Sum(_) => Binding::Sum,
+            Tree::Product(_) | Tree::Quotient(..) => Binding::Product,
+            Tree::Power(..) | Tree::Transposed(_) | Tree::Component(..) => Binding::Postfix,
+            _ => Binding::Atom,
         }
     }
 
-    /// The text.
+    /// The text, in parentheses where it binds more loosely than asked, or wherever the style has them.
+    fn operand(&self, model: &Model, least: Binding) -> String {
+        let least = if model.style.bare {
+            least
+        } else {
+            Binding::Atom
+        };
+        let text = self.text(model);
+        match self.binding(model) < least {
+            true => format!("({text})"),
+            false => text,
+        }
+    }
+
+    /// The text, by its name where it has one.
     fn text(&self, model: &Model) -> String {
+        match model.style.named.as_ref() == Some(self) {
+            true => NAMED.to_owned(),
+            false => self.spelt(model),
+        }
+    }
+
+    /// The text itself.
+    fn spelt(&self, model: &Model) -> String {
         let name = |index: &usize| model.letters.get(*index).map_or("?", |l| l.name.as_str());
+        let atom = |t: &Tree| t.operand(model, Binding::Atom);
         match self {
             Tree::Number(typed, _) => (*typed).to_owned(),
-            Tree::Step => "h".to_owned(),
+            Tree::Step => model.style.step.to_owned(),
             Tree::Identity(_) => "Id".to_owned(),
             Tree::Axis(_, axis) => format!("E{axis}"),
             Tree::Letter(index, _) => name(index).to_owned(),
             Tree::Next(index, _) => format!("next({})", name(index)),
-            Tree::Sum(terms) => {
+            Tree::Sum(terms) => sum(terms, model),
+            Tree::Product(list) => {
                 let mut text = String::new();
-                for (i, (minus, t)) in terms.iter().enumerate() {
-                    text.push_str(match (i, minus) {
-                        (0, false) => "",
-                        (0, true) => "-",
-                        (_, false) => " + ",
-                        (_, true) => " - ",
+                for (i, t) in list.iter().enumerate() {
+                    let own = match i {
+                        0 => t.operand(model, Binding::Product),
+                        _ => t.operand(model, Binding::Postfix),
+                    };
+                    // Juxtaposed unless the language would read it otherwise: two numbers, what follows a divisor, a call.
+                    let apart = own.starts_with(|c: char| c == '(' || c.is_ascii_digit())
+                        || i > 0 && matches!(list[i - 1], Tree::Quotient(..));
+                    text.push_str(match (i, model.style.juxtaposed && !apart) {
+                        (0, _) => "",
+                        (_, true) => " ",
+                        (_, false) => "*",
                     });
-                    text.push_str(&t.operand(model));
+                    text.push_str(&own);
                 }
                 text
             }
-            Tree::Product(list) => {
-                let texts: Vec<String> = list.iter().map(|t| t.operand(model)).collect();
-                texts.join("*")
+            Tree::Quotient(a, b) => {
+                let above = a.operand(model, Binding::Product);
+                format!("{above}/{}", b.operand(model, Binding::Postfix))
             }
-            Tree::Quotient(a, b) => format!("{}/{}", a.operand(model), b.operand(model)),
-            Tree::Power(a, n, 1) => format!("{}^{n}", a.operand(model)),
-            Tree::Power(a, n, d) => format!("{}^({n}/{d})", a.operand(model)),
-            Tree::Transposed(a) => format!("{}^T", a.operand(model)),
+            Tree::Power(a, n, 1) => format!("{}^{n}", atom(a)),
+            Tree::Power(a, n, d) => format!("{}^({n}/{d})", atom(a)),
+            Tree::Transposed(a) => format!("{}^T", atom(a)),
             Tree::Component(a, indices) => {
                 let indices: Vec<String> = indices.iter().map(usize::to_string).collect();
-                format!("{}[{}]", a.operand(model), indices.join(", "))
+                format!("{}[{}]", atom(a), indices.join(", "))
             }
             Tree::Call(name, list) => {
                 let texts: Vec<String> = list.iter().map(|t| t.text(model)).collect();
@@ -62,6 +99,21 @@ impl Tree {
             }
         }
     }
+}
+
+/// Terms with their signs.
+fn sum(terms: &[(bool, Tree)], model: &Model) -> String {
+    let mut text = String::new();
+    for (i, (minus, t)) in terms.iter().enumerate() {
+        text.push_str(match (i, minus) {
+            (0, false) => "",
+            (0, true) => "-",
+            (_, false) => " + ",
+            (_, true) => " - ",
+        });
+        text.push_str(&t.operand(model, Binding::Product));
+    }
+    text
 }
 
 /// `V` or `rot(V)`, its inverse and transposes as they are written for the group.
@@ -114,6 +166,10 @@ impl Model {
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = format!("model {} {{\n", self.name);
+        let Style { time, step, .. } = self.style;
+        if step != "h" {
+            line(&mut text, &format!("time {time} step {step};"));
+        }
         if self.rule != NodeRule::Symmetric {
             line(&mut text, &format!("node {};", self.rule.word()));
         }
@@ -135,17 +191,13 @@ impl Model {
                 }
             }
         }
-        let mut lagrangian = String::new();
-        for (i, (minus, t)) in self.summands.iter().enumerate() {
-            lagrangian.push_str(match (i, minus) {
-                (0, false) => "",
-                (0, true) => "-",
-                (_, false) => " + ",
-                (_, true) => " - ",
-            });
-            lagrangian.push_str(&t.operand(self));
+        if let Some(named) = &self.style.named {
+            line(&mut text, &format!("let {NAMED} = {};", named.spelt(self)));
         }
-        line(&mut text, &format!("lagrangian = {lagrangian};"));
+        line(
+            &mut text,
+            &format!("lagrangian = {};", sum(&self.summands, self)),
+        );
         text.push('}');
         text
     }
@@ -160,6 +212,9 @@ impl Model {
             Role::Parameter | Role::Velocity(_) => Vec::new(),
             Role::Element(body) => {
                 let body = &self.bodies[body];
+                if body.family.is_added() {
+                    return vec![format!("field {name}: {kind};")];
+                }
                 let velocity = self.name_of(body.element + 1);
                 let product = match body.side {
                     Side::Body => format!("{name}*{velocity}"),
