@@ -62,7 +62,7 @@ fn wrong_rotations_are_told_with_what_to_write() {
         [1, 2, 3]                             | R0: expected a 3x3 matrix [[..], [..], [..]], a unit quaternion [w, x, y, z], { axis =
 "#,
     ) {
-        run(&folder, MODEL, &case(wrong, good, good), "").refuses(&format!("parameters.{said}"));
+        run(&folder, MODEL, &case(wrong, good, good), "").refuses(format!("parameters.{said}"));
     }
 }
 

@@ -303,7 +303,7 @@ fn an_inertia_that_no_body_has_is_refused_by_its_moments() {
         ("I = [2.5, 1.3, 0.8]", of_inertia.as_slice()),
         ("J = [[-0.2, 0, 0], [0, 1, 0], [0, 0, 1.5]]", &of_moments),
     ] {
-        let file = folder.write("a.toml", &replaced(&text, "J", line));
+        let file = folder.write("a.toml", replaced(&text, "J", line));
         let ran = on(
             &gallery,
             &["run", "free-body", "--case", &file, "--steps", "1"],
@@ -321,7 +321,7 @@ fn a_kinetic_energy_that_is_not_positive_is_warned_of_at_the_start() {
     let text = on(&gallery, &["case", "kirchhoff-body"]).out;
     let with = |m: &str| {
         let line = format!("M = [[{m}, 0, 0], [0, 2, 0], [0, 0, 3]]");
-        let file = folder.write("a.toml", &replaced(&text, "M", &line));
+        let file = folder.write("a.toml", replaced(&text, "M", &line));
         let arguments = ["run", "kirchhoff-body", "--case", &file, "--steps", "1"];
         let plain = on(&gallery, &arguments).err;
         let json = on(&gallery, &[&arguments[..], &["--json"]].concat()).out;

@@ -57,7 +57,7 @@ fn a_clock_tells_the_time_after_many_steps() {
             l => l,
         })
         .collect();
-    let case = folder.write("driven.toml", &case.join("\n"));
+    let case = folder.write("driven.toml", case.join("\n"));
     folder.runs(&format!(
         "run @driven.clebsch --case {case} --h 0.01 --steps 20000 --every 2000 --out @out"
     ));

@@ -228,7 +228,7 @@ fn the_printed_sign_of_the_force_in_3_62_explodes() {
     let folder = Folder::new("elastic-sign");
     let text = text_of("elastic/pseudo-rigid.clebsch");
     assert!(text.contains("- h*W;"));
-    folder.write("wrong.clebsch", &text.replace("- h*W;", "+ h*W;"));
+    folder.write("wrong.clebsch", text.replace("- h*W;", "+ h*W;"));
     let done =
         folder.clebsch("run @wrong.clebsch --case models/elastic/pseudo-rigid.toml --steps 30");
     assert_ne!(done.code, 0);
@@ -264,7 +264,7 @@ fn multipliers_and_constraints_are_seen() {
         ),
     ] {
         assert!(text.contains(from));
-        folder.write("off.toml", &text.replace(from, to));
+        folder.write("off.toml", text.replace(from, to));
         let done = folder.clebsch("run models/elastic/spherical-pendulum.clebsch --case @off.toml");
         assert_ne!(done.code, 0);
         done.says(wanted);

@@ -118,7 +118,7 @@ fn particles_start_between_the_walls() {
     clebsch(&format!(
         "run {} --case {}",
         folder.path("model.clebsch"),
-        folder.write("csv.toml", &case("{ csv = \"x.csv\" }"))
+        folder.write("csv.toml", case("{ csv = \"x.csv\" }"))
     ))
     .says("{ npz = ");
 }

@@ -82,7 +82,7 @@ fn velocities_and_momenta_say_the_same() {
         .replace("a = 400", "a = 64");
     let (head, _) = case.split_once("velocity_X").expect("has velocities");
     let run = |line: &str| {
-        folder.write("case.toml", &format!("{head}{line}\n"));
+        folder.write("case.toml", format!("{head}{line}\n"));
         let done =
             folder.runs("run models/fluids/shallow-water-2d.clebsch --case @case.toml --steps 5");
         done.out
@@ -111,7 +111,7 @@ fn masses_and_velocities_that_are_none_are_told() {
         let case = text_of(&format!("fluids/{model}.toml"));
         let own = |line: &str| line.starts_with(&format!("{key} = "));
         let old = case.lines().find(|l| own(l)).expect("is given").to_owned();
-        folder.write("own.toml", &case.replace(&old, &format!("{key} = {given}")));
+        folder.write("own.toml", case.replace(&old, &format!("{key} = {given}")));
         folder.clebsch(&format!(
             "run models/fluids/{model}.clebsch --case @own.toml --steps 1"
         ))
@@ -240,7 +240,7 @@ fn masses_are_depths_times_the_areas_of_cells() {
     let folder = Folder::new("fluids-shares");
     let text = text_of("fluids/shallow-water-2d.toml");
     let with = |share: &str| text.replace("{ depth = \"1\" }", share);
-    folder.write("cells.toml", &with("{ depth = \"2\", share = \"cells\" }"));
+    folder.write("cells.toml", with("{ depth = \"2\", share = \"cells\" }"));
     folder
         .runs("run models/fluids/shallow-water-2d.clebsch --case @cells.toml --steps 1 --out @out");
     let json = folder.json("out/run.json");
@@ -254,7 +254,7 @@ fn masses_are_depths_times_the_areas_of_cells() {
     // Twice the area of the domain, in 400 parts that differ on a lattice with jitter.
     assert!((masses.iter().sum::<f64>() - 2.0).abs() < 1e-13);
     assert!(masses.iter().any(|m| (m - 0.005).abs() > 1e-4));
-    let wrong = folder.write("wrong.toml", &with("{ depth = \"2\", share = \"boxes\" }"));
+    let wrong = folder.write("wrong.toml", with("{ depth = \"2\", share = \"boxes\" }"));
     let done = clebsch(&format!(
         "run models/fluids/shallow-water-2d.clebsch --case {wrong} --steps 1"
     ))

@@ -264,7 +264,7 @@ fn files_of_numpy_are_read() {
     let folder = Folder::new("from-npz-numpy");
     std::fs::write(folder.path("data.npz"), arrays()).expect("a file for the test");
     let run = |initial: &str| {
-        folder.write("case.toml", &ring(initial));
+        folder.write("case.toml", ring(initial));
         let done =
             folder.runs("run models/lattices/toda-chain.clebsch --case @case.toml --steps 50");
         done.out
@@ -387,7 +387,7 @@ fn values_that_an_end_holds_are_told_where_they_stand() {
     let case = text_of("lattices/sine-gordon.toml").replace("i = 80", "i = 3");
     let (head, _) = case.split_once("[initial]").expect("has values");
     let run = |values: &str| {
-        folder.write("case.toml", &format!("{head}[initial]\n{values}\n"));
+        folder.write("case.toml", format!("{head}[initial]\n{values}\n"));
         folder.clebsch("run models/lattices/sine-gordon.clebsch --case @case.toml --steps 5")
     };
     let by_list = run("u = [0.0, 0.1, 0.2, 0.3]\nmomentum_u = [0.1, 0.2]").succeeds();

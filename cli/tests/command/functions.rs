@@ -72,8 +72,7 @@ fn a_fluid_over_topography_has_the_lengths_of_its_domain() {
     let given = of("given", &model, &wide);
     let by_hand = folder.write(
         "by-hand.clebsch",
-        &text
-            .replace(" given b(Vec<2>): Real = case;", "")
+        text.replace(" given b(Vec<2>): Real = case;", "")
             .replace("b(X)", "0.1*cos(2*pi*X[1]/2.0)"),
     );
     let bare = wide
@@ -98,13 +97,13 @@ fn what_is_wrong_of_a_function_is_told_by_its_line() {
         [functions]\nc = "x"\nR = ["x", "y"]     | :5: unknown key `functions.c`
 "#,
     ) {
-        folder.write("own.toml", &case(functions));
+        folder.write("own.toml", case(functions));
         folder
             .clebsch("run @bowl.clebsch --case @own.toml")
             .refuses(said);
     }
     // A model that has none.
-    folder.write("own.toml", &case("[functions]\nb = \"x\""));
+    folder.write("own.toml", case("[functions]\nb = \"x\""));
     let plain = BOWL
         .replace("= case;", "= \"x\";")
         .replace("Vec<2> = \"x\"", "Vec<2> = [\"x\", \"y\"]");

@@ -53,7 +53,7 @@ fn what_a_clamped_rod_of_frames_carries_is_written() {
             l => l.to_owned(),
         })
         .collect();
-    let case = folder.write("rod.toml", &lines.join("\n"));
+    let case = folder.write("rod.toml", lines.join("\n"));
     folder.runs(&format!(
         "run @rod.clebsch --case {case} --steps 10 --out @out"
     ));
@@ -121,7 +121,7 @@ fn rotations_of_other_dimensions_run_beside_bodies_seen_from_space() {
     ] {
         let model = folder.write(
             &format!("{name}.clebsch"),
-            &format!(
+            format!(
                 "model A {{ param j: Real; param J: Sym<3>; {first} {second} constraint next(R) = W*R;
                  constraint next(S) = {moved}; lagrangian = -j*tr(X)/h - tr(J*R^T*next(R))/h; }}"
             ),

@@ -192,7 +192,7 @@ fn a_wrong_case_is_told_by_line_and_site() {
         ))
         .refuses(expected);
     }
-    let file = folder.write("none.toml", &case.replace("[labels]\ni = 32\n", ""));
+    let file = folder.write("none.toml", case.replace("[labels]\ni = 32\n", ""));
     clebsch(&format!(
         "run models/lattices/toda-chain.clebsch --case {file}"
     ))
@@ -238,7 +238,7 @@ fn lists_hold_what_is_given_at_an_end_too() {
     let (head, _) = case.split_once("[initial]").expect("has values");
     let head = head.replace("i = 80", "i = 3");
     let run = |values: &str| {
-        let file = folder.write("case.toml", &format!("{head}[initial]\n{values}\n"));
+        let file = folder.write("case.toml", format!("{head}[initial]\n{values}\n"));
         clebsch(&format!(
             "run models/lattices/sine-gordon.clebsch --case {file} --steps 5"
         ))

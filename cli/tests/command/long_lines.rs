@@ -16,7 +16,7 @@ fn wave(count: usize) -> String {
 fn a_line_of_a_hundred_thousand_sites_runs() {
     let folder = Folder::new("lattices-long");
     let out = folder.path("out");
-    folder.write("wave.toml", &wave(100_000));
+    folder.write("wave.toml", wave(100_000));
     let done = folder
         .runs("run models/lattices/toda-chain.clebsch --case @wave.toml --out @out --verbose");
     done.prints([
@@ -69,7 +69,7 @@ fn wrong_data_of_a_long_line_name_their_site() {
         "{err}"
     );
     let folder = Folder::new("lattices-long-order");
-    let file = folder.write("case.toml", &wave(5_000));
+    let file = folder.write("case.toml", wave(5_000));
     let of_order = |n: &str| {
         clebsch(&format!(
             "run models/lattices/toda-chain.clebsch --case {file} --order {n}"

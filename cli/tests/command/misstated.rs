@@ -174,7 +174,7 @@ fn slips_of_a_new_user_are_answered_by_what_to_write() {
     let sample = said("case two.clebsch");
     has(&sample, ["mass at y", "position of the second mass"]);
     let of_case = |from: &str, to: &str| {
-        folder.write("own.toml", &case.replace(from, to));
+        folder.write("own.toml", case.replace(from, to));
         said("check two.clebsch --case own.toml")
     };
     for [from, to, answer] in table(

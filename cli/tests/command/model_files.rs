@@ -246,7 +246,7 @@ fn a_long_line_is_quoted_around_the_mistake() {
             terms.join(" + ")
         )
     };
-    let file = folder.write("long.clebsch", &text("k*dot(y, x)"));
+    let file = folder.write("long.clebsch", text("k*dot(y, x)"));
     let done = on(&gallery, &["run", &file]).exits(2);
     let lines: Vec<&str> = done.err.lines().collect();
     let quoted = lines.iter().position(|line| line.starts_with("1 | ..."));

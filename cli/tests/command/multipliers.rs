@@ -196,7 +196,7 @@ fn the_one_site_that_moves_has_its_momentum() {
     // The way of a step but for a few squares of it.
     assert!((x - 0.6 - 0.8e-3).abs() < 3e-6 && p == 0.8, "{x} {p}");
     let refused = |last: &str, case: &str| {
-        let model = folder.write("links.clebsch", &model(last));
+        let model = folder.write("links.clebsch", model(last));
         let case = folder.write("case.toml", case);
         clebsch(&format!("run {model} --case {case}")).refuses("is not tangent to the constraint");
     };

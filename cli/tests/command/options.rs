@@ -99,7 +99,7 @@ fn expressions_follow_what_options_set() {
     assert_eq!(step, last("step-typed", &case("0.02", "2"), "--steps 10"));
     // And so is a point of a sweep.
     let out = folder.path("sweep");
-    folder.write("from.toml", &case("0.025", "2"));
+    folder.write("from.toml", case("0.025", "2"));
     folder.runs(&format!(
         "sweep @osc.clebsch --case @from.toml --vary k=1,3 --out {out}"
     ));
@@ -273,7 +273,7 @@ fn an_energy_that_is_lost_is_told_with_its_node() {
              Y = {y}\nmomentum_X = [0, 0, 0]\nmomentum_Y = {momentum}\n"
         )
     };
-    folder.write("fall.toml", &case("[1, 0, 0]", "[0, 0, 0]"));
+    folder.write("fall.toml", case("[1, 0, 0]", "[0, 0, 0]"));
     folder
         .clebsch("run @two-body.clebsch --case @fall.toml")
         .says("warning: the energy is lost from node 79 (time 0.79) on");
@@ -286,7 +286,7 @@ fn an_energy_that_is_lost_is_told_with_its_node() {
             .is_some_and(|w| w.contains("reduce h"))
     );
     // Bodies that pass at a distance keep theirs.
-    folder.write("pass.toml", &case("[1, 0, 0]", "[0, 0.5, 0]"));
+    folder.write("pass.toml", case("[1, 0, 0]", "[0, 0.5, 0]"));
     folder
         .clebsch("run @two-body.clebsch --case @pass.toml")
         .never_says("is lost");

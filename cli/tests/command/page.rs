@@ -107,7 +107,7 @@ fn a_body_of_a_segment_is_midway_between_its_nodes() {
         ("ring", "periodic;", 3),
     ] {
         let folder = Folder::new(&format!("page-rod-{name}"));
-        let model = folder.write("rod.clebsch", &rod(statements, "segments"));
+        let model = folder.write("rod.clebsch", rod(statements, "segments"));
         let page = page(&folder, &[&model, "--case", "sample", "--steps", "5"]);
         let (bodies, points) = first(&data(&page));
         let run = folder.json("out/run.json");
@@ -135,7 +135,7 @@ fn a_body_of_a_segment_is_midway_between_its_nodes() {
 fn a_body_of_a_node_is_at_its_point_and_others_stand_in_one_row() {
     let folder = Folder::new("page-nodes");
     let ends = "end i = 0 { pinned { x = given; } }";
-    let model = folder.write("rod.clebsch", &rod(ends, "nodes"));
+    let model = folder.write("rod.clebsch", rod(ends, "nodes"));
     let (bodies, points) = first(&data(&page(
         &folder,
         &[&model, "--case", "sample", "--steps", "5"],
@@ -197,7 +197,7 @@ fn words_of_a_user_cannot_end_an_element() {
             false => line.to_owned(),
         })
         .collect();
-    let case = folder.write("case.toml", &case.join("\n"));
+    let case = folder.write("case.toml", case.join("\n"));
     let page = page(
         &folder,
         &["harmonic-rotor", "--case", &case, "--steps", "20"],

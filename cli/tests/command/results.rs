@@ -79,7 +79,7 @@ fn a_left_bound_is_code_three_and_the_results_are_written() {
     let text = rotor("case harmonic-rotor").out;
     let file = folder.write(
         "tight.toml",
-        &text.replace("energy = 0.001", "energy = 1e-5"),
+        text.replace("energy = 0.001", "energy = 1e-5"),
     );
     let out = folder.path("out");
     let done = folder

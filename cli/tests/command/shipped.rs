@@ -56,7 +56,7 @@ fn a_shipped_model_runs_by_its_name_as_by_its_file() {
         ("toda-chain:solito", "soliton"),
         ("kepler:circulr", "circular"),
     ] {
-        clebsch(&format!("run {model}")).refuses(&format!("did you mean `{case}`?"));
+        clebsch(&format!("run {model}")).refuses(format!("did you mean `{case}`?"));
     }
     clebsch("run kepler:circular --case eccentric").says("--case names another one");
 }
@@ -75,7 +75,7 @@ fn a_file_without_a_case_is_not_run_with_made_up_numbers() {
     folder.write("free.toml", &folder.clebsch("case @free.clebsch").out);
     folder.runs("run @free.clebsch");
     // What is wrong with the model comes before what is missing.
-    folder.write("wrong.clebsch", &text.replace("(2*h)", "(2*k)"));
+    folder.write("wrong.clebsch", text.replace("(2*h)", "(2*k)"));
     let done = folder.clebsch("run @wrong.clebsch");
     assert!(
         done.err.contains('^') && !done.err.contains("no case"),
@@ -133,7 +133,7 @@ fn a_model_is_shown_with_its_statement_and_a_case() {
 #[test]
 fn input_without_end_is_refused() {
     let folder = Folder::new("shipped-bounded");
-    let long = folder.write("long.toml", &"# nothing\n".repeat(1_000_001));
+    let long = folder.write("long.toml", "# nothing\n".repeat(1_000_001));
     for arguments in [
         &["derive", "/dev/zero"][..],
         &["run", "kepler", "--case", &long],
@@ -181,7 +181,7 @@ fn the_case_of_a_chain_has_the_words_of_the_model_and_its_bounds() {
     );
     folder.write(
         "strict.toml",
-        &case.replace("\n# energy = 1e-3 ", "\nenergy = 1e-20 "),
+        case.replace("\n# energy = 1e-3 ", "\nenergy = 1e-20 "),
     );
     folder
         .clebsch(&format!("run {model} --case @strict.toml --steps 10"))

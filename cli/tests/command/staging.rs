@@ -111,7 +111,7 @@ fn results_of_a_run_that_stopped_are_kept_beside_a_folder_made_meanwhile() {
     let folder = Folder::new("made_and_stopped");
     let out = folder.path("out");
     let text = rotor("case harmonic-rotor").out;
-    let file = folder.write("stiff.toml", &text.replace("kappa = 1.0", "kappa = -200.0"));
+    let file = folder.write("stiff.toml", text.replace("kappa = 1.0", "kappa = -200.0"));
     let made = out.clone();
     let event = move || fs::create_dir(&made).expect("a folder");
     let done = run_while(event, &out, &["--case", &file]);

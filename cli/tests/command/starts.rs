@@ -73,7 +73,7 @@ fn values_are_judged_before_anything_is_searched_for() {
             false => line,
         })
         .collect();
-    let wrong = folder.write("wrong.toml", &wrong.join("\n"));
+    let wrong = folder.write("wrong.toml", wrong.join("\n"));
     let (done, inquiries) = inquired(&format!("run harmonic-rotor --case {wrong}"));
     assert_eq!((done.code, inquiries), (2, 0), "{}", done.err);
 }

@@ -12,7 +12,7 @@ fn failing(folder: &Folder) -> String {
     let text = rotor("case harmonic-rotor").out;
     folder.write(
         "failing.toml",
-        &text.replace("kappa = 1.0", "kappa = -400.0"),
+        text.replace("kappa = 1.0", "kappa = -400.0"),
     )
 }
 
@@ -112,7 +112,7 @@ fn a_run_that_stops_keeps_the_earlier_results() {
     // Its own are beside them.
     assert_eq!(folder.names(), ["failing.toml", "out", "out-2"]);
     let kept = folder.path("out-2");
-    done.prints(&format!("written to {kept}: "));
+    done.prints(format!("written to {kept}: "));
     let manifest = json(&read(&kept, "run.json"));
     assert_eq!(manifest["results"]["stopped"]["node"], node_of(&done.err));
 }

@@ -146,7 +146,7 @@ fn what_was_meant_is_understood_or_answered() {
         .succeeds()
         .prints("\"steps\":2000");
     let text = rotor("case harmonic-rotor").out;
-    let file = folder.write("case.toml", &text.replace("steps = 2000", "steps = 1e2"));
+    let file = folder.write("case.toml", text.replace("steps = 2000", "steps = 1e2"));
     let done = folder.rotor("run harmonic-rotor --case @case.toml --json");
     done.prints("\"steps\":100");
     for wrong in ["1e-3", "1.5", "1e300", "1e"] {
