@@ -46,6 +46,11 @@ pub fn seen_from_body<T: Real>(q: [T; 4], v: &Vector3<T>) -> Vector3<T> {
 }
 
 impl Configuration<f64> {
+    /// Fields, rotations and unit quaternions of a node.
+    pub fn of(x: Vec<f64>, r: Vec<Matrix3<f64>>, q: Vec<[f64; 4]>) -> Self {
+        Self { x, r, q }
+    }
+
     /// As constants.
     pub fn lifted(&self) -> Configuration<D> {
         Configuration {
@@ -91,7 +96,16 @@ pub fn trace<T: Real>(a: &Matrix3<T>, b: &Matrix3<T>) -> T {
 
 /// The largest derivative of the action of two edges at the middle one of three configurations, less what
 /// the rounding of places by two units leaves in a velocity, of the largest derivative of one edge.
-pub fn stationarity(line: &dyn Line, [a, b, c]: &[Configuration<f64>; 3]) -> f64 {
+pub fn stationarity(line: &dyn Line, nodes: &[Configuration<f64>; 3]) -> f64 {
+    stationarity_weighed(line, &line.weights(), nodes)
+}
+
+/// The same with other weights of its terms.
+pub fn stationarity_weighed(
+    line: &dyn Line,
+    weights: &[f64],
+    [a, b, c]: &[Configuration<f64>; 3],
+) -> f64 {
     let (before, after) = (a.lifted(), c.lifted());
     let (mut worst, mut scale) = (0.0_f64, 1e-300_f64);
     let mut sums = Vec::new();
@@ -101,7 +115,10 @@ pub fn stationarity(line: &dyn Line, [a, b, c]: &[Configuration<f64>; 3]) -> f64
             continue;
         }
         let here = b.varied(at);
-        let (into, out) = (line.action(&before, &here), line.action(&here, &after));
+        let (into, out) = (
+            line.weighed(weights, &before, &here),
+            line.weighed(weights, &here, &after),
+        );
         sums.push(into.dual[0] + out.dual[0]);
         worst = worst.max((into.dual[0] + out.dual[0]).abs());
         scale = scale.max(into.dual[0].abs()).max(out.dual[0].abs());
@@ -142,6 +159,8 @@ pub fn off_constraints(line: &dyn Line, a: &Configuration<f64>, b: &Configuratio
 /// The momentum at the first node of an edge: minus the derivative of the action there.
 pub fn momenta(line: &dyn Line, [a, b]: [&Configuration<f64>; 2]) -> Vec<f64> {
     let after = b.lifted();
-    let each = (0..a.coordinates()).map(|at| -line.action(&a.varied(at), &after).dual[0]);
+    let weights = line.weights();
+    let each = 0..a.coordinates();
+    let each = each.map(|at| -line.weighed(&weights, &a.varied(at), &after).dual[0]);
     each.collect()
 }

@@ -1,7 +1,7 @@
 //! Particles between walls: steps that reach none make the action stationary; a reflection changes neither the kinetic
 //! energy nor the depth, and what lies too far beyond a wall is refused.
 
-use super::action::stationarity;
+use super::action::{stationarity, stationarity_weighed};
 use super::models::{Basin, Line, Plane};
 use clebsch::line::LineError;
 use clebsch::mesh::MeshError;
@@ -19,8 +19,8 @@ fn steps_between_walls_make_the_action_stationary() {
                 line.name()
             );
             for term in 0..line.terms() {
-                let wrong = super::models::Flipped(line.as_ref(), term);
-                let residual = stationarity(&wrong, &line.three(1));
+                let wrong = line.flipped(term);
+                let residual = stationarity_weighed(line.as_ref(), &wrong, &line.three(1));
                 assert!(
                     residual > 1e-4,
                     "{}: term {term} leaves {residual:e}",

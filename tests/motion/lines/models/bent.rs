@@ -1,10 +1,10 @@
 //! Sites whose velocities are found by Newton's method: beads whose masses change with a place that moves
 //! as well, in a potential that is taken in the middle of the step; stated here.
 
-use super::{Line, Random, c, keeping, stepped};
+use super::{Line, Random, c, keeping, numbers, stepped};
 use crate::action::{Configuration, D};
 use clebsch::Real;
-use clebsch::nalgebra::{SMatrix, Vector2};
+use clebsch::nalgebra::Vector2;
 
 clebsch::model! {
     /// Beads in the plane, each with a number of its own that its mass depends on.
@@ -51,27 +51,16 @@ impl Bent {
     fn initial(&self, seed: u64) -> BentChainInitial {
         let mut r = Random::new(seed);
         let n = self.nodes();
-        let mut numbers = |size: f64| (0..n).map(|_| SMatrix::repeat(size * r.number())).collect();
-        let (q, momentum_q) = (numbers(1.0), numbers(0.5));
-        let mut list = |size: f64| {
-            (0..n)
-                .map(|_| Vector2::new(size * r.number(), size * r.number()))
-                .collect()
-        };
+        let (q, momentum_q) = (r.list(n, 1.0), r.list(n, 0.5));
         BentChainInitial {
             q,
             momentum_q,
-            X: list(1.0),
-            momentum_X: list(0.5),
+            X: r.list(n, 1.0),
+            momentum_X: r.list(n, 0.5),
         }
     }
     fn seen(&self, s: &BentChainState) -> Configuration<f64> {
-        let q = s.q().iter().map(|q| q[0]);
-        Configuration {
-            x: q.chain(s.X().iter().flat_map(|x| [x[0], x[1]])).collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of([numbers(s.q()), numbers(s.X())].concat(), vec![], vec![])
     }
     keeping!(BentChain, |_, s: &BentChainState| {
         s.momentum_X().iter().map(|p| p[0]).sum()
@@ -108,17 +97,5 @@ impl Line for Bent {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed);
-        let q = all.momentum_q.iter().map(|p| p[0]);
-        let x = all.momentum_X.iter().flat_map(|p| [p[0], p[1]]);
-        q.chain(x).collect()
-    }
-    stepped!(0.05, 5e-2);
-    fn mass_by_step(&self) -> f64 {
-        1.3 * 1.7 / 0.05
-    }
+    stepped!([momentum_q momentum_X], 0.05, 5e-2, 1.3 * 1.7 / 0.05);
 }

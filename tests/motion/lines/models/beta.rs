@@ -84,17 +84,10 @@ impl Line for Beta {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
     fn is_smooth(&self) -> bool {
         false
     }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed).momentum_X;
-        all.iter().flat_map(|p| [p[0], p[1]]).collect()
-    }
-    stepped!(DT, 5e-2);
+    stepped!([momentum_X], DT, 5e-2);
     fn mass_by_step(&self) -> f64 {
         1.4 / self.n as f64 / DT
     }

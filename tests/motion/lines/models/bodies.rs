@@ -1,10 +1,10 @@
 //! Bodies whose velocities stand in one term with those of their neighbours, found together along the line: those of the
 //! gallery, and some stated here that are held at their ends.
 
-use super::{Line, Random, attitudes, c, keeping, stepped, vector};
+use super::{Line, Random, attitudes, c, keeping, numbers, stepped, vector};
 use crate::action::{Configuration, D, trace};
 use clebsch::Rotation;
-use clebsch::nalgebra::{Matrix3, SMatrix, Vector3};
+use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch_models::lattices::coupled_body_chain::*;
 
 clebsch::model! {
@@ -94,11 +94,7 @@ impl Bodies {
         }
     }
     fn seen(&self, s: &CoupledBodyChainState) -> Configuration<f64> {
-        Configuration {
-            x: Vec::new(),
-            r: s.Λ().map(|r| r.matrix()).collect(),
-            q: Vec::new(),
-        }
+        Configuration::of(vec![], s.Λ().map(|r| r.matrix()).collect(), vec![])
     }
     keeping!(CoupledBodyChain, |_, s: &CoupledBodyChainState| {
         let total: Vector3<f64> = s.spatial_momentum_Λ().map(|m| m.0).sum();
@@ -121,17 +117,7 @@ impl Line for Bodies {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed).body_momentum_Λ;
-        all.iter().flat_map(|m| [m.0[0], m.0[1], m.0[2]]).collect()
-    }
-    stepped!(0.04, 2e-2);
-    fn mass_by_step(&self) -> f64 {
-        2.0 / 0.04
-    }
+    stepped!([body_momentum_Λ], 0.04, 2e-2, 2.0 / 0.04);
 }
 
 /// The bodies stated here: a ring, free, held first, held last, clamped first and held last.
@@ -185,11 +171,7 @@ impl Dragged {
         }
     }
     fn seen(&self, s: &DraggedBodiesState) -> Configuration<f64> {
-        Configuration {
-            x: Vec::new(),
-            r: s.Λ().map(|r| r.matrix()).collect(),
-            q: Vec::new(),
-        }
+        Configuration::of(vec![], s.Λ().map(|r| r.matrix()).collect(), vec![])
     }
     keeping!(DraggedBodies, |_, _: &DraggedBodiesState| 0.0);
 }
@@ -232,14 +214,7 @@ impl Line for Dragged {
             _ => false,
         }
     }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed).body_momentum_Λ;
-        all.iter().flat_map(|m| [m.0[0], m.0[1], m.0[2]]).collect()
-    }
-    stepped!(0.03, 2e-2);
-    fn mass_by_step(&self) -> f64 {
-        2.0 / 0.03
-    }
+    stepped!([body_momentum_Λ], 0.03, 2e-2, 2.0 / 0.03);
 }
 
 /// The bodies with beads: a ring or a row.
@@ -271,24 +246,16 @@ impl Beaded {
     fn initial(&self, seed: u64) -> BeadedBodiesInitial {
         let mut r = Random::new(seed);
         let (turns, momenta) = attitudes(self.nodes(), &mut r);
-        let mut list = || {
-            (0..self.nodes())
-                .map(|_| SMatrix::repeat(r.number()))
-                .collect()
-        };
+        let n = self.nodes();
         BeadedBodiesInitial {
             Λ: turns,
             body_momentum_Λ: momenta,
-            q: list(),
-            momentum_q: list(),
+            q: r.list(n, 1.0),
+            momentum_q: r.list(n, 1.0),
         }
     }
     fn seen(&self, s: &BeadedBodiesState) -> Configuration<f64> {
-        Configuration {
-            x: s.q().iter().map(|q| q[0]).collect(),
-            r: s.Λ().map(|r| r.matrix()).collect(),
-            q: Vec::new(),
-        }
+        Configuration::of(numbers(s.q()), s.Λ().map(|r| r.matrix()).collect(), vec![])
     }
     keeping!(BeadedBodies, |_, s: &BeadedBodiesState| {
         s.momentum_q().iter().map(|p| p[0]).sum()
@@ -328,20 +295,5 @@ impl Line for Beaded {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let initial = self.initial(seed);
-        let numbers = initial.momentum_q.iter().map(|p| p[0]);
-        let turns = initial
-            .body_momentum_Λ
-            .iter()
-            .flat_map(|m| [m.0[0], m.0[1], m.0[2]]);
-        numbers.chain(turns).collect()
-    }
-    stepped!(0.03, 2e-2);
-    fn mass_by_step(&self) -> f64 {
-        2.0 / 0.03
-    }
+    stepped!([momentum_q body_momentum_Λ], 0.03, 2e-2, 2.0 / 0.03);
 }

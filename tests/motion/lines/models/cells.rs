@@ -152,11 +152,11 @@ pub(super) fn momenta(n: usize, r: &mut Random) -> Vec<Vector2<f64>> {
 }
 
 pub(super) fn seen(x: &[Vector2<f64>]) -> Configuration<f64> {
-    Configuration {
-        x: x.iter().flat_map(|x| [x[0], x[1]]).collect(),
-        r: Vec::new(),
-        q: Vec::new(),
-    }
+    Configuration::of(
+        x.iter().flat_map(|x| [x[0], x[1]]).collect(),
+        vec![],
+        vec![],
+    )
 }
 
 pub(super) fn at(q: &[D]) -> Vec<Place> {
@@ -228,17 +228,10 @@ impl Line for Cells {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
     fn is_smooth(&self) -> bool {
         false
     }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed).momentum_X;
-        all.iter().flat_map(|p| [p[0], p[1]]).collect()
-    }
-    stepped!(DT, 5e-2);
+    stepped!([momentum_X], DT, 5e-2);
     fn mass_by_step(&self) -> f64 {
         1.4 / self.n as f64 / DT
     }
@@ -304,17 +297,10 @@ impl Line for Smoothed {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
     fn is_smooth(&self) -> bool {
         false
     }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed).momentum_X;
-        all.iter().flat_map(|p| [p[0], p[1]]).collect()
-    }
-    stepped!(DT, 5e-2);
+    stepped!([momentum_X], DT, 5e-2);
     fn mass_by_step(&self) -> f64 {
         1.4 / self.n as f64 / DT
     }

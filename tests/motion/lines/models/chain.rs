@@ -1,6 +1,6 @@
 //! The chain of rigid links.
 
-use super::{Line, Random, c, keeping, stepped};
+use super::{Line, Random, c, keeping, numbers, stepped};
 use crate::action::{Configuration, D};
 use clebsch::nalgebra::Vector3;
 use clebsch_models::lattices::hanging_chain::*;
@@ -99,11 +99,7 @@ impl Chain {
         }
     }
     fn seen(&self, s: &HangingChainState) -> Configuration<f64> {
-        Configuration {
-            x: s.x().iter().flat_map(|x| [x[0], x[1], x[2]]).collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of(numbers(s.x()), vec![], vec![])
     }
     keeping!(HangingChain, |_, _: &HangingChainState| 0.0);
 }
@@ -139,12 +135,5 @@ impl Line for Chain {
         let fields = 3 * self.nodes();
         !self.is_ring() && (self.ends % 2 == 1 && at < 3 || self.ends / 2 == 1 && at >= fields - 3)
     }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let p = self.initial(seed).momentum_x;
-        p.iter().flat_map(|p| [p[0], p[1], p[2]]).collect()
-    }
-    stepped!(0.01, 5e-2);
-    fn mass_by_step(&self) -> f64 {
-        0.9 / H
-    }
+    stepped!([momentum_x], 0.01, 5e-2, 0.9 / H);
 }

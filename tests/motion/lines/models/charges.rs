@@ -1,6 +1,6 @@
 //! Charges in the plane, stated here.
 
-use super::{Line, Random, c, keeping, stepped};
+use super::{Line, Random, c, keeping, numbers, stepped};
 use crate::action::{Configuration, D};
 use clebsch::nalgebra::Vector2;
 
@@ -44,22 +44,14 @@ impl Charges {
     }
     fn initial(&self, seed: u64) -> ChargeChainInitial {
         let mut r = Random::new(seed);
-        let mut list = |size: f64| {
-            (0..=self.n)
-                .map(|_| Vector2::new(size * r.number(), size * r.number()))
-                .collect()
-        };
+        let n = self.n + 1;
         ChargeChainInitial {
-            X: list(1.0),
-            momentum_X: list(0.5),
+            X: r.list(n, 1.0),
+            momentum_X: r.list(n, 0.5),
         }
     }
     fn seen(&self, s: &ChargeChainState) -> Configuration<f64> {
-        Configuration {
-            x: s.X().iter().flat_map(|x| [x[0], x[1]]).collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of(numbers(s.X()), vec![], vec![])
     }
     // With half of the field's impulse: what translations keep.
     keeping!(ChargeChain, |_, s: &ChargeChainState| {
@@ -100,15 +92,5 @@ impl Line for Charges {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed).momentum_X;
-        all.iter().flat_map(|p| [p[0], p[1]]).collect()
-    }
-    stepped!(0.03, 5e-2);
-    fn mass_by_step(&self) -> f64 {
-        1.3 / 0.03
-    }
+    stepped!([momentum_X], 0.03, 5e-2, 1.3 / 0.03);
 }

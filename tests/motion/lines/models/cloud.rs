@@ -1,7 +1,7 @@
 //! Particles in the plane with functionals of all of them: one made of their places, another made of that
 //! one. Both are defined here; the engine knows their names alone.
 
-use super::{Line, Random, c, keeping, stepped};
+use super::{Line, Random, c, keeping, numbers, stepped};
 use crate::action::{Configuration, D};
 use clebsch::mesh::{Functional, MeshError, Setting};
 use clebsch::nalgebra::{SVector, Vector2};
@@ -143,22 +143,14 @@ impl Cloud {
     }
     fn initial(&self, seed: u64) -> CloudsInitial {
         let mut r = Random::new(seed);
-        let mut list = |size: f64| {
-            (0..self.n)
-                .map(|_| Vector2::new(size * r.number(), size * r.number()))
-                .collect()
-        };
+        let n = self.n;
         CloudsInitial {
-            X: list(0.7),
-            momentum_X: list(0.5),
+            X: r.list(n, 0.7),
+            momentum_X: r.list(n, 0.5),
         }
     }
     fn seen(&self, s: &CloudsState) -> Configuration<f64> {
-        Configuration {
-            x: s.X().iter().flat_map(|x| [x[0], x[1]]).collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of(numbers(s.X()), vec![], vec![])
     }
     // Neither translations nor turns leave the functionals as they are.
     keeping!(Clouds, |_, _: &CloudsState| 0.0);
@@ -203,15 +195,5 @@ impl Line for Cloud {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed).momentum_X;
-        all.iter().flat_map(|p| [p[0], p[1]]).collect()
-    }
-    stepped!(0.02, 5e-2);
-    fn mass_by_step(&self) -> f64 {
-        1.5 / 0.02
-    }
+    stepped!([momentum_X], 0.02, 5e-2, 1.5 / 0.02);
 }

@@ -1,6 +1,6 @@
 //! Rotations whose kinetic energy is no quadratic form, each found by Newton's method at its site; stated here.
 
-use super::{Line, Random, attitudes, c, stepped, vector};
+use super::{Line, Random, attitudes, c, keeping_between, stepped, vector};
 use crate::action::{Configuration, D, trace};
 use clebsch::nalgebra::{Matrix3, Vector3};
 
@@ -80,14 +80,10 @@ impl Fast {
         }
     }
     fn seen(&self, s: &FastTopsState) -> Configuration<f64> {
-        Configuration {
-            x: Vec::new(),
-            r: s.Λ().map(|r| r.matrix()).collect(),
-            q: Vec::new(),
-        }
+        Configuration::of(vec![], s.Λ().map(|r| r.matrix()).collect(), vec![])
     }
     /// The energy between two nodes, by the rotation of the edge and the mean of both potentials.
-    fn energy(&self, [a, b]: [&Vec<Matrix3<f64>>; 2], h: f64) -> f64 {
+    fn energy(&self, a: &[Matrix3<f64>], b: &[Matrix3<f64>], h: f64) -> f64 {
         let z = Self::vertical();
         let mut e = 0.0;
         for (x, y) in a.iter().zip(b) {
@@ -107,29 +103,18 @@ impl Fast {
         }
         e
     }
-    fn kept_with(&self, h: f64, steps: u64) -> [f64; 2] {
-        let model = self.stepper();
-        let (mut state, mut work) = model.start(self.initial(4), h).expect("starts");
-        let total = |s: &FastTopsState| {
-            let all: Vector3<f64> = s.spatial_momentum_Λ().map(|m| m.0).sum();
-            all.dot(&Self::vertical())
-        };
-        let (mut before, first) = (self.seen(&state).r, total(&state));
-        let (mut energy, mut worst, mut off) = (None, 0.0_f64, 0.0_f64);
-        for _ in 0..steps {
-            model.step(&mut state, &mut work).expect("steps");
-            let after = self.seen(&state).r;
-            let now = self.energy([&before, &after], h);
-            let start: f64 = *energy.get_or_insert(now);
-            // The kinetic energy of each is about one.
-            worst = worst.max((now - start).abs() / (start.abs() + self.nodes() as f64));
-            if self.ends < 2 {
-                off = off.max((total(&state) - first).abs());
+    // The kinetic energy of each is about one.
+    keeping_between!(
+        r,
+        |line: &Self, s: &FastTopsState| match line.ends {
+            0 | 1 => {
+                let all: Vector3<f64> = s.spatial_momentum_Λ().map(|m| m.0).sum();
+                all.dot(&Self::vertical())
             }
-            before = after;
-        }
-        [worst, off / (1.0 + first.abs())]
-    }
+            _ => 0.0,
+        },
+        1.0
+    );
 }
 
 impl Line for Fast {
@@ -165,12 +150,5 @@ impl Line for Fast {
     fn held(&self, at: usize) -> bool {
         self.ends == 2 && at / 3 == 0 || self.ends == 3 && at / 3 == self.n
     }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed).body_momentum_Λ;
-        all.iter().flat_map(|m| [m.0[0], m.0[1], m.0[2]]).collect()
-    }
-    stepped!(H, 2e-2);
-    fn mass_by_step(&self) -> f64 {
-        5.0 / H
-    }
+    stepped!([body_momentum_Λ], H, 2e-2, 5.0 / H);
 }

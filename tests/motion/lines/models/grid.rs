@@ -2,7 +2,7 @@
 //! smoother a dense system along walls and a sum of Fourier modes around; nothing is shared with the runtime.
 
 use super::dense::solved;
-use super::{Line, Random, c, keeping, stepped};
+use super::{Line, Random, c, keeping, numbers, stepped};
 use crate::action::{Configuration, D};
 use clebsch::Real;
 use clebsch::mesh::{Domain, Wall};
@@ -204,7 +204,7 @@ impl Basin {
         }
     }
     fn seen(&self, s: &ParticleMesh1DState) -> Configuration<f64> {
-        let x = s.X().iter().map(|x| x[0]).collect();
+        let x = numbers(s.X());
         Configuration {
             x,
             r: Vec::new(),
@@ -235,13 +235,7 @@ impl Line for Basin {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        self.initial(seed).momentum_X.iter().map(|p| p[0]).collect()
-    }
-    stepped!(DT, 5e-2);
+    stepped!([momentum_X], DT, 5e-2);
     fn mass_by_step(&self) -> f64 {
         1.4 / self.n as f64 / DT
     }
@@ -300,11 +294,7 @@ impl Plane {
         }
     }
     fn seen(&self, s: &ParticleMesh2DState) -> Configuration<f64> {
-        Configuration {
-            x: s.X().iter().flat_map(|x| [x[0], x[1]]).collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of(numbers(s.X()), vec![], vec![])
     }
     keeping!(ParticleMesh2D, |_, _: &ParticleMesh2DState| 0.0);
 }
@@ -332,14 +322,7 @@ impl Line for Plane {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed).momentum_X;
-        all.iter().flat_map(|p| [p[0], p[1]]).collect()
-    }
-    stepped!(DT, 5e-2);
+    stepped!([momentum_X], DT, 5e-2);
     fn mass_by_step(&self) -> f64 {
         1.4 / self.n as f64 / DT
     }

@@ -1,6 +1,6 @@
 //! The rod that cannot be stretched.
 
-use super::{Line, Random, c, diagonal, keeping, stepped, vector};
+use super::{Line, Random, c, diagonal, keeping, numbers, stepped, vector};
 use crate::action::{Configuration, D, trace};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Real, Rotation};
@@ -136,11 +136,7 @@ impl Kirchhoff {
         }
     }
     fn seen(&self, s: &KirchhoffRodState) -> Configuration<f64> {
-        Configuration {
-            x: s.φ().iter().flat_map(|x| [x[0], x[1], x[2]]).collect(),
-            r: s.Λ().map(|r| r.matrix()).collect(),
-            q: Vec::new(),
-        }
+        Configuration::of(numbers(s.φ()), s.Λ().map(|r| r.matrix()).collect(), vec![])
     }
     keeping!(KirchhoffRod, |_, _: &KirchhoffRodState| 0.0);
 }
@@ -211,19 +207,7 @@ impl Line for Kirchhoff {
         let fields = 3 * self.nodes();
         first > 0 && at < 3 || last == 1 && at >= fields - 3 && at < fields
     }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed);
-        let p = all.momentum_φ.iter().flat_map(|p| [p[0], p[1], p[2]]);
-        let m = all
-            .body_momentum_Λ
-            .iter()
-            .flat_map(|m| [m.0[0], m.0[1], m.0[2]]);
-        p.chain(m).collect()
-    }
-    stepped!(0.02, 5e-2);
-    fn mass_by_step(&self) -> f64 {
-        0.7 / H
-    }
+    stepped!([momentum_φ body_momentum_Λ], 0.02, 5e-2, 0.7 / H);
 }
 
 /// Rods of so many sections, with every end that leaves their constraints independent.

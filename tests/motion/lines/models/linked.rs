@@ -1,6 +1,6 @@
 //! Velocities of neighbours in one term, found together along the line; stated here.
 
-use super::{Line, Random, Wide, c, stepped};
+use super::{Line, Random, Wide, c, keeping_between, numbers, stepped};
 use crate::action::{Configuration, D};
 use clebsch::Real;
 use clebsch::nalgebra::{SMatrix, Vector2};
@@ -78,10 +78,9 @@ impl Linked {
     pub fn initial(&self, seed: u64) -> LinkedChainInitial {
         let mut r = Random::new(seed);
         let n = self.nodes();
-        let mut list = |size: f64| (0..n).map(|_| SMatrix::repeat(size * r.number())).collect();
         LinkedChainInitial {
-            q: list(1.0),
-            momentum_q: list(1.0),
+            q: r.list(n, 1.0),
+            momentum_q: r.list(n, 1.0),
         }
     }
     /// Three steps of derivatives by all places and momenta.
@@ -113,11 +112,7 @@ impl Linked {
         [state.q(), state.momentum_q()].map(|list| list.iter().map(|x| x[0]).collect())
     }
     fn seen(&self, s: &LinkedChainState) -> Configuration<f64> {
-        Configuration {
-            x: s.q().iter().map(|q| q[0]).collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of(numbers(s.q()), vec![], vec![])
     }
     /// By how much the neighbour of a link is farther than it is stored.
     fn beyond(&self, [_, j]: [usize; 2]) -> f64 {
@@ -137,25 +132,14 @@ impl Linked {
         }
         e
     }
-    fn kept_with(&self, h: f64, steps: u64) -> [f64; 2] {
-        let model = self.stepper();
-        let (mut state, mut work) = model.start(self.initial(4), h).expect("starts");
-        let total = |s: &LinkedChainState| s.momentum_q().iter().map(|p| p[0]).sum::<f64>();
-        let (mut before, first) = (self.seen(&state).x, total(&state));
-        let (mut energy, mut worst, mut off) = (None, 0.0_f64, 0.0_f64);
-        for _ in 0..steps {
-            model.step(&mut state, &mut work).expect("steps");
-            let after = self.seen(&state).x;
-            let now = self.energy(&before, &after, h);
-            let start = *energy.get_or_insert(now);
-            worst = worst.max((now - start).abs() / start.abs());
-            if self.ends < 2 {
-                off = off.max((total(&state) - first).abs());
-            }
-            before = after;
-        }
-        [worst, off / (1.0 + first.abs())]
-    }
+    keeping_between!(
+        x,
+        |line: &Self, s: &LinkedChainState| match line.ends {
+            0 | 1 => s.momentum_q().iter().map(|p| p[0]).sum(),
+            _ => 0.0,
+        },
+        0.0
+    );
 }
 
 impl Line for Linked {
@@ -184,13 +168,7 @@ impl Line for Linked {
     fn held(&self, at: usize) -> bool {
         self.ends == 2 && at == 0 || self.ends == 3 && at == self.n
     }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        self.initial(seed).momentum_q.iter().map(|p| p[0]).collect()
-    }
-    stepped!(0.05, 2e-2);
-    fn mass_by_step(&self) -> f64 {
-        1.9 / H
-    }
+    stepped!([momentum_q], 0.05, 2e-2, 1.9 / H);
 }
 
 /// Beads in the plane, open or on a ring.
@@ -221,45 +199,22 @@ impl Woven {
     fn initial(&self, seed: u64) -> WovenChainInitial {
         let mut r = Random::new(seed);
         let n = self.nodes();
-        let mut numbers = |size: f64| (0..n).map(|_| SMatrix::repeat(size * r.number())).collect();
-        let (q, momentum_q) = (numbers(1.0), numbers(0.5));
-        let mut list = |size: f64| {
-            (0..n)
-                .map(|_| Vector2::new(size * r.number(), size * r.number()))
-                .collect()
-        };
+        let (q, momentum_q) = (r.list(n, 1.0), r.list(n, 0.5));
         WovenChainInitial {
             q,
             momentum_q,
-            X: list(1.0),
-            momentum_X: list(0.5),
+            X: r.list(n, 1.0),
+            momentum_X: r.list(n, 0.5),
         }
     }
     fn seen(&self, s: &WovenChainState) -> Configuration<f64> {
-        let q = s.q().iter().map(|q| q[0]);
-        Configuration {
-            x: q.chain(s.X().iter().flat_map(|x| [x[0], x[1]])).collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of([numbers(s.q()), numbers(s.X())].concat(), vec![], vec![])
     }
-    fn kept_with(&self, h: f64, steps: u64) -> [f64; 2] {
-        let model = self.stepper();
-        let (mut state, mut work) = model.start(self.initial(4), h).expect("starts");
-        let total = |s: &WovenChainState| s.momentum_X().iter().map(|p| p[0]).sum::<f64>();
-        let (mut before, first) = (self.seen(&state).x, total(&state));
-        let (mut energy, mut worst, mut off) = (None, 0.0_f64, 0.0_f64);
-        for _ in 0..steps {
-            model.step(&mut state, &mut work).expect("steps");
-            let after = self.seen(&state).x;
-            let now = self.energy(&before, &after, h);
-            let start = *energy.get_or_insert(now);
-            worst = worst.max((now - start).abs() / start.abs());
-            off = off.max((total(&state) - first).abs());
-            before = after;
-        }
-        [worst, off / (1.0 + first.abs())]
-    }
+    keeping_between!(
+        x,
+        |_: &Self, s: &WovenChainState| s.momentum_X().iter().map(|p| p[0]).sum(),
+        0.0
+    );
     /// The energy between two nodes, by the velocities of the edge and the mean of both ends.
     fn energy(&self, a: &[f64], b: &[f64], h: f64) -> f64 {
         let n = self.nodes();
@@ -311,17 +266,5 @@ impl Line for Woven {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed);
-        let q = all.momentum_q.iter().map(|p| p[0]);
-        let x = all.momentum_X.iter().flat_map(|p| [p[0], p[1]]);
-        q.chain(x).collect()
-    }
-    stepped!(0.05, 1e-1);
-    fn mass_by_step(&self) -> f64 {
-        2.0 / H
-    }
+    stepped!([momentum_q momentum_X], 0.05, 1e-1, 2.0 / H);
 }

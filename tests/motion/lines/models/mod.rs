@@ -1,7 +1,8 @@
 //! The lines that are tried: their steppers, random states, and their actions as sums typed by hand.
 
 use super::action::{Configuration, D};
-use clebsch::nalgebra::{Matrix3, Vector3};
+use clebsch::nalgebra::{Matrix3, SVector, Vector3};
+use clebsch::of_numbers::Shown;
 use clebsch::{BodyMomentum, Dual, Rotation};
 
 mod bent;
@@ -59,7 +60,9 @@ pub trait Line {
     /// The action of an edge, each term times a number.
     fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D;
     /// Whether an end holds this coordinate.
-    fn held(&self, at: usize) -> bool;
+    fn held(&self, _: usize) -> bool {
+        false
+    }
     /// Three nodes from a random start.
     fn three(&self, seed: u64) -> [Configuration<f64>; 3];
     /// The momenta at its first node.
@@ -86,53 +89,16 @@ pub trait Line {
         true
     }
 
-    /// The action of an edge.
-    fn action(&self, a: &Configuration<D>, b: &Configuration<D>) -> D {
-        self.weighed(&vec![1.0; self.terms()], a, b)
+    /// The weights of its terms as they are typed.
+    fn weights(&self) -> Vec<f64> {
+        vec![1.0; self.terms()]
     }
-}
 
-/// A line with the sign of one term of its action changed.
-pub struct Flipped<'a>(pub &'a dyn Line, pub usize);
-
-impl Line for Flipped<'_> {
-    fn name(&self) -> String {
-        self.0.name()
-    }
-    fn terms(&self) -> usize {
-        self.0.terms()
-    }
-    fn weighed(&self, w: &[f64], a: &Configuration<D>, b: &Configuration<D>) -> D {
-        let mut w = w.to_vec();
-        w[self.1] = -w[self.1];
-        self.0.weighed(&w, a, b)
-    }
-    fn held(&self, at: usize) -> bool {
-        self.0.held(at)
-    }
-    fn three(&self, seed: u64) -> [Configuration<f64>; 3] {
-        self.0.three(seed)
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        self.0.given(seed)
-    }
-    fn there_and_back(&self, steps: u64) -> f64 {
-        self.0.there_and_back(steps)
-    }
-    fn kept(&self, steps: u64) -> [f64; 2] {
-        self.0.kept(steps)
-    }
-    fn energy_bound(&self) -> f64 {
-        self.0.energy_bound()
-    }
-    fn energy_ratio(&self) -> f64 {
-        self.0.energy_ratio()
-    }
-    fn mass_by_step(&self) -> f64 {
-        self.0.mass_by_step()
-    }
-    fn constraints(&self, q: &Configuration<D>) -> Vec<D> {
-        self.0.constraints(q)
+    /// Those with the sign of one term changed.
+    fn flipped(&self, term: usize) -> Vec<f64> {
+        let mut weights = self.weights();
+        weights[term] = -1.0;
+        weights
     }
 }
 
@@ -218,6 +184,11 @@ impl Random {
             .wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 11) as f64 / (1u64 << 53) as f64).mul_add(2.0, -1.0)
     }
+    /// As many columns, of numbers up to a size.
+    fn list<const R: usize>(&mut self, count: usize, size: f64) -> Vec<SVector<f64, R>> {
+        let mut column = || SVector::from_fn(|_, _| size * self.number());
+        (0..count).map(|_| column()).collect()
+    }
     pub fn vector(&mut self) -> Vector3<f64> {
         Vector3::from_fn(|_, _| self.number())
     }
@@ -230,6 +201,11 @@ fn attitudes(n: usize, r: &mut Random) -> (Vec<Rotation>, Vec<BodyMomentum>) {
     (turns, (0..n).map(|_| BodyMomentum(r.vector())).collect())
 }
 
+/// The numbers of a list.
+fn numbers<T: Shown + Copy>(list: &[T]) -> Vec<f64> {
+    list.iter().copied().flat_map(Shown::numbers).collect()
+}
+
 fn c(x: f64) -> D {
     D::constant(x)
 }
@@ -240,7 +216,18 @@ fn diagonal(x: f64, y: f64, z: f64) -> Matrix3<f64> {
 
 /// What every line does with its stepper.
 macro_rules! stepped {
-    ($h:expr, $bound:expr) => {
+    ([$($momentum:ident)*], $h:expr, $bound:expr, $mass:expr) => {
+        stepped!([$($momentum)*], $h, $bound);
+        fn mass_by_step(&self) -> f64 {
+            $mass
+        }
+    };
+    ([$($momentum:ident)*], $h:expr, $bound:expr) => {
+        fn given(&self, seed: u64) -> Vec<f64> {
+            let all = self.initial(seed);
+            let lists = [$(super::numbers(&all.$momentum)),*];
+            lists.concat()
+        }
         fn three(&self, seed: u64) -> [Configuration<f64>; 3] {
             let model = self.stepper();
             let (mut state, mut work) = model.start(self.initial(seed), $h).expect("starts");
@@ -301,8 +288,33 @@ macro_rules! keeping {
     };
 }
 
+/// The same with the energy between two nodes, as a function of their numbers or rotations, over its size at the start and
+/// so much of each site.
+macro_rules! keeping_between {
+    ($part:ident, $total:expr, $each:expr) => {
+        fn kept_with(&self, h: f64, steps: u64) -> [f64; 2] {
+            let model = self.stepper();
+            let (mut state, mut work) = model.start(self.initial(4), h).expect("starts");
+            let total: fn(&Self, &_) -> f64 = $total;
+            let (mut before, first) = (self.seen(&state).$part, total(self, &state));
+            let (mut energy, mut worst, mut off) = (None, 0.0_f64, 0.0_f64);
+            for _ in 0..steps {
+                model.step(&mut state, &mut work).expect("steps");
+                let after = self.seen(&state).$part;
+                let now = self.energy(&before, &after, h);
+                let start: f64 = *energy.get_or_insert(now);
+                let size = start.abs() + $each * self.nodes() as f64;
+                worst = worst.max((now - start).abs() / size);
+                off = off.max((total(self, &state) - first).abs());
+                before = after;
+            }
+            [worst, off / (1.0 + first.abs())]
+        }
+    };
+}
+
 fn vector(x: &Vector3<f64>) -> Vector3<D> {
     x.map(c)
 }
 
-pub(crate) use {keeping, stepped};
+pub(crate) use {keeping, keeping_between, stepped};

@@ -54,24 +54,17 @@ impl Named {
     }
     fn initial(&self, seed: u64) -> NamedLikeLocalsInitial {
         let mut r = Random::new(seed);
-        let mut list = |size: f64| {
-            let each = (0..=self.n).map(|_| Vector2::new(size * r.number(), size * r.number()));
-            each.collect()
-        };
+        let n = self.n + 1;
         NamedLikeLocalsInitial {
-            q: list(0.5),
-            momentum_q: list(0.5),
-            q_1: list(0.5),
-            momentum_q_1: list(0.5),
+            q: r.list(n, 0.5),
+            momentum_q: r.list(n, 0.5),
+            q_1: r.list(n, 0.5),
+            momentum_q_1: r.list(n, 0.5),
         }
     }
     fn seen(&self, s: &NamedLikeLocalsState) -> Configuration<f64> {
         let both = s.q().iter().chain(s.q_1());
-        Configuration {
-            x: both.flat_map(|x| [x[0], x[1]]).collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of(both.flat_map(|x| [x[0], x[1]]).collect(), vec![], vec![])
     }
     keeping!(NamedLikeLocals, |_, _: &NamedLikeLocalsState| 0.0);
 }
@@ -116,16 +109,5 @@ impl Line for Named {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed);
-        let both = all.momentum_q.iter().chain(&all.momentum_q_1);
-        both.flat_map(|p| [p[0], p[1]]).collect()
-    }
-    stepped!(0.02, 5e-2);
-    fn mass_by_step(&self) -> f64 {
-        1.1 / 0.02
-    }
+    stepped!([momentum_q momentum_q_1], 0.02, 5e-2, 1.1 / 0.02);
 }

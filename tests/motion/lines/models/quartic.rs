@@ -1,6 +1,6 @@
 //! A chain whose kinetic energy has a fourth power of the velocity, free or held at its ends; stated here.
 
-use super::{Line, Random, Wide, c, stepped};
+use super::{Line, Random, Wide, c, keeping_between, numbers, stepped};
 use crate::action::{Configuration, D};
 use clebsch::nalgebra::SMatrix;
 
@@ -51,10 +51,9 @@ impl Quartic {
     fn initial(&self, seed: u64) -> QuarticChainInitial {
         let mut r = Random::new(seed);
         let n = self.nodes();
-        let mut list = |size: f64| (0..n).map(|_| SMatrix::repeat(size * r.number())).collect();
         QuarticChainInitial {
-            q: list(1.0),
-            momentum_q: list(2.0),
+            q: r.list(n, 1.0),
+            momentum_q: r.list(n, 2.0),
         }
     }
     /// Three steps of derivatives by all places and momenta.
@@ -86,11 +85,7 @@ impl Quartic {
         [state.q(), state.momentum_q()].map(|list| list.iter().map(|x| x[0]).collect())
     }
     fn seen(&self, s: &QuarticChainState) -> Configuration<f64> {
-        Configuration {
-            x: s.q().iter().map(|q| q[0]).collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of(numbers(s.q()), vec![], vec![])
     }
     fn springs(&self) -> bool {
         self.ends != 0 || self.n > 1
@@ -110,25 +105,14 @@ impl Quartic {
         }
         e
     }
-    fn kept_with(&self, h: f64, steps: u64) -> [f64; 2] {
-        let model = self.stepper();
-        let (mut state, mut work) = model.start(self.initial(4), h).expect("starts");
-        let total = |s: &QuarticChainState| s.momentum_q().iter().map(|p| p[0]).sum::<f64>();
-        let (mut before, first) = (self.seen(&state).x, total(&state));
-        let (mut energy, mut worst, mut off) = (None, 0.0_f64, 0.0_f64);
-        for _ in 0..steps {
-            model.step(&mut state, &mut work).expect("steps");
-            let after = self.seen(&state).x;
-            let now = self.energy(&before, &after, h);
-            let start = *energy.get_or_insert(now);
-            worst = worst.max((now - start).abs() / start);
-            if self.ends < 2 {
-                off = off.max((total(&state) - first).abs());
-            }
-            before = after;
-        }
-        [worst, off / (1.0 + first.abs())]
-    }
+    keeping_between!(
+        x,
+        |line: &Self, s: &QuarticChainState| match line.ends {
+            0 | 1 => s.momentum_q().iter().map(|p| p[0]).sum(),
+            _ => 0.0,
+        },
+        0.0
+    );
 }
 
 impl Line for Quartic {
@@ -157,10 +141,7 @@ impl Line for Quartic {
     fn held(&self, at: usize) -> bool {
         self.ends == 2 && at == 0 || self.ends == 3 && at == self.n
     }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        self.initial(seed).momentum_q.iter().map(|p| p[0]).collect()
-    }
-    stepped!(0.05, 2e-2);
+    stepped!([momentum_q], 0.05, 2e-2);
     // At velocities of one, with the derivative of the cube.
     fn mass_by_step(&self) -> f64 {
         (1.3 + 3.0 * 0.8) / 0.05

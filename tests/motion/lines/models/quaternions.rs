@@ -1,6 +1,6 @@
 //! The elastic rod in unit quaternions, and coupled spins in whose terms the sign of a quaternion is seen.
 
-use super::{Line, Random, c, keeping, stepped, vector};
+use super::{Line, Random, c, keeping, numbers, stepped, vector};
 use crate::action::{Configuration, D, conjugate, hamilton, imaginary, seen_from_body};
 use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::{BodyMomentum, Real, Rotation, UnitQuaternion};
@@ -133,11 +133,11 @@ impl QRod {
         }
     }
     fn seen(&self, s: &QuaternionRodState) -> Configuration<f64> {
-        Configuration {
-            x: s.φ().iter().flat_map(|x| [x[0], x[1], x[2]]).collect(),
-            r: Vec::new(),
-            q: s.q().map(|q| q.components()).collect(),
-        }
+        Configuration::of(
+            numbers(s.φ()),
+            vec![],
+            s.q().map(|q| q.components()).collect(),
+        )
     }
     keeping!(QuaternionRod, |_, _: &QuaternionRodState| 0.0);
 }
@@ -200,17 +200,7 @@ impl Line for QRod {
         let fields = 3 * self.nodes();
         first && at < 3 || last && at >= fields - 3 && at < fields
     }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed);
-        let p = all.momentum_φ.iter().flat_map(|p| [p[0], p[1], p[2]]);
-        let m = all.body_momentum_q.iter();
-        let m = m.flat_map(|m| [m.0[0], m.0[1], m.0[2]]);
-        p.chain(m).collect()
-    }
-    stepped!(0.02, 5e-2);
-    fn mass_by_step(&self) -> f64 {
-        0.5 / 0.02
-    }
+    stepped!([momentum_φ body_momentum_q], 0.02, 5e-2, 0.5 / 0.02);
 }
 
 /// Spins, open or in a ring.
@@ -255,11 +245,7 @@ impl Spins {
         }
     }
     fn seen(&self, s: &TwistedSpinsState) -> Configuration<f64> {
-        Configuration {
-            x: Vec::new(),
-            r: Vec::new(),
-            q: s.q().map(|q| q.components()).collect(),
-        }
+        Configuration::of(vec![], vec![], s.q().map(|q| q.components()).collect())
     }
     keeping!(TwistedSpins, |_, _: &TwistedSpinsState| 0.0);
 }
@@ -334,15 +320,5 @@ impl Line for Spins {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed).body_momentum_q;
-        all.iter().flat_map(|m| [m.0[0], m.0[1], m.0[2]]).collect()
-    }
-    stepped!(0.04, 2e-2);
-    fn mass_by_step(&self) -> f64 {
-        0.0
-    }
+    stepped!([body_momentum_q], 0.04, 2e-2, 0.0);
 }

@@ -1,9 +1,8 @@
 //! The sine-Gordon equation.
 
-use super::{Line, Random, c, keeping, stepped};
+use super::{Line, Random, c, keeping, numbers, stepped};
 use crate::action::{Configuration, D};
 use clebsch::Real;
-use clebsch::nalgebra::SMatrix;
 use clebsch_models::lattices::sine_gordon::*;
 
 /// The sine-Gordon equation: a ring, free, held first, held last, held at both ends.
@@ -49,14 +48,10 @@ impl Sine {
     }
     fn initial(&self, seed: u64) -> SineGordonInitial {
         let mut r = Random::new(seed);
-        let mut list = |size: f64| {
-            (0..self.nodes())
-                .map(|_| SMatrix::repeat(size * r.number()))
-                .collect()
-        };
+        let n = self.nodes();
         let mut initial = SineGordonInitial {
-            u: list(1.0),
-            momentum_u: list(0.5),
+            u: r.list(n, 1.0),
+            momentum_u: r.list(n, 0.5),
         };
         if self.ends == 0 {
             let n = self.n as f64;
@@ -69,11 +64,7 @@ impl Sine {
         initial
     }
     fn seen(&self, s: &SineGordonState) -> Configuration<f64> {
-        Configuration {
-            x: s.u().iter().map(|u| u[0]).collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of(numbers(s.u()), vec![], vec![])
     }
     keeping!(SineGordon, |_, _: &SineGordonState| 0.0);
 }
@@ -110,11 +101,5 @@ impl Line for Sine {
         let (first, last) = (self.ends == 2 || self.ends == 4, self.ends >= 3);
         first && at == 0 || last && at == self.n
     }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        self.initial(seed).momentum_u.iter().map(|p| p[0]).collect()
-    }
-    stepped!(0.05, 2e-2);
-    fn mass_by_step(&self) -> f64 {
-        0.4 / 0.05
-    }
+    stepped!([momentum_u], 0.05, 2e-2, 0.4 / 0.05);
 }

@@ -62,11 +62,7 @@ impl Sums {
     fn at_start(&self) -> Configuration<f64> {
         let (places, numbers) = self.places();
         let x = places.iter().flat_map(|x| [x[0], x[1]]).chain(numbers);
-        Configuration {
-            x: x.collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of(x.collect(), vec![], vec![])
     }
     pub fn stepper(&self) -> WeighedBeads {
         let own = self.constraints(&self.at_start().lifted());
@@ -123,11 +119,11 @@ impl Sums {
     }
     fn seen(&self, s: &WeighedBeadsState) -> Configuration<f64> {
         let places = s.φ().iter().flat_map(|x| [x[0], x[1]]);
-        Configuration {
-            x: places.chain(s.q().iter().map(|q| q[0])).collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of(
+            places.chain(s.q().iter().map(|q| q[0])).collect(),
+            vec![],
+            vec![],
+        )
     }
     keeping!(WeighedBeads, |_, _: &WeighedBeadsState| 0.0);
 }
@@ -190,18 +186,7 @@ impl Line for Sums {
         }
         sums.to_vec()
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed);
-        let p = all.momentum_φ.iter().flat_map(|p| [p[0], p[1]]);
-        p.chain(all.momentum_q.iter().map(|p| p[0])).collect()
-    }
-    stepped!(0.01, 5e-2);
-    fn mass_by_step(&self) -> f64 {
-        0.9 / H
-    }
+    stepped!([momentum_φ momentum_q], 0.01, 5e-2, 0.9 / H);
 }
 
 /// Beads of so many segments: of one node nothing moves.

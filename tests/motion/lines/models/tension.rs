@@ -86,11 +86,7 @@ impl Tension {
         }
     }
     fn seen(&self, s: &UniformTensionRodState) -> Configuration<f64> {
-        Configuration {
-            x: Vec::new(),
-            r: s.Λ().map(|r| r.matrix()).collect(),
-            q: Vec::new(),
-        }
+        Configuration::of(vec![], s.Λ().map(|r| r.matrix()).collect(), vec![])
     }
     keeping!(UniformTensionRod, |_, _: &UniformTensionRodState| 0.0);
 }
@@ -132,17 +128,7 @@ impl Line for Tension {
         let sum = each.fold(Vector3::repeat(c(0.0)), |sum, d| sum + d);
         vec![sum[0], sum[1], sum[2]]
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed).body_momentum_Λ;
-        all.iter().flat_map(|m| [m.0[0], m.0[1], m.0[2]]).collect()
-    }
-    stepped!(0.02, 5e-2);
-    fn mass_by_step(&self) -> f64 {
-        0.0
-    }
+    stepped!([body_momentum_Λ], 0.02, 5e-2, 0.0);
 }
 
 /// Rods of so many sections: of one the two ends are three numbers, and it has two directions.

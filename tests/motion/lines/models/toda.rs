@@ -1,9 +1,8 @@
 //! Toda's chain.
 
-use super::{Line, Random, c, keeping, stepped};
+use super::{Line, Random, c, keeping, numbers, stepped};
 use crate::action::{Configuration, D};
 use clebsch::Real;
-use clebsch::nalgebra::SMatrix;
 use clebsch_models::lattices::toda_chain::*;
 
 /// Toda's chain.
@@ -43,22 +42,14 @@ impl Toda {
     }
     pub fn initial(&self, seed: u64) -> TodaChainInitial {
         let mut r = Random::new(seed);
-        let mut list = |size: f64| {
-            (0..self.nodes())
-                .map(|_| SMatrix::repeat(size * r.number()))
-                .collect()
-        };
+        let n = self.nodes();
         TodaChainInitial {
-            q: list(0.5),
-            momentum_q: list(1.0),
+            q: r.list(n, 0.5),
+            momentum_q: r.list(n, 1.0),
         }
     }
     fn seen(&self, s: &TodaChainState) -> Configuration<f64> {
-        Configuration {
-            x: s.q().iter().map(|q| q[0]).collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of(numbers(s.q()), vec![], vec![])
     }
     keeping!(TodaChain, |m, s: &TodaChainState| m.total_momentum(s));
 }
@@ -89,14 +80,5 @@ impl Line for Toda {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        self.initial(seed).momentum_q.iter().map(|p| p[0]).collect()
-    }
-    stepped!(0.05, 2e-3);
-    fn mass_by_step(&self) -> f64 {
-        1.3 / 0.05
-    }
+    stepped!([momentum_q], 0.05, 2e-3, 1.3 / 0.05);
 }

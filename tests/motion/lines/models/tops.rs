@@ -43,11 +43,7 @@ impl Tops {
         }
     }
     fn seen(&self, s: &CoupledTopsState) -> Configuration<f64> {
-        Configuration {
-            x: Vec::new(),
-            r: s.Λ().map(|r| r.matrix()).collect(),
-            q: Vec::new(),
-        }
+        Configuration::of(vec![], s.Λ().map(|r| r.matrix()).collect(), vec![])
     }
     keeping!(CoupledTops, |_, s: &CoupledTopsState| {
         let total: Vector3<f64> = s.spatial_momentum_Λ().map(|m| m.0).sum();
@@ -80,15 +76,5 @@ impl Line for Tops {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed).body_momentum_Λ;
-        all.iter().flat_map(|m| [m.0[0], m.0[1], m.0[2]]).collect()
-    }
-    stepped!(0.04, 2e-2);
-    fn mass_by_step(&self) -> f64 {
-        0.0
-    }
+    stepped!([body_momentum_Λ], 0.04, 2e-2, 0.0);
 }

@@ -2,7 +2,6 @@
 
 use super::{Line, Random, c, keeping, stepped};
 use crate::action::{Configuration, D};
-use clebsch::nalgebra::SMatrix;
 use clebsch_models::lattices::shallow_water_1d::*;
 
 /// Shallow water on a ring.
@@ -31,16 +30,12 @@ impl Water {
     }
     fn initial(&self, seed: u64) -> ShallowWater1DInitial {
         let mut r = Random::new(seed);
-        let mut list = |size: f64| {
-            (0..self.n)
-                .map(|_| SMatrix::repeat(size * r.number()))
-                .collect()
-        };
+        let n = self.n;
         let mut initial = ShallowWater1DInitial {
-            X: list(0.2),
-            momentum_X: list(0.3),
-            Y: list(0.5),
-            momentum_Y: list(0.3),
+            X: r.list(n, 0.2),
+            momentum_X: r.list(n, 0.3),
+            Y: r.list(n, 0.5),
+            momentum_Y: r.list(n, 0.3),
         };
         initial
             .X
@@ -51,11 +46,7 @@ impl Water {
     }
     fn seen(&self, s: &ShallowWater1DState) -> Configuration<f64> {
         let x = s.X().iter().chain(s.Y()).map(|x| x[0]);
-        Configuration {
-            x: x.collect(),
-            r: Vec::new(),
-            q: Vec::new(),
-        }
+        Configuration::of(x.collect(), vec![], vec![])
     }
     keeping!(ShallowWater1D, |_, s: &ShallowWater1DState| s
         .momentum_Y()
@@ -98,19 +89,5 @@ impl Line for Water {
         }
         s
     }
-    fn held(&self, _: usize) -> bool {
-        false
-    }
-    fn given(&self, seed: u64) -> Vec<f64> {
-        let all = self.initial(seed);
-        all.momentum_X
-            .iter()
-            .chain(&all.momentum_Y)
-            .map(|p| p[0])
-            .collect()
-    }
-    stepped!(0.02, 5e-2);
-    fn mass_by_step(&self) -> f64 {
-        1.6 / 0.02
-    }
+    stepped!([momentum_X momentum_Y], 0.02, 5e-2, 1.6 / 0.02);
 }
