@@ -345,10 +345,12 @@ fn rows_and_columns_are_those_of_static_matrices() {
     );
 }
 
+type OfNumber = (Single, fn(f64) -> f64);
+
 #[test]
 fn functions_of_numbers_are_the_runtimes() {
     let mut source = Source(Random(4));
-    let functions: [(Single, fn(f64) -> f64); 10] = [
+    let functions: [OfNumber; 10] = [
         (Single::Sqrt, Real::sqrt),
         (Single::Exp, Real::exp),
         (Single::Log, Real::ln),

@@ -10,7 +10,7 @@ use clebsch_core::expr::symbol::Symbols;
 use clebsch_core::expr::{self, Expr};
 use clebsch_core::interpret::{Assignment, Matrix, evaluate};
 use clebsch_core::print::{Format, Style, expression};
-use clebsch_core::schedule::Known;
+use clebsch_core::schedule::LoopInvariants;
 use clebsch_core::{Derivation, derive_source};
 use clebsch_oracle::physics::draws::Draws;
 use clebsch_oracle::physics::measure::worse;
@@ -191,7 +191,7 @@ fn worst(source: &str, flaw: fn(Expr) -> Expr) -> [f64; 2] {
         letter: parts.direction,
     };
     let varies = |l| parts.varies(l);
-    let mut known = Known::new(&parts.symbols, &varies, "k");
+    let mut known = LoopInvariants::new(&parts.symbols, &varies, "k");
     let mut checks = Vec::new();
     let momenta: Vec<Expr> = written
         .iter()

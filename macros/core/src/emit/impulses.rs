@@ -48,9 +48,11 @@ pub(super) fn at_node(s: &Symbols, rest: &[(Letter, Expr)], b: &Balance) -> Vec<
         .collect()
 }
 
-/// A place that a constraint holds is known to its rounding, and what a step corrects of that is a momentum: that of a step
-/// from the origin to the place, in parts of so many. A bound of 1e-12 then lies at a few roundings of the place.
-const CORRECTED: i64 = 1000;
+/// A place that a constraint holds is known to its rounding, about 1e-16 of it. A step corrects that, and what is left of
+/// such corrections is the momentum of a body at rest. It is measured by the momentum of a step to the place from the
+/// origin, in parts of so many: `not_less` takes that for momenta of 1e-9 of it, which are 1e-18 of the step, below any
+/// correction.
+const CORRECTED: i64 = 1_000_000_000;
 
 /// The momentum of an edge that leads from the origin to the place, of a body that a constraint holds.
 fn correction(
