@@ -38,7 +38,7 @@ pub trait Arithmetic {
     /// A rational power `num/den`.
     fn root(&self, a: Self::Number, num: i64, den: i64) -> Self::Number;
 
-    /// The inverse of a square matrix, NaN where there is none; nothing if this arithmetic has no inverses.
+    /// The inverse of a square matrix, NaN where there is none; nothing if this arithmetic lacks inverses.
     fn inverse(&self, a: &Array<Self::Number>) -> Option<Array<Self::Number>>;
 
     /// The determinant of a matrix of four rows or more; nothing if this arithmetic has none.

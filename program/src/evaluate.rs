@@ -10,12 +10,12 @@ use crate::operation::{Number, Operation, Pair, Single};
 use crate::shape::Dim;
 use core::fmt;
 
-/// Why a kernel has no value here.
+/// Why an evaluation of a kernel failed.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Unvalued {
     /// No value was given for this input, or one of another size.
     Input(String),
-    /// A declared name has no size.
+    /// A declared name lacks a size.
     Size(Dim),
     /// The arithmetic does not offer this operation.
     Operation(&'static str),
@@ -27,9 +27,11 @@ impl fmt::Display for Unvalued {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Unvalued::Input(name) => write!(f, "no value of the right size was given for {name}"),
-            Unvalued::Size(dim) => write!(f, "the dimension {dim} has no size"),
+            Unvalued::Size(dim) => write!(f, "dimension {dim} lacks a size"),
             Unvalued::Operation(word) => write!(f, "this arithmetic does not offer `{word}`"),
-            Unvalued::Functional(which) => write!(f, "functional {which} has no value here"),
+            Unvalued::Functional(which) => {
+                write!(f, "the value of functional {which} is unknown here")
+            }
         }
     }
 }
@@ -268,7 +270,7 @@ impl<A: Arithmetic> Running<'_, A> {
     fn nearest(&self, a: &Array<A::Number>) -> [A::Number; 4] {
         let on = self.arithmetic;
         let quarter = self.double(0.25);
-        // By column, then row.
+        // Column first, then row.
         let c = |col: usize, row: usize| a.at(row, col);
         let difference = |x, y| on.sub(x, y);
         [

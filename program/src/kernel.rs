@@ -16,7 +16,7 @@ impl Value {
     }
 }
 
-/// What a kernel is given.
+/// An input of a kernel.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Input {
     /// Its name: a local variable in printed code.
@@ -32,7 +32,7 @@ pub struct Line {
     pub operation: Operation,
     /// What it gives.
     pub kind: Kind,
-    /// The name under which printed code keeps it. Values without a name stand where they are used.
+    /// The name under which printed code keeps it. Printed code writes values without a name where it uses them.
     pub name: Option<String>,
 }
 
@@ -52,7 +52,7 @@ impl Kernel {
         Kernel::default()
     }
 
-    /// What it is given, in order.
+    /// Its inputs, in order.
     #[must_use]
     pub fn inputs(&self) -> &[Input] {
         &self.inputs

@@ -217,11 +217,11 @@ pub enum Operation {
     Entry(Value, usize),
     /// An entry of a matrix by row and column.
     EntryAt(Value, usize, usize),
-    /// The rows of a matrix from this one on, as many as the inclusion has columns.
+    /// Rows of a matrix from a first one on, as many as the inclusion has columns.
     RowsFrom(Value, crate::Shape, usize),
     /// A matrix between zero rows.
     IntoRows(Value, crate::Shape, usize),
-    /// The columns of a matrix from this one on.
+    /// Columns of a matrix from a first one on, as many as the inclusion has columns.
     ColumnsFrom(Value, crate::Shape, usize),
     /// A matrix between zero columns.
     IntoColumns(Value, crate::Shape, usize),

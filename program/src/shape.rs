@@ -99,7 +99,7 @@ impl fmt::Display for Shape {
     }
 }
 
-/// What a value of a kernel is.
+/// The kind of a value of a kernel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Kind {
     /// A number, a vector or a matrix.

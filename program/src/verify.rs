@@ -179,7 +179,7 @@ fn single_of(single: Single, kind: Kind) -> Option<Kind> {
     }
 }
 
-/// Of a homogeneous matrix of the plane or of space, the size without the last row.
+/// The size of a homogeneous matrix of the plane or of space without its last row.
 fn less_one(shape: Shape) -> Option<Dim> {
     match (shape.is_square(), shape.rows) {
         (true, Dim::Fixed(n @ (3 | 4))) => Some(Dim::Fixed(n - 1)),

@@ -1,9 +1,9 @@
-//! The bits of every shipped model and case at nodes 1, 10 and 1000, against a list that only a change of its own may
-//! change: a step that is built in another way gives the same numbers to the last bit.
+//! The bits of every shipped model and case at nodes 1, 10 and 1000, against a list. A step that is built in another way
+//! gives the same numbers to the last bit. If a change must alter bits, it alters the list in a commit of its own.
 //!
 //! `CLEBSCH_WRITE_BITS=1 cargo test --profile quick -p clebsch-cli --test command -- bits` writes the list. Cases that
-//! end before node 1000, and fluids, are followed for 10 nodes. The sine and other functions are those of the C library, so
-//! the list is that of one platform.
+//! end before node 1000, and fluids, are followed for 10 nodes. The C library computes the
+//! sine and other functions, so the list belongs to one platform.
 #![cfg(all(target_arch = "x86_64", target_os = "linux", target_env = "gnu"))]
 
 use super::common::{clebsch, runs};
@@ -16,7 +16,7 @@ const LIST: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/command/bits");
 /// The nodes whose bits are listed.
 const NODES: [usize; 3] = [1, 10, 1000];
 
-/// Cases that have no node 1000: two stretches meet, where their chart is singular.
+/// Models whose cases end before node 1000: two stretches meet, where their chart is singular.
 const SHORT: [&str; 3] = [
     "pseudo-rigid-anisotropic",
     "pseudo-rigid-bipolar",

@@ -227,8 +227,7 @@ fn on_rods([x, y, z]: [f64; 3], momentum: &str) -> String {
     )
 }
 
-/// What a step corrects of the rounding of a constraint is no momentum to measure an angular momentum by; a momentum of a
-/// billionth of a step of a place is.
+/// Corrections of the rounding of a constraint do not measure an angular momentum; a small momentum of the body does.
 #[test]
 fn bodies_that_constraints_hold_at_rest_exceed_no_bound() {
     let folder = Folder::new("rest-on-rods");

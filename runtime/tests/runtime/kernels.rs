@@ -59,7 +59,7 @@ impl Arithmetic for Numbers {
             Single::Tanh => Real::tanh(a),
             Single::Abs => Real::abs(a),
             Single::Sign => Real::sign(a),
-            other => panic!("{other:?} is no function of one number"),
+            other => panic!("{other:?} does not take one number"),
         }
     }
 
@@ -419,7 +419,7 @@ fn what_does_not_fit_is_no_line() {
         assert!(kernel.push(operation.clone()).is_err(), "{operation:?}");
     }
     assert_eq!(kernel.lines().len(), 2);
-    // A value of a longer kernel is later than every line of this one.
+    // A value of a longer kernel is later than every line of `kernel`.
     let mut longer = kernel.clone();
     let product = longer
         .push(Operation::Two(Pair::Mul, a, v))
