@@ -95,7 +95,7 @@ impl<T: Real> CoupledBodiesState<T> {
 #[derive(Clone, Copy, Debug)]
 pub struct CoupledBodiesWorkspace<T = f64> {
     h: T,
-    search: newton::Search<T, [Rotation<T>; 2], CoupledBodiesNode<T>, 6>,
+    search: newton::Search<T, [Rotation<T>; 2], 6>,
 }
 impl<T: Real> CoupledBodiesWorkspace<T> {
     /// How the last step was solved: tangents, corrections, and the residual before the last.
@@ -103,7 +103,6 @@ impl<T: Real> CoupledBodiesWorkspace<T> {
         self.search.last()
     }
 }
-type CoupledBodiesNode<T> = (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]);
 impl<T: Real> CoupledBodies<T> {
     /// What steps of `h` from `state` begin with.
     fn prepared(
@@ -139,18 +138,18 @@ impl<T: Real> CoupledBodies<T> {
             ];
             let s1 = h.powi(-1);
             let s2 = R * d2;
-            let k2 = d1.cross(&s2);
+            let s3 = d1.cross(&s2);
             let k3 = eps * s1;
             let k5 = crossed(&d1, &R);
             let k6 = crossing(&R.transpose(), &s2);
-            let mut iteration = work.search.begin(state.node, (newton::Turn(R), []));
+            let k7 = (s3 + s2.cross(&d1)) * (eps * s1);
+            let mut iteration = work.search.begin(state.node);
             loop {
                 let trial = iteration.trial();
                 if iteration.wants_scale() {
                     iteration
                         .set_scale(move |lane| {
-                            self
-                                .rounding(h, &(newton::Turn(R), []), &momenta, &trial, lane)
+                            self.rounding(h, &(R, []), &momenta, &trial, lane)
                         });
                 }
                 let Ω1 = trial[0].matrix();
@@ -164,7 +163,7 @@ impl<T: Real> CoupledBodies<T> {
                         >(
                             &[
                                 (axial_of_difference(&(Ω1 * J1)) * s1
-                                    + ((R * (Ω2 * d2)).cross(&d1) + k2) * k3) - momenta[0],
+                                    + ((R * (Ω2 * d2)).cross(&d1) + s3) * k3) - momenta[0],
                                 (axial_of_difference(&(Ω2 * J2)) * s1
                                     + R.tr_mul(&(Ω1 * d1 - d1).cross(&s2)) * k3) - momenta[1],
                             ],
@@ -194,17 +193,25 @@ impl<T: Real> CoupledBodies<T> {
                     newton::Progress::Continue => {}
                     newton::Progress::Solved(
                         solved,
-                    ) if iteration.is_principal(&solved.element) => break solved,
+                    ) if iteration
+                        .is_principal(
+                            &solved.element,
+                            &{
+                                joined::<
+                                    T,
+                                    2,
+                                    6,
+                                >(
+                                    &[
+                                        (k7) - momenta[0],
+                                        (SMatrix::<T, 3, 1>::zeros()) - momenta[1],
+                                    ],
+                                )
+                            },
+                        ) => break solved,
                     ended => {
                         if let Some(solved) = self
-                            .settled(
-                                h,
-                                *state,
-                                (newton::Turn(R), []),
-                                momenta,
-                                &mut iteration,
-                                ended,
-                            )?
+                            .settled(h, *state, (R, []), momenta, &mut iteration, ended)?
                         {
                             break solved;
                         }
@@ -243,9 +250,9 @@ impl<T: Real> CoupledBodies<T> {
         &self,
         h: T,
         state: CoupledBodiesState<T>,
-        given: (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+        given: (SMatrix<T, 3, 3>, [T; 0]),
         momenta: [SVector<T, 3>; 2],
-        iteration: &mut newton::Newton<'_, T, [Rotation<T>; 2], CoupledBodiesNode<T>, 6>,
+        iteration: &mut newton::Newton<'_, T, [Rotation<T>; 2], 6>,
         ended: newton::Progress<[Rotation<T>; 2]>,
     ) -> Result<Option<newton::Solved<[Rotation<T>; 2]>>, StepError> {
         let failed = match ended {
@@ -254,9 +261,8 @@ impl<T: Real> CoupledBodies<T> {
             newton::Progress::Failed(e) => Err(e),
         };
         let asked = failed.as_ref().ok().map(|solved| &solved.element);
-        let values = iteration.values();
         let traced = self
-            .principal(h, &given, &values, &momenta, iteration.certificate(), asked);
+            .principal(h, &given, &momenta, iteration.verdict(asked), asked);
         let e = match (traced, failed) {
             (Ok(None), Ok(solved)) => return Ok(Some(solved)),
             (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
@@ -299,12 +305,12 @@ impl<T: Real> CoupledBodies<T> {
     fn residual_at(
         parameters: &CoupledBodiesParameters<T>,
         h: T,
-        given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+        given: &(SMatrix<T, 3, 3>, [T; 0]),
         momenta: &[SVector<T, 3>; 2],
         trial: &[Rotation<T>; 2],
     ) -> SVector<T, 6> {
         let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = *parameters;
-        let R = given.0.0;
+        let R = given.0;
         let Ω1 = trial[0].matrix();
         let Ω2 = trial[1].matrix();
         let t1 = h.powi(-1);
@@ -330,12 +336,13 @@ impl<T: Real> CoupledBodies<T> {
     fn tangent_at(
         parameters: &CoupledBodiesParameters<T>,
         h: T,
-        values: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-        Ω1: SMatrix<T, 3, 3>,
-        Ω2: SMatrix<T, 3, 3>,
+        given: &(SMatrix<T, 3, 3>, [T; 0]),
+        trial: &[Rotation<T>; 2],
     ) -> SMatrix<T, 6, 6> {
         let CoupledBodiesParameters { J1, J2, d1, d2, eps, .. } = *parameters;
-        let R = values.0.0;
+        let R = given.0;
+        let Ω1 = trial[0].matrix();
+        let Ω2 = trial[1].matrix();
         let t1 = h.powi(-1);
         let t2 = Ω1 * J1;
         let t3 = Ω2 * J2;
@@ -362,24 +369,24 @@ impl<T: Real> CoupledBodies<T> {
     fn rounding(
         &self,
         h: T,
-        given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+        given: &(SMatrix<T, 3, 3>, [T; 0]),
         momenta: &[SVector<T, 3>; 2],
         trial: &[Rotation<T>; 2],
         lane: usize,
     ) -> SVector<f64, 6> {
-        let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
+        let change = &mut |x: T| newton::Rounded::exactly(x.lane(lane));
         let parameters = self.parameters.over(change);
         let (step, given, momenta) = (
             h.over(change),
             given.over(change),
             momenta.map(|part| part.over(change)),
         );
-        let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
+        let change = &mut |x: T| newton::Rounded::once(x.lane(lane));
         let trial = [trial[0].over(change), trial[1].over(change)];
         CoupledBodies::<
-            newton::Enclosure<0>,
+            newton::Rounded,
         >::residual_at(&parameters, step, &given, &momenta, &trial)
-            .map(|x| x.rest())
+            .map(|x| x.error())
     }
     /// Finds the principal root, or shows that the solution is.
     #[cold]
@@ -387,25 +394,16 @@ impl<T: Real> CoupledBodies<T> {
     fn principal(
         &self,
         h: T,
-        given: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-        values: &(newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
+        given: &(SMatrix<T, 3, 3>, [T; 0]),
         momenta: &[SVector<T, 3>; 2],
-        certificate: &mut newton::Certificate<
-            (newton::Turn<SMatrix<T, 3, 3>>, [T; 0]),
-            6,
-        >,
+        mut verdict: newton::Verdict<[Rotation<T>; 2], 6>,
         solution: Option<&[Rotation<T>; 2]>,
     ) -> Result<Option<newton::Anchor<[Rotation<T>; 2], 6>>, newton::Fold> {
-        let first = solution.copied().unwrap_or_else(Group::<T>::identity);
-        let mut verdict = newton::Verdict::<[Rotation<T>; 2], 6>::about(first);
         for lane in 0..T::LANES {
-            let change = &mut |x: T| newton::Enclosure::<18>::exactly(x.lane(lane));
-            let (bound, bound_step) = (self.parameters.over(change), h.over(change));
             let change = &mut |x: T| x.lane(lane);
             let (parameters, step) = (self.parameters.over(change), h.over(change));
-            let (given, near, momenta) = (
+            let (given, momenta) = (
                 given.over(change),
-                values.over(change),
                 momenta.map(|part| part.over(change)),
             );
             let found = match solution {
@@ -416,29 +414,17 @@ impl<T: Real> CoupledBodies<T> {
                 residual: &|trial: &[Rotation<f64>; 2]| CoupledBodies::<
                     f64,
                 >::residual_at(&parameters, step, &given, &momenta, trial),
-                tangent: &|trial: &[Rotation<f64>; 2]| {
-                    let Ω1 = trial[0].matrix();
-                    let Ω2 = trial[1].matrix();
-                    CoupledBodies::<f64>::tangent_at(&parameters, step, &near, Ω1, Ω2)
-                },
-                enclosed: &|spread, trial: &[newton::RotationRegion<18>; 2]| {
-                    let Ω1 = trial[0].matrix();
-                    let Ω2 = trial[1].matrix();
-                    let values = newton::NodeValues::enclosed(values, lane, spread);
-                    CoupledBodies::<
-                        newton::Enclosure<18>,
-                    >::tangent_at(&bound, bound_step, &values, Ω1, Ω2)
-                },
+                tangent: &|trial: &[Rotation<f64>; 2]| CoupledBodies::<
+                    f64,
+                >::tangent_at(&parameters, step, &given, trial),
             };
-            let care = certificate.care();
-            let traced = newton::trace(&equations, found.as_ref(), care);
-            if let Some(root) = verdict.add(traced.map_err(|fold| fold.in_lane(lane))?) {
+            if let Some(root) = verdict.trace(lane, &equations, found.as_ref())? {
                 let all = verdict.root_mut();
                 all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
                 all[1] = all[1].over(&mut newton::Numbers::of(&root[1]).put(lane));
             }
         }
-        Ok(verdict.close(certificate, values))
+        Ok(verdict.elsewhere())
     }
     /// `R` at the node of this state.
     #[inline]

@@ -82,14 +82,7 @@ impl<T: Real> KirchhoffBodyState<T> {
 #[derive(Clone, Copy, Debug)]
 pub struct KirchhoffBodyWorkspace<T = f64> {
     h: T,
-    search: newton::Search<
-        T,
-        [Rotation<T>; 1],
-        KirchhoffBodyNode<T>,
-        3,
-        [RigidMotion<T>; 1],
-        6,
-    >,
+    search: newton::Search<T, [Rotation<T>; 1], 3, [RigidMotion<T>; 1], 6>,
 }
 impl<T: Real> KirchhoffBodyWorkspace<T> {
     /// How the last step was solved: tangents, corrections, and the residual before the last.
@@ -97,7 +90,6 @@ impl<T: Real> KirchhoffBodyWorkspace<T> {
         self.search.last()
     }
 }
-type KirchhoffBodyNode<T> = [T; 0];
 impl<T: Real> KirchhoffBody<T> {
     /// What steps of `h` from `state` begin with.
     fn prepared(
@@ -133,17 +125,19 @@ impl<T: Real> KirchhoffBody<T> {
             ];
             let V_pos_momentum = momenta[1];
             let k3 = self.inverse_1;
+            let s1 = b[3];
             let k1 = h.powi(-1);
             let k2 = rows_from::<T, 4, 3, 1>(&b, 0)
                 .cross(&rows_from::<T, 4, 3, 1>(&P, 0)) * (T::from_f64(0.5) * h);
-            let k4 = V_pos_momentum * (T::from_f64(4.0) * h)
-                - rows_from::<T, 4, 3, 1>(&P, 0) * (T::from_f64(2.0) * (h * h) * b[3]);
-            let mut iteration = work.search.begin(state.node, []);
+            let k4 = rows_from::<T, 4, 3, 1>(&P, 0) * (T::from_f64(0.5) * h * s1);
+            let k5 = V_pos_momentum * (T::from_f64(4.0) * h)
+                - rows_from::<T, 4, 3, 1>(&P, 0) * (T::from_f64(2.0) * (h * h) * s1);
+            let mut iteration = work.search.begin(state.node);
             loop {
                 let turned = iteration.trial();
                 let V_rot = turned[0].matrix();
                 let V_rot_turn = turned[0].rodrigues();
-                let V_pos_1 = (k4 - V_rot_turn.cross(&k4)) * T::from_f64(0.5)
+                let V_pos_1 = (k5 - V_rot_turn.cross(&k5)) * T::from_f64(0.5)
                     - D.tr_mul(&vee(&V_rot)) * T::from_f64(2.0);
                 let V_pos_2 = k3 * V_pos_1;
                 let V_pos = (V_pos_2 + V_rot_turn.cross(&V_pos_2)) * T::from_f64(0.5);
@@ -202,7 +196,21 @@ impl<T: Real> KirchhoffBody<T> {
                     newton::Progress::Continue => {}
                     newton::Progress::Solved(
                         solved,
-                    ) if iteration.is_principal(&solved.element) => break solved,
+                    ) if iteration
+                        .is_part_of_principal(
+                            &solved.element,
+                            &{
+                                joined::<T, 2, 6>(&[(k2) - momenta[0], (k4) - momenta[1]])
+                            },
+                            || {
+                                Self::tangent_at(
+                                    &self.parameters,
+                                    h,
+                                    &(P, []),
+                                    &Group::<T>::identity(),
+                                )
+                            },
+                        ) => break solved,
                     ended => {
                         if let Some(solved) = self
                             .settled(h, *state, (P, []), momenta, &mut iteration, ended)?
@@ -284,7 +292,6 @@ impl<T: Real> KirchhoffBody<T> {
             '_,
             T,
             [Rotation<T>; 1],
-            KirchhoffBodyNode<T>,
             3,
             [RigidMotion<T>; 1],
             6,
@@ -297,9 +304,8 @@ impl<T: Real> KirchhoffBody<T> {
             newton::Progress::Failed(e) => Err(e),
         };
         let asked = failed.as_ref().ok().map(|solved| &solved.element);
-        let values = iteration.values();
         let traced = self
-            .principal(h, &given, &values, &momenta, iteration.certificate(), asked);
+            .principal(h, &given, &momenta, iteration.verdict(asked), asked);
         let e = match (traced, failed) {
             (Ok(None), Ok(solved)) => return Ok(Some(solved)),
             (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
@@ -408,11 +414,12 @@ impl<T: Real> KirchhoffBody<T> {
     fn tangent_at(
         parameters: &KirchhoffBodyParameters<T>,
         h: T,
-        values: &[T; 0],
-        V_rot: SMatrix<T, 3, 3>,
-        V_pos: SVector<T, 3>,
+        given: &(SVector<T, 4>, [T; 0]),
+        trial: &[RigidMotion<T>; 1],
     ) -> SMatrix<T, 6, 6> {
         let KirchhoffBodyParameters { J, M, D, b, Z, .. } = *parameters;
+        let P = given.0;
+        let (V_rot, V_pos) = (trial[0].rotation.matrix(), trial[0].translation);
         let t1 = h.powi(-1);
         let t2 = V_rot.tr_mul(&V_pos);
         let t3 = t2 + V_pos;
@@ -462,17 +469,17 @@ impl<T: Real> KirchhoffBody<T> {
         trial: &[RigidMotion<T>; 1],
         lane: usize,
     ) -> SVector<f64, 3> {
-        let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
+        let change = &mut |x: T| newton::Rounded::exactly(x.lane(lane));
         let parameters = self.parameters.over(change);
         let (step, given, momenta) = (
             h.over(change),
             given.over(change),
             momenta.map(|part| part.over(change)),
         );
-        let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
+        let change = &mut |x: T| newton::Rounded::once(x.lane(lane));
         let trial = [trial[0].over(change)];
         let trial = KirchhoffBody::<
-            newton::Enclosure<0>,
+            newton::Rounded,
         >::completed_at(
             &parameters,
             step,
@@ -482,9 +489,9 @@ impl<T: Real> KirchhoffBody<T> {
         );
         {
             let all = KirchhoffBody::<
-                newton::Enclosure<0>,
+                newton::Rounded,
             >::residual_at(&parameters, step, &given, &momenta, &trial)
-                .map(|x| x.rest());
+                .map(|x| x.error());
             SVector::from([all[0], all[1], all[2]])
         }
     }
@@ -495,21 +502,15 @@ impl<T: Real> KirchhoffBody<T> {
         &self,
         h: T,
         given: &(SVector<T, 4>, [T; 0]),
-        values: &[T; 0],
         momenta: &[SVector<T, 3>; 2],
-        certificate: &mut newton::Certificate<[T; 0], 6>,
+        mut verdict: newton::Verdict<[RigidMotion<T>; 1], 6>,
         solution: Option<&[RigidMotion<T>; 1]>,
     ) -> Result<Option<newton::Anchor<[RigidMotion<T>; 1], 6>>, newton::Fold> {
-        let first = solution.copied().unwrap_or_else(Group::<T>::identity);
-        let mut verdict = newton::Verdict::<[RigidMotion<T>; 1], 6>::about(first);
         for lane in 0..T::LANES {
-            let change = &mut |x: T| newton::Enclosure::<12>::exactly(x.lane(lane));
-            let (bound, bound_step) = (self.parameters.over(change), h.over(change));
             let change = &mut |x: T| x.lane(lane);
             let (parameters, step) = (self.parameters.over(change), h.over(change));
-            let (given, near, momenta) = (
+            let (given, momenta) = (
                 given.over(change),
-                values.over(change),
                 momenta.map(|part| part.over(change)),
             );
             let found = match solution {
@@ -520,34 +521,16 @@ impl<T: Real> KirchhoffBody<T> {
                 residual: &|trial: &[RigidMotion<f64>; 1]| KirchhoffBody::<
                     f64,
                 >::residual_at(&parameters, step, &given, &momenta, trial),
-                tangent: &|trial: &[RigidMotion<f64>; 1]| {
-                    let (V_rot, V_pos) = (
-                        trial[0].rotation.matrix(),
-                        trial[0].translation,
-                    );
-                    KirchhoffBody::<
-                        f64,
-                    >::tangent_at(&parameters, step, &near, V_rot, V_pos)
-                },
-                enclosed: &|spread, trial: &[newton::MotionRegion<12>; 1]| {
-                    let (V_rot, V_pos) = (
-                        trial[0].rotation.matrix(),
-                        trial[0].translation,
-                    );
-                    let values = newton::NodeValues::enclosed(values, lane, spread);
-                    KirchhoffBody::<
-                        newton::Enclosure<12>,
-                    >::tangent_at(&bound, bound_step, &values, V_rot, V_pos)
-                },
+                tangent: &|trial: &[RigidMotion<f64>; 1]| KirchhoffBody::<
+                    f64,
+                >::tangent_at(&parameters, step, &given, trial),
             };
-            let care = certificate.care();
-            let traced = newton::trace(&equations, found.as_ref(), care);
-            if let Some(root) = verdict.add(traced.map_err(|fold| fold.in_lane(lane))?) {
+            if let Some(root) = verdict.trace(lane, &equations, found.as_ref())? {
                 let all = verdict.root_mut();
                 all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
             }
         }
-        Ok(verdict.close(certificate, values))
+        Ok(verdict.elsewhere())
     }
     /// `P` at the node of this state.
     #[inline]

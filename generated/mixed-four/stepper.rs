@@ -162,18 +162,9 @@ impl<T: Real> MixedFourState<T> {
 pub struct MixedFourWorkspace<T = f64> {
     h: T,
     method: Method,
-    search_2: newton::Search<
-        T,
-        [Rotation<T>; 1],
-        MixedFourNode2<T>,
-        3,
-        [RigidMotion<T>; 1],
-        6,
-    >,
-    search_4: newton::Search<T, [Additive<3, 1, T>; 1], MixedFourNode4<T>, 3>,
+    search_2: newton::Search<T, [Rotation<T>; 1], 3, [RigidMotion<T>; 1], 6>,
+    search_4: newton::Search<T, [Additive<3, 1, T>; 1], 3>,
 }
-type MixedFourNode2<T> = [T; 0];
-type MixedFourNode4<T> = [T; 0];
 impl<T: Real> MixedFour<T> {
     /// What steps of `h` from `state` begin with.
     fn prepared(
@@ -238,15 +229,17 @@ impl<T: Real> MixedFour<T> {
             let s1 = motion_rotation(&G);
             let s2 = s1.transpose();
             let s3 = motion_translation(&G);
-            let s4 = M.powi(-1);
+            let s4 = s3 - X + s1 * s;
+            let s5 = M.powi(-1);
             let k1 = h.powi(-1);
             let k2 = s.cross(&(s2 * (s3 - X))) * (T::from_f64(0.5) * h * k);
-            let k3 = W_pos_momentum * (h * s4)
-                - s2 * (s3 - X + s1 * s) * (T::from_f64(0.5) * (h * h) * k * s4);
-            let mut iteration = work.search_2.begin(state.node, []);
+            let k3 = s2 * s4 * (T::from_f64(0.5) * h * k);
+            let k4 = W_pos_momentum * (h * s5)
+                - s2 * s4 * (T::from_f64(0.5) * (h * h) * k * s5);
+            let mut iteration = work.search_2.begin(state.node);
             loop {
                 let turned = iteration.trial();
-                let W_pos = k3;
+                let W_pos = k4;
                 let trial = [rigid_motion(turned[0], W_pos)];
                 if iteration.wants_scale() {
                     iteration
@@ -275,7 +268,21 @@ impl<T: Real> MixedFour<T> {
                     newton::Progress::Continue => {}
                     newton::Progress::Solved(
                         solved,
-                    ) if iteration.is_principal(&solved.element) => break solved,
+                    ) if iteration
+                        .is_part_of_principal(
+                            &solved.element,
+                            &{
+                                joined::<T, 2, 6>(&[(k2) - momenta[0], (k3) - momenta[1]])
+                            },
+                            || {
+                                Self::tangent_at_2(
+                                    &self.parameters,
+                                    h,
+                                    &(G, (X, [])),
+                                    &Group::<T>::identity(),
+                                )
+                            },
+                        ) => break solved,
                     ended => {
                         if let Some(solved) = self
                             .settled_2(
@@ -316,20 +323,14 @@ impl<T: Real> MixedFour<T> {
                 - motion_rotation(&G) * s * (T::from_f64(0.5) * h * k)
                 - motion_translation(&G) * (T::from_f64(0.5) * h * k);
             let convex = { (m).least() > 0.0 && (b).least() >= 0.0 };
-            let mut iteration = work.search_4.begin(state.node, []);
+            let mut iteration = work.search_4.begin(state.node);
             loop {
                 let trial = iteration.trial();
                 if iteration.wants_scale() {
                     iteration
                         .set_scale(move |lane| {
                             self
-                                .rounding_4(
-                                    h,
-                                    &(newton::Turn(R), (G, (X, []))),
-                                    &momenta,
-                                    &trial,
-                                    lane,
-                                )
+                                .rounding_4(h, &(R, (G, (X, []))), &momenta, &trial, lane)
                         });
                 }
                 let ΔX = trial[0].matrix();
@@ -357,7 +358,9 @@ impl<T: Real> MixedFour<T> {
                     newton::Progress::Continue => {}
                     newton::Progress::Solved(
                         solved,
-                    ) if convex || iteration.is_principal(&solved.element) => {
+                    ) if convex
+                        || iteration
+                            .is_principal(&solved.element, &{ (k3) - momenta[0] }) => {
                         break solved;
                     }
                     ended => {
@@ -365,7 +368,7 @@ impl<T: Real> MixedFour<T> {
                             .settled_4(
                                 h,
                                 *state,
-                                (newton::Turn(R), (G, (X, []))),
+                                (R, (G, (X, []))),
                                 momenta,
                                 &mut iteration,
                                 ended,
@@ -484,8 +487,8 @@ impl<T: Real> MixedFour<T> {
                             &mut MixedFourWorkspace {
                                 h,
                                 method,
-                                search_2: newton::Search::to_offer(),
-                                search_4: newton::Search::to_offer(),
+                                search_2: newton::Search::to_try(),
+                                search_4: newton::Search::to_try(),
                             },
                         );
                     made.ok().map(|()| 0.0)
@@ -507,7 +510,6 @@ impl<T: Real> MixedFour<T> {
             '_,
             T,
             [Rotation<T>; 1],
-            MixedFourNode2<T>,
             3,
             [RigidMotion<T>; 1],
             6,
@@ -521,9 +523,8 @@ impl<T: Real> MixedFour<T> {
             newton::Progress::Failed(e) => Err(e),
         };
         let asked = failed.as_ref().ok().map(|solved| &solved.element);
-        let values = iteration.values();
         let traced = self
-            .principal_2(h, &given, &values, &momenta, iteration.certificate(), asked);
+            .principal_2(h, &given, &momenta, iteration.verdict(asked), asked);
         let e = match (traced, failed) {
             (Ok(None), Ok(solved)) => return Ok(Some(solved)),
             (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
@@ -626,11 +627,13 @@ impl<T: Real> MixedFour<T> {
     fn tangent_at_2(
         parameters: &MixedFourParameters<T>,
         h: T,
-        values: &[T; 0],
-        W_rot: SMatrix<T, 3, 3>,
-        W_pos: SVector<T, 3>,
+        given: &(SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
+        trial: &[RigidMotion<T>; 1],
     ) -> SMatrix<T, 6, 6> {
         let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
+        let G = given.0;
+        let X = given.1.0;
+        let (W_rot, W_pos) = (trial[0].rotation.matrix(), trial[0].translation);
         let t1 = h.powi(-1);
         let t2 = W_rot * A;
         assembled::<
@@ -655,17 +658,17 @@ impl<T: Real> MixedFour<T> {
         trial: &[RigidMotion<T>; 1],
         lane: usize,
     ) -> SVector<f64, 3> {
-        let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
+        let change = &mut |x: T| newton::Rounded::exactly(x.lane(lane));
         let parameters = self.parameters.over(change);
         let (step, given, momenta) = (
             h.over(change),
             given.over(change),
             momenta.map(|part| part.over(change)),
         );
-        let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
+        let change = &mut |x: T| newton::Rounded::once(x.lane(lane));
         let trial = [trial[0].over(change)];
         let trial = MixedFour::<
-            newton::Enclosure<0>,
+            newton::Rounded,
         >::completed_at_2(
             &parameters,
             step,
@@ -675,9 +678,9 @@ impl<T: Real> MixedFour<T> {
         );
         {
             let all = MixedFour::<
-                newton::Enclosure<0>,
+                newton::Rounded,
             >::residual_at_2(&parameters, step, &given, &momenta, &trial)
-                .map(|x| x.rest());
+                .map(|x| x.error());
             SVector::from([all[0], all[1], all[2]])
         }
     }
@@ -688,21 +691,15 @@ impl<T: Real> MixedFour<T> {
         &self,
         h: T,
         given: &(SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-        values: &[T; 0],
         momenta: &[SVector<T, 3>; 2],
-        certificate: &mut newton::Certificate<[T; 0], 6>,
+        mut verdict: newton::Verdict<[RigidMotion<T>; 1], 6>,
         solution: Option<&[RigidMotion<T>; 1]>,
     ) -> Result<Option<newton::Anchor<[RigidMotion<T>; 1], 6>>, newton::Fold> {
-        let first = solution.copied().unwrap_or_else(Group::<T>::identity);
-        let mut verdict = newton::Verdict::<[RigidMotion<T>; 1], 6>::about(first);
         for lane in 0..T::LANES {
-            let change = &mut |x: T| newton::Enclosure::<12>::exactly(x.lane(lane));
-            let (bound, bound_step) = (self.parameters.over(change), h.over(change));
             let change = &mut |x: T| x.lane(lane);
             let (parameters, step) = (self.parameters.over(change), h.over(change));
-            let (given, near, momenta) = (
+            let (given, momenta) = (
                 given.over(change),
-                values.over(change),
                 momenta.map(|part| part.over(change)),
             );
             let found = match solution {
@@ -713,34 +710,16 @@ impl<T: Real> MixedFour<T> {
                 residual: &|trial: &[RigidMotion<f64>; 1]| MixedFour::<
                     f64,
                 >::residual_at_2(&parameters, step, &given, &momenta, trial),
-                tangent: &|trial: &[RigidMotion<f64>; 1]| {
-                    let (W_rot, W_pos) = (
-                        trial[0].rotation.matrix(),
-                        trial[0].translation,
-                    );
-                    MixedFour::<
-                        f64,
-                    >::tangent_at_2(&parameters, step, &near, W_rot, W_pos)
-                },
-                enclosed: &|spread, trial: &[newton::MotionRegion<12>; 1]| {
-                    let (W_rot, W_pos) = (
-                        trial[0].rotation.matrix(),
-                        trial[0].translation,
-                    );
-                    let values = newton::NodeValues::enclosed(values, lane, spread);
-                    MixedFour::<
-                        newton::Enclosure<12>,
-                    >::tangent_at_2(&bound, bound_step, &values, W_rot, W_pos)
-                },
+                tangent: &|trial: &[RigidMotion<f64>; 1]| MixedFour::<
+                    f64,
+                >::tangent_at_2(&parameters, step, &given, trial),
             };
-            let care = certificate.care();
-            let traced = newton::trace(&equations, found.as_ref(), care);
-            if let Some(root) = verdict.add(traced.map_err(|fold| fold.in_lane(lane))?) {
+            if let Some(root) = verdict.trace(lane, &equations, found.as_ref())? {
                 let all = verdict.root_mut();
                 all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
             }
         }
-        Ok(verdict.close(certificate, values))
+        Ok(verdict.elsewhere())
     }
     /// Says how far the step is beyond the bound, and which step could be made.
     #[cold]
@@ -763,8 +742,8 @@ impl<T: Real> MixedFour<T> {
                             &mut MixedFourWorkspace {
                                 h,
                                 method,
-                                search_2: newton::Search::to_offer(),
-                                search_4: newton::Search::to_offer(),
+                                search_2: newton::Search::to_try(),
+                                search_4: newton::Search::to_try(),
                             },
                         );
                     made.ok().map(|()| 0.0)
@@ -780,18 +759,9 @@ impl<T: Real> MixedFour<T> {
         &self,
         h: T,
         state: MixedFourState<T>,
-        given: (
-            newton::Turn<SMatrix<T, 3, 3>>,
-            (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-        ),
+        given: (SMatrix<T, 3, 3>, (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0]))),
         momenta: [SVector<T, 3>; 1],
-        iteration: &mut newton::Newton<
-            '_,
-            T,
-            [Additive<3, 1, T>; 1],
-            MixedFourNode4<T>,
-            3,
-        >,
+        iteration: &mut newton::Newton<'_, T, [Additive<3, 1, T>; 1], 3>,
         ended: newton::Progress<[Additive<3, 1, T>; 1]>,
         method: Method,
     ) -> Result<Option<newton::Solved<[Additive<3, 1, T>; 1]>>, StepError> {
@@ -801,9 +771,8 @@ impl<T: Real> MixedFour<T> {
             newton::Progress::Failed(e) => Err(e),
         };
         let asked = failed.as_ref().ok().map(|solved| &solved.element);
-        let values = iteration.values();
         let traced = self
-            .principal_4(h, &given, &values, &momenta, iteration.certificate(), asked);
+            .principal_4(h, &given, &momenta, iteration.verdict(asked), asked);
         let e = match (traced, failed) {
             (Ok(None), Ok(solved)) => return Ok(Some(solved)),
             (Ok(Some(root)), _) if iteration.restart(root) => return Ok(None),
@@ -849,15 +818,12 @@ impl<T: Real> MixedFour<T> {
     fn residual_at_4(
         parameters: &MixedFourParameters<T>,
         h: T,
-        given: &(
-            newton::Turn<SMatrix<T, 3, 3>>,
-            (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-        ),
+        given: &(SMatrix<T, 3, 3>, (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0]))),
         momenta: &[SVector<T, 3>; 1],
         trial: &[Additive<3, 1, T>; 1],
     ) -> SVector<T, 3> {
         let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
-        let R = given.0.0;
+        let R = given.0;
         let G = given.1.0;
         let X = given.1.1.0;
         let ΔX = trial[0].matrix();
@@ -873,10 +839,14 @@ impl<T: Real> MixedFour<T> {
     fn tangent_at_4(
         parameters: &MixedFourParameters<T>,
         h: T,
-        values: &[T; 0],
-        ΔX: SVector<T, 3>,
+        given: &(SMatrix<T, 3, 3>, (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0]))),
+        trial: &[Additive<3, 1, T>; 1],
     ) -> SMatrix<T, 3, 3> {
         let MixedFourParameters { J, A, M, I, m, b, k, p, s, e: e_, g, .. } = *parameters;
+        let R = given.0;
+        let G = given.1.0;
+        let X = given.1.1.0;
+        let ΔX = trial[0].matrix();
         let m1 = h.powi(-3);
         let c1 = T::from_f64(4.0) * m1 * b;
         let c2 = T::from_f64(4.0) * m1 * b * ΔX.dot(&ΔX);
@@ -896,27 +866,24 @@ impl<T: Real> MixedFour<T> {
     fn rounding_4(
         &self,
         h: T,
-        given: &(
-            newton::Turn<SMatrix<T, 3, 3>>,
-            (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-        ),
+        given: &(SMatrix<T, 3, 3>, (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0]))),
         momenta: &[SVector<T, 3>; 1],
         trial: &[Additive<3, 1, T>; 1],
         lane: usize,
     ) -> SVector<f64, 3> {
-        let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
+        let change = &mut |x: T| newton::Rounded::exactly(x.lane(lane));
         let parameters = self.parameters.over(change);
         let (step, given, momenta) = (
             h.over(change),
             given.over(change),
             [momenta[0].over(change)],
         );
-        let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
+        let change = &mut |x: T| newton::Rounded::once(x.lane(lane));
         let trial = [trial[0].over(change)];
         MixedFour::<
-            newton::Enclosure<0>,
+            newton::Rounded,
         >::residual_at_4(&parameters, step, &given, &momenta, &trial)
-            .map(|x| x.rest())
+            .map(|x| x.error())
     }
     /// Finds the principal root, or shows that the solution is.
     #[cold]
@@ -924,27 +891,15 @@ impl<T: Real> MixedFour<T> {
     fn principal_4(
         &self,
         h: T,
-        given: &(
-            newton::Turn<SMatrix<T, 3, 3>>,
-            (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0])),
-        ),
-        values: &[T; 0],
+        given: &(SMatrix<T, 3, 3>, (SMatrix<T, 4, 4>, (SVector<T, 3>, [T; 0]))),
         momenta: &[SVector<T, 3>; 1],
-        certificate: &mut newton::Certificate<[T; 0], 3>,
+        mut verdict: newton::Verdict<[Additive<3, 1, T>; 1], 3>,
         solution: Option<&[Additive<3, 1, T>; 1]>,
     ) -> Result<Option<newton::Anchor<[Additive<3, 1, T>; 1], 3>>, newton::Fold> {
-        let first = solution.copied().unwrap_or_else(Group::<T>::identity);
-        let mut verdict = newton::Verdict::<[Additive<3, 1, T>; 1], 3>::about(first);
         for lane in 0..T::LANES {
-            let change = &mut |x: T| newton::Enclosure::<3>::exactly(x.lane(lane));
-            let (bound, bound_step) = (self.parameters.over(change), h.over(change));
             let change = &mut |x: T| x.lane(lane);
             let (parameters, step) = (self.parameters.over(change), h.over(change));
-            let (given, near, momenta) = (
-                given.over(change),
-                values.over(change),
-                [momenta[0].over(change)],
-            );
+            let (given, momenta) = (given.over(change), [momenta[0].over(change)]);
             let found = match solution {
                 Some(found) => Some([found[0].over(change)]),
                 None => None,
@@ -953,26 +908,16 @@ impl<T: Real> MixedFour<T> {
                 residual: &|trial: &[Additive<3, 1, f64>; 1]| MixedFour::<
                     f64,
                 >::residual_at_4(&parameters, step, &given, &momenta, trial),
-                tangent: &|trial: &[Additive<3, 1, f64>; 1]| {
-                    let ΔX = trial[0].matrix();
-                    MixedFour::<f64>::tangent_at_4(&parameters, step, &near, ΔX)
-                },
-                enclosed: &|spread, trial: &[newton::AdditiveRegion<3, 1, 3>; 1]| {
-                    let ΔX = trial[0].matrix();
-                    let values = newton::NodeValues::enclosed(values, lane, spread);
-                    MixedFour::<
-                        newton::Enclosure<3>,
-                    >::tangent_at_4(&bound, bound_step, &values, ΔX)
-                },
+                tangent: &|trial: &[Additive<3, 1, f64>; 1]| MixedFour::<
+                    f64,
+                >::tangent_at_4(&parameters, step, &given, trial),
             };
-            let care = certificate.care();
-            let traced = newton::trace(&equations, found.as_ref(), care);
-            if let Some(root) = verdict.add(traced.map_err(|fold| fold.in_lane(lane))?) {
+            if let Some(root) = verdict.trace(lane, &equations, found.as_ref())? {
                 let all = verdict.root_mut();
                 all[0] = all[0].over(&mut newton::Numbers::of(&root[0]).put(lane));
             }
         }
-        Ok(verdict.close(certificate, values))
+        Ok(verdict.elsewhere())
     }
     /// `relative_R_q` at the node of this state.
     #[inline]

@@ -169,8 +169,8 @@ pub struct Settings {
     /// about the momentum; only for the orders of [`Settings::COMPENSATED`].
     pub compensated: bool,
     /// Whether single steps are only looked at, and none is gone on from. Of models that are read, the momenta at the start
-    /// are then projected on held constraints, which refuse more than rounding across them otherwise; the first step is
-    /// not tried before it is made; and its root is followed without a proof.
+    /// are then projected on held constraints, which refuse more than rounding across them otherwise; and the first step is
+    /// not tried before it is made.
     pub inquiry: bool,
 }
 

@@ -200,7 +200,6 @@ macro_rules! given {
 given!(
     crate::solvers::Method,
     crate::solvers::moser_veselov::Order,
-    crate::solvers::newton::Purpose,
     core::marker::PhantomData<f64>
 );
 

@@ -13,7 +13,7 @@ mod solvers;
 mod special;
 mod validate;
 
-pub use algebra::{binary, entry, negative, numbers};
+pub use algebra::{binary, entry, negative};
 pub use solvers::Factor;
 
 use crate::code::{Native, Special};

@@ -5,17 +5,17 @@ use super::{Binding, Lower, Lowered, Shared, refuse};
 use crate::Refused;
 use crate::code::{Code, Native, Routine, Special};
 use crate::library;
-use crate::newton::{Bound, Held, Kept, Kind, Rest, Settled, Shape, Solve, Sought};
+use crate::newton::{Held, Kind, Rest, Settled, Shape, Solve, Sought};
 use crate::program::type_name;
 use crate::value::Value;
-use clebsch::solvers::newton::Purpose;
+use clebsch::solvers::newton::Rounded;
 use quote::ToTokens;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// What emitted code writes for one search.
 pub struct Looped<'e> {
-    /// `work.search.begin(node, values)`.
+    /// `work.search.begin(node)`.
     pub begin: &'e syn::ExprMethodCall,
     /// What follows.
     pub body: &'e syn::Block,
@@ -93,24 +93,23 @@ impl<T: Lowered> Lower<'_, '_, T> {
         constructor: &str,
         ty: Option<&syn::Type>,
     ) -> Result<Option<Code<T>>, Refused> {
-        let purpose = match constructor {
-            "from_rest" => Purpose::Run,
-            "to_try" => Purpose::Trial,
-            "to_offer" => Purpose::Offer,
+        let tries = match constructor {
+            "from_rest" => false,
+            "to_try" => true,
             _ => return Ok(None),
         };
         let Some(ty) = ty else {
             return Ok(None);
         };
         let sought = self.sought(ty)?;
-        let held = Held::begun(sought, purpose);
+        let held = Held::begun(sought, tries);
         Ok(Some(Code::Constant(Value::Search(held))))
     }
 
     /// What a search of a declared type is for.
     pub(super) fn sought(&self, ty: &syn::Type) -> Result<&'static Sought, Refused> {
         let generics = arguments(ty).ok_or_else(|| refuse(ty))?;
-        let [_, elements, node, whole @ ..] = generics.as_slice() else {
+        let [_, elements, whole @ ..] = generics.as_slice() else {
             return Err(refuse(ty));
         };
         let unknowns =
@@ -122,15 +121,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
             )),
             None => None,
         };
-        let mut kept = Vec::new();
-        self.node(node, &mut kept)
-            .ok_or_else(|| unknowns("a value"))?;
         let capacity = capacity(ty).ok_or_else(|| unknowns("a size"))?;
         // Searches keep what they are for as long as they live; a model has a few.
         Ok(Box::leak(Box::new(Sought {
             shape: Shape::new(kinds),
             whole,
-            node: kept,
             capacity,
         })))
     }
@@ -159,33 +154,6 @@ impl<T: Lowered> Lower<'_, '_, T> {
             ("Additive", [rows, cols]) => Kind::Field(*rows, *cols),
             _ => return None,
         })
-    }
-
-    /// Values at a node, one inside the other: `(a, (b, []))`.
-    fn node(&self, ty: &syn::Type, kept: &mut Vec<Kept>) -> Option<()> {
-        match ty {
-            syn::Type::Array(_) => Some(()),
-            syn::Type::Tuple(t) => {
-                let mut parts = t.elems.iter();
-                let (own, rest) = (parts.next()?, parts.next()?);
-                let (matrix, turn) = match type_name(own)?.as_str() {
-                    "Turn" => (arguments(own)?.into_iter().next()?, true),
-                    _ => (own.clone(), false),
-                };
-                let sizes = self.sizes_of_type(Some(&matrix));
-                let (rows, cols) = match (type_name(&matrix)?.as_str(), sizes.as_slice()) {
-                    ("SMatrix", [rows, cols]) => (*rows, *cols),
-                    ("SVector", [rows]) => (*rows, 1),
-                    _ => return None,
-                };
-                kept.push(Kept { rows, cols, turn });
-                self.node(rest, kept)
-            }
-            other => {
-                let alias = self.shared.program.aliases.get(&type_name(other)?)?;
-                self.node(alias, kept)
-            }
-        }
     }
 }
 
@@ -221,63 +189,29 @@ fn capacity(ty: &syn::Type) -> Option<usize> {
     })
 }
 
-/// The number with which a type is named somewhere in code.
-fn number_of(tokens: &impl ToTokens, name: &str) -> Option<usize> {
-    fn flat(stream: proc_macro2::TokenStream, out: &mut Vec<String>) {
-        for t in stream {
-            match t {
-                proc_macro2::TokenTree::Group(g) => flat(g.stream(), out),
-                other => out.push(other.to_string()),
-            }
-        }
+/// A function by itself, such as the residual: its parameters stand at places from 0 on.
+fn alone<U: Lowered>(
+    shared: &mut Shared<'_, U>,
+    own_type: &str,
+    function: &syn::ImplItemFn,
+) -> Result<Routine<U>, Refused> {
+    let name = function.sig.ident.to_string();
+    let mut lower = Lower {
+        shared,
+        scopes: vec![BTreeMap::new()],
+        next: function.sig.inputs.len(),
+        within: vec![(own_type.to_owned(), name)],
+        steady: Vec::new(),
+    };
+    for (at, parameter) in function.sig.inputs.iter().enumerate() {
+        let (name, kind) = lower.parameter(parameter)?;
+        lower.bind(name, Binding::Place(Code::Place(at), kind));
     }
-    let mut all = Vec::new();
-    flat(tokens.to_token_stream(), &mut all);
-    let after = all.iter().skip_while(|t| *t != name).skip(1);
-    let mut after = after.skip_while(|t| [":", "<"].contains(&t.as_str()));
-    after.next()?.parse().ok()
-}
-
-/// A function by itself: residual or tangent.
-struct Alone<'e> {
-    function: &'e syn::ImplItemFn,
-    /// What binds the velocities, and the name of the trial that they are taken from.
-    velocities: Option<(&'e [syn::Stmt], &'e str)>,
-}
-
-impl Alone<'_> {
-    /// Its parameters at places from 0 on; after three of them the trial, where velocities are asked for.
-    fn lowered<U: Lowered>(
-        &self,
-        shared: &mut Shared<'_, U>,
-        own_type: &str,
-    ) -> Result<Routine<U>, Refused> {
-        let name = self.function.sig.ident.to_string();
-        let mut lower = Lower {
-            shared,
-            scopes: vec![BTreeMap::new()],
-            next: 5,
-            within: vec![(own_type.to_owned(), name)],
-            steady: Vec::new(),
-        };
-        let mut all = Vec::new();
-        let mut given = self.function.sig.inputs.len();
-        if let Some((statements, trial)) = self.velocities {
-            lower.bind(trial.to_owned(), Binding::Place(Code::Place(3), None));
-            all.extend(lower.statements(statements)?);
-            given = 3;
-        }
-        lower.scopes.push(BTreeMap::new());
-        for (at, parameter) in self.function.sig.inputs.iter().take(given).enumerate() {
-            let (name, kind) = lower.parameter(parameter)?;
-            lower.bind(name, Binding::Place(Code::Place(at), kind));
-        }
-        all.push(lower.block(&self.function.block)?);
-        Ok(Routine {
-            places: lower.next,
-            body: Code::Function(Box::new(Code::Block(all))),
-        })
-    }
+    let body = lower.block(&function.block)?;
+    Ok(Routine {
+        places: lower.next,
+        body: Code::Function(Box::new(body)),
+    })
 }
 
 /// The pattern of an arm and its guard.
@@ -300,8 +234,8 @@ impl<'a> Lower<'a, '_, f64> {
     fn solve(&mut self, of: &Looped) -> Result<Solve, Refused> {
         let unknown = || refuse(of.body);
         let search = self.expression(&of.begin.receiver, None)?;
-        let [node, values] =
-            <[Code<f64>; 2]>::try_from(self.all(of.begin.args.iter())?).map_err(|_| unknown())?;
+        let node = of.begin.args.first().ok_or_else(unknown)?;
+        let node = self.expression(node, None)?;
         let ty = self.field_type(&of.begin.receiver).ok_or_else(unknown)?;
         self.sought(&ty)?;
         let is_scale = |s: &syn::Stmt| matches!(s, syn::Stmt::Expr(syn::Expr::If(_), _));
@@ -362,10 +296,14 @@ impl<'a> Lower<'a, '_, f64> {
         let [_, solved, otherwise] = ended.arms.as_slice() else {
             return Err(unknown());
         };
-        let convex = match guard(solved) {
-            Some(syn::Expr::Binary(either)) => Some(self.expression(&either.left, None)?),
+        let guard = guard(solved).ok_or_else(unknown)?;
+        let convex = match guard {
+            syn::Expr::Binary(either) => Some(self.expression(&either.left, None)?),
             _ => None,
         };
+        let is_test = |name: &syn::Ident| name == "is_principal" || name == "is_part_of_principal";
+        let at_rest = called(guard, &is_test).and_then(|call| call.args.get(1));
+        let at_rest = self.expression(at_rest.ok_or_else(unknown)?, None)?;
         let settled = called(&otherwise.body, &starts("settled")).ok_or_else(unknown)?;
         let (settled, principal) = self.settled(settled)?;
         let own = self.own_type().to_owned();
@@ -374,51 +312,37 @@ impl<'a> Lower<'a, '_, f64> {
             let from = program.function(&own, from)?;
             program.function(&own, &name_in(&from.block, beginning)?)
         };
-        let residual_at = Alone {
-            function: function("residual_at", &rounding.method.to_string()).ok_or_else(unknown)?,
-            velocities: None,
-        };
+        let residual_at =
+            function("residual_at", &rounding.method.to_string()).ok_or_else(unknown)?;
         let completed_at = function("completed_at", &rounding.method.to_string());
-        let tangent_at = Alone {
-            function: function("tangent_at", &principal).ok_or_else(unknown)?,
-            velocities: Some((at_trial, &trial_name)),
-        };
-        let proof = program.function(&own, &principal).ok_or_else(unknown)?;
-        let width = number_of(&proof.block, "Enclosure").ok_or_else(unknown)?;
-        let mut bounds = self.shared.over::<Bound>();
-        let rounded_at = residual_at.lowered(&mut bounds, &own)?;
-        let bounded_at = tangent_at.lowered(&mut bounds, &own)?;
+        let tangent_at = function("tangent_at", &principal).ok_or_else(unknown)?;
+        let mut rounded = self.shared.over::<Rounded>();
+        let rounded_at = alone(&mut rounded, &own, residual_at)?;
         let rest = match completed_at.filter(|_| !rest.is_empty()) {
             Some(function) => Some(Rest {
                 part,
                 code: rest_code,
-                rounded_at: Alone {
-                    function,
-                    velocities: None,
-                }
-                .lowered(&mut bounds, &own)?,
+                rounded_at: alone(&mut rounded, &own, function)?,
             }),
             None => None,
         };
         Ok(Solve {
             search,
             node,
-            values,
             trial,
             rest,
             known,
             at_trial: at_trial_code,
             residual,
+            at_rest,
             tangent,
             unit,
             from_left: correct.method.to_string().ends_with("from_left"),
             convex,
             settled,
-            residual_at: residual_at.lowered(self.shared, &own)?,
+            residual_at: alone(self.shared, &own, residual_at)?,
             rounded_at,
-            tangent_at: tangent_at.lowered(self.shared, &own)?,
-            bounded_at,
-            width,
+            tangent_at: alone(self.shared, &own, tangent_at)?,
         })
     }
 
@@ -552,16 +476,16 @@ impl Lowered for f64 {
     }
 }
 
-impl Lowered for Bound {
+impl Lowered for Rounded {
     fn looped(_: &mut Lower<'_, '_, Self>, of: &Looped) -> Result<Code<Self>, Refused> {
         Err(refuse(of.body))
     }
 
-    fn native(name: &str, arguments: usize) -> Option<Native<Bound>> {
+    fn native(name: &str, arguments: usize) -> Option<Native<Rounded>> {
         library::kernel(name, arguments)
     }
 
-    fn special(name: &str) -> Option<Special<Bound>> {
+    fn special(name: &str) -> Option<Special<Rounded>> {
         library::kernel_special(name)
     }
 }

@@ -1,16 +1,10 @@
 //! Newton's method for equations that were read: the solver of the runtime on groups of any kind and size,
-//! with residual and tangent run as operations; the proof that a root is the principal one by the same
-//! operations over numbers in bounds.
+//! with residual and tangent run as operations.
 
-mod bound;
-mod node;
-mod region;
 mod search;
 mod shape;
 mod solve;
 
-pub use bound::Bound;
-pub use node::Kept;
 pub use search::{Held, Sought, remember};
 pub use shape::{Kind, Shape};
 pub use solve::{Rest, Settled, Solve};

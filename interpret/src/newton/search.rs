@@ -1,14 +1,13 @@
 //! The search for one velocity after the other, as a value.
 
-use super::node::{self, Kept};
 use super::shape::Shape;
 use super::solve::{self, Solve};
-use crate::code::{Exit, Places, unfit};
+use crate::code::{Exit, Places};
 use crate::library::NAMES;
 use crate::value::{Layout, Struct, Value};
 use clebsch::Real;
 use clebsch::saved::{Words, sites};
-use clebsch::solvers::newton::{AnySearch, Chart, Purpose, Solved};
+use clebsch::solvers::newton::{AnySearch, Chart, Solved};
 use std::sync::{Arc, OnceLock};
 
 /// What a search is for.
@@ -18,8 +17,6 @@ pub struct Sought {
     pub shape: Shape,
     /// Those of all velocities, where others are solved for beforehand.
     pub whole: Option<Shape>,
-    /// What the tangent asks of a node.
-    pub node: Vec<Kept>,
     /// How many coordinates the emitted code has places for.
     pub capacity: usize,
 }
@@ -40,28 +37,28 @@ pub struct Held {
 
 impl Held {
     /// A search that begins.
-    pub fn begun(sought: &'static Sought, purpose: Purpose) -> Self {
+    pub fn begun(sought: &'static Sought, tries: bool) -> Self {
         let dimension = sought.shape.parts().dimension();
         let in_blocks = dimension == sought.capacity;
         Held {
-            search: Box::new(AnySearch::new(dimension, in_blocks, purpose)),
+            search: Box::new(AnySearch::new(dimension, in_blocks, tries)),
             sought,
         }
     }
 
-    /// From here on steps are only tried: see [`Purpose::Trial`].
+    /// From here on steps are only tried.
     pub fn only_try(&mut self) {
         self.search.only_try();
     }
 
     /// A search for what another is for, with the purpose of this one.
     pub fn alike(&self, other: &Held) -> Held {
-        Self::begun(other.sought, self.search.purpose())
+        Self::begun(other.sought, self.search.tries())
     }
 
     /// Whether no step follows.
     pub fn tries(&self) -> bool {
-        self.search.purpose() != Purpose::Run
+        self.search.tries()
     }
 
     /// Meets what it remembers.
@@ -80,12 +77,10 @@ impl Held {
         &mut self,
         equations: &Solve,
         node: u64,
-        values: &Value<f64>,
         places: &mut Places<f64>,
     ) -> Result<Value<f64>, Exit<f64>> {
-        let values = unfit(node::read(values, &self.sought.node))?;
         let charts = [&self.sought.shape, self.sought.all()];
-        let mut iteration = self.search.begin(charts, node, values);
+        let mut iteration = self.search.begin(charts, node);
         let solved = solve::by(&mut iteration, equations, self.sought, places)?;
         Ok(told(solved))
     }

@@ -1,8 +1,6 @@
 //! Which groups a search for velocities is in, and what they do: the runtime's own groups where these are
 //! types, matrices in plain loops where their sizes are known when a model is read.
 
-use super::bound::Bound;
-use super::region;
 use crate::library::groups::{composed_kept, inverse_kept};
 use crate::value::{Kept, Value};
 use clebsch::Group;
@@ -132,16 +130,6 @@ impl Kind {
         of_type!(self, G, <G as Group<f64>>::is_pure(part), other)
     }
 
-    /// How many variables a region of it takes.
-    pub fn variables(self) -> usize {
-        match self {
-            Kind::Rotation | Kind::Plane => 9,
-            Kind::Quaternion => 6,
-            Kind::Motion => 12,
-            _ => 3 * self.dimension().div_ceil(3),
-        }
-    }
-
     fn identity(self) -> Value<f64> {
         match self {
             Kind::Linear(n) => Value::Element(Kept::Linear, Dense::identity(n, n)),
@@ -219,6 +207,41 @@ fn extents(g: &Value<f64>, out: &mut [f64]) -> Option<()> {
                     let eighth = a.minus_one().squares() * 0.125;
                     let square = eighth * 4.0 / (1.0 - eighth);
                     if eighth < 1.0 { square.sqrt() } else { f64::INFINITY }
+                }
+            };
+        }
+    )
+}
+
+fn compared(g: &Value<f64>, xi: &[f64], out: &mut [[f64; 2]]) -> Option<()> {
+    let of = |own: &Dense<f64>| {
+        let mut both = [0.0; 2];
+        for i in 0..own.rows {
+            for j in 0..own.cols {
+                let x = own.at(i, j);
+                let off = x - xi.get(own.cols * i + j).copied().unwrap_or(0.0);
+                both[0] += x * x;
+                both[1] += off * off;
+            }
+        }
+        both
+    };
+    of_element!(
+        g,
+        g => g.compared(xi, out),
+        (kept, a) => if let Some(first) = out.first_mut() {
+            *first = match kept {
+                Kept::Linear => of(&a.minus_one()),
+                Kept::Field => of(a),
+                Kept::Orthogonal => {
+                    let half = Dense::skew_from(a.rows, xi).scaled(0.5);
+                    let off = a.minus(&a.times(&half)).minus(&half).minus_one();
+                    let eighth = a.minus_one().squares() * 0.125;
+                    let near = 1.0 - eighth;
+                    match near > 0.0 {
+                        true => [eighth * 4.0 / near, off.squares() * 0.5 / near],
+                        false => [f64::INFINITY; 2],
+                    }
                 }
             };
         }
@@ -311,39 +334,14 @@ impl Shape {
         all
     }
 
-    /// Each group with a list of its own lengths and the first variable of its region.
-    fn each<'a>(&'a self, radii: &'a [f64]) -> impl Iterator<Item = (Kind, &'a [f64], usize)> {
-        let (mut part, mut next) = (0, 0);
+    /// Each group with a list of its own lengths.
+    fn each<'a>(&'a self, radii: &'a [f64]) -> impl Iterator<Item = (Kind, &'a [f64])> {
+        let mut part = 0;
         self.kinds.iter().map(move |kind| {
             let own = radii.get(part..).unwrap_or(&[]);
-            let first = next;
             part += kind.parts();
-            next += kind.variables();
-            (*kind, own, first)
+            (*kind, own)
         })
-    }
-
-    /// All velocities near these, as emitted code has them.
-    pub fn around(&self, centre: &[Value<f64>], radii: &[f64], width: usize) -> Value<Bound> {
-        let all = self.each(radii).zip(centre);
-        let all = all.map(|((_, own, first), g)| region::around(g, own, first, width));
-        Value::List(all.collect())
-    }
-
-    /// The derivative of the charts, entry by entry.
-    pub fn chart_tangent(
-        &self,
-        radii: &[f64],
-        width: usize,
-        put: &mut dyn FnMut(usize, usize, Bound),
-    ) {
-        let mut at = 0;
-        for (kind, own, first) in self.each(radii) {
-            region::chart_tangent(kind, own, first, width, &mut |i, j, x| {
-                put(at + i, at + j, x);
-            });
-            at += kind.dimension();
-        }
     }
 
     /// The coordinates of each factor.
@@ -426,9 +424,18 @@ impl Chart for Shape {
         }
     }
 
+    fn compared(&self, of: &Vec<Value<f64>>, xi: &[f64], out: &mut [[f64; 2]]) {
+        let mut rest = out;
+        for (g, (kind, xi)) in of.iter().zip(self.split(xi)) {
+            let (own, others) = rest.split_at_mut(kind.parts().min(rest.len()));
+            let _ = compared(g, xi, own);
+            rest = others;
+        }
+    }
+
     fn is_within(&self, of: &Vec<Value<f64>>, reach: &[f64]) -> bool {
         let all = self.each(reach).zip(of);
-        all.fold(true, |all, ((_, own, _), g)| {
+        all.fold(true, |all, ((_, own), g)| {
             all & is_within(g, own).unwrap_or(false)
         })
     }

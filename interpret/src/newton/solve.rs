@@ -1,8 +1,6 @@
 //! The equations of a step as operations, and the loop that solves them: the calls that emitted code makes,
 //! in the same order.
 
-use super::bound::{Bound, Variables};
-use super::node;
 use super::over;
 use super::search::{self, Held, Sought};
 use super::shape::Shape;
@@ -13,12 +11,8 @@ use clebsch::Real;
 use clebsch::emitted::{StepCause, StepError};
 use clebsch::linalg::Dense;
 use clebsch::solvers::newton::{
-    self, AnyNewton, Chart, Enclosed, Lane, NewtonError, NodeList, Progress, Purpose, Solved,
-    Spread,
+    self, AnyNewton, Chart, Lane, NewtonError, Progress, Rounded, Solved,
 };
-
-/// A function over numbers in bounds.
-pub type Bounded = Routine<Bound>;
 
 /// What is done where a solution is not known to be principal, or none was found.
 #[derive(Debug)]
@@ -41,7 +35,7 @@ pub struct Rest {
     pub code: Vec<Code<f64>>,
     /// The same by itself, over numbers with their rounding: of parameters, step, what is asked of the node,
     /// momenta, part.
-    pub rounded_at: Bounded,
+    pub rounded_at: Routine<Rounded>,
 }
 
 /// The equations of a step.
@@ -51,8 +45,6 @@ pub struct Solve {
     pub search: Code<f64>,
     /// The node that is left.
     pub node: Code<f64>,
-    /// What the tangent asks of it.
-    pub values: Code<f64>,
     /// Where the trial stands.
     pub trial: usize,
     /// What finds the rest of it, where a part is searched for.
@@ -63,6 +55,8 @@ pub struct Solve {
     pub at_trial: Vec<Code<f64>>,
     /// The residual.
     pub residual: Code<f64>,
+    /// The residual at rest.
+    pub at_rest: Code<f64>,
     /// The tangent.
     pub tangent: Code<f64>,
     /// What the tangent stands times.
@@ -76,26 +70,21 @@ pub struct Solve {
     /// The residual by itself: of parameters, step, what is asked of the node, momenta, trial.
     pub residual_at: Routine<f64>,
     /// The same over numbers with their rounding.
-    pub rounded_at: Bounded,
+    pub rounded_at: Routine<Rounded>,
     /// The tangent by itself: of parameters, step, what is asked of the node, trial.
     pub tangent_at: Routine<f64>,
-    /// The same over numbers in bounds.
-    pub bounded_at: Bounded,
-    /// With how many variables they move.
-    pub width: usize,
 }
 
 impl Iterate<f64> for Solve {
     fn run(&self, places: &mut Places<f64>) -> Result<Value<f64>, Exit<f64>> {
         let node = unfit(self.node.run(places)?.count())?;
-        let values = self.values.run(places)?;
         // Lent for as long as it is at work.
         let place = unfit(self.search.place_mut(places))?;
         let mut held = match std::mem::replace(place, Value::Unit) {
             Value::Search(held) => held,
             _ => return unfit(None),
         };
-        let solved = held.solve(self, node as u64, &values, places);
+        let solved = held.solve(self, node as u64, places);
         *unfit(self.search.place_mut(places))? = Value::Search(held);
         solved
     }
@@ -175,12 +164,14 @@ pub fn by(
         };
         match progress {
             Progress::Continue => {}
-            Progress::Solved(solved)
-                if with.is_convex(places)? || iteration.is_principal(&solved.element) =>
-            {
-                return Ok(solved);
-            }
+            Progress::Solved(solved) if with.is_convex(places)? => return Ok(solved),
             ended => {
+                if let Progress::Solved(solved) = &ended {
+                    let at_rest = with.at_rest.run(places)?;
+                    if with.is_principal(iteration, &solved.element, &at_rest, sought, places)? {
+                        return Ok(solved.clone());
+                    }
+                }
                 if let Some(solved) = with.settle(iteration, ended, sought, places)? {
                     return Ok(solved);
                 }
@@ -205,6 +196,28 @@ impl Solve {
             code.run(places)?;
         }
         Ok(unfit(places.get(self.trial))?.clone())
+    }
+
+    fn is_principal(
+        &self,
+        iteration: &mut AnyNewton<'_, Shape>,
+        solution: &Element,
+        at_rest: &Value<f64>,
+        sought: &'static Sought,
+        places: &mut Places<f64>,
+    ) -> Result<bool, Exit<f64>> {
+        let all = sought.all();
+        let at_rest = unfit(vector(at_rest, all.parts().dimension()))?;
+        if self.rest.is_none() {
+            return Ok(iteration.is_principal(solution, &at_rest));
+        }
+        let known = self.known(places)?;
+        let tangent = || {
+            self.principal(&known, sought, |equations| {
+                (equations.tangent)(&all.identity())
+            })
+        };
+        Ok(iteration.is_part_of_principal(solution, &at_rest, tangent))
     }
 
     fn is_convex(&self, places: &mut Places<f64>) -> Result<bool, Exit<f64>> {
@@ -232,14 +245,14 @@ impl Solve {
         places: &mut Places<f64>,
     ) -> Result<Vec<f64>, Exit<f64>> {
         let known = self.known(places)?;
-        let exactly = &mut Bound::exactly;
+        let exactly = &mut Rounded::exactly;
         let mut given = Vec::with_capacity(self.rounded_at.places);
         for value in &known {
             given.push(unfit(over(value, exactly))?);
         }
-        let mut trial = unfit(over(trial, &mut Bound::rounded))?;
+        let mut trial = unfit(over(trial, &mut Rounded::once))?;
         if let (Some(rest), Value::List(list)) = (&self.rest, &trial) {
-            let rotation = |value: &Value<Bound>| match value {
+            let rotation = |value: &Value<Rounded>| match value {
                 Value::Motion(g) => Value::Rotation(g.rotation),
                 other => other.clone(),
             };
@@ -249,7 +262,7 @@ impl Solve {
         }
         given.push(trial);
         let residual = unfit(run(&self.rounded_at, given))?;
-        let rest = unfit(over(&residual, &mut |x: Bound| x.rest()))?;
+        let rest = unfit(over(&residual, &mut |x: Rounded| x.error()))?;
         let whole = sought.all();
         let all = unfit(vector(&rest, whole.parts().dimension()))?;
         let rows = sought.shape.within(whole).into_iter();
@@ -271,10 +284,9 @@ impl Solve {
             Progress::Solved(solved) => Ok(solved),
             Progress::Failed(e) => Err(e),
         };
-        let values = iteration.values().clone();
         let known = self.known(places)?;
         let asked = failed.as_ref().ok().map(|solved| &solved.element);
-        let settled = self.principal(&known, &values, sought, |equations| {
+        let settled = self.principal(&known, sought, |equations| {
             iteration.settle(equations, asked)
         });
         let e = match (settled, failed) {
@@ -305,16 +317,12 @@ impl Solve {
     fn principal<R>(
         &self,
         known: &[Value<f64>; 4],
-        values: &NodeList,
         sought: &'static Sought,
         then: impl FnOnce(&Lane<Shape>) -> R,
     ) -> R {
         let [parameters, step, given, momenta] = known;
-        let (shape, kept) = (sought.all(), sought.node.as_slice());
-        let (size, width) = (shape.parts().dimension(), self.width);
-        let exactly = &mut Bound::exactly;
-        let bounds = (over(parameters, exactly), over(step, exactly));
-        let near = node::given(values, kept, None, |[x, _]| x);
+        let shape = sought.all();
+        let size = shape.parts().dimension();
         let residual = |trial: &Element| {
             let all = [parameters, step, given, momenta];
             let mut all: Vec<Value<f64>> = all.map(Value::clone).to_vec();
@@ -324,35 +332,17 @@ impl Solve {
             found.unwrap_or_else(|| vec![f64::NAN; size])
         };
         let tangent = |trial: &Element| {
-            let mut all: Vec<Value<f64>> = [parameters, step].map(Value::clone).to_vec();
-            all.extend([near.clone(), Value::List(trial.clone())]);
+            let all = [parameters, step, given];
+            let mut all: Vec<Value<f64>> = all.map(Value::clone).to_vec();
+            all.push(Value::List(trial.clone()));
             let found = run(&self.tangent_at, all);
             let found = found.and_then(|v| matrix(&v, size));
             found.unwrap_or_else(|| Dense::unknown(size, size))
-        };
-        let enclosed = |spread: Spread, centre: &Element, radii: &[f64]| {
-            let _variables = Variables::at_work(width);
-            let found = || {
-                let (Some(parameters), Some(step)) = (&bounds.0, &bounds.1) else {
-                    return None;
-                };
-                let bound = |[middle, radius]: [f64; 2]| Bound::around(middle, radius);
-                let values = node::given(values, kept, Some(spread), bound);
-                let trial = shape.around(centre, radii, width);
-                let all = vec![parameters.clone(), step.clone(), values, trial];
-                run(&self.bounded_at, all).and_then(|v| matrix(&v, size))
-            };
-            let unknown = Bound::around(f64::NAN, f64::NAN);
-            let tangent = found().unwrap_or_else(|| Dense::repeat(size, size, unknown));
-            let mut enclosed = Enclosed::new(width, size, |i, j| tangent.at(i, j));
-            shape.chart_tangent(radii, width, &mut |i, j, x| enclosed.put(i, j, &x));
-            enclosed
         };
         then(&Lane {
             chart: shape,
             residual: &residual,
             tangent: &tangent,
-            enclosed: &enclosed,
         })
     }
 
@@ -369,12 +359,8 @@ impl Solve {
             _ => return unfit(None),
         };
         let places = std::cell::RefCell::new(places);
-        let other = |h: f64, offers: bool| -> Result<(), StepError> {
-            let purpose = match offers {
-                true => Purpose::Offer,
-                false => Purpose::Trial,
-            };
-            let search = Value::Search(Held::begun(sought, purpose));
+        let other = |h: f64| -> Result<(), StepError> {
+            let search = Value::Search(Held::begun(sought, true));
             let untold = |what| Err(StepCause::Unread { what }.at_node(0));
             let given = vec![Value::Real(h), search];
             match self.settled.other.call(given, &mut places.borrow_mut()) {

@@ -2,7 +2,7 @@
 //! Takes arrays; gives group elements whose product is the sum, and the momenta that belong to them.
 
 use super::placed::{added, between};
-use super::{Coadjoint, Coordinate, Group, Part, Placed};
+use super::{Coadjoint, Coordinate, Group, Part, Placed, squares};
 use crate::Real;
 use crate::scalar::of_scalars;
 use nalgebra::SMatrix;
@@ -120,6 +120,13 @@ impl<const R: usize, const C: usize, T: Real> Group<T> for Additive<R, C, T> {
     fn extents(&self, out: &mut [f64]) {
         if let Some(first) = out.first_mut() {
             *first = self.square().greatest().sqrt();
+        }
+    }
+
+    #[inline(always)]
+    fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
+        if let Some(first) = out.first_mut() {
+            *first = squares(&self.array, xi);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Invertible linear maps of n-dimensional space, GL(n).
 //! Takes matrices with an inverse; gives group elements that carry it along.
 
-use super::{Coadjoint, Coordinate, Group, Part};
+use super::{Coadjoint, Coordinate, Group, Part, squares};
 use crate::Real;
 use crate::domain::LEAST_RATIO;
 use crate::linalg::{Dense, inverse, singular_ratio_of, small_inverse};
@@ -163,6 +163,13 @@ impl<const N: usize, T: Real> Group<T> for Linear<N, T> {
     fn extents(&self, out: &mut [f64]) {
         if let Some(first) = out.first_mut() {
             *first = self.off_identity().greatest().sqrt();
+        }
+    }
+
+    #[inline(always)]
+    fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
+        if let Some(first) = out.first_mut() {
+            *first = squares(&(self.matrix - SMatrix::identity()), xi);
         }
     }
 

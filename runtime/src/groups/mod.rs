@@ -26,6 +26,9 @@ pub use so3::{BodyMomentum, NotARotation, Rotation, SpatialMomentum};
 pub use su2::UnitQuaternion;
 pub use turned::TurnedRotation;
 
+use crate::scalar::Real;
+use nalgebra::SMatrix;
+
 /// The operations of [`Group`] that an element has by itself already, by the same names.
 macro_rules! own_operations {
     () => {
@@ -126,8 +129,28 @@ pub trait Group<T>: Copy {
     /// there are none.
     fn extents(&self, out: &mut [f64]);
 
+    /// The squares of the lengths of the coordinates `x` of the element seen from the neutral one,
+    /// `identity().retract(x)`, and of their distances from `xi`, part by part, in every lane; infinite or NaN where there
+    /// are no coordinates. Coordinates of `xi` that are missing count as zero.
+    fn compared(&self, xi: &[T], out: &mut [[T; 2]]);
+
     /// Whether these bounds do not exceed `reach`.
     fn is_within(&self, reach: &[f64]) -> bool;
+}
+
+/// The squares of the length of an array, row by row, and of its distance from `xi`.
+#[inline(always)]
+fn squares<T: Real, const R: usize, const C: usize>(own: &SMatrix<T, R, C>, xi: &[T]) -> [T; 2] {
+    let (mut length, mut off) = (T::zero(), T::zero());
+    for i in 0..R {
+        for j in 0..C {
+            let x = own[(i, j)];
+            let apart = xi.get(C * i + j).map_or(x, |y| x - *y);
+            length += x * x;
+            off += apart * apart;
+        }
+    }
+    [length, off]
 }
 
 /// How covectors of the Lie algebra, momenta, change between body and space.

@@ -165,6 +165,30 @@ impl<const N: usize, T: Real> Group<T> for Orthogonal<N, T> {
         }
     }
 
+    /// With the planes' angles `a`, `R (1 - Y/2) - (1 + Y/2)` is `(R + 1)(X - Y)/2`, where `X` and `Y` have the coordinates
+    /// compared: `cos(a/2)` times as large as the difference at least.
+    #[inline]
+    fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
+        let half = skew_from::<T, N>(xi) * T::from_f64(0.5);
+        let off = self.matrix - self.matrix * half - half - SMatrix::identity();
+        let eighth = self.off_identity();
+        let near = T::one() - eighth;
+        let mut both = [
+            eighth * T::from_f64(4.0) / near,
+            off.iter().fold(T::zero(), |sum, x| sum + *x * *x) * T::from_f64(0.5) / near,
+        ];
+        for lane in 0..T::LANES {
+            if eighth.lane(lane) >= 1.0 {
+                for x in &mut both {
+                    x.set_lane(lane, T::One::from_f64(f64::INFINITY));
+                }
+            }
+        }
+        if let Some(first) = out.first_mut() {
+            *first = both;
+        }
+    }
+
     #[inline]
     fn is_within(&self, reach: &[f64]) -> bool {
         let reach = reach.first().copied().unwrap_or(0.0);

@@ -83,6 +83,13 @@ impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
     }
 
     #[inline(always)]
+    fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
+        for (i, (factor, own)) in (self.iter().zip(out.chunks_mut(G::PARTS.max(1)))).enumerate() {
+            factor.compared(xi.get(i * G::DIMENSION..).unwrap_or(&[]), own);
+        }
+    }
+
+    #[inline(always)]
     fn is_within(&self, reach: &[f64]) -> bool {
         let mut all = true;
         for (i, factor) in self.iter().enumerate() {
@@ -194,6 +201,18 @@ macro_rules! product_of {
                     rest = others;
                 )+
                 let _ = rest;
+            }
+
+            #[inline(always)]
+            fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
+                let (mut left, mut rest) = (xi, out);
+                $(
+                    let (own, others) = rest.split_at_mut($group::PARTS.min(rest.len()));
+                    let (own_xi, others_xi) = left.split_at($group::DIMENSION.min(left.len()));
+                    self.$index.compared(own_xi, own);
+                    (left, rest) = (others_xi, others);
+                )+
+                let _ = (left, rest);
             }
 
             #[inline(always)]

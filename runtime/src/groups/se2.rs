@@ -3,7 +3,7 @@
 
 use super::placed::{added, between};
 use super::se3::NotARigidMotion;
-use super::{AboutBody, Coadjoint, Coordinate, Group, Orthogonal, Part, Placed};
+use super::{AboutBody, Coadjoint, Coordinate, Group, Orthogonal, Part, Placed, squares};
 use crate::Real;
 use crate::scalar::{largest, of_scalars};
 use core::ops::Mul;
@@ -173,6 +173,15 @@ impl<T: Real> Group<T> for PlaneMotion<T> {
         let x = &self.translation;
         if let Some(second) = out.get_mut(1) {
             *second = x.dot(x).greatest().sqrt();
+        }
+    }
+
+    #[inline(always)]
+    fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
+        let (angular, linear) = xi.split_at(1.min(xi.len()));
+        self.rotation.compared(angular, out);
+        if let Some(second) = out.get_mut(1) {
+            *second = squares(&self.translation, linear);
         }
     }
 

@@ -2,7 +2,9 @@
 //! Takes rotations and translations or homogeneous matrices; gives motions body -> space.
 
 use super::placed::{added, between};
-use super::{AboutBody, Coadjoint, Coordinate, Group, NotARotation, Part, Placed, Rotation};
+use super::{
+    AboutBody, Coadjoint, Coordinate, Group, NotARotation, Part, Placed, Rotation, squares,
+};
 use crate::Real;
 use crate::scalar::{largest, of_scalars};
 use core::fmt;
@@ -221,6 +223,15 @@ impl<T: Real> Group<T> for RigidMotion<T> {
         let x = &self.translation;
         if let Some(second) = out.get_mut(1) {
             *second = x.dot(x).greatest().sqrt();
+        }
+    }
+
+    #[inline(always)]
+    fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
+        let (angular, linear) = xi.split_at(3.min(xi.len()));
+        self.rotation.compared(angular, out);
+        if let Some(second) = out.get_mut(1) {
+            *second = squares(&self.translation, linear);
         }
     }
 

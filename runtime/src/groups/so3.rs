@@ -1,7 +1,7 @@
 //! Rotations of space, kept as unit quaternions, and the momenta they carry.
 //! Takes quaternions, matrices or rotation vectors; gives rotations body -> space.
 
-use super::{Coadjoint, Group};
+use super::{Coadjoint, Group, squares};
 use crate::Real;
 use crate::scalar::one::{in_lanes, set_all};
 use crate::scalar::{larger, largest, of_scalars};
@@ -429,6 +429,16 @@ impl<T: Real> Group<T> for Rotation<T> {
         let length = (four * (x * x + y * y + z * z) / (w * w)).greatest();
         if let Some(first) = out.first_mut() {
             *first = length.sqrt();
+        }
+    }
+
+    #[inline(always)]
+    fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
+        let [w, x, y, z] = self.q;
+        let over = T::from_f64(2.0) / w;
+        let own = Vector3::new(x * over, y * over, z * over);
+        if let Some(first) = out.first_mut() {
+            *first = squares(&own, xi);
         }
     }
 

@@ -136,6 +136,19 @@ impl<T: Real> Group<T> for UnitQuaternion<T> {
     }
 
     #[inline(always)]
+    fn compared(&self, xi: &[T], out: &mut [[T; 2]]) {
+        self.0.compared(xi, out);
+        let real = self.real();
+        for lane in 0..T::LANES {
+            if let (Some(first), false) = (out.first_mut(), real.lane(lane) > 0.0) {
+                for x in first {
+                    x.set_lane(lane, T::One::from_f64(f64::INFINITY));
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
     fn is_within(&self, reach: &[f64]) -> bool {
         self.0.is_within(reach) & (self.real().least() > 0.0)
     }

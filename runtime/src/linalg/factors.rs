@@ -3,7 +3,7 @@
 //! in, elimination with pivots where they do not.
 
 use super::elimination::vanishes;
-use super::{Dense, balance, inverse_leading, solve_scaled};
+use super::{Dense, balance, solve_scaled};
 use crate::Real;
 use crate::saved::{Saved, Words};
 use nalgebra::{SMatrix, SVector};
@@ -75,92 +75,6 @@ impl<T: Real, const D: usize> Factors<T, D> {
         }
         with_pivots(&self.columns, b, self.size)
     }
-
-    /// Bounds of the spectral norms of the inverse, part by part, the largest over all lanes;
-    /// `part_of` says to which part a coordinate belongs, all three of a block to the same. NaN
-    /// where there is no inverse.
-    #[inline]
-    #[must_use]
-    pub fn inverse_bounds(&self, part_of: impl Fn(usize) -> usize) -> [[f64; D]; D] {
-        match self.blocks {
-            true => self.by_blocks(part_of),
-            false => self.by_inverse(part_of),
-        }
-    }
-
-    /// `|U^-1| |L^-1|`, both by the norms of their blocks.
-    #[inline]
-    fn by_blocks(&self, part_of: impl Fn(usize) -> usize) -> [[f64; D]; D] {
-        let count = D / 3;
-        let (mut size, mut lower, mut upper) = ([[0.0; 3]; 3], [[0.0; 3]; 3], [[0.0; 3]; 3]);
-        for (i, row) in size.iter_mut().enumerate().take(count) {
-            for (j, entry) in row.iter_mut().enumerate().take(count) {
-                *entry = block_norm(&self.columns, 3 * i, 3 * j);
-            }
-        }
-        for k in 0..count {
-            lower[k][k] = size[k][k];
-            upper[k][k] = 1.0;
-            for i in k + 1..count {
-                let sum: f64 = (k..i).map(|j| size[i][j] * lower[j][k]).sum();
-                lower[i][k] = size[i][i] * sum;
-            }
-            for i in (0..k).rev() {
-                upper[i][k] = (i + 1..=k).map(|j| size[i][j] * upper[j][k]).sum();
-            }
-        }
-        let mut bounds = [[0.0; D]; D];
-        for i in 0..count {
-            for j in 0..count {
-                let bound: f64 = (i.max(j)..count).map(|k| upper[i][k] * lower[k][j]).sum();
-                bounds[part_of(3 * i)][part_of(3 * j)] += bound * bound;
-            }
-        }
-        bounds.map(|row| row.map(f64::sqrt))
-    }
-
-    #[cold]
-    fn by_inverse(&self, part_of: impl Fn(usize) -> usize) -> [[f64; D]; D] {
-        let scale: [T; D] = core::array::from_fn(|i| balance(self.columns[i][i]));
-        let scaled = SMatrix::<T, D, D>::from_fn(|i, j| self.columns[j][i] * scale[i] * scale[j]);
-        let Some(inverse) = inverse_leading(&scaled, self.size) else {
-            return [[f64::NAN; D]; D];
-        };
-        let mut squares = [[0.0; D]; D];
-        for i in 0..self.size.min(D) {
-            for j in 0..self.size.min(D) {
-                squares[part_of(i)][part_of(j)] +=
-                    size(inverse[(i, j)] * scale[i] * scale[j]).powi(2);
-            }
-        }
-        squares.map(|row| row.map(f64::sqrt))
-    }
-}
-
-/// The largest real part over the lanes.
-#[inline(always)]
-fn size<T: Real>(x: T) -> f64 {
-    let (above, below) = (x.greatest(), -x.least());
-    if above > below { above } else { below }
-}
-
-/// The root of the largest sum of a row times that of a column.
-#[inline(always)]
-fn block_norm<T: Real, const D: usize>(columns: &[[T; D]; D], row: usize, column: usize) -> f64 {
-    let entry = |i: usize, j: usize| size(columns[column + j][row + i]);
-    let largest = |a: f64, b: f64| if a > b { a } else { b };
-    let (mut rows, mut widest) = ([0.0; 3], 0.0);
-    for j in 0..3 {
-        let mut sum = 0.0;
-        for (i, row) in rows.iter_mut().enumerate() {
-            let x = entry(i, j);
-            sum += x;
-            *row += x;
-        }
-        widest = largest(sum, widest);
-    }
-    let [a, b, c] = rows;
-    (largest(largest(a, b), c) * widest).sqrt()
 }
 
 /// A pivot block of three may be singular though the matrix is not. Which pivots are chosen does
@@ -336,42 +250,6 @@ impl DenseFactors {
             (false, _) => self.columns.balanced_solution(b),
         }
     }
-
-    /// Bounds of the spectral norms of the inverse, part by part: see [`Factors::inverse_bounds`].
-    #[must_use]
-    pub fn inverse_bounds(&self, parts: usize, part_of: impl Fn(usize) -> usize) -> Dense<f64> {
-        fn of<const D: usize>(
-            columns: &Dense<f64>,
-            part_of: &dyn Fn(usize) -> usize,
-        ) -> Vec<Vec<f64>> {
-            let factors = Factors::<f64, D> {
-                columns: columns.fixed::<D, D>().data.0,
-                size: D,
-                blocks: true,
-            };
-            let bounds = factors.by_blocks(part_of);
-            bounds.iter().map(|row| row.to_vec()).collect()
-        }
-        if self.blocks {
-            let all = match self.columns.rows {
-                3 => of::<3>(&self.columns, &part_of),
-                6 => of::<6>(&self.columns, &part_of),
-                _ => of::<9>(&self.columns, &part_of),
-            };
-            return Dense::from_fn(parts, parts, |a, b| all[a][b]);
-        }
-        let Some(inverse) = self.columns.balanced_inverse() else {
-            return Dense::unknown(parts, parts);
-        };
-        let mut squares = Dense::zeros(parts, parts);
-        for i in 0..inverse.rows {
-            for j in 0..inverse.cols {
-                let (a, b) = (part_of(i), part_of(j));
-                squares.set(a, b, squares.at(a, b) + size(inverse.at(i, j)).powi(2));
-            }
-        }
-        squares.map(f64::sqrt)
-    }
 }
 
 #[cfg(test)]
@@ -411,42 +289,6 @@ mod tests {
         let x = of(&a, 6).solve(&b).expect("regular");
         assert_eq!(x, SVector::<f64, 6>::new(4.0, 5.0, 6.0, 1.0, 2.0, 3.0));
         assert!(of(&SMatrix::<f64, 6, 6>::zeros(), 6).solve(&b).is_none());
-    }
-
-    #[test]
-    fn the_inverse_is_bounded_part_by_part() {
-        let a = SMatrix::<f64, 9, 9>::from_fn(|i, j| {
-            ((7 * i + 3 * j) % 11) as f64 / 20.0 + if i == j { 2.0 } else { -0.25 }
-        });
-        let back = a.try_inverse().expect("regular");
-        for (part_of, parts) in [
-            (&(|i: usize| i / 3) as &dyn Fn(usize) -> usize, 3),
-            (&|i: usize| i / 6, 2),
-            (&|_| 0, 1),
-        ] {
-            let pivoted = Factors {
-                columns: a.data.0,
-                size: 9,
-                blocks: false,
-            };
-            for factors in [of(&a, 9), pivoted] {
-                let bounds = factors.inverse_bounds(part_of);
-                for p in 0..parts {
-                    for q in 0..parts {
-                        let own = SMatrix::<f64, 9, 9>::from_fn(|i, j| {
-                            let here = part_of(i) == p && part_of(j) == q;
-                            if here { back[(i, j)] } else { 0.0 }
-                        });
-                        let norm = own.svd(false, false).singular_values[0];
-                        assert!(norm <= bounds[p][q] * (1.0 + 1e-14), "{p} {q}");
-                        assert!(
-                            bounds[p][q] < 4.0 * norm + 0.1,
-                            "{p} {q}: {norm} {bounds:?}"
-                        );
-                    }
-                }
-            }
-        }
     }
 
     #[test]

@@ -15,11 +15,9 @@ use super::blocks::{Blocks, Fixed, Read, Size};
 use super::error::Place;
 use super::root::scales_of;
 use crate::Real;
+use crate::solvers::newton::principal::FALLS;
 use core::fmt;
 use nalgebra::{SMatrix, SVector};
-
-/// By how much the second correction of a stage is smaller than the first.
-const FALLS: f64 = 0.25;
 
 /// Shortest stage, as a part of the way.
 const SHORTEST: f64 = 1e-12;

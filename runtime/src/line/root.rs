@@ -15,11 +15,9 @@ use super::pivots;
 use super::turn::vector_change;
 use crate::Real;
 use crate::scalar::larger;
+use crate::solvers::newton::principal::FALLS;
 use core::fmt;
 use nalgebra::{SMatrix, SVector, Vector3};
-
-/// By how much the second correction of a stage is smaller than the first.
-const FALLS: f64 = 0.25;
 
 /// Shortest stage, as a part of the way: of a momentum like `m v + b v^3` the first one is about `m^(3/2)/(b^(1/2) p)`, which
 /// has no bound.

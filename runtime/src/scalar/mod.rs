@@ -4,21 +4,20 @@
 mod double;
 mod double_double;
 mod dual;
-mod enclosure;
 mod lanes;
 mod largest;
 pub(crate) mod one;
 mod over;
+mod rounded;
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
-pub use enclosure::{Affine, Bounded, Enclosure, swing_of};
-pub(crate) use enclosure::{UNIT, spread_of_product};
 pub use lanes::Lanes;
 pub use largest::{larger, largest};
 pub use one::InLanes;
 pub(crate) use over::of_scalars;
 pub use over::{OfScalars, gather, lane};
+pub use rounded::Rounded;
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};

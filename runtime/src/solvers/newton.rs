@@ -4,40 +4,30 @@
 
 mod alone;
 mod any_size;
-mod bounds;
-mod certificate;
 mod corrections;
 mod failure;
-mod lasting;
-mod node;
-mod principal;
+mod parts;
+pub(crate) mod principal;
 mod reduced;
-mod region;
 mod saved;
 mod scale;
-mod stage;
+mod verdict;
 
-pub use crate::scalar::{Affine, Bounded, Enclosure, swing_of};
+pub use crate::scalar::Rounded;
 pub use alone::solve;
-pub use any_size::{
-    AnyNewton, AnySearch, Bounds, Chart, Enclosed, Lane, NodeList, NodeValue, Parts, Settled,
-};
-pub use bounds::{
-    AdditiveRegion, LinearRegion, MotionRegion, OrthogonalRegion, PlaneMotionRegion,
-    QuaternionRegion, Region, RotationRegion,
-};
-pub use certificate::{Anchor, Certificate, Numbers, Purpose, Verdict};
+pub use any_size::{AnyNewton, AnySearch, Chart, Lane, Settled};
 pub use failure::{NewtonError, NewtonFailure};
-pub use node::{NodeValues, Spread, Turn};
-pub use principal::{Care, Equations, Fold, Traced, trace};
+pub use parts::Parts;
+pub use principal::{Equations, Fold};
 pub use reduced::Found;
+pub use verdict::{Anchor, Numbers, Verdict};
 
 use crate::groups::Group;
 use crate::linalg::Factors;
 use crate::scalar::Real;
-use core::marker::PhantomData;
 use corrections::{Corrections, Next, Residual};
 use nalgebra::{SMatrix, SVector};
+use reduced::AtRest;
 
 /// Iterations after which the method gives up; quadratic convergence needs fewer than ten.
 const MOST_ITERATIONS: usize = 50;
@@ -102,7 +92,7 @@ const REMEMBERED: usize = 6;
 /// are solved. Where other unknowns are solved for beforehand, `W` is the group of all of them and `E`
 /// their number.
 #[derive(Clone, Copy, Debug)]
-pub struct Search<T, G, V, const D: usize, W = G, const E: usize = D> {
+pub struct Search<T, G, const D: usize, W = G, const E: usize = D> {
     /// A ring, twice in a row, the newest at `newest`.
     past: [G; 2 * REMEMBERED],
     newest: usize,
@@ -115,9 +105,14 @@ pub struct Search<T, G, V, const D: usize, W = G, const E: usize = D> {
     lengths: SVector<T, D>,
     /// How many steps ago both were asked for.
     weighed: u32,
-    /// Which solutions are principal roots.
-    certificate: Certificate<V, E>,
-    whole: PhantomData<W>,
+    /// What the length of each part is measured by, and what rounding of momenta makes of it.
+    units: [f64; D],
+    noise: [f64; D],
+    /// Whether they were found since the sizes of terms were asked for.
+    measured: bool,
+    /// Whether no step follows.
+    tries: bool,
+    whole: AtRest<T, W, E>,
     /// The tangent factored last, times `unit`.
     factors: Factors<T, D>,
     unit: T,
@@ -138,8 +133,7 @@ pub struct Summary {
     pub residual: f64,
 }
 
-impl<T: Real, G, V: NodeValues<Scalar = T>, const D: usize, W: Group<T>, const E: usize>
-    Search<T, G, V, D, W, E>
+impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Search<T, G, D, W, E>
 where
     G: Group<T> + Found<W>,
 {
@@ -154,8 +148,11 @@ where
             weights: SVector::zeros(),
             lengths: SVector::zeros(),
             weighed: OLDEST_SCALE,
-            certificate: Certificate::none(),
-            whole: PhantomData,
+            units: [1.0; D],
+            noise: [0.0; D],
+            measured: false,
+            tries: false,
+            whole: AtRest::unknown(),
             factors: Factors::none(),
             unit: T::one(),
             age: OLDEST_TANGENT,
@@ -167,23 +164,12 @@ where
         }
     }
 
-    /// The same for a step that is only tried, in the search of one that can be made: its root is
-    /// followed from rest without a proof. [`to_offer`](Self::to_offer) gives that.
+    /// The same for a step that is only tried: what refuses it looks for no other.
     #[cold]
     #[must_use]
     pub fn to_try() -> Self {
         Self {
-            certificate: Certificate::to_try(),
-            ..Self::from_rest()
-        }
-    }
-
-    /// The same for a step that is offered instead of one refused.
-    #[cold]
-    #[must_use]
-    pub fn to_offer() -> Self {
-        Self {
-            certificate: Certificate::to_offer(),
+            tries: true,
             ..Self::from_rest()
         }
     }
@@ -191,16 +177,13 @@ where
     /// A search for other velocities of the same step, with the same purpose.
     #[cold]
     #[must_use]
-    pub fn alike<G2, V2, const D2: usize, W2, const E2: usize>(
-        &self,
-    ) -> Search<T, G2, V2, D2, W2, E2>
+    pub fn alike<G2, const D2: usize, W2, const E2: usize>(&self) -> Search<T, G2, D2, W2, E2>
     where
         G2: Group<T> + Found<W2>,
-        V2: NodeValues<Scalar = T>,
         W2: Group<T>,
     {
         Search {
-            certificate: self.certificate.alike(),
+            tries: self.tries,
             ..Search::from_rest()
         }
     }
@@ -208,7 +191,7 @@ where
     /// Whether no step follows: what refuses one then looks for no other.
     #[must_use]
     pub fn tries(&self) -> bool {
-        self.certificate.tries()
+        self.tries
     }
 
     /// How the last step was solved; zeros before the first.
@@ -217,18 +200,14 @@ where
         self.last
     }
 
-    /// Begins the solution of the step that leaves `node`, where the tangent depends on `values`. The
-    /// first trial is foreseen from the past; if that leads nowhere, the last solution is tried, then
-    /// the neutral element.
+    /// Begins the solution of the step that leaves `node`. The first trial is foreseen from the past; if that leads
+    /// nowhere, the last solution is tried, then the neutral element.
     #[inline(always)]
-    pub fn begin(&mut self, node: u64, values: V) -> Newton<'_, T, G, V, D, W, E> {
+    pub fn begin(&mut self, node: u64) -> Newton<'_, T, G, D, W, E> {
         if node != self.next {
             self.known = 0;
             self.age = OLDEST_TANGENT;
             self.weighed = OLDEST_SCALE;
-        }
-        if self.certificate.wants_tangent(&values) {
-            self.age = OLDEST_TANGENT;
         }
         self.last.tangents = 0;
         let foreseen = self.known > 1;
@@ -243,7 +222,6 @@ where
         }
         Newton {
             search: self,
-            values,
             trial: first,
             attempt,
             anchor: None,
@@ -262,6 +240,28 @@ where
             1 if self.known > 0 => self.past[self.newest],
             _ => G::identity(),
         }
+    }
+
+    /// Takes the units of all parts, and what rounding makes of them, from a tangent.
+    #[cold]
+    fn measure(&mut self, tangent: &SMatrix<T, D, D>) {
+        let parts = Parts::of_group::<T, G>(D);
+        for lane in 0..T::LANES {
+            let unit = self.unit.lane(lane);
+            let entry = |i, j| tangent[(i, j)].lane(lane) / unit;
+            let weights: [f64; D] = core::array::from_fn(|k| self.weights[k].lane(lane));
+            let (units, noise) = scale::measures(&parts, &entry, &weights);
+            let known = lane > 0;
+            for (b, (unit, noise)) in units.into_iter().zip(noise).enumerate() {
+                self.units[b] = unit;
+                self.noise[b] = if known {
+                    noise.min(self.noise[b])
+                } else {
+                    noise
+                };
+            }
+        }
+        self.measured = true;
     }
 
     /// The polynomial through the last solutions, one step further.
@@ -298,7 +298,6 @@ where
         self.next = node + 1;
         self.age = self.age.saturating_add(1);
         self.weighed = self.weighed.saturating_add(1);
-        self.certificate.count();
     }
 }
 
@@ -326,9 +325,8 @@ where
 /// Of the `D` components the first [`Group::DIMENSION`] are looked at, so that one `D` can serve
 /// several sizes of a group.
 #[derive(Debug)]
-pub struct Newton<'a, T, G, V, const D: usize, W = G, const E: usize = D> {
-    search: &'a mut Search<T, G, V, D, W, E>,
-    values: V,
+pub struct Newton<'a, T, G, const D: usize, W = G, const E: usize = D> {
+    search: &'a mut Search<T, G, D, W, E>,
     trial: G,
     attempt: u32,
     anchor: Option<Anchor<W, E>>,
@@ -352,8 +350,7 @@ pub enum Progress<G> {
     Failed(NewtonError),
 }
 
-impl<T: Real, G, V: NodeValues<Scalar = T>, const D: usize, W: Group<T>, const E: usize>
-    Newton<'_, T, G, V, D, W, E>
+impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Newton<'_, T, G, D, W, E>
 where
     G: Group<T> + Found<W>,
 {
@@ -361,12 +358,6 @@ where
     #[inline(always)]
     pub fn trial(&self) -> G {
         self.trial
-    }
-
-    /// The values at the node that the tangent depends on.
-    #[cold]
-    pub fn values(&self) -> V {
-        self.values
     }
 
     /// Whether no step follows.
@@ -414,26 +405,41 @@ where
                 own.set_lane(lane, T::One::from_f64(inverse));
             }
         }
+        self.search.measured = false;
         self.search.weighed = 0;
     }
 
-    /// Whether the solution found is the principal root: by a proof that still holds, or because
-    /// this is where it was looked for.
+    /// Whether the solution found is the principal root: because it follows from rest, where the residual is `at_rest`, or
+    /// because this is where it was looked for.
     #[inline(always)]
-    pub fn is_principal(&self, solution: &W) -> bool {
-        let certificate = &self.search.certificate;
-        certificate.holds(solution, &self.values)
+    pub fn is_principal(&self, solution: &W, at_rest: &SVector<T, D>) -> bool {
+        self.follows(&G::within(solution), at_rest)
             || self
                 .anchor
                 .is_some_and(|anchor| anchor.holds::<T>(*solution))
     }
 
-    /// What a proof begins with.
+    /// Whether the first correction from rest, by the tangent at hand, comes within a quarter of the way to the solution:
+    /// from there the second one would be as small. Every part and every lane is asked.
+    #[inline(always)]
+    fn follows(&self, solution: &G, at_rest: &SVector<T, D>) -> bool {
+        let search = &*self.search;
+        let Some(correction) = search.factors.solve(&(at_rest * search.unit)) else {
+            return false;
+        };
+        comes_near(&correction, solution, &search.units, &search.noise)
+    }
+
+    /// What is found out about a solution, or about none, begins with this.
     #[cold]
-    pub fn certificate(&mut self) -> &mut Certificate<V, E> {
-        let search = &mut *self.search;
-        search.certificate.ask::<T, G, D>(&search.factors);
-        &mut search.certificate
+    pub fn verdict(&mut self, solution: Option<&W>) -> Verdict<W, E> {
+        // A tangent of some steps ago may be why the test failed.
+        self.search.age = OLDEST_TANGENT;
+        let noise = core::array::from_fn(|b| match E == D {
+            true => self.search.noise.get(b).copied().unwrap_or(0.0),
+            false => 0.0,
+        });
+        Verdict::about(solution.copied().unwrap_or_else(W::identity), noise)
     }
 
     /// Begins again at the principal root. False where that has been done: it cannot be polished.
@@ -500,8 +506,9 @@ where
         let search = &mut *self.search;
         search.unit = unit;
         search.factors.set(tangent, G::DIMENSION);
-        let (factors, trial) = (&search.factors, &self.trial);
-        search.certificate.note(factors, trial, &self.values);
+        if !search.measured {
+            search.measure(tangent);
+        }
         self.search.age = 0;
         self.search.last.tangents += 1;
     }
@@ -566,6 +573,45 @@ where
             residual: self.size,
         })
     }
+}
+
+/// Whether a correction from rest, taken back, comes within a quarter of the way to the solution.
+#[inline(always)]
+fn comes_near<T: Real, G: Group<T>, const D: usize>(
+    correction: &SVector<T, D>,
+    solution: &G,
+    units: &[f64; D],
+    noise: &[f64; D],
+) -> bool {
+    let mut squares = [[T::zero(); 2]; D];
+    solution.compared((-correction).as_slice(), &mut squares);
+    let parts = G::PARTS.min(D);
+    let mut near = true;
+    for lane in 0..T::LANES {
+        for (b, [way, off]) in squares.iter().enumerate().take(parts) {
+            let most = parts::most_of_step(b, units, G::is_pure);
+            near &= parts::is_near([way.lane(lane), off.lane(lane)], most, G::is_pure(b));
+        }
+    }
+    near || near_beside::<T, G, D>(&squares, units, noise)
+}
+
+/// The same where a part hardly moves beside others, or by rounding alone.
+#[cold]
+#[inline(never)]
+fn near_beside<T: Real, G: Group<T>, const D: usize>(
+    squares: &[[T; 2]; D],
+    units: &[f64; D],
+    noise: &[f64; D],
+) -> bool {
+    let parts = Parts::of_group::<T, G>(D);
+    let lanes = 0..T::LANES;
+    let of = |lane: usize| {
+        let squares = squares.iter().take(parts.count());
+        let squares: Vec<[f64; 2]> = squares.map(|s| s.map(|x| x.lane(lane))).collect();
+        parts.are_near(&squares, units, &|b| noise.get(b).copied().unwrap_or(0.0))
+    };
+    lanes.into_iter().all(of)
 }
 
 /// The largest absolute real part over components and lanes; NaN if any is.

@@ -220,7 +220,7 @@ pub(super) fn each_newton<R>(
 }
 
 /// The types of what tangents ask of a node, and `step`.
-pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
+pub(super) fn step(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
     let node = names.local("node");
     let step = variable(s, d.spec.step);
@@ -289,7 +289,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
     let mut values = values.into_iter();
     let mut after = bindings.clone();
     let (mut solves, mut beside) = (TokenStream::new(), TokenStream::new());
-    let (mut node_types, mut remembered) = (TokenStream::new(), TokenStream::new());
+    let mut remembered = TokenStream::new();
     let mut found: Vec<TokenStream> = vec![TokenStream::new(); d.spec.configurations.len()];
     let mut refuses = false;
     let mut side_by_side: BTreeMap<usize, Vec<TokenStream>> = BTreeMap::new();
@@ -427,7 +427,6 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             found[*i] = together.part(quote!(#solved), k);
         }
         beside.extend(code.functions);
-        node_types.extend(code.node_type);
     }
     let moving = d.carries.iter().flat_map(|c| c.parts());
     let updates = super::items::advanced(d).map(|a| &a.update);
@@ -477,7 +476,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) 
             [quote!(Unsolved), quote!(with_searched_step)],
         )
     });
-    (node_types, quote!(#step_function #refused #beside))
+    quote!(#step_function #refused #beside)
 }
 
 /// The locals of quantities that are seen from space at a node, for which letters of variations stand.
@@ -535,7 +534,7 @@ fn refusal(
     let used = Generics::of(d).used();
     let node = names.local("node");
     let method = default_solver(d).map(|_| quote!(let method = work.method;));
-    let trial = filled(d, |_| quote!(newton::Search::to_offer()));
+    let trial = filled(d, |_| quote!(newton::Search::to_try()));
     quote! {
         /// Says how far the step is beyond the bound, and which step could be made.
         #[cold]

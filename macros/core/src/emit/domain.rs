@@ -413,7 +413,7 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
         _ => Default::default(),
     };
     let trials = {
-        let trial = super::blocks::trial(d, "to_offer");
+        let trial = super::blocks::trial(d, "to_try");
         quote! {
             contact.with_trials(h, |h| {
                 let mut moving = *state;

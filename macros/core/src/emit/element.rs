@@ -134,43 +134,6 @@ pub fn ty_over(d: &Derivation, i: usize, scalar: &TokenStream) -> TokenStream {
     }
 }
 
-/// The type of all elements near one, in so many variables.
-pub fn region(d: &Derivation, i: usize, variables: &Literal) -> TokenStream {
-    let s = &d.letters.symbols;
-    match of(d, i) {
-        Family::Rotation => quote!(newton::RotationRegion<#variables>),
-        Family::Orthogonal(n) => {
-            let n = size(s, n);
-            quote!(newton::OrthogonalRegion<#n, #variables>)
-        }
-        Family::Linear(n) => {
-            let n = size(s, n);
-            quote!(newton::LinearRegion<#n, #variables>)
-        }
-        Family::Quaternion => quote!(newton::QuaternionRegion<#variables>),
-        Family::Coordinates(names) => {
-            let name = format_ident!("{}", names.region);
-            quote!(newton::#name<#variables>)
-        }
-        Family::Field(shape) => {
-            let (rows, cols) = (size(s, shape.rows), size(s, shape.cols));
-            quote!(newton::AdditiveRegion<#rows, #cols, #variables>)
-        }
-    }
-}
-
-/// How many variables that takes, in threes, at most.
-pub fn variables(d: &Derivation, i: usize) -> u64 {
-    match of(d, i) {
-        Family::Rotation => 9,
-        Family::Quaternion => 6,
-        Family::Coordinates(names) => names.variables,
-        Family::Orthogonal(_) | Family::Linear(_) | Family::Field(_) => {
-            3 * most_coordinates(d, i).div_ceil(3)
-        }
-    }
-}
-
 /// The numbers of an element as a slice.
 pub fn numbers(d: &Derivation, i: usize, element: TokenStream) -> TokenStream {
     match of(d, i) {

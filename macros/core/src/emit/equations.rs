@@ -3,7 +3,7 @@
 //! blocks of three where the groups are those of space, by coordinates and columns elsewhere.
 
 use super::element::{self, Bundle, stacked};
-use super::expression::{Bindings, program, ty};
+use super::expression::{Bindings, program};
 use super::items::letters_of;
 use super::names::{Names, variable};
 use super::stated::{Stated, stated};
@@ -13,6 +13,7 @@ use crate::derive::parts::{Parts, Velocity};
 use crate::derive::schur_reduction::SchurReduction;
 use crate::derive::tangent::Direction;
 use crate::derive::{Derivation, lie};
+use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 use crate::schedule;
@@ -39,10 +40,10 @@ pub(super) struct Equations<'a> {
 pub(super) struct Written {
     /// What both need of the trial.
     pub at_trial: TokenStream,
-    /// The names that this binds, and their types over `T`.
-    pub velocities: Vec<(Ident, TokenStream)>,
     /// The residual, as the body of a block.
     pub residual: TokenStream,
+    /// The residual of all equations at rest, as the body of a block.
+    pub at_rest: TokenStream,
     /// The tangent, as the body of a block.
     pub tangent: TokenStream,
     /// The side from which the velocity is moved in it.
@@ -70,6 +71,9 @@ pub(super) struct Part {
     /// Which components of the whole residual are left.
     pub rows: Vec<usize>,
 }
+
+/// The shape of a vector of space.
+const THREE: Shape = Shape::vector(Dim::Fixed(3));
 
 /// The rotations of a trial whose translations are solved for.
 pub(super) const TURNED: &str = "turned";
@@ -127,10 +131,8 @@ pub(super) struct Alone {
     pub residual: TokenStream,
     /// The tangent, as the body of a block.
     pub tangent: TokenStream,
-    /// Elements and quantities at the node that the residual needs.
+    /// Elements and quantities at the node that both need.
     pub given: Vec<Letter>,
-    /// Those that the tangent needs.
-    pub values: Vec<Letter>,
 }
 
 impl Equations<'_> {
@@ -178,8 +180,9 @@ impl Equations<'_> {
         });
         let bundle = Bundle::of(d);
         let mut velocities = TokenStream::new();
-        let mut bound = Vec::new();
-        let (three, rotation) = (quote!(SVector<T, 3>), quote!(SMatrix<T, 3, 3>));
+        let mut rest: Vec<(Letter, Expr)> = Vec::new();
+        let mut rests = |id: SymbolId, e: Expr| rest.push((at(id, Shift::HERE), e));
+        let (unmoved, upright) = (expr::zero(THREE), expr::identity(THREE.rows));
         let mut known = TokenStream::new();
         let mut given = Vec::new();
         for (i, (v, value)) in parts.velocities.iter().zip(node).enumerate() {
@@ -187,23 +190,25 @@ impl Equations<'_> {
             let name = |id| variable(s, id);
             match v {
                 Velocity::Rotation(w) => {
+                    rests(*w, upright.clone());
                     let w = name(*w);
                     velocities.extend(quote!(let #w = #part.matrix();));
-                    bound.push((w, rotation.clone()));
                     given.push(value.clone());
                 }
                 Velocity::Quaternion(re, im) => {
+                    rests(*re, expr::integer(1));
+                    rests(*im, unmoved.clone());
                     let (re, im) = (name(*re), name(*im));
                     velocities.extend(quote!(let (#re, #im) = (#part.real(), #part.imaginary());));
-                    bound.extend([(re, quote!(T)), (im, three.clone())]);
                     given.push(value.clone());
                 }
                 Velocity::Motion(rot, pos) => {
+                    rests(*rot, upright.clone());
+                    rests(*pos, unmoved.clone());
                     let (rot, pos) = (name(*rot), name(*pos));
                     velocities.extend(
                         quote!(let (#rot, #pos) = (#part.rotation.matrix(), #part.translation);),
                     );
-                    bound.extend([(rot, rotation.clone()), (pos, three.clone())]);
                     let both = self.names.local(&match i {
                         0 => "momenta_six".to_owned(),
                         _ => format!("momenta_six_{i}"),
@@ -257,10 +262,10 @@ impl Equations<'_> {
             Alone {
                 residual,
                 tangent: tangent_of(&values, lets),
-                given: at_the_node(s, &list),
-                values: at_the_node(s, &whole),
+                given: at_the_node(s, list.iter().chain(&whole)),
             }
         };
+        let at_rest = simpler(&substituted(s, &list, &rest));
         let left = eliminated.map_or(all.clone(), |found| found.left(all.len()));
         let written = |e: &Expr| eliminated.map_or(e.clone(), |found| found.written(e));
         let list: Vec<Expr> = left.iter().map(|i| written(&list[*i])).collect();
@@ -287,6 +292,7 @@ impl Equations<'_> {
         };
         let list: Vec<Expr> = list.iter().map(|e| at_node.apart(e)).collect();
         let blocks: Vec<Expr> = blocks.iter().map(|e| at_node.apart(e)).collect();
+        let at_rest: Vec<Expr> = at_rest.iter().map(|e| at_node.apart(e)).collect();
         let steps = eliminated.map_or_else(Vec::new, |found| found.steps());
         let apart = steps.iter().map(|(id, e)| (*id, at_node.apart(e)));
         let apart: Vec<(SymbolId, Expr)> = apart.collect();
@@ -318,6 +324,9 @@ impl Equations<'_> {
         let p = schedule::program(s, &list, "t");
         let (lets, values) = program(&p, &bindings);
         let residual = residual_of(&values, &left, lets);
+        let p = schedule::program(s, &at_rest, "t");
+        let (lets, values) = program(&p, &bindings);
+        let at_rest = residual_of(&values, &all, lets);
         let p = schedule::program(s, &blocks, "t");
         let (lets, values) = program(&p, &bindings);
         let tangent = tangent_of(&values, lets);
@@ -343,8 +352,8 @@ impl Equations<'_> {
             known,
             Written {
                 at_trial: velocities,
-                velocities: bound,
                 residual,
+                at_rest,
                 tangent,
                 side,
                 times_step,
@@ -453,11 +462,15 @@ impl Equations<'_> {
                 quote!(let #w = #matrix;)
             })
             .collect();
-        let bound = d.spec.configurations.iter().map(|c| {
-            let symbol = s.get(c.velocity);
-            (variable(s, c.velocity), ty(s, symbol.shape))
+        let rest = d.spec.configurations.iter().map(|c| {
+            let shape = s.get(c.velocity).shape;
+            let rest = match c.group.is_additive() {
+                true => expr::zero(shape),
+                false => expr::identity(shape.rows),
+            };
+            (at(c.velocity, Shift::HERE), rest)
         });
-        let bound: Vec<(Ident, TokenStream)> = bound.collect();
+        let rest: Vec<(Letter, Expr)> = rest.collect();
         let node = bundle.value(node);
         let known = quote!(let #mu: #covectors = #node;);
         let momenta: Vec<TokenStream> = (0..bodies).map(|i| bundle.part(quote!(#mu), i)).collect();
@@ -506,6 +519,9 @@ impl Equations<'_> {
         let mut at_node = schedule::LoopInvariants::new(s, &varies, "k");
         let apart: Vec<Expr> = list.iter().map(|e| at_node.apart(e)).collect();
         let derived_apart = columns_apart(&mut at_node, &derived);
+        let at_rest = substituted(s, list, &rest);
+        let at_rest = at_rest.iter().map(|e| expr::simpler(s, e));
+        let at_rest: Vec<Expr> = at_rest.map(|e| at_node.apart(&e)).collect();
         let (symbols, values) = (at_node.symbols, at_node.values);
         let mut at_trial = schedule::LoopInvariants::new(&symbols, &along, "c");
         let of_columns = columns_apart(&mut at_trial, &derived_apart);
@@ -513,6 +529,7 @@ impl Equations<'_> {
         let statements = before.statements;
         let known = quote!(#known #statements);
         let residual = residual_of(&symbols, &apart, &before.bindings);
+        let at_rest = residual_of(&symbols, &at_rest, &before.bindings);
         let once = stated(&at_trial.symbols, at_trial.values, "m", &before.bindings);
         let columns = tangent_of(&at_trial.symbols, &of_columns, &once.bindings);
         let once = once.statements;
@@ -527,15 +544,14 @@ impl Equations<'_> {
         let alone = Alone {
             residual: residual_of(s, list, self.bindings),
             tangent: alone_tangent,
-            given: at_the_node(s, list),
-            values: at_the_node(s, &derived.concat()),
+            given: at_the_node(s, list.iter().chain(derived.iter().flatten())),
         };
         (
             known,
             Written {
                 at_trial: velocities,
-                velocities: bound,
                 residual,
+                at_rest,
                 tangent,
                 side: Side::Body,
                 times_step: false,
@@ -558,8 +574,17 @@ fn columns_apart(known: &mut schedule::LoopInvariants, columns: &[Vec<Expr>]) ->
     all
 }
 
+/// Expressions with other letters.
+fn substituted(s: &Symbols, list: &[Expr], by: &[(Letter, Expr)]) -> Vec<Expr> {
+    let mut all = Vec::with_capacity(list.len());
+    for e in list {
+        all.push(expr::substitute(s, e, by));
+    }
+    all
+}
+
 /// What stands for something at the node: elements and advected quantities.
-fn at_the_node(s: &Symbols, list: &[Expr]) -> Vec<Letter> {
+fn at_the_node<'e>(s: &Symbols, list: impl IntoIterator<Item = &'e Expr>) -> Vec<Letter> {
     let at_node = |l: &Letter| matches!(s.get(l.symbol).role, Role::Element | Role::Advected);
     letters_of(list).into_iter().filter(at_node).collect()
 }

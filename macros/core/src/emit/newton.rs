@@ -38,8 +38,6 @@ pub(super) struct Together<'a> {
 
 /// The code of it.
 pub(super) struct Loop {
-    /// The type of what the tangent asks of a node.
-    pub node_type: TokenStream,
     /// The statements of what is known at the node.
     pub known: TokenStream,
     /// The same as a program, and where it is found, for what comes after the solution.
@@ -57,12 +55,6 @@ impl Together<'_> {
             Some(n) => self.names.local(&format!("{base}_{n}")),
             None => format_ident!("{base}"),
         }
-    }
-
-    /// The type of values at a node that the tangent depends on.
-    pub fn node_type_name(&self) -> Ident {
-        let number = self.number.map(|n| n.to_string()).unwrap_or_default();
-        item(self.whole, &format!("Node{number}"))
     }
 
     /// The type of the velocities together.
@@ -91,16 +83,15 @@ impl Together<'_> {
     /// The type of what Newton's method finds and of all velocities, with the numbers of their coordinates:
     /// what a search has behind its scalar.
     fn kinds(&self, eliminated: Option<&SchurReduction>) -> TokenStream {
-        let used = Generics::of(self.whole).used();
-        let (elements, values) = (self.elements(), self.node_type_name());
+        let elements = self.elements();
         let dimension = element::total(self.block);
         match eliminated {
             Some(found) => {
                 let count = found.rotations.len();
                 let [count, part] = [count, 3 * count].map(Literal::usize_unsuffixed);
-                quote!([Rotation<T>; #count], #values #used, #part, #elements, #dimension)
+                quote!([Rotation<T>; #count], #part, #elements, #dimension)
             }
-            None => quote!(#elements, #values #used, #dimension),
+            None => quote!(#elements, #dimension),
         }
     }
 
@@ -224,6 +215,7 @@ impl Together<'_> {
         };
         let (known, equations) = solved_for.write(&self.momenta(), &node_momenta);
         let (residual_body, tangent_body) = (&equations.residual, &equations.tangent);
+        let at_rest = &equations.at_rest;
         let principal_root = Principal {
             d,
             bindings,
@@ -236,13 +228,9 @@ impl Together<'_> {
             principal: &principal,
             completed_at: &completed_at,
         };
-        let (given, values) = (
-            principal_root.packed(&equations.alone.given),
-            principal_root.packed(&equations.alone.values),
-        );
+        let given = principal_root.packed(&equations.alone.given);
         let given_type = Principal::packed_type(d, &equations.alone.given);
         let momenta_type = &equations.momenta;
-        let values_type = self.node_type_name();
         let functions = principal_root.functions();
         let configurations = d.spec.configurations.iter().map(|c| &s.get(c.element).name);
         let contact = self.contact(&step, &newton);
@@ -254,6 +242,15 @@ impl Together<'_> {
         let of_work = chosen.map(|_| quote!(, work.method));
         let (decided, only_root) = self.convex(bindings);
         let at_whole = &equations.at_trial;
+        // The tangent of all equations at rest is the same at every node where a part of them is solved.
+        let is_principal = match &equations.part {
+            Some(_) => quote! {
+                is_part_of_principal(&#solved.element, &{ #at_rest }, || {
+                    Self::#tangent_at(&self.parameters, #step, &#given, &Group::<T>::identity())
+                })
+            },
+            None => quote!(is_principal(&#solved.element, &{ #at_rest })),
+        };
         let (at_trial, wants, correct) = match &equations.part {
             Some(part) => {
                 let (turned, at_trial) = (format_ident!("{TURNED}"), &part.at_trial);
@@ -282,7 +279,7 @@ impl Together<'_> {
         };
         let solve = quote! {
             #decided
-            let mut #newton = work.#search.begin(state.#node, #values);
+            let mut #newton = work.#search.begin(state.#node);
             loop {
                 #begins
                 if #newton.wants_scale() {
@@ -294,7 +291,7 @@ impl Together<'_> {
                 }
                 match #newton.#correct {
                     newton::Progress::Continue => {}
-                    newton::Progress::Solved(#solved) if #only_root #newton.is_principal(&#solved.element) => break #solved,
+                    newton::Progress::Solved(#solved) if #only_root #newton.#is_principal => break #solved,
                     #ended => {
                         if let Some(#solved) = self.#settled(#step, *state, #given, #mu, &mut #newton, #ended #of_work)? {
                             break #solved;
@@ -326,8 +323,7 @@ impl Together<'_> {
                     newton::Progress::Failed(e) => Err(e),
                 };
                 let asked = failed.as_ref().ok().map(|solved| &solved.element);
-                let values = #newton.values();
-                let traced = self.#principal(#step, &given, &values, &#mu, #newton.certificate(), asked);
+                let traced = self.#principal(#step, &given, &#mu, #newton.verdict(asked), asked);
                 let e = match (traced, failed) {
                     (Ok(None), Ok(solved)) => return Ok(Some(solved)),
                     (Ok(Some(root)), _) if #newton.restart(root) => return Ok(None),
@@ -355,7 +351,6 @@ impl Together<'_> {
             #functions
         };
         Loop {
-            node_type: principal_root.node_type(&values_type),
             known,
             computed: equations.computed.clone(),
             solve,
@@ -470,8 +465,8 @@ pub(super) fn inverses(together: &Together) -> Vec<Inverse> {
         .collect()
 }
 
-/// The type of what the tangent asks of a node, and `step`, where all velocities are found together.
-pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
+/// `step`, where all velocities are found together.
+pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     let members: Vec<usize> = (0..d.spec.configurations.len()).collect();
     let block = with_all_multipliers(d);
     let all = all(d, &block, names, &members);
@@ -485,7 +480,6 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
     let work = item(d, "Workspace");
     let search = format_ident!("search");
     let Loop {
-        node_type,
         known,
         computed,
         solve,
@@ -535,5 +529,5 @@ pub fn step(d: &Derivation, names: &Names) -> (TokenStream, TokenStream) {
             #rest
         },
     );
-    (node_type, quote!(#step #functions))
+    quote!(#step #functions)
 }

@@ -1,5 +1,5 @@
-//! What the proof that a root is the principal one asks of a model: residual and tangent of one
-//! step as functions of the values at its node, over any scalar.
+//! What the search for the principal root asks of a model: residual and tangent of one step as functions of the values
+//! at its node, over any scalar.
 //! Takes the equations; gives the functions.
 
 use super::element::{self, Bundle};
@@ -9,13 +9,9 @@ use super::items::parameter_locals;
 use super::names::{item, variable};
 use super::sizes::Generics;
 use crate::derive::Derivation;
-use crate::expr::shape::Structure;
 use crate::expr::{Letter, Shift};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
-
-/// More variables than this are bounded together: numbers that follow each of them get long.
-const MOST_VARIABLES: u64 = 36;
 
 /// Where the functions come from.
 pub(super) struct Principal<'a> {
@@ -42,39 +38,17 @@ pub(super) struct Principal<'a> {
 }
 
 impl Principal<'_> {
-    /// How the values of a letter are kept: rotations have entries between -1 and 1.
-    fn is_turn(&self, l: Letter) -> bool {
-        let symbol = self.d.letters.symbols.get(l.symbol);
-        match symbol.structure {
-            Structure::Orthogonal | Structure::UnitQuaternion => true,
-            Structure::General
-            | Structure::Invertible
-            | Structure::Symmetric
-            | Structure::Skew
-            | Structure::Diagonal
-            | Structure::RigidMotion => false,
-        }
-    }
-
     /// Values at the node, one inside the other.
     pub fn packed(&self, letters: &[Letter]) -> TokenStream {
         let s = &self.d.letters.symbols;
         letters.iter().rev().fold(quote!([]), |rest, l| {
             let local = self.bindings.local(s, *l);
-            let value = match (s.get(l.symbol).shape.is_scalar(), self.is_turn(*l)) {
-                (true, _) => quote!(SMatrix::<T, 1, 1>::repeat(#local)),
-                (false, true) => quote!(newton::Turn(#local)),
-                (false, false) => quote!(#local),
+            let value = match s.get(l.symbol).shape.is_scalar() {
+                true => quote!(SMatrix::<T, 1, 1>::repeat(#local)),
+                false => quote!(#local),
             };
             quote!((#value, #rest))
         })
-    }
-
-    /// The type of the values that the tangent needs.
-    pub fn node_type(&self, name: &Ident) -> TokenStream {
-        let declared = Generics::of(self.d).parameters();
-        let values = Self::packed_type(self.d, &self.equations.alone.values);
-        quote!(type #name #declared = #values;)
     }
 
     /// Their type.
@@ -82,15 +56,11 @@ impl Principal<'_> {
         let s = &d.letters.symbols;
         letters.iter().rev().fold(quote!([T; 0]), |rest, l| {
             let shape = s.get(l.symbol).shape;
-            let own = ty(s, shape);
-            let kept = match (shape.is_scalar(), s.get(l.symbol).structure) {
-                (true, _) => quote!(SMatrix<T, 1, 1>),
-                (_, Structure::Orthogonal | Structure::UnitQuaternion) => {
-                    quote!(newton::Turn<#own>)
-                }
-                _ => own,
+            let own = match shape.is_scalar() {
+                true => quote!(SMatrix<T, 1, 1>),
+                false => ty(s, shape),
             };
-            quote!((#kept, #rest))
+            quote!((#own, #rest))
         })
     }
 
@@ -101,10 +71,9 @@ impl Principal<'_> {
         let mut out = TokenStream::new();
         for l in letters {
             let local = self.bindings.local(s, *l);
-            let value = match (s.get(l.symbol).shape.is_scalar(), self.is_turn(*l)) {
-                (true, _) => quote!(#at.0[0]),
-                (false, true) => quote!(#at.0.0),
-                (false, false) => quote!(#at.0),
+            let value = match s.get(l.symbol).shape.is_scalar() {
+                true => quote!(#at.0[0]),
+                false => quote!(#at.0),
             };
             out.extend(quote!(let #local = #value;));
             at = quote!(#at.1);
@@ -133,14 +102,9 @@ impl Principal<'_> {
         let bodies = d.spec.configurations.len();
         let step = variable(s, d.spec.step);
         let dimension = element::total(d);
-        let variables: u64 = (0..bodies).map(|i| element::variables(d, i)).sum();
-        let variables = match variables {
-            n if n <= MOST_VARIABLES => Literal::usize_unsuffixed(n as usize),
-            _ => Literal::usize_unsuffixed(0),
-        };
         let types: Vec<TokenStream> = (0..bodies).map(|i| element::ty(d, i)).collect();
         let elements = bundle.ty(&types);
-        let (plain, bound) = (quote!(f64), quote!(newton::Enclosure<#variables>));
+        let plain = quote!(f64);
         let over = |scalar: &TokenStream| {
             let types: Vec<TokenStream> = (0..bodies)
                 .map(|i| element::ty_over(d, i, scalar))
@@ -156,14 +120,9 @@ impl Principal<'_> {
                 .collect();
             bundle.value(&parts)
         };
-        let (given_letters, values_letters) = (&equations.alone.given, &equations.alone.values);
-        let given_type = Self::packed_type(d, given_letters);
-        let values_type = Self::packed_type(d, values_letters);
-        let (given, values) = (format_ident!("given"), format_ident!("values"));
-        let (open_given, open_values) = (
-            self.unpacked(&given, given_letters),
-            self.unpacked(&values, values_letters),
-        );
+        let given_type = Self::packed_type(d, &equations.alone.given);
+        let given = format_ident!("given");
+        let open_given = self.unpacked(&given, &equations.alone.given);
         let parameters = {
             let all: Vec<Letter> = d
                 .spec
@@ -185,15 +144,9 @@ impl Principal<'_> {
             let used = g.used_over_tokens(scalar);
             quote!(#name::#used)
         };
-        let rounded = quote!(newton::Enclosure<0>);
+        let rounded = quote!(newton::Rounded);
         let plain_elements = over(&plain);
-        let regions: Vec<TokenStream> = (0..bodies)
-            .map(|i| element::region(d, i, &variables))
-            .collect();
-        let regions = bundle.ty(&regions);
-        let (velocity_names, velocity_types): (Vec<Ident>, Vec<TokenStream>) =
-            equations.velocities.iter().cloned().unzip();
-        let (model_rounded, model_plain, model_bound) = (own(&rounded), own(&plain), own(&bound));
+        let (model_rounded, model_plain) = (own(&rounded), own(&plain));
         let trial_over = changed(quote!(#trial));
         let found_over = changed(quote!(found));
         let put = (0..bodies).map(|i| {
@@ -228,7 +181,7 @@ impl Principal<'_> {
             }
             None => all,
         };
-        let all_rows = quote!(#model_rounded::#residual_at(&parameters, step, &given, &momenta, &trial).map(|x| x.rest()));
+        let all_rows = quote!(#model_rounded::#residual_at(&parameters, step, &given, &momenta, &trial).map(|x| x.error()));
         let rows = part.map_or(dimension.clone(), |part| {
             Literal::usize_unsuffixed(part.rows.len())
         });
@@ -251,9 +204,10 @@ impl Principal<'_> {
             #[cold]
             #[inline(never)]
             #[allow(unused_variables)]
-            fn #tangent_at(parameters: &#given_parameters #used, #step: T, #values: &#values_type, #(#velocity_names: #velocity_types),*) -> SMatrix<T, #dimension, #dimension> {
+            fn #tangent_at(parameters: &#given_parameters #used, #step: T, #given: &#given_type, #trial: &#elements) -> SMatrix<T, #dimension, #dimension> {
                 #parameters
-                #open_values
+                #open_given
+                #at_trial
                 #tangent
             }
 
@@ -261,10 +215,10 @@ impl Principal<'_> {
             #[cold]
             #[inline(never)]
             fn #rounding(&self, #step: T, #given: &#given_type, #momenta: &#momenta_type, #trial: &#elements, lane: usize) -> SVector<f64, #rows> {
-                let change = &mut |x: T| newton::Enclosure::<0>::exactly(x.lane(lane));
+                let change = &mut |x: T| newton::Rounded::exactly(x.lane(lane));
                 let parameters = self.parameters.over(change);
                 let (step, given, momenta) = (#step.over(change), #given.over(change), #momenta_over);
-                let change = &mut |x: T| newton::Enclosure::<0>::rounded(x.lane(lane));
+                let change = &mut |x: T| newton::Rounded::once(x.lane(lane));
                 let trial = #trial_over;
                 #completing
                 #rounded_rows
@@ -277,43 +231,28 @@ impl Principal<'_> {
                 &self,
                 #step: T,
                 #given: &#given_type,
-                #values: &#values_type,
                 #momenta: &#momenta_type,
-                certificate: &mut newton::Certificate<#values_type, #dimension>,
+                mut verdict: newton::Verdict<#elements, #dimension>,
                 solution: Option<&#elements>,
             ) -> Result<Option<newton::Anchor<#elements, #dimension>>, newton::Fold> {
-                let first = solution.copied().unwrap_or_else(Group::<T>::identity);
-                let mut verdict = newton::Verdict::<#elements, #dimension>::about(first);
                 for lane in 0..T::LANES {
-                    let change = &mut |x: T| newton::Enclosure::<#variables>::exactly(x.lane(lane));
-                    let (bound, bound_step) = (self.parameters.over(change), #step.over(change));
                     let change = &mut |x: T| x.lane(lane);
                     let (parameters, step) = (self.parameters.over(change), #step.over(change));
-                    let (given, near, momenta) = (#given.over(change), #values.over(change), #momenta_over);
+                    let (given, momenta) = (#given.over(change), #momenta_over);
                     let found = match solution {
                         Some(found) => Some(#found_over),
                         None => None,
                     };
                     let equations = newton::Equations {
                         residual: &|trial: &#plain_elements| #model_plain::#residual_at(&parameters, step, &given, &momenta, trial),
-                        tangent: &|#trial: &#plain_elements| {
-                            #at_trial
-                            #model_plain::#tangent_at(&parameters, step, &near, #(#velocity_names),*)
-                        },
-                        enclosed: &|spread, #trial: &#regions| {
-                            #at_trial
-                            let values = newton::NodeValues::enclosed(#values, lane, spread);
-                            #model_bound::#tangent_at(&bound, bound_step, &values, #(#velocity_names),*)
-                        },
+                        tangent: &|trial: &#plain_elements| #model_plain::#tangent_at(&parameters, step, &given, trial),
                     };
-                    let care = certificate.care();
-                    let traced = newton::trace(&equations, found.as_ref(), care);
-                    if let Some(root) = verdict.add(traced.map_err(|fold| fold.in_lane(lane))?) {
+                    if let Some(root) = verdict.trace(lane, &equations, found.as_ref())? {
                         let all = verdict.root_mut();
                         #(#put)*
                     }
                 }
-                Ok(verdict.close(certificate, #values))
+                Ok(verdict.elsewhere())
             }
         }
     }

@@ -60,12 +60,6 @@ impl Generics {
         quote!(<#(const #list: usize,)* T = f64>)
     }
 
-    /// As a name for a type declares them: `<const N: usize, T>`.
-    pub fn parameters(&self) -> TokenStream {
-        let list = &self.constants;
-        quote!(<#(const #list: usize,)* T>)
-    }
-
     /// As an `impl` binds them: `<const N: usize, T: Real>`.
     pub fn bound(&self) -> TokenStream {
         let list = &self.constants;

@@ -30,7 +30,6 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     let factor = items::factor_of_state(d);
     let access = advected_access(d, names);
     let held = super::holds::functions(d, names);
-    let mut beside = TokenStream::new();
     let step = match (&d.solve.method, d.solve.riccati.first()) {
         (Method::FreeMoserVeselov, _) => free_step(d, names),
         (Method::ForcedMoserVeselov, Some(StepEquation::Exact(mv))) => {
@@ -42,23 +41,13 @@ pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
         (Method::LeftFactor | Method::Davenport, Some(StepEquation::Exact(mv))) => {
             super::left_factor::step(d, names, mv)
         }
-        (Method::Blocks, _) => {
-            let (values, step) = super::blocks::step(d, names);
-            beside = values;
-            step
-        }
-        _ => {
-            let (values, step) = super::newton::step(d, names);
-            beside = values;
-            step
-        }
+        (Method::Blocks, _) => super::blocks::step(d, names),
+        _ => super::newton::step(d, names),
     };
     let tested = super::domain::tested_step(d, names);
     let g = Generics::of(d);
     let (bound, used) = (g.bound(), g.used());
     quote! {
-        #beside
-
         impl #bound #name #used {
             #start
             #factor

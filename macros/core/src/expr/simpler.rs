@@ -14,13 +14,20 @@ pub fn simpler(symbols: &Symbols, e: &Expr) -> Expr {
         Node::Vee(a) => match a.node() {
             Node::Sum(terms) => {
                 let own = |t: &Expr| upright(symbols, t).map_or_else(|| t.clone(), neg);
-                vee(sum(terms.iter().map(own).collect::<Vec<_>>(), a.shape()))
+                let turned = terms.iter().filter(|t| !is_symmetric(symbols, t));
+                vee(sum(turned.map(own).collect::<Vec<_>>(), a.shape()))
             }
+            _ if is_symmetric(symbols, a) => zero(e.shape()),
             _ => upright(symbols, a).map_or(e, |turned| neg(vee(turned))),
         },
         Node::Trace(a) => upright(symbols, a).map_or(e, trace),
         _ => e,
     }
+}
+
+/// Whether the transpose is the same expression: it has no axial vector.
+fn is_symmetric(symbols: &Symbols, e: &Expr) -> bool {
+    transpose(symbols, e.clone()) == *e
 }
 
 /// The transpose, where less is transposed in it.
@@ -154,6 +161,11 @@ mod tests {
             vee(sub(other, mul(q.clone(), a.clone())))
         );
         assert_eq!(simpler(&s, &trace(word)), trace(mul(q.clone(), a.clone())));
+        assert!(simpler(&s, &vee(a.clone())).is_zero());
+        assert_eq!(
+            simpler(&s, &vee(add(a.clone(), b.clone()))),
+            vee(b.clone())
+        );
         // Nothing is saved.
         for stays in [
             mul(less(b.clone()), q.clone()),

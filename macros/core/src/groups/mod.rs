@@ -231,10 +231,6 @@ pub struct Names {
     pub element: &'static str,
     /// The type of momenta, after the name of the frame.
     pub momentum: &'static str,
-    /// The type of all elements near one.
-    pub region: &'static str,
-    /// How many variables that takes, in threes.
-    pub variables: u64,
     /// How many coordinates the Lie algebra has.
     pub coordinates: u32,
     /// What case files call an element.

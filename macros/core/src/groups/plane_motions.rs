@@ -88,8 +88,6 @@ impl Record for PlaneMotions {
         Kept::Coordinates(Names {
             element: "PlaneMotion",
             momentum: "PlaneImpulse",
-            region: "PlaneMotionRegion",
-            variables: 9,
             coordinates: 3,
             kind: "RigidMotion",
             words: "position, body to plane",

@@ -87,8 +87,6 @@ impl Record for RigidMotions {
         Kept::Coordinates(Names {
             element: "RigidMotion",
             momentum: "Impulse",
-            region: "MotionRegion",
-            variables: 12,
             coordinates: 6,
             kind: "RigidMotion",
             words: "position, body to space",

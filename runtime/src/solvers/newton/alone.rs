@@ -17,10 +17,10 @@ pub fn solve<T: Real, G: Group<T>, const D: usize>(
     mut residual: impl FnMut(&G) -> SVector<T, D>,
     mut tangent: impl FnMut(&G) -> SMatrix<T, D, D>,
 ) -> Result<Solved<G>, NewtonError> {
-    let mut search = Search::<T, G, [T; 0], D, G, D>::from_rest();
+    let mut search = Search::<T, G, D, G, D>::from_rest();
     search.past = [guess; 2 * REMEMBERED];
     (search.known, search.next) = (1, 1);
-    let mut newton = search.begin(1, []);
+    let mut newton = search.begin(1);
     // One attempt.
     newton.attempt = LAST_ATTEMPT;
     let rounding = SVector::repeat(scale * BOUND_ROUNDINGS * f64::EPSILON / 2.0);

@@ -4,20 +4,14 @@
 //! bit.
 //! Takes a chart of the group, residuals and tangents; gives a converged element or an error.
 
-mod certificate;
-mod curve;
-mod lasting;
-mod principal;
-mod region;
+mod chart;
 mod saved;
-mod stage;
 
-pub use curve::{Bounds, Chart, Enclosed, Lane, Parts};
+pub use chart::{Chart, Lane};
 
 use super::corrections::{Corrections, Next, Residual};
-use super::node::Spread;
-use super::principal::Fold;
-use super::scale::Tangent;
+use super::principal::{Fold, Traced, trace};
+use super::scale::{Tangent, measures};
 use super::{
     BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, LAST_ATTEMPT, LATE, LEAST_SHARE, MOST_ITERATIONS,
     NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, Progress, REMEMBERED, Solved,
@@ -25,69 +19,9 @@ use super::{
 };
 use crate::linalg::{Dense, DenseFactors};
 use crate::scalar::Real;
-use crate::solvers::newton::certificate::Purpose;
-use certificate::Certificate;
-use core::fmt::Debug;
-use principal::{Found, trace_lane};
 
 /// The rounding of plain numbers.
 const UNIT: f64 = <f64 as Real>::EPSILON;
-
-/// Values at a node that the tangent depends on, as [`NodeValues`](super::NodeValues).
-#[derive(Clone, Debug, PartialEq)]
-pub struct NodeList {
-    /// One after the other.
-    pub values: Vec<NodeValue>,
-}
-
-/// One of them.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NodeValue {
-    /// Its entries.
-    pub numbers: Vec<f64>,
-    /// Whether they are between -1 and 1.
-    pub turn: bool,
-}
-
-impl NodeValue {
-    /// The middle and the radius of each entry over all nodes as near as that.
-    pub fn enclosed(&self, spread: Spread) -> impl Iterator<Item = [f64; 2]> {
-        let turned = self.turn && spread.turned;
-        let radius = spread.share * crate::scalar::largest(self.numbers.iter().copied());
-        self.numbers.iter().map(move |x| match turned {
-            true => [0.0, 1.0],
-            false => [*x, radius],
-        })
-    }
-
-    fn is_near(&self, other: &Self, spread: Spread) -> bool {
-        if self.turn && spread.turned {
-            return true;
-        }
-        let (mut most, mut off) = (0.0, 0.0);
-        for (x, y) in self.numbers.iter().zip(&other.numbers) {
-            let (size, change) = (y.abs(), (x - y).abs());
-            most = if size > most { size } else { most };
-            // NaN must not hide.
-            off = if change <= off { off } else { change };
-        }
-        off <= spread.share * most
-    }
-}
-
-impl NodeList {
-    fn any(&self) -> bool {
-        !self.values.is_empty()
-    }
-
-    fn is_near(&self, others: &Self, spread: Spread) -> bool {
-        let mut near = true;
-        for (own, other) in self.values.iter().zip(&others.values) {
-            near &= own.is_near(other, spread);
-        }
-        near
-    }
-}
 
 /// A solution to be polished, in the only place where it may be.
 #[derive(Clone, Debug)]
@@ -105,7 +39,13 @@ pub struct AnySearch<C: Chart> {
     weights: Vec<f64>,
     lengths: Vec<f64>,
     weighed: u32,
-    certificate: Certificate,
+    units: Vec<f64>,
+    noise: Vec<f64>,
+    measured: bool,
+    /// Whether no step follows.
+    tries: bool,
+    /// The tangent of all equations at rest and the units of its parts, where some unknowns are solved for beforehand.
+    whole: Option<(DenseFactors, Vec<f64>)>,
     factors: DenseFactors,
     unit: f64,
     age: u32,
@@ -115,46 +55,42 @@ impl<C: Chart> AnySearch<C> {
     /// Nothing known: the first guess is the neutral element. Blocks of three are factored without exchange
     /// of rows only where `in_blocks`: where a static size is that of the equations.
     #[must_use]
-    pub fn new(dimension: usize, in_blocks: bool, purpose: Purpose) -> Self {
+    pub fn new(dimension: usize, in_blocks: bool, tries: bool) -> Self {
         Self {
             past: Vec::new(),
             next: 0,
             weights: vec![0.0; dimension],
             lengths: vec![0.0; dimension],
             weighed: OLDEST_SCALE,
-            certificate: Certificate::none(purpose),
+            units: Vec::new(),
+            noise: Vec::new(),
+            measured: false,
+            tries,
+            whole: None,
             factors: DenseFactors::none(dimension, in_blocks),
             unit: 1.0,
             age: OLDEST_TANGENT,
         }
     }
 
-    /// From here on steps are only tried: their roots are followed from rest without a proof.
+    /// From here on steps are only tried.
     pub fn only_try(&mut self) {
-        self.certificate.purpose = Purpose::Trial;
+        self.tries = true;
     }
 
-    /// What its steps are made for.
+    /// Whether no step follows.
     #[must_use]
-    pub fn purpose(&self) -> Purpose {
-        self.certificate.purpose
+    pub fn tries(&self) -> bool {
+        self.tries
     }
 
     /// Begins the solution of the step that leaves `node`: see [`Search::begin`](super::Search::begin).
     /// `whole` is the chart of all unknowns, where some are solved for beforehand.
-    pub fn begin<'a>(
-        &'a mut self,
-        [chart, whole]: [&'a C; 2],
-        node: u64,
-        values: NodeList,
-    ) -> AnyNewton<'a, C> {
+    pub fn begin<'a>(&'a mut self, [chart, whole]: [&'a C; 2], node: u64) -> AnyNewton<'a, C> {
         if node != self.next {
             self.past.clear();
             self.age = OLDEST_TANGENT;
             self.weighed = OLDEST_SCALE;
-        }
-        if self.certificate.wants_tangent(&values) {
-            self.age = OLDEST_TANGENT;
         }
         let foreseen = self.past.len() > 1;
         let (trial, attempt) = match foreseen {
@@ -169,7 +105,6 @@ impl<C: Chart> AnySearch<C> {
             search: self,
             chart,
             whole,
-            values,
             trial,
             attempt,
             anchor: None,
@@ -208,7 +143,6 @@ impl<C: Chart> AnySearch<C> {
         self.next = node + 1;
         self.age = self.age.saturating_add(1);
         self.weighed = self.weighed.saturating_add(1);
-        self.certificate.left = self.certificate.left.saturating_sub(1);
     }
 }
 
@@ -218,7 +152,6 @@ pub struct AnyNewton<'a, C: Chart> {
     search: &'a mut AnySearch<C>,
     chart: &'a C,
     whole: &'a C,
-    values: NodeList,
     trial: C::Element,
     attempt: u32,
     anchor: Option<Anchor<C::Element>>,
@@ -237,16 +170,10 @@ impl<C: Chart> AnyNewton<'_, C> {
         &self.trial
     }
 
-    /// The values at the node that the tangent depends on.
-    #[must_use]
-    pub fn values(&self) -> &NodeList {
-        &self.values
-    }
-
     /// Whether no step follows.
     #[must_use]
     pub fn tries(&self) -> bool {
-        self.search.certificate.purpose != Purpose::Run
+        self.search.tries
     }
 
     /// Whether the sizes of the terms are not known, or too old.
@@ -281,18 +208,49 @@ impl<C: Chart> AnyNewton<'_, C> {
             *weight = (1.0 / scale).min(f64::MAX);
         }
         self.search.lengths = inverses;
+        self.search.measured = false;
         self.search.weighed = 0;
     }
 
-    /// Whether the solution found is the principal root.
+    /// Whether the solution found is the principal root: see [`Newton::is_principal`](super::Newton::is_principal).
     #[must_use]
-    pub fn is_principal(&self, solution: &C::Element) -> bool {
-        let certificate = &self.search.certificate;
-        certificate.holds(self.whole, solution, &self.values)
-            || self.anchor.as_ref().is_some_and(|anchor| {
-                let from = self.whole.between(&anchor.root, solution);
-                self.whole.is_within(&from, &anchor.reach)
-            })
+    pub fn is_principal(&self, solution: &C::Element, at_rest: &[f64]) -> bool {
+        self.follows(solution, at_rest) || self.holds(solution)
+    }
+
+    /// The same of all unknowns: see [`Newton::is_part_of_principal`](super::Newton::is_part_of_principal).
+    pub fn is_part_of_principal(
+        &mut self,
+        solution: &C::Element,
+        at_rest: &[f64],
+        tangent: impl FnOnce() -> Dense<f64>,
+    ) -> bool {
+        let (chart, size) = (self.whole, self.whole.parts().dimension());
+        let (factors, units) = self.search.whole.get_or_insert_with(|| {
+            let tangent = tangent();
+            let units = chart.parts().units(&|i, j| tangent.at(i, j));
+            let mut factors = DenseFactors::none(size, true);
+            factors.set(tangent);
+            (factors, units)
+        });
+        let correction = factors.solve(at_rest);
+        correction.is_some_and(|x| comes_near(chart, &x, solution, units, &|_| 0.0))
+            || self.holds(solution)
+    }
+
+    fn holds(&self, solution: &C::Element) -> bool {
+        self.anchor.as_ref().is_some_and(|anchor| {
+            let from = self.whole.between(&anchor.root, solution);
+            self.whole.is_within(&from, &anchor.reach)
+        })
+    }
+
+    fn follows(&self, solution: &C::Element, at_rest: &[f64]) -> bool {
+        let (search, chart) = (&*self.search, self.chart);
+        let right: Vec<f64> = at_rest.iter().map(|x| x * search.unit).collect();
+        let noise = |b: usize| search.noise.get(b).copied().unwrap_or(0.0);
+        let correction = search.factors.solve(&right);
+        correction.is_some_and(|x| comes_near(chart, &x, solution, &search.units, &noise))
     }
 
     /// Looks whether the solution, or else which element, is the principal root. None where it is, or where
@@ -306,16 +264,15 @@ impl<C: Chart> AnyNewton<'_, C> {
         equations: &Lane<C>,
         solution: Option<&C::Element>,
     ) -> Result<Settled, Fold> {
-        let certificate = &mut self.search.certificate;
-        certificate.ask(self.chart.parts(), &self.search.factors, &self.values);
-        let care = certificate.care(&self.values);
-        match trace_lane(equations, solution, care)? {
-            Found::Principal { reach, spread } => {
-                certificate.close(reach, spread, &self.values);
-                Ok(Settled::Principal)
-            }
-            Found::Elsewhere { root, reach } => {
-                certificate.misses = certificate.misses.wrapping_add(1);
+        // A tangent of some steps ago may be why the test failed.
+        self.search.age = OLDEST_TANGENT;
+        let noise = match self.chart.parts() == self.whole.parts() {
+            true => self.search.noise.as_slice(),
+            false => &[],
+        };
+        match trace(&equations.with_noise(noise), solution)? {
+            Traced::Principal => Ok(Settled::Principal),
+            Traced::Elsewhere { root, reach } => {
                 if self.anchor.is_some() {
                     return Ok(Settled::Unpolished);
                 }
@@ -364,9 +321,12 @@ impl<C: Chart> AnyNewton<'_, C> {
     pub fn set_tangent_times(&mut self, tangent: Dense<f64>, unit: f64) {
         let search = &mut *self.search;
         search.unit = unit;
+        if !search.measured {
+            let entry = |i, j| tangent.at(i, j) / unit;
+            (search.units, search.noise) = measures(self.chart.parts(), &entry, &search.weights);
+            search.measured = true;
+        }
         search.factors.set(tangent);
-        let (factors, trial) = (&search.factors, &self.trial);
-        (search.certificate).note(self.chart, factors, trial, &self.values);
         search.age = 0;
     }
 
@@ -498,6 +458,20 @@ impl<C: Chart> AnyNewton<'_, C> {
             },
         }
     }
+}
+
+/// Whether a correction from rest, taken back, comes within a quarter of the way to the solution.
+fn comes_near<C: Chart>(
+    chart: &C,
+    correction: &[f64],
+    solution: &C::Element,
+    units: &[f64],
+    noise: &dyn Fn(usize) -> f64,
+) -> bool {
+    let step: Vec<f64> = correction.iter().map(|x| -x).collect();
+    let mut squares = vec![[0.0; 2]; chart.parts().count()];
+    chart.compared(solution, &step, &mut squares);
+    chart.parts().are_near(&squares, units, noise)
 }
 
 /// The largest absolute value of numbers in these units; NaN where one is.

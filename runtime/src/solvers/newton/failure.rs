@@ -2,7 +2,7 @@
 //! step could have been made from the same state.
 //! Takes the last residual and a way to try other steps; gives the error.
 
-use super::{Fold, Found, LAST_ATTEMPT, MOST_ITERATIONS, Newton, NodeValues, Progress, Search};
+use super::{Fold, Found, LAST_ATTEMPT, MOST_ITERATIONS, Newton, Progress, Search};
 use crate::groups::{Coordinate, Group};
 use crate::said::{AtMost, Plain, Times, in_lane, instead};
 use crate::scalar::Real;
@@ -130,25 +130,21 @@ impl NewtonError {
     #[cold]
     #[inline(never)]
     #[must_use]
-    pub fn explained<T, G, V, const D: usize, W, const E: usize>(
+    pub fn explained<T, G, const D: usize, W, const E: usize>(
         self,
         h: T,
         configurations: &'static &'static [&'static str],
-        step: impl Fn(T, Search<T, G, V, D, W, E>) -> Result<(), StepError>,
+        step: impl Fn(T, Search<T, G, D, W, E>) -> Result<(), StepError>,
     ) -> Self
     where
         T: Real,
         G: Group<T> + Found<W>,
-        V: NodeValues<Scalar = T>,
         W: Group<T>,
     {
-        self.explained_by(h, configurations, &|h, offers| match offers {
-            true => step(h, Search::to_offer()),
-            false => step(h, Search::to_try()),
-        })
+        self.explained_by(h, configurations, &|h| step(h, Search::to_try()))
     }
 
-    /// The same, where `step` is told whether its step is to be offered.
+    /// The same, where `step` makes its own search.
     #[cold]
     #[inline(never)]
     #[must_use]
@@ -156,13 +152,13 @@ impl NewtonError {
         self,
         h: T,
         configurations: &'static &'static [&'static str],
-        step: &dyn Fn(T, bool) -> Result<(), StepError>,
+        step: &dyn Fn(T) -> Result<(), StepError>,
     ) -> Self {
         if self.tried {
             return self;
         }
         let nearest = Cell::new(self);
-        let tried = |share: f64, offers| match step(h * T::from_f64(share), offers) {
+        let tried = |share: f64| match step(h * T::from_f64(share)) {
             Ok(()) => Some(0.0),
             Err(StepError {
                 cause: StepCause::Newton(e),
@@ -173,7 +169,7 @@ impl NewtonError {
             }
             Err(_) => None,
         };
-        let share = confirmed_step(&|share| tried(share, false), &|share| tried(share, true));
+        let share = confirmed_step(&tried, &tried);
         let NewtonError { worst, lane, .. } = match share > 0.0 && share < 1.0 {
             true => nearest.get(),
             false => self,
@@ -255,8 +251,7 @@ impl fmt::Display for NewtonError {
 
 impl std::error::Error for NewtonError {}
 
-impl<T: Real, G, V: NodeValues<Scalar = T>, const D: usize, W: Group<T>, const E: usize>
-    Newton<'_, T, G, V, D, W, E>
+impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Newton<'_, T, G, D, W, E>
 where
     G: Group<T> + Found<W>,
 {

@@ -1,91 +1,67 @@
-//! The principal root of the equations of a step.
+//! The principal root of the equations of a step, followed from rest.
 //!
-//! With the momenta `m` of the node and everything known there held fixed, the equations read
-//! `T(Ω) = m`. Their principal root is the end of the curve `T(Ω_τ) = T_0 + τ (m - T_0)` that
-//! starts at rest, `Ω_0 = 1`, `T_0 = T(1)`, as `τ` goes from 0 to 1; it exists as long as the
-//! tangent stays regular along the curve and the curve in the domain of the equations. Where the
-//! tangent becomes singular, at a fold, the curve turns back: beyond it the equations may have
-//! other roots, which no motion of small steps leads to.
+//! With the momenta `m` of the node and everything known there held fixed, the equations read `P(v) = m`. Their
+//! principal root is the end of the curve `P(v) = (1 - τ) P(0) + τ m` that begins at rest as `τ` goes from 0 to 1.
+//! Where the tangent becomes singular, at a fold, the curve turns back: the equations may have other roots beyond, to
+//! which no motion of small steps leads.
 //!
-//! Along a trajectory of principal roots the velocity changes continuously, unless a step comes to
-//! a fold, where it is refused. The converse does not hold: a root that follows the last one
-//! continuously may have passed around a fold, and is no principal one then. Such a step is refused.
+//! The curve is followed in stages. A stage is accepted where its first two corrections by one tangent fall by a factor
+//! of four, which bounds how the tangent changes along it (Deuflhard, Newton Methods for Nonlinear Problems, 2011,
+//! sections 2.1 and 5.1). That is a test at points, not a proof.
 //!
-//! Takes the equations of one lane; gives the root, with a region in which it is the only one. Where
-//! bounds are too poor for a proof of that, the curve is followed in short stages without one.
+//! Takes the equations of one lane; gives the root, or how far the curve could be followed.
 
-use super::bounds::Region;
-use super::lasting::lasting;
-use super::node::Spread;
-use super::stage::{MARGIN, Stage, fits, lengths};
+use super::parts::Parts;
 use crate::groups::Group;
-use crate::scalar::{Enclosure, largest};
+use crate::linalg::Dense;
 use nalgebra::{SMatrix, SVector};
 
-/// Stages on the way; each leaves at most two thirds of what is left before a fold.
-pub(super) const MOST_STAGES: usize = 1000;
+/// By how much the second correction by one tangent is smaller than the first.
+pub(crate) const FALLS: f64 = 0.25;
 
-/// Stages that are proved: bounds so poor that more are needed take seconds.
-pub(super) const MOST_PROOFS: usize = 64;
+/// Most stages on the way.
+const MOST_STAGES: usize = 1000;
 
-/// What a step is worth that is looked at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Care {
-    /// Whether a proof is looked for that serves for later steps too.
-    pub lasting: bool,
-    /// Whether that one holds at every node, for the tangent is the same.
-    pub everywhere: bool,
-    /// Whether a proof of every stage is looked for; else how the tangent changes on it is taken
-    /// from its end. Where that fails the curve is followed closely, without a proof.
-    pub proved: bool,
-}
+/// Most corrections of a stage after the first two; they fall quadratically.
+const MOST_CORRECTIONS: usize = 12;
 
-/// The shortest stage tried, as a part of the way: a root so close to a fold is not taken. Rounding
-/// decides there.
+/// The last stage ends with a correction that is this part of its length: what is left is the square. Close to a fold
+/// rounding permits no less.
+const SOLVED: f64 = 1e-6;
+
+/// Another stage can begin so near the end of one.
+const NEAR: f64 = 1e-3;
+
+/// The part of a stage that is tried where corrections do not fall.
+const WORSE: f64 = 0.2;
+
+/// By how much a stage may be longer than the last.
+const LONGER: f64 = 4.0;
+
+/// The shortest stage tried, as a part of the way: a root so close to a fold is not taken. Rounding decides there.
 const SHORTEST: f64 = 1e-9;
 
-/// The same at this share of the way. Near rest a short stage says nothing of a fold: where a tangent is nearly singular
-/// there and grows, as of a body whose stretches nearly agree, velocities first move as a root of the share. Rounding
-/// of momenta is what remains.
-pub(super) fn shortest(share: f64) -> f64 {
+/// The same at this share of the way. Near rest a short stage says nothing of a fold: where the tangent is nearly
+/// singular there and grows, velocities first move as a root of the share. Rounding of momenta is what remains.
+fn shortest(share: f64) -> f64 {
     (1e-3 * share).clamp(1e-13, SHORTEST)
 }
 
-/// The strain aimed at over a stage: up to a fold each stage then leaves the same part of the way.
-pub(super) const AIM: f64 = 0.65;
-
-/// The same over a stage that is proved: one that fails costs as much as one that is accepted.
-pub(super) const SURE: f64 = 0.5;
-
-/// By how much one stage may be longer than the last.
-pub(super) const LONGER: f64 = 4.0;
-
-/// What is left of a stage that was not accepted, at most and at least.
-pub(super) const SHORTER: [f64; 2] = [0.8, 0.2];
-
-/// Where nothing moves, regions have this size.
-pub(super) const LITTLE: f64 = 1e-6;
-
-/// The root of a stage stays off the edge of its region.
-pub(super) const INNER: f64 = 0.99;
+/// A solution this part of the last stage away from the root is that root: tests of distance ask for no more than a
+/// solution that Newton's method polishes.
+const SAME: f64 = 1e-3;
 
 /// What was found out about a solution of one lane.
-#[derive(Clone, Copy, Debug)]
-pub enum Traced<G, const D: usize> {
-    /// It is the principal root, as is every solution within `reach` of rest at a node within
-    /// `spread` of this one.
-    Principal {
-        /// Lengths of the coordinates, part by part.
-        reach: [f64; D],
-        /// For which nodes.
-        spread: Spread,
-    },
-    /// There was none, or it is another: this is the principal root.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Traced<G> {
+    /// The solution is the principal root.
+    Principal,
+    /// There was no solution, or another: this is the principal root.
     Elsewhere {
         /// The root, to the precision of a stage.
         root: G,
-        /// Within these lengths of it there is no other, as far as stages were proved.
-        reach: [f64; D],
+        /// A polished root is no further from it than these lengths, part by part.
+        reach: Vec<f64>,
     },
 }
 
@@ -101,7 +77,7 @@ pub struct Fold {
 }
 
 impl Fold {
-    pub(super) fn at(share: f64, fastest: usize) -> Self {
+    fn at(share: f64, fastest: usize) -> Self {
         Self {
             share,
             fastest,
@@ -111,20 +87,80 @@ impl Fold {
 
     /// The same in a lane.
     #[must_use]
-    pub fn in_lane(self, lane: usize) -> Self {
+    pub(super) fn in_lane(self, lane: usize) -> Self {
         Self { lane, ..self }
     }
 }
 
-/// The equations of one lane. What follows the curve is compiled once for each group, not for every
-/// model and scalar.
-pub struct Equations<'a, G, E, const D: usize, const K: usize> {
-    /// The residual `T(Ω) - m`.
-    pub residual: &'a dyn Fn(&G) -> SVector<f64, D>,
-    /// The tangent of `T` along the algebra.
-    pub tangent: &'a dyn Fn(&G) -> SMatrix<f64, D, D>,
-    /// The tangent at all elements of a region, for all nodes as near as that.
-    pub enclosed: &'a dyn Fn(Spread, &E) -> SMatrix<Enclosure<K>, D, D>,
+/// The equations of one lane, with everything at the node held fixed.
+pub(super) trait Curve {
+    /// A velocity.
+    type Velocity: Clone;
+
+    /// The coordinates.
+    fn parts(&self) -> &Parts;
+
+    /// What rounding of momenta makes of the length of a part that has no natural unit.
+    fn noise(&self, part: usize) -> f64;
+
+    /// The velocity of rest.
+    fn rest(&self) -> Self::Velocity;
+
+    /// A velocity moved by coordinates.
+    fn moved(&self, from: &Self::Velocity, coordinates: &[f64]) -> Self::Velocity;
+
+    /// The lengths of the coordinates of `to` seen from `from`.
+    fn lengths(&self, from: &Self::Velocity, to: &Self::Velocity) -> Vec<f64>;
+
+    /// The residual `P(v) - m`.
+    fn residual(&self, at: &Self::Velocity) -> Vec<f64>;
+
+    /// The derivative of `P` along the algebra.
+    fn tangent(&self, at: &Self::Velocity) -> Dense<f64>;
+}
+
+/// A point of the curve, and the tangent there.
+struct Stage<G> {
+    velocity: G,
+    residual: Vec<f64>,
+    inverse: Dense<f64>,
+    units: Vec<f64>,
+}
+
+impl<G: Clone> Stage<G> {
+    /// `None` where the tangent is singular or not finite.
+    fn at<C: Curve<Velocity = G>>(curve: &C, velocity: G) -> Option<Self> {
+        let tangent = curve.tangent(&velocity);
+        let inverse = tangent.balanced_inverse().filter(Dense::is_finite)?;
+        Some(Self {
+            residual: curve.residual(&velocity),
+            units: curve.parts().units(&|i, j| tangent.at(i, j)),
+            velocity,
+            inverse,
+        })
+    }
+
+    /// The correction by this tangent where the residual is to become `goal`.
+    fn correction(&self, goal: &[f64], residual: &[f64]) -> Vec<f64> {
+        corrected(&self.inverse, goal, residual)
+    }
+}
+
+fn corrected(inverse: &Dense<f64>, goal: &[f64], residual: &[f64]) -> Vec<f64> {
+    let change = goal.iter().zip(residual).map(|(x, y)| x - y);
+    inverse.times(&Dense::column_of(change.collect())).data
+}
+
+fn times(x: &[f64], factor: f64) -> Vec<f64> {
+    x.iter().map(|x| x * factor).collect()
+}
+
+/// The largest length over its bound; NaN where any is.
+fn ratio(lengths: &[f64], bounds: &[f64]) -> f64 {
+    let each = lengths.iter().zip(bounds);
+    // A part without length and bound does not move.
+    let each = each.map(|(x, bound)| if *x == 0.0 { 0.0 } else { x / bound });
+    crate::scalar::largest(each)
 }
 
 /// Finds the principal root, or shows that `solution` is.
@@ -133,246 +169,153 @@ pub struct Equations<'a, G, E, const D: usize, const K: usize> {
 /// [`Fold`] where there is none, as far as can be followed.
 #[cold]
 #[inline(never)]
-pub fn trace<G, E, const D: usize, const K: usize>(
-    equations: &Equations<G, E, D, K>,
-    solution: Option<&G>,
-    care: Care,
-) -> Result<Traced<G, D>, Fold>
-where
-    G: Group<f64>,
-    E: Region<K, Centre = G>,
-{
-    let rest = G::identity();
-    let at_rest = (equations.residual)(&rest);
-    let Some(stage) = Stage::at(equations, rest, at_rest) else {
-        return Err(Fold::at(0.0, 0));
-    };
-    let units = stage.units();
-    let whole = stage.toward(&SVector::zeros());
-    if !whole.iter().all(|x| x.is_finite()) {
-        return Err(Fold::at(0.0, 0));
-    }
-    let lengths = lengths::<G, D>(&whole);
-    if let (Some(found), true) = (solution, care.lasting) {
-        let mut own = [0.0; D];
-        found.extents(&mut own);
-        let wanted = core::array::from_fn(|b| own[b].max(lengths[b]).max(0.01 * units[b]));
-        if let Some(proved) = lasting(equations, &stage, &wanted, care.everywhere) {
-            return Ok(proved);
-        }
-    }
-    // What cannot be followed without a proof is not followed with one, a hundred times more slowly.
-    let mut first = 1.0;
-    let mut found = follow(equations, stage, solution, &mut first, false);
-    if found.is_ok() && care.proved {
-        found = follow(equations, stage, solution, &mut first, true);
-    }
-    // That there is no proof does not mean that there is a fold.
-    found.or_else(|reached| {
-        let reached = match care.proved {
-            true => None,
-            false => reached,
-        };
-        closely(equations, stage, reached, solution)
-    })
-}
-
-/// A point of the curve and the part of the way to it.
-type Reached<G, const D: usize> = Option<(Stage<G, D>, f64)>;
-
-/// Follows the curve stage by stage from rest, each stage proved or foreseen from its end. `first` is how long a first
-/// stage is tried, and was in the end. Where the curve is lost, gives up to where it was followed.
-fn follow<G, E, const D: usize, const K: usize>(
-    equations: &Equations<G, E, D, K>,
-    rest: Stage<G, D>,
-    solution: Option<&G>,
-    first: &mut f64,
-    proved: bool,
-) -> Result<Traced<G, D>, Reached<G, D>>
-where
-    G: Group<f64>,
-    E: Region<K, Centre = G>,
-{
-    let at_rest = rest.residual;
-    let units = rest.units();
-    let mut stage = rest;
-    let mut whole = stage.toward(&SVector::zeros());
-    let lengths = lengths::<G, D>(&whole);
-    let (mut share, mut length) = (0.0, *first);
-    // What the velocity moves by on the way, in every direction a little.
-    let mut course = course(&lengths, &units, 1.0);
-    let mut radii = [0.0; D];
-    let (most_stages, aim) = match proved {
-        true => (MOST_PROOFS, SURE),
-        false => (MOST_STAGES, AIM),
-    };
-    for _ in 0..most_stages {
-        if share >= 1.0 {
-            break;
-        }
-        let left = 1.0 - share;
-        let mut accepted = None;
-        let mut next_length = length;
-        let [most, least] = SHORTER;
-        while accepted.is_none() {
-            length = length.min(left);
-            if length < shortest(share) {
-                return Err(Some((stage, share)));
-            }
-            let end = if length >= left { 1.0 } else { share + length };
-            let goal = at_rest * (1.0 - end);
-            let toward = stage.toward(&goal);
-            let own = self::lengths::<G, D>(&toward);
-            radii = course.map(|x| MARGIN * length * x);
-            let (moved, strain) = match proved {
-                true => stage.move_within::<E, K>(equations, &radii, &own),
-                false => stage.move_foreseen(equations, &toward, &radii, &own),
-            };
-            // Lengths are in proportion to strains.
-            let longer = match strain.is_nan() {
-                true => least,
-                false => (aim / strain).min(LONGER),
-            };
-            next_length = longer * length;
-            let inner = radii.map(|r| INNER * r);
-            let enough = moved.is_some_and(|y| fits::<G, D>(&y, &inner));
-            if enough {
-                accepted = stage
-                    .solve(equations, &toward, &goal, &radii)
-                    .map(|next| (next, end));
-            } else if let Some(y) = moved {
-                course = reshaped(&course, &y, &own);
-            }
-            if accepted.is_none() {
-                length = next_length.max(least * length).min(most * length);
-            }
-        }
-        let Some((next, end)) = accepted else {
-            return Err(Some((stage, share)));
-        };
-        if share == 0.0 {
-            *first = end;
-        }
-        if end >= 1.0 {
-            return Ok(verdict(next, &radii, solution));
-        }
-        let left = (equations.residual)(&next);
-        let Some(next) = Stage::at(equations, next, left) else {
-            return Err(Some((stage, share)));
-        };
-        (stage, share, length) = (next, end, next_length);
-        whole = stage.toward(&SVector::zeros());
-        course = self::course(&self::lengths::<G, D>(&whole), &units, 1.0 / (1.0 - share));
-    }
-    Err(Some((stage, share)))
-}
-
-/// How much the tangent may change to the middle and to the end of a short stage.
-const SHORT: f64 = 0.5;
-
-/// Follows the curve in short stages where a proof fails: bounds over a region are poor where the
-/// coordinates are ill conditioned, as at nearly singular elements of GL(n). The tangent is looked
-/// at in the middle and at the end of each stage, its root is solved for; not a proof. Begins at what was reached, where
-/// that is given.
-fn closely<G, E, const D: usize, const K: usize>(
-    equations: &Equations<G, E, D, K>,
-    rest: Stage<G, D>,
-    reached: Reached<G, D>,
-    solution: Option<&G>,
-) -> Result<Traced<G, D>, Fold>
-where
-    G: Group<f64>,
-{
-    let (at_rest, units) = (rest.residual, rest.units());
-    let (mut stage, mut share) = reached.unwrap_or((rest, 0.0));
-    let mut length = 1.0_f64;
+pub(super) fn trace<C: Curve>(
+    curve: &C,
+    solution: Option<&C::Velocity>,
+) -> Result<Traced<C::Velocity>, Fold> {
+    let nowhere = || Fold::at(0.0, 0);
+    let parts = curve.parts();
+    let mut stage = Stage::at(curve, curve.rest()).ok_or_else(nowhere)?;
+    let at_rest = stage.residual.clone();
+    let nothing = vec![0.0; at_rest.len()];
+    let (mut share, mut length) = (0.0, 1.0_f64);
     for _ in 0..MOST_STAGES {
         let left = 1.0 - share;
+        let last = length >= left;
+        if !last && length < shortest(share) {
+            break;
+        }
+        let end = if last { 1.0 } else { share + length };
         length = length.min(left);
-        let end = if length >= left { 1.0 } else { share + length };
-        let goal = at_rest * (1.0 - end);
-        let toward = stage.toward(&goal);
-        let fold = || Fold::at(share, fastest::<G, D>(&toward, &units));
-        if length < shortest(share) {
-            return Err(fold());
+        let goal = times(&at_rest, 1.0 - end);
+        match ended(curve, &stage, &goal, last) {
+            Ok((root, course)) if last => {
+                let reach = times(&course, SAME);
+                let same = |found| ratio(&curve.lengths(&root, found), &reach) <= 1.0;
+                return Ok(match solution {
+                    Some(found) if same(found) => Traced::Principal,
+                    _ => Traced::Elsewhere { root, reach },
+                });
+            }
+            Ok((next, _)) => {
+                share = end;
+                length *= LONGER;
+                match Stage::at(curve, next) {
+                    Some(next) => stage = next,
+                    None => break,
+                }
+            }
+            Err(shorter) => length *= shorter,
         }
-        let radii = course(&lengths::<G, D>(&toward), &units, 1.0);
-        let strains = [0.5, 1.0].map(|part| stage.strain_at(equations, &(toward * part)));
-        let strain = largest(strains.map(|x| x.largest(&radii)));
-        let within = radii.map(|r| 2.0 * r);
-        let next = match strain <= SHORT {
-            true => stage.solve(equations, &toward, &goal, &within),
-            false => None,
-        };
-        let [most, least] = SHORTER;
-        let longer = match strain.is_nan() {
-            true => least,
-            false => (0.5 * SHORT / strain).clamp(least, LONGER),
-        };
-        let Some(next) = next else {
-            length *= longer.min(most);
-            continue;
-        };
-        if end >= 1.0 {
-            return Ok(verdict(next, &radii, solution));
-        }
-        let residual = (equations.residual)(&next);
-        stage = Stage::at(equations, next, residual).ok_or_else(fold)?;
-        share = end;
-        length *= longer;
     }
-    Err(Fold::at(
-        share,
-        fastest::<G, D>(&stage.toward(&SVector::zeros()), &units),
-    ))
+    let toward = stage.correction(&nothing, &stage.residual);
+    if share == 0.0 && !toward.iter().all(|x| x.is_finite()) {
+        return Err(nowhere());
+    }
+    Err(Fold::at(share, parts.fastest(&toward, &stage.units)))
 }
 
-/// How far each part moves per way to the momenta, at least a little in every direction.
-fn course<const D: usize>(lengths: &[f64; D], units: &[f64; D], rate: f64) -> [f64; D] {
-    let shares = lengths.iter().zip(units).map(|(x, u)| x / u);
-    let most = shares.filter(|x| x.is_finite()).fold(LITTLE, f64::max);
-    // A body may go many times its own size in a step, and need not turn for that.
-    let most = most.min(1.0);
-    core::array::from_fn(|b| rate * lengths[b].max(0.05 * most * units[b]))
+/// The end of a stage and the lengths of its course, or by what part of it another one should be shorter.
+fn ended<C: Curve>(
+    curve: &C,
+    stage: &Stage<C::Velocity>,
+    goal: &[f64],
+    last: bool,
+) -> Result<(C::Velocity, Vec<f64>), f64> {
+    let parts = curve.parts();
+    let first = stage.correction(goal, &stage.residual);
+    let course = parts.course(&parts.lengths(&first), &stage.units, |b| curve.noise(b));
+    let mut at = curve.moved(&stage.velocity, &first);
+    let second = stage.correction(goal, &curve.residual(&at));
+    let fall = ratio(&parts.lengths(&second), &course);
+    if !course.iter().all(|x| x.is_finite()) || !fall.is_finite() {
+        return Err(WORSE);
+    }
+    if fall > FALLS {
+        return Err((0.8 * FALLS / fall).clamp(0.1, 0.8));
+    }
+    at = curve.moved(&at, &second);
+    let enough = if last { SOLVED } else { NEAR };
+    let mut before = fall;
+    for _ in 0..MOST_CORRECTIONS {
+        if !last && before <= enough {
+            return Ok((at, course));
+        }
+        let inverse = curve.tangent(&at).balanced_inverse().ok_or(WORSE)?;
+        let correction = corrected(&inverse, goal, &curve.residual(&at));
+        let size = ratio(&parts.lengths(&correction), &course);
+        at = curve.moved(&at, &correction);
+        if size <= enough {
+            return Ok((at, course));
+        }
+        // NaN does not fall.
+        let falls = size <= 0.5 * before;
+        if !falls {
+            return Err(WORSE);
+        }
+        before = size;
+    }
+    Err(WORSE)
 }
 
-/// By how much a part of a region is widened at once.
-const WIDER: f64 = 5.0;
-
-/// The course, wider in the parts that move more than foreseen, compared with the one that moves
-/// furthest.
-fn reshaped<const D: usize>(course: &[f64; D], moved: &[f64; D], own: &[f64; D]) -> [f64; D] {
-    let share = |b: usize| own[b] / course[b];
-    let rate = |b: usize| moved[b] / course[b];
-    let most = (0..D).fold(0, |most, b| if share(b) > share(most) { b } else { most });
-    core::array::from_fn(|b| match rate(b) / rate(most) {
-        wider if wider > 1.0 => course[b] * wider.min(WIDER),
-        // Also where nothing is known.
-        _ => course[b],
-    })
+/// The equations of one lane on a group that is a type. What follows the curve is compiled once for each group, not for
+/// every model and scalar.
+pub struct Equations<'a, G, const D: usize> {
+    /// The residual `P(v) - m`.
+    pub residual: &'a dyn Fn(&G) -> SVector<f64, D>,
+    /// The derivative of `P` along the algebra.
+    pub tangent: &'a dyn Fn(&G) -> SMatrix<f64, D, D>,
 }
 
-/// The coordinate that moves most.
-fn fastest<G: Group<f64>, const D: usize>(x: &SVector<f64, D>, units: &[f64; D]) -> usize {
-    let share = |k: usize| x[k].abs() / units.get(G::part_of(k)).copied().unwrap_or(1.0);
-    (0..G::DIMENSION.min(D))
-        .max_by(|i, j| share(*i).total_cmp(&share(*j)))
-        .unwrap_or(0)
+/// The same with the coordinates of the group.
+pub(super) struct OnGroup<'a, G, const D: usize> {
+    equations: &'a Equations<'a, G, D>,
+    parts: Parts,
+    noise: [f64; D],
 }
 
-/// Whether the solution is the root in the region around it.
-fn verdict<G: Group<f64>, const D: usize>(
-    root: G,
-    radii: &[f64; D],
-    solution: Option<&G>,
-) -> Traced<G, D> {
-    // The region is that around the beginning of the last stage, of which the root is off the edge.
-    let reach = radii.map(|r| 1e-3 * r);
-    match solution {
-        Some(found) if root.inverse().compose(found).is_within(&reach) => Traced::Principal {
-            reach: [0.0; D],
-            spread: Spread::HERE,
-        },
-        _ => Traced::Elsewhere { root, reach },
+impl<'a, G: Group<f64>, const D: usize> OnGroup<'a, G, D> {
+    pub(super) fn new(equations: &'a Equations<'a, G, D>, noise: [f64; D]) -> Self {
+        Self {
+            equations,
+            parts: Parts::of_group::<f64, G>(D),
+            noise,
+        }
+    }
+}
+
+impl<G: Group<f64>, const D: usize> Curve for OnGroup<'_, G, D> {
+    type Velocity = G;
+
+    fn parts(&self) -> &Parts {
+        &self.parts
+    }
+
+    fn noise(&self, part: usize) -> f64 {
+        self.noise.get(part).copied().unwrap_or(0.0)
+    }
+
+    fn rest(&self) -> G {
+        G::identity()
+    }
+
+    fn moved(&self, from: &G, coordinates: &[f64]) -> G {
+        from.retract(coordinates)
+    }
+
+    fn lengths(&self, from: &G, to: &G) -> Vec<f64> {
+        let mut lengths = vec![0.0; self.parts.count()];
+        from.inverse().compose(to).extents(&mut lengths);
+        lengths
+    }
+
+    fn residual(&self, at: &G) -> Vec<f64> {
+        let size = self.parts.dimension();
+        (self.equations.residual)(at).as_slice()[..size].to_vec()
+    }
+
+    fn tangent(&self, at: &G) -> Dense<f64> {
+        let (size, tangent) = (self.parts.dimension(), (self.equations.tangent)(at));
+        Dense::from_fn(size, size, |i, j| tangent[(i, j)])
     }
 }

@@ -1,10 +1,66 @@
-//! Equations of which some unknowns are solved for beforehand, in closed form: Newton's method finds the
-//! others, and a proof that the root is principal is of all of them together.
+//! Equations of which some unknowns are solved for beforehand, in closed form: Newton's method finds the others.
 //! Takes an element with all unknowns; gives the part that is searched for.
 
-use super::{Newton, NodeValues, Progress, Solved};
+use super::parts::Parts;
+use super::{Newton, Progress, Solved, comes_near};
 use crate::groups::{Group, RigidMotion, Rotation};
+use crate::linalg::Factors;
+use crate::saved::{Saved, Words};
 use crate::scalar::Real;
+use core::marker::PhantomData;
+use nalgebra::{SMatrix, SVector};
+
+/// The inverse of the tangent of all equations at rest, where some unknowns are solved for beforehand: it is the same at every node.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AtRest<T, W, const E: usize> {
+    inverse: SMatrix<T, E, E>,
+    units: [f64; E],
+    known: bool,
+    whole: PhantomData<W>,
+}
+
+impl<T: Real, W, const E: usize> AtRest<T, W, E> {
+    pub(super) fn unknown() -> Self {
+        Self {
+            inverse: SMatrix::zeros(),
+            units: [1.0; E],
+            known: false,
+            whole: PhantomData,
+        }
+    }
+
+    #[cold]
+    fn set(&mut self, tangent: &SMatrix<T, E, E>)
+    where
+        W: Group<T>,
+    {
+        let parts = Parts::of_group::<T, W>(E);
+        let units = parts.units(&|i, j| tangent[(i, j)].lane(0));
+        self.units = core::array::from_fn(|b| units.get(b).copied().unwrap_or(1.0));
+        let mut factors = Factors::none();
+        factors.set(tangent, W::DIMENSION);
+        for (k, mut column) in self.inverse.column_iter_mut().enumerate() {
+            let axis = SVector::from_fn(|i, _| if i == k { T::one() } else { T::zero() });
+            let unknown = || SVector::repeat(T::from_f64(f64::NAN));
+            column.copy_from(&factors.solve(&axis).unwrap_or_else(unknown));
+        }
+        self.known = true;
+    }
+}
+
+impl<W, const E: usize> Saved for AtRest<f64, W, E> {
+    fn words(&mut self, words: &mut Words) {
+        let Self {
+            inverse,
+            units,
+            known,
+            whole: _,
+        } = self;
+        inverse.words(words);
+        units.words(words);
+        known.words(words);
+    }
+}
 
 /// The part of an element that Newton's method finds, where the rest follows from it.
 pub trait Found<W> {
@@ -33,8 +89,7 @@ impl<T: Copy, const N: usize> Found<[RigidMotion<T>; N]> for [Rotation<T>; N] {
     }
 }
 
-impl<T: Real, G, V: NodeValues<Scalar = T>, const D: usize, W: Group<T>, const E: usize>
-    Newton<'_, T, G, V, D, W, E>
+impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Newton<'_, T, G, D, W, E>
 where
     G: Group<T> + Found<W>,
 {
@@ -55,6 +110,25 @@ where
     #[inline(always)]
     pub fn correct_part_from_left(&mut self, whole: W) -> Progress<W> {
         self.completed(whole, Newton::correct_from_left)
+    }
+
+    /// [`is_principal`](Newton::is_principal) of all unknowns: `tangent` is that of all equations at rest.
+    #[inline(always)]
+    pub fn is_part_of_principal(
+        &mut self,
+        solution: &W,
+        at_rest: &SVector<T, E>,
+        tangent: impl FnOnce() -> SMatrix<T, E, E>,
+    ) -> bool {
+        let rest = &mut self.search.whole;
+        if !rest.known {
+            rest.set(&tangent());
+        }
+        let correction = rest.inverse * at_rest;
+        comes_near(&correction, solution, &rest.units, &[0.0; E])
+            || self
+                .anchor
+                .is_some_and(|anchor| anchor.holds::<T>(*solution))
     }
 
     #[inline(always)]

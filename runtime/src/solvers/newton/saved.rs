@@ -1,13 +1,10 @@
 //! What a search remembers, written down and made again.
 
-use super::node::NodeValues;
 use super::{Search, Summary};
 use crate::groups::Group;
 use crate::saved::{Saved, Words};
 
-impl<G: Group<f64> + Saved, V: NodeValues + Saved, const D: usize, W, const E: usize> Saved
-    for Search<f64, G, V, D, W, E>
-{
+impl<G: Group<f64> + Saved, const D: usize, W, const E: usize> Saved for Search<f64, G, D, W, E> {
     fn words(&mut self, words: &mut Words) {
         let Self {
             past,
@@ -17,8 +14,12 @@ impl<G: Group<f64> + Saved, V: NodeValues + Saved, const D: usize, W, const E: u
             weights,
             lengths,
             weighed,
-            certificate,
-            whole: _,
+            units,
+            noise,
+            measured,
+            // Steps are made to go on from there.
+            tries: _,
+            whole,
             factors,
             unit,
             age,
@@ -31,7 +32,10 @@ impl<G: Group<f64> + Saved, V: NodeValues + Saved, const D: usize, W, const E: u
         weights.words(words);
         lengths.words(words);
         weighed.words(words);
-        certificate.words(words);
+        whole.words(words);
+        units.words(words);
+        noise.words(words);
+        measured.words(words);
         factors.words(words);
         unit.words(words);
         age.words(words);

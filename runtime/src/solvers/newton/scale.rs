@@ -2,8 +2,30 @@
 //! beside its scale, and no smaller than what rounding of the velocities leaves of it.
 //! Takes the tangent factored last, as absolute values, and scales; raises them. Gives what corrections are measured by.
 
+use super::parts::Parts;
+use crate::scalar::larger;
+
 /// The root of the rounding.
 const SHARE: f64 = 1.5e-8;
+
+/// A length of so many roundings of the terms of its equation is rounding.
+const NOISE: f64 = 1e4;
+
+/// What the length of each part is measured by, and what rounding of the terms of its equations makes of it. Takes the
+/// tangent and one over the sizes of terms.
+#[cold]
+pub(super) fn measures(
+    parts: &Parts,
+    entry: &dyn Fn(usize, usize) -> f64,
+    weights: &[f64],
+) -> (Vec<f64>, Vec<f64>) {
+    let noise = |k: usize| {
+        let own = NOISE * f64::EPSILON / (entry(k, k).abs() * weights.get(k).unwrap_or(&f64::NAN));
+        if own.is_finite() { own } else { 0.0 }
+    };
+    let noise = (0..parts.count()).map(|b| parts.own(b).map(noise).fold(0.0, larger));
+    (parts.units(entry), noise.collect())
+}
 
 /// What the equations do with the velocities.
 pub(super) struct Tangent<'a> {

@@ -1,0 +1,104 @@
+//! A group by what a value says of it, where its kind and size are known when a model is read.
+//! Takes elements and coordinates; gives elements, and the equations of one lane on it.
+
+use crate::groups::Coordinate;
+use crate::linalg::Dense;
+use crate::solvers::newton::Parts;
+use crate::solvers::newton::principal::Curve;
+use core::fmt::Debug;
+
+/// A group by what a value says of it, as [`Group`](crate::groups::Group) says it by a type.
+pub trait Chart {
+    /// Its elements.
+    type Element: Clone + Debug;
+
+    /// Its coordinates.
+    fn parts(&self) -> &Parts;
+
+    /// The part of an element that is searched for, where the rest follows from it.
+    fn part(&self, whole: &Self::Element) -> Self::Element;
+
+    /// What a coordinate stands for.
+    fn coordinate(&self, index: usize) -> Coordinate;
+
+    /// The neutral element.
+    fn identity(&self) -> Self::Element;
+
+    /// See [`Group::retract`](crate::groups::Group::retract).
+    fn retract(&self, at: &Self::Element, xi: &[f64]) -> Self::Element;
+
+    /// See [`Group::retract_from_left`](crate::groups::Group::retract_from_left).
+    fn retract_from_left(&self, at: &Self::Element, xi: &[f64]) -> Self::Element;
+
+    /// See [`Group::combined`](crate::groups::Group::combined).
+    fn combined(&self, weights: &[f64], past: &[Self::Element]) -> Self::Element;
+
+    /// `from^-1 . to`.
+    fn between(&self, from: &Self::Element, to: &Self::Element) -> Self::Element;
+
+    /// See [`Group::extents`](crate::groups::Group::extents).
+    fn extents(&self, of: &Self::Element, out: &mut [f64]);
+
+    /// See [`Group::compared`](crate::groups::Group::compared).
+    fn compared(&self, of: &Self::Element, xi: &[f64], out: &mut [[f64; 2]]);
+
+    /// See [`Group::is_within`](crate::groups::Group::is_within).
+    fn is_within(&self, of: &Self::Element, reach: &[f64]) -> bool;
+}
+
+/// The equations of one lane on a group that a value describes.
+pub struct Lane<'a, C: Chart> {
+    /// The group.
+    pub chart: &'a C,
+    /// The residual `P(v) - m`.
+    pub residual: &'a dyn Fn(&C::Element) -> Vec<f64>,
+    /// The derivative of `P` along the algebra.
+    pub tangent: &'a dyn Fn(&C::Element) -> Dense<f64>,
+}
+
+/// The same with what rounding makes of lengths.
+pub(super) struct WithNoise<'a, 'b, C: Chart> {
+    lane: &'b Lane<'a, C>,
+    noise: &'b [f64],
+}
+
+impl<'a, C: Chart> Lane<'a, C> {
+    pub(super) fn with_noise<'b>(&'b self, noise: &'b [f64]) -> WithNoise<'a, 'b, C> {
+        WithNoise { lane: self, noise }
+    }
+}
+
+impl<C: Chart> Curve for WithNoise<'_, '_, C> {
+    type Velocity = C::Element;
+
+    fn parts(&self) -> &Parts {
+        self.lane.chart.parts()
+    }
+
+    fn noise(&self, part: usize) -> f64 {
+        self.noise.get(part).copied().unwrap_or(0.0)
+    }
+
+    fn rest(&self) -> C::Element {
+        self.lane.chart.identity()
+    }
+
+    fn moved(&self, from: &C::Element, coordinates: &[f64]) -> C::Element {
+        self.lane.chart.retract(from, coordinates)
+    }
+
+    fn lengths(&self, from: &C::Element, to: &C::Element) -> Vec<f64> {
+        let chart = self.lane.chart;
+        let mut lengths = vec![0.0; chart.parts().count()];
+        chart.extents(&chart.between(from, to), &mut lengths);
+        lengths
+    }
+
+    fn residual(&self, at: &C::Element) -> Vec<f64> {
+        (self.lane.residual)(at)
+    }
+
+    fn tangent(&self, at: &C::Element) -> Dense<f64> {
+        (self.lane.tangent)(at)
+    }
+}
