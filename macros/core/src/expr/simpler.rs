@@ -162,10 +162,7 @@ mod tests {
         );
         assert_eq!(simpler(&s, &trace(word)), trace(mul(q.clone(), a.clone())));
         assert!(simpler(&s, &vee(a.clone())).is_zero());
-        assert_eq!(
-            simpler(&s, &vee(add(a.clone(), b.clone()))),
-            vee(b.clone())
-        );
+        assert_eq!(simpler(&s, &vee(add(a.clone(), b.clone()))), vee(b.clone()));
         // Nothing is saved.
         for stays in [
             mul(less(b.clone()), q.clone()),

@@ -99,7 +99,8 @@ impl Parts {
     }
 
     /// The unit of a part that stands in none of its own equations, as a multiplier does: what acts in the equations of
-    /// the others as one unit of theirs.
+    /// the others as one unit of theirs, times so many that a multiplier is measured by all of the part that moves most. It
+    /// is no velocity, and may jump where velocities hardly move.
     fn unit_of_multiplier(
         &self,
         part: usize,
@@ -116,7 +117,7 @@ impl Parts {
                 }
             }
         }
-        if unit.is_finite() { unit } else { 0.0 }
+        if unit.is_finite() { unit / ASIDE } else { 0.0 }
     }
 
     /// What later corrections of each part are measured by, where the first has these lengths: its own, or a little of
@@ -134,7 +135,8 @@ impl Parts {
         });
         let most = shares.filter(|x| x.is_finite()).fold(0.0, larger);
         // A body may go many times its own size in a step, and need not turn for that.
-        let aside = ASIDE * most.min(1.0);
+        let turns = self.pure.iter().any(|pure| *pure);
+        let aside = ASIDE * if turns { most.min(1.0) } else { most };
         let each = lengths.iter().zip(units).enumerate();
         each.map(|(b, (length, unit))| {
             let (length, least) = match self.is_pure(b) {

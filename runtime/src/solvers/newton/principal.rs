@@ -35,8 +35,16 @@ const NEAR: f64 = 1e-3;
 /// The part of a stage that is tried where corrections do not fall.
 const WORSE: f64 = 0.2;
 
-/// By how much a stage may be longer than the last.
+/// By how much a stage may be longer than the last, or shorter: how much corrections fall is in proportion to its length.
 const LONGER: f64 = 4.0;
+const SHORTER: f64 = 0.5;
+
+/// The part of the length that corrections allow which is tried, and the least part of the last length.
+const AIM: f64 = 0.8;
+const SHORTEST_TRY: f64 = 0.1;
+
+/// A rest of the way that is this part of a stage joins it.
+const JOINS: f64 = 0.1;
 
 /// The shortest stage tried, as a part of the way: a root so close to a fold is not taken. Rounding decides there.
 const SHORTEST: f64 = 1e-9;
@@ -180,16 +188,20 @@ pub(super) fn trace<C: Curve>(
     let nothing = vec![0.0; at_rest.len()];
     let (mut share, mut length) = (0.0, 1.0_f64);
     for _ in 0..MOST_STAGES {
-        let left = 1.0 - share;
-        let last = length >= left;
+        // What little would be left joins the last stage: it would be rounding.
+        let last = share + (1.0 + JOINS) * length >= 1.0;
+        let end = if last { 1.0 } else { share + length };
         if !last && length < shortest(share) {
             break;
         }
-        let end = if last { 1.0 } else { share + length };
-        length = length.min(left);
+        length = end - share;
         let goal = times(&at_rest, 1.0 - end);
         match ended(curve, &stage, &goal, last) {
-            Ok((root, course)) if last => {
+            Ok(Ended {
+                velocity: root,
+                course,
+                ..
+            }) if last => {
                 let reach = times(&course, SAME);
                 let same = |found| ratio(&curve.lengths(&root, found), &reach) <= 1.0;
                 return Ok(match solution {
@@ -197,9 +209,13 @@ pub(super) fn trace<C: Curve>(
                     _ => Traced::Elsewhere { root, reach },
                 });
             }
-            Ok((next, _)) => {
+            Ok(Ended {
+                velocity: next,
+                fall,
+                ..
+            }) => {
                 share = end;
-                length *= LONGER;
+                length *= (AIM * FALLS / fall).clamp(SHORTER, LONGER);
                 match Stage::at(curve, next) {
                     Some(next) => stage = next,
                     None => break,
@@ -215,13 +231,22 @@ pub(super) fn trace<C: Curve>(
     Err(Fold::at(share, parts.fastest(&toward, &stage.units)))
 }
 
-/// The end of a stage and the lengths of its course, or by what part of it another one should be shorter.
+/// The end of a stage.
+struct Ended<G> {
+    velocity: G,
+    /// The lengths of its course.
+    course: Vec<f64>,
+    /// By how much corrections fell: in proportion to the length of the stage.
+    fall: f64,
+}
+
+/// The end of a stage, or by what part of it another one should be shorter.
 fn ended<C: Curve>(
     curve: &C,
     stage: &Stage<C::Velocity>,
     goal: &[f64],
     last: bool,
-) -> Result<(C::Velocity, Vec<f64>), f64> {
+) -> Result<Ended<C::Velocity>, f64> {
     let parts = curve.parts();
     let first = stage.correction(goal, &stage.residual);
     let course = parts.course(&parts.lengths(&first), &stage.units, |b| curve.noise(b));
@@ -232,21 +257,22 @@ fn ended<C: Curve>(
         return Err(WORSE);
     }
     if fall > FALLS {
-        return Err((0.8 * FALLS / fall).clamp(0.1, 0.8));
+        return Err((AIM * FALLS / fall).clamp(SHORTEST_TRY, AIM));
     }
     at = curve.moved(&at, &second);
     let enough = if last { SOLVED } else { NEAR };
     let mut before = fall;
     for _ in 0..MOST_CORRECTIONS {
         if !last && before <= enough {
-            return Ok((at, course));
+            break;
         }
         let inverse = curve.tangent(&at).balanced_inverse().ok_or(WORSE)?;
         let correction = corrected(&inverse, goal, &curve.residual(&at));
         let size = ratio(&parts.lengths(&correction), &course);
         at = curve.moved(&at, &correction);
         if size <= enough {
-            return Ok((at, course));
+            before = size;
+            break;
         }
         // NaN does not fall.
         let falls = size <= 0.5 * before;
@@ -255,7 +281,15 @@ fn ended<C: Curve>(
         }
         before = size;
     }
-    Err(WORSE)
+    let velocity = at;
+    match before <= enough {
+        true => Ok(Ended {
+            velocity,
+            course,
+            fall,
+        }),
+        false => Err(WORSE),
+    }
 }
 
 /// The equations of one lane on a group that is a type. What follows the curve is compiled once for each group, not for
