@@ -259,6 +259,7 @@ const STEP: f64 = 2e-3;
 /// Rounding leaves 1e-14 of the sum of all terms; inverses and fractional powers near their ends some digits more.
 const AGREEMENT: f64 = 1e-10;
 
+/// Long, since ninety models are derived, and thirty of them stepped.
 #[test]
 fn ten_random_energies_are_varied_as_the_oracle_varies_them() {
     let mut source = Source::seeded(31);
