@@ -1,9 +1,10 @@
 //! The bits of every shipped model and case at nodes 1, 10 and a last one, against a list. A step that is built in another
 //! way gives the same numbers to the last bit. If a change must alter bits, it alters the list in a commit of its own.
 //!
-//! `CLEBSCH_WRITE_BITS=1 cargo test --profile quick -p clebsch-cli --test command -- bits` writes the list. The last
-//! node is 1000; 100 of chains and of cases whose 1000 steps take more than a second, since 100 steps show a changed one as
-//! well; 10 of fluids. The C library computes the sine and other functions, so the list belongs to one platform.
+//! `CLEBSCH_WRITE_BITS=1 cargo test --profile quick -p clebsch-cli --test command -- bits` writes the list. Chains, and
+//! cases whose 1000 steps take more than a second, end at node 100, since 100 steps show a changed step as well. Fluids
+//! end at node 10, and other cases at node 1000. The C library computes the sine and other functions, so the list belongs
+//! to one platform.
 #![cfg(all(target_arch = "x86_64", target_os = "linux", target_env = "gnu"))]
 
 use super::common::{clebsch, runs};
@@ -21,7 +22,7 @@ const SHORT: [(&str, usize); 3] = [
     ("pseudo-rigid-positive", 10),
 ];
 
-/// Cases beside those of chains whose 1000 steps take more than a second.
+/// Cases whose 1000 steps take more than a second, beside all chains.
 const SLOW: [&str; 1] = ["pseudo-rigid:thesis-figure-3-1"];
 
 /// The last node of a case whose bits are listed.

@@ -121,7 +121,7 @@ fn kind(a: &Array<f64>) -> Kind {
     })
 }
 
-/// One operation on inputs. What follows is compiled once: neither closures nor sizes are parameters of a type.
+/// One operation on inputs. The compiler makes this and the next functions once: no closure or size is a parameter of a type.
 fn kernel(given: &[Array<f64>], make: &dyn Fn(&[Value]) -> Operation) -> Result<Kernel, Misfit> {
     let mut kernel = Kernel::new();
     let mut values = Vec::new();
