@@ -130,6 +130,7 @@ fn steps_are_stationary_for_the_action_typed_by_hand_and_momenta_are_its_derivat
     }
 }
 
+/// Long, since a chain is derived anew for every term.
 #[test]
 fn a_term_that_is_changed_is_seen() {
     for (chain, term, other) in [
@@ -157,6 +158,7 @@ fn a_term_that_is_changed_is_seen() {
     }
 }
 
+/// Long, since every chain is derived body by body.
 #[test]
 fn loops_over_sites_move_as_the_bodies_written_out() {
     for chain in models::all() {
@@ -235,6 +237,7 @@ fn loops_over_sites_move_as_the_bodies_written_out() {
     }
 }
 
+/// Long, since every chain is run at several steps.
 #[test]
 fn steps_are_of_second_order_keep_the_energy_and_return() {
     for chain in models::all() {

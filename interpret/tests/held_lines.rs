@@ -21,6 +21,7 @@ fn held_lines_equal_the_compiled_ones_to_the_last_bit() {
     beside::equal_to_the_last_bit(sums::all());
 }
 
+/// Long, since every line is derived body by body.
 #[test]
 fn held_lines_move_as_their_bodies_do() {
     beside::move_as_bodies_do(held::all(), 3);

@@ -84,6 +84,7 @@ fn a_step_beyond_a_fold_is_refused_alike_and_names_its_site() {
     );
 }
 
+/// Long, since every line is derived body by body.
 #[test]
 fn every_line_moves_as_its_bodies_do() {
     beside::move_as_bodies_do(compiled::all(), 5);
@@ -153,6 +154,7 @@ fn what_loops_over_sites_do_not_take_is_run_body_by_body_or_refused_at_once() {
     }
 }
 
+/// Long, since every line is derived with twelve and with a hundred sites.
 #[test]
 fn the_card_of_a_long_line_says_what_that_of_its_bodies_says() {
     // The same observables and invariants, those of given sites left out.

@@ -20,6 +20,7 @@ fn lines_in_quaternions_equal_the_compiled_ones_to_the_last_bit() {
     beside::equal_to_the_last_bit(quaternions::all());
 }
 
+/// Long, since every line is derived body by body.
 #[test]
 fn lines_in_quaternions_move_as_their_bodies_do() {
     beside::move_as_bodies_do(quaternions::all(), 5);

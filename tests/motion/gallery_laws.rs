@@ -213,6 +213,7 @@ fn for_every_case(mut look: impl FnMut(&Card, &Case, bool)) {
     }
 }
 
+/// Long, since every case of the gallery takes a million steps.
 #[test]
 fn invariants_over_a_million_steps() {
     let mut bad = Vec::new();

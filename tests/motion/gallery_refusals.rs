@@ -48,6 +48,7 @@ fn tried(said: &str) -> f64 {
         .unwrap_or_else(|_| panic!("no number: {said}"))
 }
 
+/// Long, since for each of some hundred refusals the largest step is sought.
 #[test]
 fn the_step_that_a_message_offers_is_taken() {
     let mut refused = 0;

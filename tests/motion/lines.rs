@@ -60,6 +60,7 @@ fn holds(line: &dyn Line, seed: u64) {
     );
 }
 
+/// Long, since every line is stepped at six sizes.
 #[test]
 fn steps_from_random_states_make_the_action_stationary() {
     for n in SIZES {
@@ -86,6 +87,7 @@ fn a_wrong_sign_in_any_term_is_seen() {
     }
 }
 
+/// Long, since every line is derived and emitted twice.
 #[test]
 fn the_compiled_statements_are_those_of_the_files() {
     let emitted = |text: &str| {

@@ -129,6 +129,7 @@ fn a_mesh_by_its_name_is_its_value_at_the_particle() {
     }
 }
 
+/// Long, since every number that a refusal offers is run.
 #[test]
 fn a_lattice_that_cannot_fill_its_domain_evenly_is_refused_with_numbers_that_can() {
     let folder = Folder::new("fluid-starts-uneven");

@@ -11,6 +11,7 @@ const SHIPPED: [&str; 4] = [
     "shallow-water-2d-regularised",
 ];
 
+/// Long, since every fluid is derived and run with its mesh.
 #[test]
 fn every_fluid_is_derived_and_runs_its_case() {
     for name in SHIPPED {

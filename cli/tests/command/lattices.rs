@@ -118,6 +118,7 @@ fn every_model_is_derived_and_runs_its_case() {
     }
 }
 
+/// Long, since rods are derived with their ends.
 #[test]
 fn ranges_and_ends_are_printed() {
     let rod = clebsch("derive models/lattices/geometrically-exact-rod.clebsch").out;

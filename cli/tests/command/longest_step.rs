@@ -84,6 +84,7 @@ fn a_hanging_top_has_the_limit_of_a_pendulum() {
     }
 }
 
+/// Long, since the limit of rows of twenty tops is sought at two steps.
 /// With the sign of the thesis's printed Lagrangian the tops of a row drive one another apart.
 #[test]
 fn a_wrong_sign_between_neighbours_is_warned_of() {
@@ -110,6 +111,7 @@ fn a_wrong_sign_between_neighbours_is_warned_of() {
     }
 }
 
+/// Long, since rows are derived in four groups.
 /// Of a field, of rotations of the plane, of rigid motions and of linear maps in rows of springs: ω is that of the row of beads,
 /// 2 sqrt(k/m) sin(π n/(2n + 2)) of n + 1 free ones, whatever the unit of mass and however short the step that is asked for.
 #[test]
@@ -275,6 +277,7 @@ fn of_a_step_that_is_far_too_long_the_limit_is_told() {
     assert!((number("share") * number("step") - 0.0005).abs() < 1e-15);
 }
 
+/// Long, since chains of up to forty links are derived, and run at two steps.
 /// Of chains of equal links that hang straight the squares of the frequencies are g/a times the roots of Laguerre's
 /// polynomials. A step beyond the limit loses what one below it keeps; data and model as they are given.
 #[test]
@@ -411,6 +414,7 @@ fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
     );
 }
 
+/// Long, since the limit of chains of links is sought with every force.
 /// Links that hang in a rotating plane swing along their constraints, where the force of Coriolis is none: neither it nor the
 /// origin from which its potential is measured changes their limit. At rest momenta are those of that potential.
 #[test]

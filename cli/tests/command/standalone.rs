@@ -118,6 +118,7 @@ fn compiles(what: &str, text: &str) {
     }
 }
 
+/// Long, since every shipped model is derived.
 #[test]
 fn every_shipped_model_is_a_document_that_compiles_by_itself() {
     let done = clebsch("list --json");

@@ -71,6 +71,7 @@ fn examples_of_the_help_are_understood() {
     }
 }
 
+/// Long, since every derivation is printed in four widths.
 /// Equations are broken before the signs of their sums, and nothing is lost by it.
 #[test]
 fn derivations_fit() {

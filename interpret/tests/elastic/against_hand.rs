@@ -353,16 +353,19 @@ fn bodies_of_mooney_and_rivlin() {
     MOONEY_RIVLIN.agrees();
 }
 
+/// Long, since ten thousand states are stepped, with a multiplier to solve for.
 #[test]
 fn fluid_ellipsoids() {
     FLUID.agrees();
 }
 
+/// Long, since every step follows the curve from rest.
 #[test]
 fn pseudo_rigid_bodies_of_the_thesis() {
     PSEUDO_RIGID.agrees();
 }
 
+/// Long, since every step follows the curve from rest.
 #[test]
 fn pseudo_rigid_bodies_of_the_direct_discretisation() {
     DIRECT.agrees();

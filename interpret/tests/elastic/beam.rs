@@ -166,6 +166,7 @@ fn measured(text: &str, n: usize, waves: f64, branch: usize) -> f64 {
 /// amplitude.
 const MEASURED: f64 = 1e-6;
 
+/// Long, since six modes are followed on rods of up to forty segments.
 #[test]
 fn a_beam_on_two_supports_has_the_frequencies_of_timoshenko() {
     for waves in [1.0, 2.0, 3.0] {
@@ -269,6 +270,7 @@ fn of_second_order(what: &str, exact: f64, load: impl Fn(&mut Beam)) {
     assert!(limit.abs() < 1e-6, "{what}: {limit:e}");
 }
 
+/// Long, since beams of three sizes are derived and brought to rest.
 #[test]
 fn cantilevers_at_rest_are_those_of_beam_theory() {
     let load = 1e-4;

@@ -7,7 +7,7 @@ use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 use clebsch::{Real, linalg};
 use clebsch_program::{
     Arithmetic, Array, Dim, Kernel, Kind, Misfit, Number, Operation, Pair, Shape, Single, Tape,
-    Unvalued, evaluate,
+    Unvalued, Value, evaluate,
 };
 
 /// Random operands of each operation and shape.
@@ -103,13 +103,14 @@ impl Source {
         }
     }
 
-    fn matrix<const R: usize, const C: usize>(&mut self) -> SMatrix<f64, R, C> {
-        SMatrix::from_fn(|_, _| self.number())
+    fn array(&mut self, rows: usize, cols: usize) -> Array<f64> {
+        Array::from_fn(rows, cols, |_, _| self.number())
     }
 }
 
-fn array<const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) -> Array<f64> {
-    Array::from_fn(R, C, |i, j| m[(i, j)])
+fn matrix<const R: usize, const C: usize>(a: &Array<f64>) -> SMatrix<f64, R, C> {
+    assert_eq!((a.rows(), a.cols()), (R, C));
+    SMatrix::from_column_slice(a.columns())
 }
 
 fn kind(a: &Array<f64>) -> Kind {
@@ -120,11 +121,8 @@ fn kind(a: &Array<f64>) -> Kind {
     })
 }
 
-/// One operation on inputs.
-fn kernel(
-    given: &[Array<f64>],
-    make: impl Fn(&[clebsch_program::Value]) -> Operation,
-) -> Result<Kernel, Misfit> {
+/// One operation on inputs. The compiler makes this and the next functions once: no closure or size is a parameter of a type.
+fn kernel(given: &[Array<f64>], make: &dyn Fn(&[Value]) -> Operation) -> Result<Kernel, Misfit> {
     let mut kernel = Kernel::new();
     let mut values = Vec::new();
     for (at, a) in given.iter().enumerate() {
@@ -140,12 +138,7 @@ fn same(found: f64, wanted: f64) -> bool {
 }
 
 /// Evaluated, and recorded and run, the operation gives these bits.
-fn gives(
-    what: &str,
-    given: &[Array<f64>],
-    make: impl Fn(&[clebsch_program::Value]) -> Operation,
-    wanted: &[f64],
-) {
+fn gives(what: &str, given: &[Array<f64>], make: &dyn Fn(&[Value]) -> Operation, wanted: &[f64]) {
     let kernel = kernel(given, make).unwrap_or_else(|misfit| panic!("{what}: {misfit}"));
     kernel.verify().expect("it was verified line by line");
     let found = evaluate(&Numbers, &kernel, given, &[]).expect("inputs fit");
@@ -170,21 +163,31 @@ fn gives(
     }
 }
 
+/// Random operands of these shapes, and what is wanted of them.
+fn drawn(
+    source: &mut Source,
+    word: &str,
+    shapes: &[(usize, usize)],
+    make: &dyn Fn(&[Value]) -> Operation,
+    wanted: &dyn Fn(&[Array<f64>]) -> Vec<f64>,
+) {
+    let what = format!("{word} of {shapes:?}");
+    for _ in 0..DRAWS {
+        let operand = |&(rows, cols): &(usize, usize)| source.array(rows, cols);
+        let given: Vec<Array<f64>> = shapes.iter().map(operand).collect();
+        gives(&what, &given, make, &wanted(&given));
+    }
+}
+
 fn one<const R: usize, const C: usize, const P: usize, const Q: usize>(
     source: &mut Source,
     single: Single,
-    f: impl Fn(&SMatrix<f64, R, C>) -> SMatrix<f64, P, Q>,
+    f: fn(&SMatrix<f64, R, C>) -> SMatrix<f64, P, Q>,
 ) {
-    for _ in 0..DRAWS {
-        let a = source.matrix::<R, C>();
-        let what = format!("{} of {R} x {C}", single.word());
-        gives(
-            &what,
-            &[array(&a)],
-            |v| Operation::One(single, v[0]),
-            f(&a).as_slice(),
-        );
-    }
+    let make = |v: &[Value]| Operation::One(single, v[0]);
+    drawn(source, single.word(), &[(R, C)], &make, &|given| {
+        f(&matrix(&given[0])).as_slice().to_vec()
+    });
 }
 
 fn two<
@@ -197,26 +200,21 @@ fn two<
 >(
     source: &mut Source,
     pair: Pair,
-    f: impl Fn(&SMatrix<f64, R, C>, &SMatrix<f64, S, D>) -> SMatrix<f64, P, Q>,
+    f: fn(&SMatrix<f64, R, C>, &SMatrix<f64, S, D>) -> SMatrix<f64, P, Q>,
 ) {
-    for _ in 0..DRAWS {
-        let (a, b) = (source.matrix::<R, C>(), source.matrix::<S, D>());
-        let what = format!("{} of {R} x {C} and {S} x {D}", pair.word());
-        let given = [array(&a), array(&b)];
-        gives(
-            &what,
-            &given,
-            |v| Operation::Two(pair, v[0], v[1]),
-            f(&a, &b).as_slice(),
-        );
-    }
+    let make = |v: &[Value]| Operation::Two(pair, v[0], v[1]);
+    drawn(source, pair.word(), &[(R, C), (S, D)], &make, &|given| {
+        f(&matrix(&given[0]), &matrix(&given[1]))
+            .as_slice()
+            .to_vec()
+    });
 }
 
 fn number(x: f64) -> SMatrix<f64, 1, 1> {
     SMatrix::repeat(x)
 }
 
-/// Operations on square matrices and vectors of one size, and with others of 1 to 4 columns.
+/// Operations on square matrices and vectors of one size, and with others of 1 to 6 columns.
 macro_rules! of_size {
     ($source:ident, $($n:literal)*) => { $(
         one::<$n, $n, $n, $n>(&mut $source, Single::Neg, |a| -a);
@@ -288,44 +286,44 @@ fn rows_and_columns_are_those_of_static_matrices() {
     };
     for _ in 0..DRAWS {
         let (a, b, c, d) = (
-            source.matrix::<5, 3>(),
-            source.matrix::<2, 3>(),
-            source.matrix::<3, 5>(),
-            source.matrix::<3, 2>(),
+            source.array(5, 3),
+            source.array(2, 3),
+            source.array(3, 5),
+            source.array(3, 2),
         );
-        let taken = e::rows_from::<f64, 5, 2, 3>(&a, 3);
+        let taken = e::rows_from::<f64, 5, 2, 3>(&matrix(&a), 3);
         gives(
             "rows",
-            &[array(&a)],
-            |v| Operation::RowsFrom(v[0], whole, 3),
+            std::slice::from_ref(&a),
+            &|v| Operation::RowsFrom(v[0], whole, 3),
             taken.as_slice(),
         );
-        let put = e::into_rows::<f64, 5, 2, 3>(&b, 1);
+        let put = e::into_rows::<f64, 5, 2, 3>(&matrix(&b), 1);
         gives(
             "into rows",
-            &[array(&b)],
-            |v| Operation::IntoRows(v[0], whole, 1),
+            std::slice::from_ref(&b),
+            &|v| Operation::IntoRows(v[0], whole, 1),
             put.as_slice(),
         );
-        let taken = e::columns_from::<f64, 5, 2, 3>(&c, 2);
+        let taken = e::columns_from::<f64, 5, 2, 3>(&matrix(&c), 2);
         gives(
             "columns",
-            &[array(&c)],
-            |v| Operation::ColumnsFrom(v[0], whole, 2),
+            std::slice::from_ref(&c),
+            &|v| Operation::ColumnsFrom(v[0], whole, 2),
             taken.as_slice(),
         );
-        let put = e::into_columns::<f64, 5, 2, 3>(&d, 2);
+        let put = e::into_columns::<f64, 5, 2, 3>(&matrix(&d), 2);
         gives(
             "into columns",
-            &[array(&d)],
-            |v| Operation::IntoColumns(v[0], whole, 2),
+            std::slice::from_ref(&d),
+            &|v| Operation::IntoColumns(v[0], whole, 2),
             put.as_slice(),
         );
-        let entry = [a[(4, 2)]];
+        let entry = [a.at(4, 2)];
         gives(
             "entry",
-            &[array(&a)],
-            |v| Operation::EntryAt(v[0], 4, 2),
+            std::slice::from_ref(&a),
+            &|v| Operation::EntryAt(v[0], 4, 2),
             &entry,
         );
     }
@@ -333,14 +331,14 @@ fn rows_and_columns_are_those_of_static_matrices() {
     gives(
         "unit",
         &[],
-        |_| Operation::Unit(Dim::Fixed(3), 1),
+        &|_| Operation::Unit(Dim::Fixed(3), 1),
         unit.as_slice(),
     );
     let inclusion = e::inclusion::<f64, 5, 2>(3);
     gives(
         "inclusion",
         &[],
-        |_| Operation::Inclusion(whole, 3),
+        &|_| Operation::Inclusion(whole, 3),
         inclusion.as_slice(),
     );
 }
@@ -363,7 +361,10 @@ fn functions_of_numbers_are_the_runtimes() {
         (Single::Sign, Real::sign),
     ];
     for (single, f) in functions {
-        one::<1, 1, 1, 1>(&mut source, single, |a| number(f(a[0])));
+        let make = |v: &[Value]| Operation::One(single, v[0]);
+        drawn(&mut source, single.word(), &[(1, 1)], &make, &|given| {
+            vec![f(given[0].at(0, 0))]
+        });
     }
     for _ in 0..DRAWS {
         let x = source.number();
@@ -372,7 +373,7 @@ fn functions_of_numbers_are_the_runtimes() {
             gives(
                 "power",
                 &given,
-                |v| Operation::Power(v[0], n),
+                &|v| Operation::Power(v[0], n),
                 &[Real::powi(x, n)],
             );
         }
@@ -380,7 +381,7 @@ fn functions_of_numbers_are_the_runtimes() {
             gives(
                 "root",
                 &given,
-                |v| Operation::Root(v[0], num, den),
+                &|v| Operation::Root(v[0], num, den),
                 &[Real::powr(x, num, den)],
             );
         }

@@ -86,6 +86,7 @@ fn the_way_back_is_the_way() {
     }
 }
 
+/// Long, since every line takes up to 20000 steps.
 #[test]
 fn energies_stay_within_a_bound_and_totals_to_rounding() {
     for line in models::all(12) {

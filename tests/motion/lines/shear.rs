@@ -71,6 +71,7 @@ fn sheared(side: usize, seed: u64) -> Left {
     }
 }
 
+/// Long, since up to 48 by 48 particles move for five units of time.
 #[test]
 fn steady_shear_stays_ordered_and_particles_apart() {
     // The motion of particles is chaotic after two units of time: of five seeds 0.86 to 0.90 is left at 24, 0.94 to 0.95 at 48.

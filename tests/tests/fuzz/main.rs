@@ -26,6 +26,7 @@ fn random_token_streams() {
     judge(&probe_all(0..FUZZED, kinds::stream));
 }
 
+/// Long, since every text is derived as far as it goes.
 #[test]
 fn mutated_models() {
     let _turn = alone();

@@ -17,6 +17,7 @@ fn inputs() -> Range<u64> {
     FUZZED..asked_for("FUZZ_INPUTS", FUZZED_LONG)
 }
 
+/// Long, since some thousand texts are derived.
 /// One after the other, each on all threads.
 #[test]
 fn token_streams_and_mutated_models() {
