@@ -105,7 +105,7 @@ pub struct Search<T, G, const D: usize, W = G, const E: usize = D> {
     lengths: SVector<T, D>,
     /// How many steps ago both were asked for.
     weighed: u32,
-    /// What the length of each part is measured by, and what rounding of momenta makes of it.
+    /// The unit of length of each part, and the rounding error of its length.
     units: [f64; D],
     noise: [f64; D],
     /// Whether they were found since the sizes of terms were asked for.
@@ -242,7 +242,7 @@ where
         }
     }
 
-    /// Takes the units of all parts, and what rounding makes of them, from a tangent.
+    /// Takes the units of all parts and their rounding errors from a tangent.
     #[cold]
     fn measure(&mut self, tangent: &SMatrix<T, D, D>) {
         let parts = Parts::of_group::<T, G>(D);
@@ -430,7 +430,7 @@ where
         comes_near(&correction, solution, &search.units, &search.noise)
     }
 
-    /// What is found out about a solution, or about none, begins with this.
+    /// The verdict on a solution, or on none, before any lane is judged.
     #[cold]
     pub fn verdict(&mut self, solution: Option<&W>) -> Verdict<W, E> {
         // A tangent of some steps ago may be why the test failed.
@@ -596,7 +596,7 @@ fn comes_near<T: Real, G: Group<T>, const D: usize>(
     near || near_beside::<T, G, D>(&squares, units, noise)
 }
 
-/// The same where a part hardly moves beside others, or by rounding alone.
+/// The same if a part moves little compared with others, or by rounding alone.
 #[cold]
 #[inline(never)]
 fn near_beside<T: Real, G: Group<T>, const D: usize>(

@@ -1,5 +1,5 @@
-//! What the search for the principal root asks of a model: residual and tangent of one step as functions of the values
-//! at its node, over any scalar.
+//! Functions that the search for the principal root calls: residual and tangent of one step at given values of its node,
+//! over any scalar.
 //! Takes the equations; gives the functions.
 
 use super::element::{self, Bundle};

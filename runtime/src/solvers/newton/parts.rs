@@ -20,7 +20,7 @@ const STEP_TURN: f64 = 1.5;
 /// any error would be small.
 const STEP_WAY: f64 = 2.0;
 
-/// A part that hardly moves is measured by this share of the part that moves most.
+/// A part that moves little is measured by this share of the part that moves most.
 const ASIDE: f64 = 0.05;
 
 /// The coordinates of a velocity and the parts that they belong to.
@@ -75,8 +75,8 @@ impl Parts {
         squares.iter().map(|x| x.sqrt()).collect()
     }
 
-    /// What a length of each part is measured by: 1 for pure numbers; for translations the radius that makes them weigh
-    /// as much as the angles of the same element. `entry` is the tangent.
+    /// The unit of length of each part: 1 for pure numbers; for translations the radius at which they weigh as much as the
+    /// angles of the same element. `entry` is the tangent.
     pub(super) fn units(&self, entry: &dyn Fn(usize, usize) -> f64) -> Vec<f64> {
         let block = |b: usize| {
             let own = self.own(b);
@@ -100,7 +100,7 @@ impl Parts {
 
     /// The unit of a part that stands in none of its own equations, as a multiplier does: what acts in the equations of
     /// the others as one unit of theirs, times so many that a multiplier is measured by all of the part that moves most. It
-    /// is no velocity, and may jump where velocities hardly move.
+    /// differs from a velocity in that it may jump.
     fn unit_of_multiplier(
         &self,
         part: usize,
@@ -120,7 +120,7 @@ impl Parts {
         if unit.is_finite() { unit / ASIDE } else { 0.0 }
     }
 
-    /// What later corrections of each part are measured by, where the first has these lengths: its own, or a little of
+    /// The lengths by which later corrections of each part are measured: those of the first correction, or a small share of
     /// the part that moves most.
     pub(super) fn course(
         &self,

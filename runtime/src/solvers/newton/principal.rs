@@ -16,7 +16,7 @@ use crate::groups::Group;
 use crate::linalg::Dense;
 use nalgebra::{SMatrix, SVector};
 
-/// By how much the second correction by one tangent is smaller than the first.
+/// The largest ratio of the second correction by one tangent to the first.
 pub(crate) const FALLS: f64 = 0.25;
 
 /// Most stages on the way.
@@ -35,11 +35,11 @@ const NEAR: f64 = 1e-3;
 /// The part of a stage that is tried where corrections do not fall.
 const WORSE: f64 = 0.2;
 
-/// By how much a stage may be longer than the last, or shorter: how much corrections fall is in proportion to its length.
+/// Bounds of the length of a stage, in lengths of the one before.
 const LONGER: f64 = 4.0;
 const SHORTER: f64 = 0.5;
 
-/// The part of the length that corrections allow which is tried, and the least part of the last length.
+/// The part of the longest admissible length that is tried, and the least part of a refused length.
 const AIM: f64 = 0.8;
 const SHORTEST_TRY: f64 = 0.1;
 
@@ -55,11 +55,10 @@ fn shortest(share: f64) -> f64 {
     (1e-3 * share).clamp(1e-13, SHORTEST)
 }
 
-/// A solution this part of the last stage away from the root is that root: tests of distance ask for no more than a
-/// solution that Newton's method polishes.
+/// A solution is the root if it is no further from it than this part of the last stage.
 const SAME: f64 = 1e-3;
 
-/// What was found out about a solution of one lane.
+/// The result for one lane.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Traced<G> {
     /// The solution is the principal root.
@@ -108,7 +107,7 @@ pub(super) trait Curve {
     /// The coordinates.
     fn parts(&self) -> &Parts;
 
-    /// What rounding of momenta makes of the length of a part that has no natural unit.
+    /// The rounding error of the length of a part that has no natural unit.
     fn noise(&self, part: usize) -> f64;
 
     /// The velocity of rest.
@@ -188,7 +187,7 @@ pub(super) fn trace<C: Curve>(
     let nothing = vec![0.0; at_rest.len()];
     let (mut share, mut length) = (0.0, 1.0_f64);
     for _ in 0..MOST_STAGES {
-        // What little would be left joins the last stage: it would be rounding.
+        // A small rest joins the last stage: its own corrections would be rounding.
         let last = share + (1.0 + JOINS) * length >= 1.0;
         let end = if last { 1.0 } else { share + length };
         if !last && length < shortest(share) {
@@ -236,11 +235,11 @@ struct Ended<G> {
     velocity: G,
     /// The lengths of its course.
     course: Vec<f64>,
-    /// By how much corrections fell: in proportion to the length of the stage.
+    /// The second correction over the first: it grows with the length of the stage.
     fall: f64,
 }
 
-/// The end of a stage, or by what part of it another one should be shorter.
+/// The end of a stage, or the part of its length to try next.
 fn ended<C: Curve>(
     curve: &C,
     stage: &Stage<C::Velocity>,

@@ -8,11 +8,10 @@ use crate::scalar::larger;
 /// The root of the rounding.
 const SHARE: f64 = 1.5e-8;
 
-/// A length of so many roundings of the terms of its equation is rounding.
+/// Rounding errors of a length, in roundings of the terms of its equation.
 const NOISE: f64 = 1e4;
 
-/// What the length of each part is measured by, and what rounding of the terms of its equations makes of it. Takes the
-/// tangent and one over the sizes of terms.
+/// The unit of length of each part and the rounding error of its length. Takes the tangent and one over the sizes of terms.
 #[cold]
 pub(super) fn measures(
     parts: &Parts,

@@ -1,4 +1,4 @@
-//! What is found out about a solution in all lanes together, and where a solution may be polished.
+//! The results of all lanes together, and the place where Newton's method may polish the principal root.
 //! Takes the equations lane by lane; gives the principal roots where the solution is none in some lane.
 
 use super::principal::{Equations, Fold, OnGroup, Traced, trace};
@@ -24,7 +24,7 @@ impl<G: Copy, const D: usize> Anchor<G, D> {
     }
 }
 
-/// What was found out of all lanes together.
+/// The results of all lanes together.
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict<G, const D: usize> {
     anchor: Anchor<G, D>,
@@ -33,7 +33,7 @@ pub struct Verdict<G, const D: usize> {
 }
 
 impl<G: Copy, const D: usize> Verdict<G, D> {
-    /// Of no lane yet; `solution` is what is asked about.
+    /// No lane yet; `solution` is the element to judge.
     pub(super) fn about(solution: G, noise: [f64; D]) -> Self {
         Self {
             anchor: Anchor {
