@@ -18,6 +18,7 @@ pub use alone::solve;
 pub use any_size::{AnyNewton, AnySearch, Chart, Lane, Settled};
 pub use failure::{NewtonError, NewtonFailure};
 pub use parts::Parts;
+use parts::comes_near;
 pub use principal::{Equations, Fold};
 pub use reduced::Found;
 pub use verdict::{Anchor, Numbers, Verdict};
@@ -573,45 +574,6 @@ where
             residual: self.size,
         })
     }
-}
-
-/// Whether a correction from rest, taken back, comes within a quarter of the way to the solution.
-#[inline(always)]
-fn comes_near<T: Real, G: Group<T>, const D: usize>(
-    correction: &SVector<T, D>,
-    solution: &G,
-    units: &[f64; D],
-    noise: &[f64; D],
-) -> bool {
-    let mut squares = [[T::zero(); 2]; D];
-    solution.compared((-correction).as_slice(), &mut squares);
-    let parts = G::PARTS.min(D);
-    let mut near = true;
-    for lane in 0..T::LANES {
-        for (b, [way, off]) in squares.iter().enumerate().take(parts) {
-            let most = parts::most_of_step(b, units, G::is_pure);
-            near &= parts::is_near([way.lane(lane), off.lane(lane)], most, G::is_pure(b));
-        }
-    }
-    near || near_beside::<T, G, D>(&squares, units, noise)
-}
-
-/// The same if a part moves little compared with others, or by rounding alone.
-#[cold]
-#[inline(never)]
-fn near_beside<T: Real, G: Group<T>, const D: usize>(
-    squares: &[[T; 2]; D],
-    units: &[f64; D],
-    noise: &[f64; D],
-) -> bool {
-    let parts = Parts::of_group::<T, G>(D);
-    let lanes = 0..T::LANES;
-    let of = |lane: usize| {
-        let squares = squares.iter().take(parts.count());
-        let squares: Vec<[f64; 2]> = squares.map(|s| s.map(|x| x.lane(lane))).collect();
-        parts.are_near(&squares, units, &|b| noise.get(b).copied().unwrap_or(0.0))
-    };
-    lanes.into_iter().all(of)
 }
 
 /// The largest absolute real part over components and lanes; NaN if any is.

@@ -4,7 +4,8 @@
 
 use super::principal::FALLS;
 use crate::groups::Group;
-use crate::scalar::larger;
+use crate::scalar::{Real, larger};
+use nalgebra::SVector;
 
 /// Where nothing turns, angles of this size count as a course.
 const LITTLE: f64 = 1e-6;
@@ -186,7 +187,7 @@ impl Parts {
 
 /// The longest way of a part in a step that one correction judges; beyond it no more counts.
 #[inline(always)]
-pub(super) fn most_of_step(part: usize, units: &[f64], pure: impl Fn(usize) -> bool) -> f64 {
+fn most_of_step(part: usize, units: &[f64], pure: impl Fn(usize) -> bool) -> f64 {
     match (pure(part), part > 0 && pure(part - 1)) {
         (true, _) => STEP_TURN,
         (false, true) => STEP_WAY * units.get(part).copied().unwrap_or(0.0),
@@ -197,9 +198,48 @@ pub(super) fn most_of_step(part: usize, units: &[f64], pure: impl Fn(usize) -> b
 /// Whether a correction leaves at most a quarter of the way of a part, both given as squares. A part that turns by more
 /// than `most` is not judged.
 #[inline(always)]
-pub(super) fn is_near([way, off]: [f64; 2], most: f64, turns: bool) -> bool {
+fn is_near([way, off]: [f64; 2], most: f64, turns: bool) -> bool {
     let most = most * most;
     let counted = if way > most { most } else { way };
     // NaN is not near.
     off <= FALLS * FALLS * counted && !(turns && way > most)
+}
+
+/// Whether a correction from rest, taken back, comes within a quarter of the way to the solution.
+#[inline(always)]
+pub(super) fn comes_near<T: Real, G: Group<T>, const D: usize>(
+    correction: &SVector<T, D>,
+    solution: &G,
+    units: &[f64; D],
+    noise: &[f64; D],
+) -> bool {
+    let mut squares = [[T::zero(); 2]; D];
+    solution.compared((-correction).as_slice(), &mut squares);
+    let parts = G::PARTS.min(D);
+    let mut near = true;
+    for lane in 0..T::LANES {
+        for (b, [way, off]) in squares.iter().enumerate().take(parts) {
+            let most = most_of_step(b, units, G::is_pure);
+            near &= is_near([way.lane(lane), off.lane(lane)], most, G::is_pure(b));
+        }
+    }
+    near || near_beside::<T, G, D>(&squares, units, noise)
+}
+
+/// The same if a part moves little compared with others, or by rounding alone.
+#[cold]
+#[inline(never)]
+fn near_beside<T: Real, G: Group<T>, const D: usize>(
+    squares: &[[T; 2]; D],
+    units: &[f64; D],
+    noise: &[f64; D],
+) -> bool {
+    let parts = Parts::of_group::<T, G>(D);
+    let lanes = 0..T::LANES;
+    let of = |lane: usize| {
+        let squares = squares.iter().take(parts.count());
+        let squares: Vec<[f64; 2]> = squares.map(|s| s.map(|x| x.lane(lane))).collect();
+        parts.are_near(&squares, units, &|b| noise.get(b).copied().unwrap_or(0.0))
+    };
+    lanes.into_iter().all(of)
 }

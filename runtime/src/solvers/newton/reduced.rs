@@ -1,8 +1,8 @@
 //! Equations of which some unknowns are solved for beforehand, in closed form: Newton's method finds the others.
 //! Takes an element with all unknowns; gives the part that is searched for.
 
-use super::parts::Parts;
-use super::{Newton, Progress, Solved, comes_near};
+use super::parts::{Parts, comes_near};
+use super::{Newton, Progress, Solved};
 use crate::groups::{Group, RigidMotion, Rotation};
 use crate::linalg::Factors;
 use crate::saved::{Saved, Words};
