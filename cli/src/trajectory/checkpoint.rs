@@ -24,7 +24,7 @@ pub(crate) const UNFINISHED: &str = "checkpoint.new";
 const MAGIC: &str = "clebsch checkpoint ";
 
 /// The version that is written, and the only one that is read.
-const VERSION: &str = "1";
+const VERSION: &str = "2";
 
 /// Bytes written at once.
 const BUFFER: usize = 1 << 18;
@@ -379,11 +379,11 @@ mod tests {
             "{one} {other}"
         );
         assert_eq!(listed(&[0.5, 1.0]), "[0.5, 1.0]");
-        let later = String::from_utf8_lossy(&bytes[..21]).replace('1', "2");
+        let later = String::from_utf8_lossy(&bytes[..21]).replace('2', "3");
         let why = Checkpoint::of_bytes(later.as_bytes(), &identity("0.1"));
         assert_eq!(
             why,
-            Err("its format has version 2, this program reads version 1".to_owned())
+            Err("its format has version 3, this program reads version 2".to_owned())
         );
     }
 }
