@@ -312,6 +312,7 @@ impl Shape {
         let mut parts = Parts {
             of: Vec::new(),
             pure: Vec::new(),
+            open: Vec::new(),
         };
         for kind in &kinds {
             let before = parts.pure.len();
@@ -320,6 +321,8 @@ impl Shape {
             parts
                 .pure
                 .extend((0..kind.parts()).map(|i| kind.is_pure(i)));
+            let open = matches!(kind, Kind::Linear(_) | Kind::Field(..));
+            parts.open.extend((0..kind.parts()).map(|_| open));
         }
         Shape { kinds, parts }
     }

@@ -208,10 +208,12 @@ impl Solve {
     ) -> Result<bool, Exit<f64>> {
         let all = sought.all();
         let at_rest = unfit(vector(at_rest, all.parts().dimension()))?;
-        if self.rest.is_none() {
-            return Ok(iteration.is_principal(solution, &at_rest));
-        }
         let known = self.known(places)?;
+        if self.rest.is_none() {
+            return Ok(self.principal(&known, sought, |equations| {
+                iteration.is_principal(solution, &at_rest, equations.residual)
+            }));
+        }
         let tangent = || {
             self.principal(&known, sought, |equations| {
                 (equations.tangent)(&all.identity())

@@ -116,6 +116,10 @@ impl<const R: usize, const C: usize, T: Real> Group<T> for Additive<R, C, T> {
     }
 
     /// The length of all entries together.
+    fn is_open(_part: usize) -> bool {
+        true
+    }
+
     #[inline]
     fn extents(&self, out: &mut [f64]) {
         if let Some(first) = out.first_mut() {

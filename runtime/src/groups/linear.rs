@@ -159,6 +159,10 @@ impl<const N: usize, T: Real> Group<T> for Linear<N, T> {
     }
 
     /// The length of all entries of `Q - 1` together.
+    fn is_open(_part: usize) -> bool {
+        true
+    }
+
     #[inline]
     fn extents(&self, out: &mut [f64]) {
         if let Some(first) = out.first_mut() {

@@ -124,6 +124,13 @@ pub trait Group<T>: Copy {
         true
     }
 
+    /// Whether the coordinates of a part have no scale of their own, as those of fields and linear maps: equations may vary
+    /// over any length of them.
+    #[must_use]
+    fn is_open(_part: usize) -> bool {
+        false
+    }
+
     /// Bounds of the lengths of the coordinates `xi` of the element seen from the neutral one,
     /// `identity().retract(xi)`, part by part, the largest of all lanes; infinite or NaN where
     /// there are none.

@@ -75,6 +75,10 @@ impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
         G::is_pure(part % G::PARTS.max(1))
     }
 
+    fn is_open(part: usize) -> bool {
+        G::is_open(part % G::PARTS.max(1))
+    }
+
     #[inline]
     fn extents(&self, out: &mut [f64]) {
         for (factor, own) in self.iter().zip(out.chunks_mut(G::PARTS.max(1))) {
@@ -190,6 +194,18 @@ macro_rules! product_of {
                 )+
                 let _ = rest;
                 true
+            }
+
+            fn is_open(part: usize) -> bool {
+                let mut rest = part;
+                $(
+                    if rest < $group::PARTS {
+                        return $group::is_open(rest);
+                    }
+                    rest -= $group::PARTS;
+                )+
+                let _ = rest;
+                false
             }
 
             #[inline]

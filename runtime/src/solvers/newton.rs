@@ -18,7 +18,7 @@ pub use alone::solve;
 pub use any_size::{AnyNewton, AnySearch, Chart, Lane, Settled};
 pub use failure::{NewtonError, NewtonFailure};
 pub use parts::Parts;
-use parts::comes_near;
+use parts::{comes_near, varies_little};
 pub use principal::{Equations, Fold};
 pub use reduced::Found;
 pub use verdict::{Anchor, Numbers, Verdict};
@@ -109,7 +109,9 @@ pub struct Search<T, G, const D: usize, W = G, const E: usize = D> {
     /// The unit of length of each part, and the rounding error of its length.
     units: [f64; D],
     noise: [f64; D],
-    /// Whether they were found since the sizes of terms were asked for.
+    /// Whether a part has no scale of its own.
+    open: bool,
+    /// Whether these were found since the sizes of terms were asked for.
     measured: bool,
     /// Whether no step follows.
     tries: bool,
@@ -151,6 +153,7 @@ where
             weighed: OLDEST_SCALE,
             units: [1.0; D],
             noise: [0.0; D],
+            open: false,
             measured: false,
             tries: false,
             whole: AtRest::unknown(),
@@ -252,6 +255,7 @@ where
             let entry = |i, j| tangent[(i, j)].lane(lane) / unit;
             let weights: [f64; D] = core::array::from_fn(|k| self.weights[k].lane(lane));
             let (units, noise) = scale::measures(&parts, &entry, &weights);
+            self.open = parts.are_open(&entry);
             let known = lane > 0;
             for (b, (unit, noise)) in units.into_iter().zip(noise).enumerate() {
                 self.units[b] = unit;
@@ -413,8 +417,13 @@ where
     /// Whether the solution found is the principal root: because it follows from rest, where the residual is `at_rest`, or
     /// because this is where it was looked for.
     #[inline(always)]
-    pub fn is_principal(&self, solution: &W, at_rest: &SVector<T, D>) -> bool {
-        self.follows(&G::within(solution), at_rest)
+    pub fn is_principal(
+        &self,
+        solution: &W,
+        at_rest: &SVector<T, D>,
+        residual: impl Fn(&G) -> SVector<T, D>,
+    ) -> bool {
+        self.follows(&G::within(solution), at_rest, residual)
             || self
                 .anchor
                 .is_some_and(|anchor| anchor.holds::<T>(*solution))
@@ -423,12 +432,25 @@ where
     /// Whether the first correction from rest, by the tangent at hand, comes within a quarter of the way to the solution:
     /// from there the second one would be as small. Every part and every lane is asked.
     #[inline(always)]
-    fn follows(&self, solution: &G, at_rest: &SVector<T, D>) -> bool {
+    fn follows(
+        &self,
+        solution: &G,
+        at_rest: &SVector<T, D>,
+        residual: impl Fn(&G) -> SVector<T, D>,
+    ) -> bool {
         let search = &*self.search;
         let Some(correction) = search.factors.solve(&(at_rest * search.unit)) else {
             return false;
         };
-        comes_near(&correction, solution, &search.units, &search.noise)
+        let (units, noise) = (&search.units, &search.noise);
+        if !comes_near(&correction, solution, units, noise) {
+            return false;
+        }
+        let left = |share: f64, at: &G| {
+            let goal = at_rest * T::from_f64(1.0 - share);
+            search.factors.solve(&((residual(at) - goal) * search.unit))
+        };
+        !search.open || varies_little(&correction, left, units, noise)
     }
 
     /// The verdict on a solution, or on none, before any lane is judged.

@@ -249,7 +249,11 @@ impl Together<'_> {
                     Self::#tangent_at(&self.parameters, #step, &#given, &Group::<T>::identity())
                 })
             },
-            None => quote!(is_principal(&#solved.element, &{ #at_rest })),
+            None => quote! {
+                is_principal(&#solved.element, &{ #at_rest }, |trial| {
+                    Self::#residual_at(&self.parameters, #step, &#given, &#mu, trial)
+                })
+            },
         };
         let (at_trial, wants, correct) = match &equations.part {
             Some(part) => {

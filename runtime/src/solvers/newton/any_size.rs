@@ -10,6 +10,7 @@ mod saved;
 pub use chart::{Chart, Lane};
 
 use super::corrections::{Corrections, Next, Residual};
+use super::parts::POINTS;
 use super::principal::{Fold, Traced, trace};
 use super::scale::{Tangent, measures};
 use super::{
@@ -41,6 +42,7 @@ pub struct AnySearch<C: Chart> {
     weighed: u32,
     units: Vec<f64>,
     noise: Vec<f64>,
+    open: bool,
     measured: bool,
     /// Whether no step follows.
     tries: bool,
@@ -64,6 +66,7 @@ impl<C: Chart> AnySearch<C> {
             weighed: OLDEST_SCALE,
             units: Vec::new(),
             noise: Vec::new(),
+            open: false,
             measured: false,
             tries,
             whole: None,
@@ -214,8 +217,13 @@ impl<C: Chart> AnyNewton<'_, C> {
 
     /// Whether the solution found is the principal root: see [`Newton::is_principal`](super::Newton::is_principal).
     #[must_use]
-    pub fn is_principal(&self, solution: &C::Element, at_rest: &[f64]) -> bool {
-        self.follows(solution, at_rest) || self.holds(solution)
+    pub fn is_principal(
+        &self,
+        solution: &C::Element,
+        at_rest: &[f64],
+        residual: impl Fn(&C::Element) -> Vec<f64>,
+    ) -> bool {
+        self.follows(solution, at_rest, residual) || self.holds(solution)
     }
 
     /// The same of all unknowns: see [`Newton::is_part_of_principal`](super::Newton::is_part_of_principal).
@@ -245,12 +253,35 @@ impl<C: Chart> AnyNewton<'_, C> {
         })
     }
 
-    fn follows(&self, solution: &C::Element, at_rest: &[f64]) -> bool {
+    fn follows(
+        &self,
+        solution: &C::Element,
+        at_rest: &[f64],
+        residual: impl Fn(&C::Element) -> Vec<f64>,
+    ) -> bool {
         let (search, chart) = (&*self.search, self.chart);
         let right: Vec<f64> = at_rest.iter().map(|x| x * search.unit).collect();
         let noise = |b: usize| search.noise.get(b).copied().unwrap_or(0.0);
+        let units = &search.units;
         let correction = search.factors.solve(&right);
-        correction.is_some_and(|x| comes_near(chart, &x, solution, &search.units, &noise))
+        let Some(x) = correction.filter(|x| comes_near(chart, x, solution, units, &noise)) else {
+            return false;
+        };
+        let parts = chart.parts();
+        let ways = parts.lengths(&x);
+        let varies_little = |share: &f64| {
+            let step: Vec<f64> = x.iter().map(|x| -x * share).collect();
+            let found = residual(&chart.retract(&chart.identity(), &step));
+            let goals = at_rest.iter().map(|x| x * (1.0 - share));
+            let left = found.iter().zip(goals).map(|(x, y)| (x - y) * search.unit);
+            let left: Vec<f64> = left.collect();
+            search.factors.solve(&left).is_some_and(|off| {
+                let off = parts.lengths(&off);
+                let squares = ways.iter().zip(&off).map(|(x, y)| [x * x, y * y]);
+                parts.are_near(&squares.collect::<Vec<_>>(), units, &noise)
+            })
+        };
+        !search.open || POINTS.iter().all(varies_little)
     }
 
     /// Looks whether the solution, or else which element, is the principal root. None where it is, or where
@@ -324,6 +355,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         if !search.measured {
             let entry = |i, j| tangent.at(i, j) / unit;
             (search.units, search.noise) = measures(self.chart.parts(), &entry, &search.weights);
+            search.open = self.chart.parts().are_open(&entry);
             search.measured = true;
         }
         search.factors.set(tangent);

@@ -21,6 +21,12 @@ const STEP_TURN: f64 = 1.5;
 /// any error would be small.
 const STEP_WAY: f64 = 2.0;
 
+/// Points on the way at which equations are looked at, where a part has no scale of its own.
+pub(super) const POINTS: [f64; 15] = [
+    0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.4375, 0.5, 0.5625, 0.625, 0.6875, 0.75, 0.8125,
+    0.875, 0.9375,
+];
+
 /// A part that moves little is measured by this share of the part that moves most.
 const ASIDE: f64 = 0.05;
 
@@ -31,6 +37,8 @@ pub struct Parts {
     pub of: Vec<usize>,
     /// Whether the coordinates of each part are pure numbers.
     pub pure: Vec<bool>,
+    /// Whether they have no scale of their own.
+    pub open: Vec<bool>,
 }
 
 impl Parts {
@@ -39,6 +47,7 @@ impl Parts {
         Self {
             of: (0..G::DIMENSION.min(most)).map(G::part_of).collect(),
             pure: (0..G::PARTS).map(G::is_pure).collect(),
+            open: (0..G::PARTS).map(G::is_open).collect(),
         }
     }
 
@@ -74,6 +83,13 @@ impl Parts {
             }
         }
         squares.iter().map(|x| x.sqrt()).collect()
+    }
+
+    /// Whether a part that is no multiplier has no scale of its own. `entry` is the tangent.
+    pub(super) fn are_open(&self, entry: &dyn Fn(usize, usize) -> f64) -> bool {
+        let moves = |b: usize| self.own(b).any(|k| entry(k, k) != 0.0);
+        let mut open = self.open.iter().enumerate();
+        open.any(|(b, open)| *open && moves(b))
     }
 
     /// The unit of length of each part: 1 for pure numbers; for translations the radius at which they weigh as much as the
@@ -215,6 +231,42 @@ pub(super) fn comes_near<T: Real, G: Group<T>, const D: usize>(
 ) -> bool {
     let mut squares = [[T::zero(); 2]; D];
     solution.compared((-correction).as_slice(), &mut squares);
+    are_near::<T, G, D>(&squares, units, noise)
+}
+
+/// Whether equations vary little on the way from rest by `correction`, taken back: so much is left of them at some points
+/// of it, seen through the tangent.
+#[cold]
+#[inline(never)]
+pub(super) fn varies_little<T: Real, G: Group<T>, const D: usize>(
+    correction: &SVector<T, D>,
+    left: impl Fn(f64, &G) -> Option<SVector<T, D>>,
+    units: &[f64; D],
+    noise: &[f64; D],
+) -> bool {
+    POINTS.iter().all(|share| {
+        let at = G::identity().retract((-*correction * T::from_f64(*share)).as_slice());
+        let Some(off) = left(*share, &at) else {
+            return false;
+        };
+        let mut squares = [[T::zero(); 2]; D];
+        for k in 0..G::DIMENSION.min(D) {
+            if let Some([way, left]) = squares.get_mut(G::part_of(k)) {
+                *way += correction[k] * correction[k];
+                *left += off[k] * off[k];
+            }
+        }
+        are_near::<T, G, D>(&squares, units, noise)
+    })
+}
+
+/// Whether the second of each pair of squares is small enough beside the first, in every part and lane.
+#[inline(always)]
+fn are_near<T: Real, G: Group<T>, const D: usize>(
+    squares: &[[T; 2]; D],
+    units: &[f64; D],
+    noise: &[f64; D],
+) -> bool {
     let parts = G::PARTS.min(D);
     let mut near = true;
     for lane in 0..T::LANES {
@@ -223,7 +275,7 @@ pub(super) fn comes_near<T: Real, G: Group<T>, const D: usize>(
             near &= is_near([way.lane(lane), off.lane(lane)], most, G::is_pure(b));
         }
     }
-    near || near_beside::<T, G, D>(&squares, units, noise)
+    near || near_beside::<T, G, D>(squares, units, noise)
 }
 
 /// The same if a part moves little compared with others, or by rounding alone.

@@ -11,7 +11,7 @@
 //!
 //! Takes the equations of one lane; gives the root, or how far the curve could be followed.
 
-use super::parts::Parts;
+use super::parts::{POINTS, Parts};
 use crate::groups::Group;
 use crate::linalg::Dense;
 use nalgebra::{SMatrix, SVector};
@@ -28,6 +28,9 @@ const MOST_CORRECTIONS: usize = 12;
 /// The last stage ends with a correction that is this part of its length: what is left is the square. Close to a fold
 /// rounding permits no less.
 const SOLVED: f64 = 1e-6;
+
+/// Corrections of this part of the noise of a length are rounding.
+const ROUNDED: f64 = 0.1;
 
 /// Another stage can begin so near the end of one.
 const NEAR: f64 = 1e-3;
@@ -132,6 +135,8 @@ struct Stage<G> {
     residual: Vec<f64>,
     inverse: Dense<f64>,
     units: Vec<f64>,
+    /// Whether a part has no scale of its own.
+    open: bool,
 }
 
 impl<G: Clone> Stage<G> {
@@ -142,6 +147,7 @@ impl<G: Clone> Stage<G> {
         Some(Self {
             residual: curve.residual(&velocity),
             units: curve.parts().units(&|i, j| tangent.at(i, j)),
+            open: curve.parts().are_open(&|i, j| tangent.at(i, j)),
             velocity,
             inverse,
         })
@@ -160,6 +166,11 @@ fn corrected(inverse: &Dense<f64>, goal: &[f64], residual: &[f64]) -> Vec<f64> {
 
 fn times(x: &[f64], factor: f64) -> Vec<f64> {
     x.iter().map(|x| x * factor).collect()
+}
+
+/// The larger of two; NaN where one is.
+fn worse(a: f64, b: f64) -> f64 {
+    if b <= a { a } else { b + 0.0 * a }
 }
 
 /// The largest length over its bound; NaN where any is.
@@ -251,7 +262,16 @@ fn ended<C: Curve>(
     let course = parts.course(&parts.lengths(&first), &stage.units, |b| curve.noise(b));
     let mut at = curve.moved(&stage.velocity, &first);
     let second = stage.correction(goal, &curve.residual(&at));
-    let fall = ratio(&parts.lengths(&second), &course);
+    let mut fall = ratio(&parts.lengths(&second), &course);
+    if stage.open {
+        for share in POINTS {
+            let between = goal.iter().zip(&stage.residual);
+            let between: Vec<f64> = between.map(|(x, y)| y + share * (x - y)).collect();
+            let there = curve.moved(&stage.velocity, &times(&first, share));
+            let off = stage.correction(&between, &curve.residual(&there));
+            fall = worse(fall, ratio(&parts.lengths(&off), &course));
+        }
+    }
     if !course.iter().all(|x| x.is_finite()) || !fall.is_finite() {
         return Err(WORSE);
     }
@@ -267,7 +287,18 @@ fn ended<C: Curve>(
         }
         let inverse = curve.tangent(&at).balanced_inverse().ok_or(WORSE)?;
         let correction = corrected(&inverse, goal, &curve.residual(&at));
-        let size = ratio(&parts.lengths(&correction), &course);
+        let lengths = parts.lengths(&correction);
+        let known = lengths.iter().enumerate();
+        let known: Vec<f64> = known
+            .map(|(b, x)| {
+                if *x <= ROUNDED * curve.noise(b) {
+                    0.0
+                } else {
+                    *x
+                }
+            })
+            .collect();
+        let size = ratio(&known, &course);
         at = curve.moved(&at, &correction);
         if size <= enough {
             before = size;

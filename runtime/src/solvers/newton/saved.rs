@@ -16,6 +16,7 @@ impl<G: Group<f64> + Saved, const D: usize, W, const E: usize> Saved for Search<
             weighed,
             units,
             noise,
+            open,
             measured,
             // Steps are made to go on from there.
             tries: _,
@@ -35,6 +36,7 @@ impl<G: Group<f64> + Saved, const D: usize, W, const E: usize> Saved for Search<
         whole.words(words);
         units.words(words);
         noise.words(words);
+        open.words(words);
         measured.words(words);
         factors.words(words);
         unit.words(words);

@@ -18,12 +18,29 @@ pub(super) fn measures(
     entry: &dyn Fn(usize, usize) -> f64,
     weights: &[f64],
 ) -> (Vec<f64>, Vec<f64>) {
+    // Own equations, and those that the own unknown does not enter, as of a held constraint.
     let noise = |k: usize| {
-        let own = NOISE * f64::EPSILON / (entry(k, k).abs() * weights.get(k).unwrap_or(&f64::NAN));
-        if own.is_finite() { own } else { 0.0 }
+        let rows = (0..parts.dimension()).filter(|i| *i == k || entry(*i, *i) == 0.0);
+        let each = rows.map(|i| {
+            let weight = weights.get(i).copied().unwrap_or(f64::NAN);
+            NOISE * f64::EPSILON / (entry(i, k).abs() * weight)
+        });
+        each.filter(|x| x.is_finite()).fold(0.0, larger)
     };
-    let noise = (0..parts.count()).map(|b| parts.own(b).map(noise).fold(0.0, larger));
-    (parts.units(entry), noise.collect())
+    let units = parts.units(entry);
+    let of_part = |b: usize| parts.own(b).map(noise).fold(0.0, larger);
+    let noise: Vec<f64> = (0..parts.count()).map(of_part).collect();
+    // Multipliers are as uncertain as what they act on.
+    let shares = noise.iter().zip(&units).map(|(x, unit)| x / unit);
+    let most = shares.filter(|x| x.is_finite()).fold(0.0, larger);
+    let is_multiplier = |b: usize| parts.own(b).all(|k| entry(k, k) == 0.0);
+    let noise = noise.iter().zip(&units).enumerate();
+    let noise = noise.map(|(b, (own, unit))| match is_multiplier(b) {
+        true => larger(*own, most * unit),
+        false => *own,
+    });
+    let noise = noise.collect();
+    (units, noise)
 }
 
 /// What the equations do with the velocities.

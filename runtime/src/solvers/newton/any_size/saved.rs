@@ -21,6 +21,7 @@ impl<C: Chart> AnySearch<C> {
             weighed,
             units,
             noise,
+            open,
             measured,
             // Steps are made to go on from there.
             tries: _,
@@ -41,6 +42,7 @@ impl<C: Chart> AnySearch<C> {
         });
         units.words(words);
         noise.words(words);
+        open.words(words);
         measured.words(words);
         factors.words(words);
         unit.words(words);
