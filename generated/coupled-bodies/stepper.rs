@@ -208,6 +208,15 @@ impl<T: Real> CoupledBodies<T> {
                                     ],
                                 )
                             },
+                            |trial| {
+                                Self::residual_at(
+                                    &self.parameters,
+                                    h,
+                                    &(R, []),
+                                    &momenta,
+                                    trial,
+                                )
+                            },
                         ) => break solved,
                     ended => {
                         if let Some(solved) = self

@@ -360,9 +360,19 @@ impl<T: Real> MixedFour<T> {
                         solved,
                     ) if convex
                         || iteration
-                            .is_principal(&solved.element, &{ (k3) - momenta[0] }) => {
-                        break solved;
-                    }
+                            .is_principal(
+                                &solved.element,
+                                &{ (k3) - momenta[0] },
+                                |trial| {
+                                    Self::residual_at_4(
+                                        &self.parameters,
+                                        h,
+                                        &(R, (G, (X, []))),
+                                        &momenta,
+                                        trial,
+                                    )
+                                },
+                            ) => break solved,
                     ended => {
                         if let Some(solved) = self
                             .settled_4(

@@ -41,6 +41,7 @@ mod rest;
 mod results;
 mod resumed;
 mod rods;
+mod roots;
 mod rotor;
 mod scales;
 mod scenes;
