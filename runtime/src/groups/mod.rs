@@ -124,7 +124,7 @@ pub trait Group<T>: Copy {
         true
     }
 
-    /// Whether the coordinates of a part have no scale of their own, as those of fields and linear maps: equations may vary
+    /// Whether the coordinates of a part lack a scale of their own, as those of fields and linear maps: equations may vary
     /// over any length of them.
     #[must_use]
     fn is_open(_part: usize) -> bool {

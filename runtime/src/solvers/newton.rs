@@ -109,7 +109,7 @@ pub struct Search<T, G, const D: usize, W = G, const E: usize = D> {
     /// The unit of length of each part, and the rounding error of its length.
     units: [f64; D],
     noise: [f64; D],
-    /// Whether a part has no scale of its own.
+    /// Whether a part lacks a scale of its own.
     open: bool,
     /// Whether these were found since the sizes of terms were asked for.
     measured: bool,

@@ -21,7 +21,7 @@ const STEP_TURN: f64 = 1.5;
 /// any error would be small.
 const STEP_WAY: f64 = 2.0;
 
-/// Points on the way at which equations are looked at, where a part has no scale of its own.
+/// Points on the way at which equations are looked at, where a part lacks a scale of its own.
 pub(super) const POINTS: [f64; 15] = [
     0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.4375, 0.5, 0.5625, 0.625, 0.6875, 0.75, 0.8125,
     0.875, 0.9375,
@@ -37,7 +37,7 @@ pub struct Parts {
     pub of: Vec<usize>,
     /// Whether the coordinates of each part are pure numbers.
     pub pure: Vec<bool>,
-    /// Whether they have no scale of their own.
+    /// Whether they lack a scale of their own.
     pub open: Vec<bool>,
 }
 
@@ -85,7 +85,7 @@ impl Parts {
         squares.iter().map(|x| x.sqrt()).collect()
     }
 
-    /// Whether a part that is no multiplier has no scale of its own. `entry` is the tangent.
+    /// Whether a part other than a multiplier lacks a scale of its own. `entry` is the tangent.
     pub(super) fn are_open(&self, entry: &dyn Fn(usize, usize) -> f64) -> bool {
         let moves = |b: usize| self.own(b).any(|k| entry(k, k) != 0.0);
         let mut open = self.open.iter().enumerate();
@@ -115,7 +115,7 @@ impl Parts {
         .collect()
     }
 
-    /// The unit of a part that stands in none of its own equations, as a multiplier does: what acts in the equations of
+    /// The unit of a part that its own equations do not contain, such as a multiplier: the value that acts in the equations of
     /// the others as one unit of theirs, times so many that a multiplier is measured by all of the part that moves most. It
     /// differs from a velocity in that it may jump.
     fn unit_of_multiplier(
@@ -234,8 +234,8 @@ pub(super) fn comes_near<T: Real, G: Group<T>, const D: usize>(
     are_near::<T, G, D>(&squares, units, noise)
 }
 
-/// Whether equations vary little on the way from rest by `correction`, taken back: so much is left of them at some points
-/// of it, seen through the tangent.
+/// Whether equations vary little on the way from rest to the end of `correction`, taken back. `left` gives their rest at a
+/// point of the way, as a correction by the tangent at hand.
 #[cold]
 #[inline(never)]
 pub(super) fn varies_little<T: Real, G: Group<T>, const D: usize>(

@@ -58,7 +58,7 @@ fn shortest(share: f64) -> f64 {
     (1e-3 * share).clamp(1e-13, SHORTEST)
 }
 
-/// A solution is the root if it is no further from it than this part of the last stage.
+/// A solution is the root if it lies within this part of the last stage.
 const SAME: f64 = 1e-3;
 
 /// The result for one lane.
@@ -110,7 +110,7 @@ pub(super) trait Curve {
     /// The coordinates.
     fn parts(&self) -> &Parts;
 
-    /// The rounding error of the length of a part that has no natural unit.
+    /// The rounding error of the length of a part without a natural unit.
     fn noise(&self, part: usize) -> f64;
 
     /// The velocity of rest.
@@ -135,7 +135,7 @@ struct Stage<G> {
     residual: Vec<f64>,
     inverse: Dense<f64>,
     units: Vec<f64>,
-    /// Whether a part has no scale of its own.
+    /// Whether a part lacks a scale of its own.
     open: bool,
 }
 
