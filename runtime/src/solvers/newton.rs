@@ -18,7 +18,7 @@ pub use alone::solve;
 pub use any_size::{AnyNewton, AnySearch, Chart, Lane, Settled};
 pub use failure::{NewtonError, NewtonFailure};
 pub use parts::Parts;
-use parts::{comes_near, varies_little};
+use parts::{comes_near, varies_little, with_kinds};
 pub use principal::{Equations, Fold};
 pub use reduced::Found;
 pub use verdict::{Anchor, Numbers, Verdict};
@@ -249,21 +249,19 @@ where
     /// Takes the units of all parts and their rounding errors from a tangent.
     #[cold]
     fn measure(&mut self, tangent: &SMatrix<T, D, D>) {
-        let parts = Parts::of_group::<T, G>(D);
+        let count = G::PARTS.min(D);
         for lane in 0..T::LANES {
             let unit = self.unit.lane(lane);
             let entry = |i, j| tangent[(i, j)].lane(lane) / unit;
             let weights: [f64; D] = core::array::from_fn(|k| self.weights[k].lane(lane));
-            let (units, noise) = scale::measures(&parts, &entry, &weights);
-            self.open = parts.are_open(&entry);
-            let known = lane > 0;
-            for (b, (unit, noise)) in units.into_iter().zip(noise).enumerate() {
-                self.units[b] = unit;
-                self.noise[b] = if known {
-                    noise.min(self.noise[b])
-                } else {
-                    noise
-                };
+            let mut noise = [0.0; D];
+            let lists = [&mut self.units[..count], &mut noise[..count]];
+            self.open = with_kinds::<T, G, _, D>(|kinds| {
+                scale::measure(kinds, &entry, &weights, lists);
+                parts::are_open(kinds, count, &entry)
+            });
+            for (least, own) in self.noise.iter_mut().zip(noise) {
+                *least = if lane == 0 { own } else { least.min(own) };
             }
         }
         self.measured = true;

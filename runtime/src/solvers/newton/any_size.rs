@@ -12,7 +12,7 @@ pub use chart::{Chart, Lane};
 use super::corrections::{Corrections, Next, Residual};
 use super::parts::POINTS;
 use super::principal::{Fold, Traced, trace};
-use super::scale::{Tangent, measures};
+use super::scale::{Tangent, measure};
 use super::{
     BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, LAST_ATTEMPT, LATE, LEAST_SHARE, MOST_ITERATIONS,
     NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, Progress, REMEMBERED, Solved,
@@ -354,7 +354,10 @@ impl<C: Chart> AnyNewton<'_, C> {
         search.unit = unit;
         if !search.measured {
             let entry = |i, j| tangent.at(i, j) / unit;
-            (search.units, search.noise) = measures(self.chart.parts(), &entry, &search.weights);
+            let count = self.chart.parts().count();
+            (search.units, search.noise) = (vec![0.0; count], vec![0.0; count]);
+            let lists = [&mut search.units[..], &mut search.noise[..]];
+            measure(&self.chart.parts().kinds(), &entry, &search.weights, lists);
             search.open = self.chart.parts().are_open(&entry);
             search.measured = true;
         }

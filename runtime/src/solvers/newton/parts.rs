@@ -85,56 +85,26 @@ impl Parts {
         squares.iter().map(|x| x.sqrt()).collect()
     }
 
+    /// The unit of length of each part: see [`units_into`].
+    pub(super) fn units(&self, entry: &dyn Fn(usize, usize) -> f64) -> Vec<f64> {
+        let mut units = vec![1.0; self.count()];
+        units_into(&self.kinds(), entry, &mut units);
+        units
+    }
+
     /// Whether a part other than a multiplier lacks a scale of its own. `entry` is the tangent.
     pub(super) fn are_open(&self, entry: &dyn Fn(usize, usize) -> f64) -> bool {
-        let moves = |b: usize| self.own(b).any(|k| entry(k, k) != 0.0);
-        let mut open = self.open.iter().enumerate();
-        open.any(|(b, open)| *open && moves(b))
+        are_open(&self.kinds(), self.count(), entry)
     }
 
-    /// The unit of length of each part: 1 for pure numbers; for translations the radius at which they weigh as much as the
-    /// angles of the same element. `entry` is the tangent.
-    pub(super) fn units(&self, entry: &dyn Fn(usize, usize) -> f64) -> Vec<f64> {
-        let block = |b: usize| {
-            let own = self.own(b);
-            own.fold(0.0, |most: f64, k| most.max(entry(k, k).abs()))
-        };
-        let unit = |(b, pure): (usize, &bool)| {
-            if *pure {
-                return 1.0;
-            }
-            let unit = (block(b.saturating_sub(1)) / block(b)).sqrt();
-            if unit.is_finite() { unit } else { 0.0 }
-        };
-        let units: Vec<f64> = self.pure.iter().enumerate().map(unit).collect();
-        let all = self.pure.iter().zip(&units).enumerate();
-        all.map(|(b, (pure, unit))| match *pure || block(b) != 0.0 {
-            true => *unit,
-            false => self.unit_of_multiplier(b, entry, &units),
-        })
-        .collect()
-    }
-
-    /// The unit of a part that its own equations do not contain, such as a multiplier: the value that acts in the equations of
-    /// the others as one unit of theirs, times so many that a multiplier is measured by all of the part that moves most. It
-    /// differs from a velocity in that it may jump.
-    fn unit_of_multiplier(
-        &self,
-        part: usize,
-        entry: &dyn Fn(usize, usize) -> f64,
-        units: &[f64],
-    ) -> f64 {
-        let unit_of = |k: usize| units.get(self.part_of(k)).copied().unwrap_or(1.0);
-        let mut unit = f64::INFINITY;
-        for column in self.own(part) {
-            for k in 0..self.dimension() {
-                let like = entry(k, k).abs() * unit_of(k) / entry(k, column).abs();
-                if like > 0.0 && like < unit {
-                    unit = like;
-                }
-            }
+    /// The same without lists.
+    pub(super) fn kinds(&self) -> Kinds<'_> {
+        Kinds {
+            size: self.dimension(),
+            part_of: &self.of,
+            pure: &self.pure,
+            open: &self.open,
         }
-        if unit.is_finite() { unit / ASIDE } else { 0.0 }
     }
 
     /// The lengths by which later corrections of each part are measured: those of the first correction, or a small share of
@@ -145,27 +115,9 @@ impl Parts {
         units: &[f64],
         noise: impl Fn(usize) -> f64,
     ) -> Vec<f64> {
-        let shares = lengths.iter().zip(units).enumerate();
-        let shares = shares.map(|(b, (length, unit))| match self.is_pure(b) {
-            true => (length / unit).max(LITTLE),
-            false => length / unit,
-        });
-        let most = shares.filter(|x| x.is_finite()).fold(0.0, larger);
-        // A body may go many times its own size in a step, and need not turn for that.
-        let turns = self.pure.iter().any(|pure| *pure);
-        let aside = ASIDE * if turns { most.min(1.0) } else { most };
-        let each = lengths.iter().zip(units).enumerate();
-        each.map(|(b, (length, unit))| {
-            let (length, least) = match self.is_pure(b) {
-                // Coordinates of rotations grow without bound near half a turn.
-                true if *length > TURN => (TURN, aside * unit),
-                true => (*length, aside * unit),
-                false => (*length, larger(aside * unit, noise(b))),
-            };
-            // NaN stays.
-            if length < least { least } else { length }
-        })
-        .collect()
+        let mut course = vec![0.0; self.count()];
+        course_into(lengths, units, &self.pure, noise, &mut course);
+        course
     }
 
     /// Whether a step is judged by its first correction, given the squares of the ways of all parts and of what the
@@ -176,19 +128,9 @@ impl Parts {
         units: &[f64],
         noise: &dyn Fn(usize) -> f64,
     ) -> bool {
-        let pure = |b: usize| self.is_pure(b);
-        let ways: Vec<f64> = squares.iter().map(|[way, _]| way.sqrt()).collect();
-        let course = self.course(&ways, units, noise);
-        let mut each = squares.iter().zip(&course).enumerate();
-        each.all(|(b, ([way, off], course))| {
-            let most = most_of_step(b, units, pure);
-            let far = pure(b) && *way > most * most;
-            !far && is_near([course * course, *off], most, false)
-        })
-    }
-
-    fn is_pure(&self, part: usize) -> bool {
-        self.pure.get(part).copied().unwrap_or(false)
+        let mut lists = [vec![0.0; self.count()], vec![0.0; self.count()]];
+        let [ways, course] = &mut lists;
+        are_near_beside(squares, units, &self.pure, noise, [ways, course])
     }
 
     /// The coordinate that moves most.
@@ -199,6 +141,140 @@ impl Parts {
             .max_by(|i, j| share(*i).total_cmp(&share(*j)))
             .unwrap_or(0)
     }
+}
+
+/// Coordinates and parts, in lists that somebody else keeps.
+pub(super) struct Kinds<'a> {
+    /// How many coordinates there are.
+    pub size: usize,
+    /// The part of each coordinate.
+    pub part_of: &'a [usize],
+    /// Whether the coordinates of each part are pure numbers.
+    pub pure: &'a [bool],
+    /// Whether they lack a scale of their own.
+    pub open: &'a [bool],
+}
+
+impl Kinds<'_> {
+    /// The coordinates of a part.
+    pub(super) fn own(&self, part: usize) -> impl Iterator<Item = usize> {
+        let own = self.part_of.iter().take(self.size).enumerate();
+        own.filter(move |(_, p)| **p == part).map(|(k, _)| k)
+    }
+
+    /// The largest entry of the tangent on the diagonal of a part.
+    fn block(&self, part: usize, entry: &dyn Fn(usize, usize) -> f64) -> f64 {
+        self.own(part)
+            .fold(0.0, |most, k| most.max(entry(k, k).abs()))
+    }
+}
+
+/// The kinds of a group with at most `D` coordinates.
+pub(super) fn with_kinds<T, G: Group<T>, R, const D: usize>(
+    ask: impl FnOnce(&Kinds<'_>) -> R,
+) -> R {
+    let count = G::PARTS.min(D);
+    ask(&Kinds {
+        size: G::DIMENSION.min(D),
+        part_of: &core::array::from_fn::<_, D, _>(G::part_of),
+        pure: &core::array::from_fn::<_, D, _>(|b| b < count && G::is_pure(b)),
+        open: &core::array::from_fn::<_, D, _>(|b| b < count && G::is_open(b)),
+    })
+}
+
+/// Whether a part other than a multiplier lacks a scale of its own. `entry` is the tangent.
+pub(super) fn are_open(
+    kinds: &Kinds<'_>,
+    count: usize,
+    entry: &dyn Fn(usize, usize) -> f64,
+) -> bool {
+    let mut open = kinds.open.iter().take(count).enumerate();
+    open.any(|(b, open)| *open && kinds.block(b, entry) != 0.0)
+}
+
+/// The unit of length of each part: 1 for pure numbers; for translations the radius at which they weigh as much as the
+/// angles of the same element. A part that its own equations do not contain is a multiplier: its unit is the value that
+/// acts in the equations of the others as one unit of theirs, times so many that it is measured by all of the part that
+/// moves most. It differs from a velocity in that it may jump. `entry` is the tangent.
+pub(super) fn units_into(
+    kinds: &Kinds<'_>,
+    entry: &dyn Fn(usize, usize) -> f64,
+    units: &mut [f64],
+) {
+    for (b, own) in units.iter_mut().enumerate() {
+        let unit = (kinds.block(b.saturating_sub(1), entry) / kinds.block(b, entry)).sqrt();
+        *own = match kinds.pure[b] {
+            true => 1.0,
+            false if unit.is_finite() => unit,
+            false => 0.0,
+        };
+    }
+    for b in 0..units.len() {
+        if kinds.pure[b] || kinds.block(b, entry) != 0.0 {
+            continue;
+        }
+        let mut unit = f64::INFINITY;
+        for column in kinds.own(b) {
+            for (k, part) in kinds.part_of.iter().take(kinds.size).enumerate() {
+                let like = entry(k, k).abs() * units[*part] / entry(k, column).abs();
+                if like > 0.0 && like < unit {
+                    unit = like;
+                }
+            }
+        }
+        units[b] = if unit.is_finite() { unit / ASIDE } else { 0.0 };
+    }
+}
+
+/// The course of [`Parts::course`], for as many parts as `course` has.
+fn course_into(
+    lengths: &[f64],
+    units: &[f64],
+    pure: &[bool],
+    noise: impl Fn(usize) -> f64,
+    course: &mut [f64],
+) {
+    let mut most = 0.0;
+    for (b, pure) in pure.iter().enumerate().take(course.len()) {
+        let share = lengths[b] / units[b];
+        let share = if *pure { share.max(LITTLE) } else { share };
+        if share.is_finite() {
+            most = larger(most, share);
+        }
+    }
+    // A body may go many times its own size in a step, and need not turn for that.
+    let turns = pure.iter().take(course.len()).any(|pure| *pure);
+    let aside = ASIDE * if turns { most.min(1.0) } else { most };
+    for (b, own) in course.iter_mut().enumerate() {
+        let (length, least) = match pure[b] {
+            // Coordinates of rotations grow without bound near half a turn.
+            true if lengths[b] > TURN => (TURN, aside * units[b]),
+            true => (lengths[b], aside * units[b]),
+            false => (lengths[b], larger(aside * units[b], noise(b))),
+        };
+        // NaN stays.
+        *own = if length < least { least } else { length };
+    }
+}
+
+/// The test of [`Parts::are_near`], with lists to work in.
+fn are_near_beside(
+    squares: &[[f64; 2]],
+    units: &[f64],
+    pure: &[bool],
+    noise: impl Fn(usize) -> f64,
+    [ways, course]: [&mut [f64]; 2],
+) -> bool {
+    for (way, [square, _]) in ways.iter_mut().zip(squares) {
+        *way = square.sqrt();
+    }
+    course_into(ways, units, pure, noise, course);
+    let mut each = squares.iter().zip(course.iter()).enumerate();
+    each.all(|(b, ([way, off], course))| {
+        let most = most_of_step(b, units, |b| pure[b]);
+        let far = pure[b] && *way > most * most;
+        !far && is_near([course * course, *off], most, false)
+    })
 }
 
 /// The longest way of a part in a step that one correction judges; beyond it no more counts.
@@ -286,12 +362,19 @@ fn near_beside<T: Real, G: Group<T>, const D: usize>(
     units: &[f64; D],
     noise: &[f64; D],
 ) -> bool {
-    let parts = Parts::of_group::<T, G>(D);
-    let lanes = 0..T::LANES;
+    let count = G::PARTS.min(D);
+    let pure: [bool; D] = core::array::from_fn(|b| b < count && G::is_pure(b));
     let of = |lane: usize| {
-        let squares = squares.iter().take(parts.count());
-        let squares: Vec<[f64; 2]> = squares.map(|s| s.map(|x| x.lane(lane))).collect();
-        parts.are_near(&squares, units, &|b| noise.get(b).copied().unwrap_or(0.0))
+        let own: [[f64; 2]; D] = core::array::from_fn(|b| squares[b].map(|x| x.lane(lane)));
+        let (mut ways, mut course) = ([0.0; D], [0.0; D]);
+        let lists = [&mut ways[..count], &mut course[..count]];
+        are_near_beside(
+            &own[..count],
+            &units[..count],
+            &pure[..count],
+            |b| noise[b],
+            lists,
+        )
     };
-    lanes.into_iter().all(of)
+    (0..T::LANES).all(of)
 }

@@ -1,7 +1,7 @@
 //! Equations of which some unknowns are solved for beforehand, in closed form: Newton's method finds the others.
 //! Takes an element with all unknowns; gives the part that is searched for.
 
-use super::parts::{Parts, comes_near};
+use super::parts::{comes_near, units_into, with_kinds};
 use super::{Newton, Progress, Solved};
 use crate::groups::{Group, RigidMotion, Rotation};
 use crate::linalg::Factors;
@@ -34,9 +34,9 @@ impl<T: Real, W, const E: usize> AtRest<T, W, E> {
     where
         W: Group<T>,
     {
-        let parts = Parts::of_group::<T, W>(E);
-        let units = parts.units(&|i, j| tangent[(i, j)].lane(0));
-        self.units = core::array::from_fn(|b| units.get(b).copied().unwrap_or(1.0));
+        let units = &mut self.units[..W::PARTS.min(E)];
+        let entry = |i, j| tangent[(i, j)].lane(0);
+        with_kinds::<T, W, _, E>(|kinds| units_into(kinds, &entry, units));
         let mut factors = Factors::none();
         factors.set(tangent, W::DIMENSION);
         for (k, mut column) in self.inverse.column_iter_mut().enumerate() {

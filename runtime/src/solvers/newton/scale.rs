@@ -2,7 +2,7 @@
 //! beside its scale, and no smaller than what rounding of the velocities leaves of it.
 //! Takes the tangent factored last, as absolute values, and scales; raises them. Gives what corrections are measured by.
 
-use super::parts::Parts;
+use super::parts::{Kinds, units_into};
 use crate::scalar::larger;
 
 /// The root of the rounding.
@@ -13,34 +13,38 @@ const NOISE: f64 = 1e4;
 
 /// The unit of length of each part and the rounding error of its length. Takes the tangent and one over the sizes of terms.
 #[cold]
-pub(super) fn measures(
-    parts: &Parts,
+pub(super) fn measure(
+    kinds: &Kinds<'_>,
     entry: &dyn Fn(usize, usize) -> f64,
     weights: &[f64],
-) -> (Vec<f64>, Vec<f64>) {
+    [units, noise]: [&mut [f64]; 2],
+) {
+    units_into(kinds, entry, units);
     // Own equations, and those that the own unknown does not enter, as of a held constraint.
-    let noise = |k: usize| {
-        let rows = (0..parts.dimension()).filter(|i| *i == k || entry(*i, *i) == 0.0);
+    let of = |k: usize| {
+        let rows = (0..kinds.size).filter(|i| *i == k || entry(*i, *i) == 0.0);
         let each = rows.map(|i| {
             let weight = weights.get(i).copied().unwrap_or(f64::NAN);
             NOISE * f64::EPSILON / (entry(i, k).abs() * weight)
         });
         each.filter(|x| x.is_finite()).fold(0.0, larger)
     };
-    let units = parts.units(entry);
-    let of_part = |b: usize| parts.own(b).map(noise).fold(0.0, larger);
-    let noise: Vec<f64> = (0..parts.count()).map(of_part).collect();
+    let mut most = 0.0;
+    for (b, (own, unit)) in noise.iter_mut().zip(units.iter()).enumerate() {
+        *own = kinds.own(b).map(of).fold(0.0, larger);
+        let share = *own / unit;
+        most = if share.is_finite() {
+            larger(most, share)
+        } else {
+            most
+        };
+    }
     // Multipliers are as uncertain as what they act on.
-    let shares = noise.iter().zip(&units).map(|(x, unit)| x / unit);
-    let most = shares.filter(|x| x.is_finite()).fold(0.0, larger);
-    let is_multiplier = |b: usize| parts.own(b).all(|k| entry(k, k) == 0.0);
-    let noise = noise.iter().zip(&units).enumerate();
-    let noise = noise.map(|(b, (own, unit))| match is_multiplier(b) {
-        true => larger(*own, most * unit),
-        false => *own,
-    });
-    let noise = noise.collect();
-    (units, noise)
+    for (b, (own, unit)) in noise.iter_mut().zip(units.iter()).enumerate() {
+        if kinds.own(b).all(|k| entry(k, k) == 0.0) {
+            *own = larger(*own, most * unit);
+        }
+    }
 }
 
 /// What the equations do with the velocities.
