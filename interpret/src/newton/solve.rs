@@ -208,7 +208,10 @@ impl Solve {
     ) -> Result<bool, Exit<f64>> {
         let all = sought.all();
         let at_rest = unfit(vector(at_rest, all.parts().dimension()))?;
-        let known = self.known(places)?;
+        let known = match iteration.asks_equations() {
+            true => self.known(places)?,
+            false => [const { Value::Unit }; 4],
+        };
         if self.rest.is_none() {
             return Ok(self.principal(&known, sought, |equations| {
                 iteration.is_principal(solution, &at_rest, equations.residual)

@@ -18,7 +18,7 @@ pub use alone::solve;
 pub use any_size::{AnyNewton, AnySearch, Chart, Lane, Settled};
 pub use failure::{NewtonError, NewtonFailure};
 pub use parts::Parts;
-use parts::{comes_near, varies_little, with_kinds};
+use parts::with_kinds;
 pub use principal::{Equations, Fold};
 pub use reduced::Found;
 pub use verdict::{Anchor, Numbers, Verdict};
@@ -258,7 +258,7 @@ where
             let lists = [&mut self.units[..count], &mut noise[..count]];
             self.open = with_kinds::<T, G, _, D>(|kinds| {
                 scale::measure(kinds, &entry, &weights, lists);
-                parts::are_open(kinds, count, &entry)
+                kinds.are_open(&entry)
             });
             for (least, own) in self.noise.iter_mut().zip(noise) {
                 *least = if lane == 0 { own } else { least.min(own) };
@@ -410,69 +410,6 @@ where
         }
         self.search.measured = false;
         self.search.weighed = 0;
-    }
-
-    /// Whether the solution found is the principal root: because it follows from rest, where the residual is `at_rest`, or
-    /// because this is where it was looked for.
-    #[inline(always)]
-    pub fn is_principal(
-        &self,
-        solution: &W,
-        at_rest: &SVector<T, D>,
-        residual: impl Fn(&G) -> SVector<T, D>,
-    ) -> bool {
-        self.follows(&G::within(solution), at_rest, residual)
-            || self
-                .anchor
-                .is_some_and(|anchor| anchor.holds::<T>(*solution))
-    }
-
-    /// Whether the first correction from rest, by the tangent at hand, comes within a quarter of the way to the solution:
-    /// from there the second one would be as small. Every part and every lane is asked.
-    #[inline(always)]
-    fn follows(
-        &self,
-        solution: &G,
-        at_rest: &SVector<T, D>,
-        residual: impl Fn(&G) -> SVector<T, D>,
-    ) -> bool {
-        let search = &*self.search;
-        let Some(correction) = search.factors.solve(&(at_rest * search.unit)) else {
-            return false;
-        };
-        let (units, noise) = (&search.units, &search.noise);
-        if !comes_near(&correction, solution, units, noise) {
-            return false;
-        }
-        let left = |share: f64, at: &G| {
-            let goal = at_rest * T::from_f64(1.0 - share);
-            search.factors.solve(&((residual(at) - goal) * search.unit))
-        };
-        !search.open || varies_little(&correction, left, units, noise)
-    }
-
-    /// The verdict on a solution, or on none, before any lane is judged.
-    #[cold]
-    pub fn verdict(&mut self, solution: Option<&W>) -> Verdict<W, E> {
-        // A tangent of some steps ago may be why the test failed.
-        self.search.age = OLDEST_TANGENT;
-        let noise = core::array::from_fn(|b| match E == D {
-            true => self.search.noise.get(b).copied().unwrap_or(0.0),
-            false => 0.0,
-        });
-        Verdict::about(solution.copied().unwrap_or_else(W::identity), noise)
-    }
-
-    /// Begins again at the principal root. False where that has been done: it cannot be polished.
-    #[cold]
-    pub fn restart(&mut self, anchor: Anchor<W, E>) -> bool {
-        if self.anchor.is_some() {
-            return false;
-        }
-        self.attempt = LAST_ATTEMPT;
-        self.begin_at(G::within(&anchor.root));
-        self.anchor = Some(anchor);
-        true
     }
 
     fn begin_at(&mut self, trial: G) {

@@ -219,7 +219,7 @@ pub(super) fn each_newton<R>(
         .collect()
 }
 
-/// The types of what tangents ask of a node, and `step`.
+/// `step`, block by block.
 pub(super) fn step(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
     let node = names.local("node");

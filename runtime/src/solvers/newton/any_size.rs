@@ -10,7 +10,7 @@ mod saved;
 pub use chart::{Chart, Lane};
 
 use super::corrections::{Corrections, Next, Residual};
-use super::parts::POINTS;
+use super::parts::points;
 use super::principal::{Fold, Traced, trace};
 use super::scale::{Tangent, measure};
 use super::{
@@ -192,7 +192,8 @@ impl<C: Chart> AnyNewton<'_, C> {
         let parts = self.chart.parts();
         for i in 0..scales.len() {
             // An equation without terms is measured by the others of its kind.
-            let part = parts.own(parts.part_of(i));
+            let kinds = parts.kinds();
+            let part = kinds.own(parts.part_of(i));
             let most = part.fold(0.0, |most: f64, k| most.max(scales[k]));
             scales[i] = scales[i].max(LEAST_SHARE * most);
         }
@@ -269,7 +270,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         };
         let parts = chart.parts();
         let ways = parts.lengths(&x);
-        let varies_little = |share: &f64| {
+        let varies_little = |share: f64| {
             let step: Vec<f64> = x.iter().map(|x| -x * share).collect();
             let found = residual(&chart.retract(&chart.identity(), &step));
             let goals = at_rest.iter().map(|x| x * (1.0 - share));
@@ -281,7 +282,14 @@ impl<C: Chart> AnyNewton<'_, C> {
                 parts.are_near(&squares.collect::<Vec<_>>(), units, &noise)
             })
         };
-        !search.open || POINTS.iter().all(varies_little)
+        !search.open || points().all(varies_little)
+    }
+
+    /// Whether the test of a solution evaluates the equations.
+    #[must_use]
+    pub fn asks_equations(&self) -> bool {
+        let reduced = self.chart.parts() != self.whole.parts();
+        self.search.open || reduced && self.search.whole.is_none()
     }
 
     /// Looks whether the solution, or else which element, is the principal root. None where it is, or where
@@ -358,7 +366,7 @@ impl<C: Chart> AnyNewton<'_, C> {
             (search.units, search.noise) = (vec![0.0; count], vec![0.0; count]);
             let lists = [&mut search.units[..], &mut search.noise[..]];
             measure(&self.chart.parts().kinds(), &entry, &search.weights, lists);
-            search.open = self.chart.parts().are_open(&entry);
+            search.open = self.chart.parts().kinds().are_open(&entry);
             search.measured = true;
         }
         search.factors.set(tangent);

@@ -21,11 +21,13 @@ const STEP_TURN: f64 = 1.5;
 /// any error would be small.
 const STEP_WAY: f64 = 2.0;
 
-/// Points on the way at which equations are looked at, where a part lacks a scale of its own.
-pub(super) const POINTS: [f64; 15] = [
-    0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.4375, 0.5, 0.5625, 0.625, 0.6875, 0.75, 0.8125,
-    0.875, 0.9375,
-];
+/// In how many pieces the way is looked at, where a part lacks a scale of its own.
+const PIECES: u8 = 16;
+
+/// The points between these pieces, as shares of the way.
+pub(super) fn points() -> impl Iterator<Item = f64> {
+    (1..PIECES).map(|k| f64::from(k) / f64::from(PIECES))
+}
 
 /// A part that moves little is measured by this share of the part that moves most.
 const ASIDE: f64 = 0.05;
@@ -69,11 +71,6 @@ impl Parts {
         self.of.get(coordinate).copied().unwrap_or(0)
     }
 
-    /// The coordinates of a part.
-    pub(super) fn own(&self, part: usize) -> impl Iterator<Item = usize> {
-        (0..self.of.len()).filter(move |i| self.part_of(*i) == part)
-    }
-
     /// The lengths of the parts.
     pub(super) fn lengths(&self, x: &[f64]) -> Vec<f64> {
         let mut squares = vec![0.0; self.count()];
@@ -85,19 +82,14 @@ impl Parts {
         squares.iter().map(|x| x.sqrt()).collect()
     }
 
-    /// The unit of length of each part: see [`units_into`].
+    /// The unit of length of each part: see [`Kinds::units_into`].
     pub(super) fn units(&self, entry: &dyn Fn(usize, usize) -> f64) -> Vec<f64> {
         let mut units = vec![1.0; self.count()];
-        units_into(&self.kinds(), entry, &mut units);
+        self.kinds().units_into(entry, &mut units);
         units
     }
 
-    /// Whether a part other than a multiplier lacks a scale of its own. `entry` is the tangent.
-    pub(super) fn are_open(&self, entry: &dyn Fn(usize, usize) -> f64) -> bool {
-        are_open(&self.kinds(), self.count(), entry)
-    }
-
-    /// The same without lists.
+    /// The same without lists of its own.
     pub(super) fn kinds(&self) -> Kinds<'_> {
         Kinds {
             size: self.dimension(),
@@ -167,6 +159,42 @@ impl Kinds<'_> {
         self.own(part)
             .fold(0.0, |most, k| most.max(entry(k, k).abs()))
     }
+
+    /// Whether a part other than a multiplier lacks a scale of its own. `entry` is the tangent.
+    pub(super) fn are_open(&self, entry: &dyn Fn(usize, usize) -> f64) -> bool {
+        let mut open = self.open.iter().enumerate();
+        open.any(|(b, open)| *open && self.block(b, entry) != 0.0)
+    }
+
+    /// The unit of length of each part: 1 for pure numbers; for translations the radius at which they weigh as much as the
+    /// angles of the same element. A part that its own equations do not contain is a multiplier: its unit is the value that
+    /// acts in the equations of the others as one unit of theirs, times so many that it is measured by all of the part that
+    /// moves most. It differs from a velocity in that it may jump. `entry` is the tangent.
+    pub(super) fn units_into(&self, entry: &dyn Fn(usize, usize) -> f64, units: &mut [f64]) {
+        for (b, own) in units.iter_mut().enumerate() {
+            let unit = (self.block(b.saturating_sub(1), entry) / self.block(b, entry)).sqrt();
+            *own = match self.pure[b] {
+                true => 1.0,
+                false if unit.is_finite() => unit,
+                false => 0.0,
+            };
+        }
+        for b in 0..units.len() {
+            if self.pure[b] || self.block(b, entry) != 0.0 {
+                continue;
+            }
+            let mut unit = f64::INFINITY;
+            for column in self.own(b) {
+                for (k, part) in self.part_of.iter().take(self.size).enumerate() {
+                    let like = entry(k, k).abs() * units[*part] / entry(k, column).abs();
+                    if like > 0.0 && like < unit {
+                        unit = like;
+                    }
+                }
+            }
+            units[b] = if unit.is_finite() { unit / ASIDE } else { 0.0 };
+        }
+    }
 }
 
 /// The kinds of a group with at most `D` coordinates.
@@ -177,53 +205,9 @@ pub(super) fn with_kinds<T, G: Group<T>, R, const D: usize>(
     ask(&Kinds {
         size: G::DIMENSION.min(D),
         part_of: &core::array::from_fn::<_, D, _>(G::part_of),
-        pure: &core::array::from_fn::<_, D, _>(|b| b < count && G::is_pure(b)),
-        open: &core::array::from_fn::<_, D, _>(|b| b < count && G::is_open(b)),
+        pure: &core::array::from_fn::<_, D, _>(|b| b < count && G::is_pure(b))[..count],
+        open: &core::array::from_fn::<_, D, _>(|b| b < count && G::is_open(b))[..count],
     })
-}
-
-/// Whether a part other than a multiplier lacks a scale of its own. `entry` is the tangent.
-pub(super) fn are_open(
-    kinds: &Kinds<'_>,
-    count: usize,
-    entry: &dyn Fn(usize, usize) -> f64,
-) -> bool {
-    let mut open = kinds.open.iter().take(count).enumerate();
-    open.any(|(b, open)| *open && kinds.block(b, entry) != 0.0)
-}
-
-/// The unit of length of each part: 1 for pure numbers; for translations the radius at which they weigh as much as the
-/// angles of the same element. A part that its own equations do not contain is a multiplier: its unit is the value that
-/// acts in the equations of the others as one unit of theirs, times so many that it is measured by all of the part that
-/// moves most. It differs from a velocity in that it may jump. `entry` is the tangent.
-pub(super) fn units_into(
-    kinds: &Kinds<'_>,
-    entry: &dyn Fn(usize, usize) -> f64,
-    units: &mut [f64],
-) {
-    for (b, own) in units.iter_mut().enumerate() {
-        let unit = (kinds.block(b.saturating_sub(1), entry) / kinds.block(b, entry)).sqrt();
-        *own = match kinds.pure[b] {
-            true => 1.0,
-            false if unit.is_finite() => unit,
-            false => 0.0,
-        };
-    }
-    for b in 0..units.len() {
-        if kinds.pure[b] || kinds.block(b, entry) != 0.0 {
-            continue;
-        }
-        let mut unit = f64::INFINITY;
-        for column in kinds.own(b) {
-            for (k, part) in kinds.part_of.iter().take(kinds.size).enumerate() {
-                let like = entry(k, k).abs() * units[*part] / entry(k, column).abs();
-                if like > 0.0 && like < unit {
-                    unit = like;
-                }
-            }
-        }
-        units[b] = if unit.is_finite() { unit / ASIDE } else { 0.0 };
-    }
 }
 
 /// The course of [`Parts::course`], for as many parts as `course` has.
@@ -312,7 +296,6 @@ pub(super) fn comes_near<T: Real, G: Group<T>, const D: usize>(
 
 /// Whether equations vary little on the way from rest to the end of `correction`, taken back. `left` gives their rest at a
 /// point of the way, as a correction by the tangent at hand.
-#[cold]
 #[inline(never)]
 pub(super) fn varies_little<T: Real, G: Group<T>, const D: usize>(
     correction: &SVector<T, D>,
@@ -320,9 +303,9 @@ pub(super) fn varies_little<T: Real, G: Group<T>, const D: usize>(
     units: &[f64; D],
     noise: &[f64; D],
 ) -> bool {
-    POINTS.iter().all(|share| {
-        let at = G::identity().retract((-*correction * T::from_f64(*share)).as_slice());
-        let Some(off) = left(*share, &at) else {
+    points().all(|share| {
+        let at = G::identity().retract((-*correction * T::from_f64(share)).as_slice());
+        let Some(off) = left(share, &at) else {
             return false;
         };
         let mut squares = [[T::zero(); 2]; D];
@@ -363,18 +346,14 @@ fn near_beside<T: Real, G: Group<T>, const D: usize>(
     noise: &[f64; D],
 ) -> bool {
     let count = G::PARTS.min(D);
-    let pure: [bool; D] = core::array::from_fn(|b| b < count && G::is_pure(b));
     let of = |lane: usize| {
         let own: [[f64; 2]; D] = core::array::from_fn(|b| squares[b].map(|x| x.lane(lane)));
         let (mut ways, mut course) = ([0.0; D], [0.0; D]);
         let lists = [&mut ways[..count], &mut course[..count]];
-        are_near_beside(
-            &own[..count],
-            &units[..count],
-            &pure[..count],
-            |b| noise[b],
-            lists,
-        )
+        with_kinds::<T, G, _, D>(|kinds| {
+            let (own, units) = (&own[..count], &units[..count]);
+            are_near_beside(own, units, kinds.pure, |b| noise[b], lists)
+        })
     };
     (0..T::LANES).all(of)
 }

@@ -11,7 +11,7 @@
 //!
 //! Takes the equations of one lane; gives the root, or how far the curve could be followed.
 
-use super::parts::{POINTS, Parts};
+use super::parts::{Parts, points};
 use crate::groups::Group;
 use crate::linalg::Dense;
 use nalgebra::{SMatrix, SVector};
@@ -147,7 +147,7 @@ impl<G: Clone> Stage<G> {
         Some(Self {
             residual: curve.residual(&velocity),
             units: curve.parts().units(&|i, j| tangent.at(i, j)),
-            open: curve.parts().are_open(&|i, j| tangent.at(i, j)),
+            open: curve.parts().kinds().are_open(&|i, j| tangent.at(i, j)),
             velocity,
             inverse,
         })
@@ -264,7 +264,7 @@ fn ended<C: Curve>(
     let second = stage.correction(goal, &curve.residual(&at));
     let mut fall = ratio(&parts.lengths(&second), &course);
     if stage.open {
-        for share in POINTS {
+        for share in points() {
             let between = goal.iter().zip(&stage.residual);
             let between: Vec<f64> = between.map(|(x, y)| y + share * (x - y)).collect();
             let there = curve.moved(&stage.velocity, &times(&first, share));

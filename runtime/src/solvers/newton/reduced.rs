@@ -1,7 +1,7 @@
 //! Equations of which some unknowns are solved for beforehand, in closed form: Newton's method finds the others.
 //! Takes an element with all unknowns; gives the part that is searched for.
 
-use super::parts::{comes_near, units_into, with_kinds};
+use super::parts::{comes_near, with_kinds};
 use super::{Newton, Progress, Solved};
 use crate::groups::{Group, RigidMotion, Rotation};
 use crate::linalg::Factors;
@@ -10,7 +10,8 @@ use crate::scalar::Real;
 use core::marker::PhantomData;
 use nalgebra::{SMatrix, SVector};
 
-/// The inverse of the tangent of all equations at rest, where some unknowns are solved for beforehand: it is the same at every node.
+/// The inverse of the tangent of all equations at rest, where some unknowns are solved for beforehand: it is the same at
+/// every node.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AtRest<T, W, const E: usize> {
     inverse: SMatrix<T, E, E>,
@@ -36,7 +37,7 @@ impl<T: Real, W, const E: usize> AtRest<T, W, E> {
     {
         let units = &mut self.units[..W::PARTS.min(E)];
         let entry = |i, j| tangent[(i, j)].lane(0);
-        with_kinds::<T, W, _, E>(|kinds| units_into(kinds, &entry, units));
+        with_kinds::<T, W, _, E>(|kinds| kinds.units_into(&entry, units));
         let mut factors = Factors::none();
         factors.set(tangent, W::DIMENSION);
         for (k, mut column) in self.inverse.column_iter_mut().enumerate() {
@@ -125,10 +126,7 @@ where
             rest.set(&tangent());
         }
         let correction = rest.inverse * at_rest;
-        comes_near(&correction, solution, &rest.units, &[0.0; E])
-            || self
-                .anchor
-                .is_some_and(|anchor| anchor.holds::<T>(*solution))
+        comes_near(&correction, solution, &rest.units, &[0.0; E]) || self.is_anchored(solution)
     }
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 //! beside its scale, and no smaller than what rounding of the velocities leaves of it.
 //! Takes the tangent factored last, as absolute values, and scales; raises them. Gives what corrections are measured by.
 
-use super::parts::{Kinds, units_into};
+use super::parts::Kinds;
 use crate::scalar::larger;
 
 /// The root of the rounding.
@@ -19,7 +19,7 @@ pub(super) fn measure(
     weights: &[f64],
     [units, noise]: [&mut [f64]; 2],
 ) {
-    units_into(kinds, entry, units);
+    kinds.units_into(entry, units);
     // Own equations, and those that the own unknown does not enter, as of a held constraint.
     let of = |k: usize| {
         let rows = (0..kinds.size).filter(|i| *i == k || entry(*i, *i) == 0.0);

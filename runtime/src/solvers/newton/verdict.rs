@@ -1,9 +1,86 @@
-//! The results of all lanes together, and the place where Newton's method may polish the principal root.
-//! Takes the equations lane by lane; gives the principal roots where the solution is none in some lane.
+//! Whether the solution of a step is the principal root: the test in every step, and the results of all lanes where that
+//! is not enough.
+//! Takes the residual at rest, then the equations lane by lane; gives the principal roots where the solution is none in
+//! some lane.
 
+use super::parts::{comes_near, varies_little};
 use super::principal::{Equations, Fold, OnGroup, Traced, trace};
+use super::{Found, LAST_ATTEMPT, Newton, OLDEST_TANGENT};
 use crate::groups::Group;
 use crate::scalar::{OfScalars, Real};
+use nalgebra::SVector;
+
+impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Newton<'_, T, G, D, W, E>
+where
+    G: Group<T> + Found<W>,
+{
+    /// Whether the solution found is the principal root: because it follows from rest, where the residual is `at_rest`, or
+    /// because this is where it was looked for.
+    #[inline(always)]
+    pub fn is_principal(
+        &self,
+        solution: &W,
+        at_rest: &SVector<T, D>,
+        residual: impl Fn(&G) -> SVector<T, D>,
+    ) -> bool {
+        self.follows(&G::within(solution), at_rest, residual) || self.is_anchored(solution)
+    }
+
+    /// Whether this is where the principal root was looked for.
+    #[inline(always)]
+    pub(super) fn is_anchored(&self, solution: &W) -> bool {
+        self.anchor
+            .is_some_and(|anchor| anchor.holds::<T>(*solution))
+    }
+
+    /// Whether the first correction from rest, by the tangent at hand, comes within a quarter of the way to the solution:
+    /// from there the second one would be as small. Every part and every lane is asked.
+    #[inline(always)]
+    fn follows(
+        &self,
+        solution: &G,
+        at_rest: &SVector<T, D>,
+        residual: impl Fn(&G) -> SVector<T, D>,
+    ) -> bool {
+        let search = &*self.search;
+        let Some(correction) = search.factors.solve(&(at_rest * search.unit)) else {
+            return false;
+        };
+        let (units, noise) = (&search.units, &search.noise);
+        if !comes_near(&correction, solution, units, noise) {
+            return false;
+        }
+        let left = |share: f64, at: &G| {
+            let goal = at_rest * T::from_f64(1.0 - share);
+            search.factors.solve(&((residual(at) - goal) * search.unit))
+        };
+        !search.open || varies_little(&correction, left, units, noise)
+    }
+
+    /// The verdict on a solution, or on none, before any lane is judged.
+    #[cold]
+    pub fn verdict(&mut self, solution: Option<&W>) -> Verdict<W, E> {
+        // A tangent of some steps ago may be why the test failed.
+        self.search.age = OLDEST_TANGENT;
+        let noise = core::array::from_fn(|b| match E == D {
+            true => self.search.noise.get(b).copied().unwrap_or(0.0),
+            false => 0.0,
+        });
+        Verdict::about(solution.copied().unwrap_or_else(W::identity), noise)
+    }
+
+    /// Begins again at the principal root. False where that has been done: it cannot be polished.
+    #[cold]
+    pub fn restart(&mut self, anchor: Anchor<W, E>) -> bool {
+        if self.anchor.is_some() {
+            return false;
+        }
+        self.attempt = LAST_ATTEMPT;
+        self.begin_at(G::within(&anchor.root));
+        self.anchor = Some(anchor);
+        true
+    }
+}
 
 /// The principal root, in the only place where a solution may be polished.
 #[derive(Clone, Copy, Debug)]
