@@ -1,8 +1,8 @@
 //! The operations of a function, read once: a tree over numbered places. Executing it looks no name up.
 
 mod apply;
-mod flat;
-mod known;
+mod over;
+mod parts;
 mod sweep;
 
 use crate::failure::Failure;
@@ -10,7 +10,7 @@ use crate::sites::Column;
 use crate::value::{Frame, Layout, Value};
 use apply::{apply, called, listed, made, many, matched, one, operation, repeated, two};
 use clebsch::Real;
-pub use known::Known;
+use clebsch::solvers::newton::Rounded;
 use std::sync::{Arc, OnceLock};
 pub use sweep::{Kind, Slice, Sweep, Terms};
 
@@ -22,6 +22,36 @@ pub type Native<T> = fn(&[&Value<T>], &[usize]) -> Option<Value<T>>;
 
 /// A function of the runtime that changes its first argument, or calls back.
 pub type Special<T> = fn(&mut Places<T>, &[Code<T>]) -> Result<Value<T>, Exit<T>>;
+
+/// A scalar with functions of the runtime over it.
+pub trait Library: Real {
+    /// A function by its name and how many arguments it takes.
+    fn native(name: &str, arguments: usize) -> Option<Native<Self>>;
+
+    /// One that changes its first argument, or calls back.
+    fn special(name: &str) -> Option<Special<Self>>;
+}
+
+impl Library for f64 {
+    fn native(name: &str, arguments: usize) -> Option<Native<Self>> {
+        crate::library::native(name, arguments)
+    }
+
+    fn special(name: &str) -> Option<Special<Self>> {
+        crate::library::special(name)
+    }
+}
+
+/// Residuals and what they call are measured with their rounding: no solver, no element is moved.
+impl Library for Rounded {
+    fn native(name: &str, arguments: usize) -> Option<Native<Self>> {
+        crate::library::kernel(name, arguments)
+    }
+
+    fn special(name: &str) -> Option<Special<Self>> {
+        crate::library::kernel_special(name)
+    }
+}
 
 /// Why an expression has no value.
 #[derive(Debug)]
@@ -102,9 +132,9 @@ pub struct Arm<T: Real> {
     pub body: Code<T>,
 }
 
-/// What iterates on operations.
+/// What repeats operations.
 pub trait Iterate<T: Real>: std::fmt::Debug + Send + Sync {
-    /// To the solution.
+    /// To the solution, or the last site.
     ///
     /// # Errors
     /// [`Exit`] with the error of the step.
@@ -132,15 +162,15 @@ pub enum Code<T: Real> {
     Negative(Box<Code<T>>),
     /// `!`
     Not(Box<Code<T>>),
-    /// A function of the runtime, with sizes, and what it is to a loop over sites.
-    Call(Native<T>, Vec<Code<T>>, Vec<usize>, Known),
+    /// A function of the runtime, with sizes, and its name.
+    Call(Native<T>, Vec<Code<T>>, Vec<usize>, Arc<str>),
     /// One that changes places or calls back.
-    Special(Special<T>, Vec<Code<T>>, Known),
+    Special(Special<T>, Vec<Code<T>>, Arc<str>),
     /// A function of the model, its parameters given as expressions; changed ones are put back.
     Routine(Arc<OnceLock<Routine<T>>>, Vec<Code<T>>),
     /// A function with parameters at these places, to be called back.
     Closure(Vec<usize>, Box<Code<T>>),
-    /// The loop of Newton's method.
+    /// The loop of Newton's method, or one over sites.
     Iterate(Arc<dyn Iterate<T>>),
     /// Statements, of which the last is the value.
     Block(Vec<Code<T>>),
@@ -158,8 +188,6 @@ pub enum Code<T: Real> {
     For(usize, Box<Code<T>>, Box<Code<T>>, Box<Code<T>>),
     /// The same, downwards.
     Down(usize, Box<Code<T>>, Box<Code<T>>, Box<Code<T>>),
-    /// A loop over sites.
-    Sweep(Arc<Sweep<T>>),
     /// A value put into places: one, or a tuple of them.
     Assign(Vec<Code<T>>, Box<Code<T>>),
     /// A number added to a place.
@@ -180,7 +208,8 @@ pub enum Code<T: Real> {
     Try(Box<Code<T>>),
 }
 
-type Evaluated<T> = Result<Value<T>, Exit<T>>;
+/// A value, or why there is none.
+pub type Evaluated<T> = Result<Value<T>, Exit<T>>;
 
 const WRONG: &str = "an operation on values whose shapes do not fit, or that it does not take";
 
@@ -379,7 +408,6 @@ impl<T: Real> Code<T> {
                 (false, Some(otherwise)) => otherwise.run(places),
                 (false, None) => Ok(Value::Unit),
             },
-            Code::Sweep(sweep) => sweep.run(places),
             Code::Match(value, arms) => matched(value, arms, places),
             Code::Struct(layout, given, base) => made(layout, given, base.as_deref(), places),
             Code::List(all) => listed(all, places),

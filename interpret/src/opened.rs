@@ -5,12 +5,13 @@ use crate::code::{Places, Routine};
 use crate::constants::Constants;
 use crate::lower::{self, Shared, entry};
 use crate::program::{Program, type_name};
+use crate::recorded::Recordable;
 use crate::signs::Agreement;
 use crate::value::{Layout, Value};
 use clebsch::card::Card;
 use clebsch_core::{Derivation, derive_source, emit};
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Where values stand while a function of a model runs.
 pub mod at {
@@ -89,6 +90,8 @@ pub struct Opened {
     pub node: u32,
     /// How many places the functions need.
     pub places: usize,
+    /// The functions over the scalar that records them.
+    pub recordable: OnceLock<Option<Recordable>>,
 }
 
 /// A text derived, and the program that is emitted for it: the same for all sizes.
@@ -174,6 +177,7 @@ impl Opened {
             signs: Vec::new(),
             node,
             places: places.unwrap_or(at::FIRST),
+            recordable: OnceLock::new(),
         })
     }
 
@@ -228,7 +232,7 @@ fn chosen_sizes(program: &Program, name: &str, sizes: Option<&[usize]>) -> Resul
 }
 
 /// The struct of what is given, and how each field is read.
-fn given(shared: &mut Shared<'_, f64>, name: &str) -> Result<(Arc<Layout>, Vec<Read>), Refused> {
+fn given(shared: &mut Shared<'_>, name: &str) -> Result<(Arc<Layout>, Vec<Read>), Refused> {
     let layout = shared.layout(name)?;
     let fields = shared.program.structs.get(name);
     let reads = fields.into_iter().flatten().map(|(_, ty)| {
@@ -241,7 +245,7 @@ fn given(shared: &mut Shared<'_, f64>, name: &str) -> Result<(Arc<Layout>, Vec<R
     Ok((layout, reads.collect()))
 }
 
-fn functions(shared: &mut Shared<'_, f64>, name: &str) -> Result<Functions, Refused> {
+fn functions(shared: &mut Shared<'_>, name: &str) -> Result<Functions, Refused> {
     use at::{GIVEN, MODEL, OUT, STATE, STEP, WORK};
     let program = shared.program;
     let mut lower =

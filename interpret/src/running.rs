@@ -4,6 +4,7 @@ use crate::code::{Exit, Places, Routine};
 use crate::failure::Failure;
 use crate::opened::{Opened, Read, at};
 use crate::packed::Packed;
+use crate::recorded::{Fixed, Recordable, Recorded, Watched};
 use crate::value::{Frame, Kept, Layout, Struct, Value};
 use clebsch::card::{Card, Field, OpenError, PartSeen, Settings, Trajectory, chosen_solver};
 use clebsch::integrate::{Composition, Offer, Reversible, Stepper, Way, counted};
@@ -53,8 +54,8 @@ impl Opened {
         let (card, f) = (&self.card, &self.functions);
         counted(card, parameters, initial)?;
         let mut places = self.places(Value::Unit);
-        let given = collected(&self.parameters, card.parameters, parameters)?;
-        put(&mut places, at::GIVEN, given);
+        let own = collected(&self.parameters, card.parameters, parameters)?;
+        put(&mut places, at::GIVEN, own.clone());
         let model = run(&f.new, &mut places).map_err(Failure::open)?;
         put(&mut places, at::MODEL, model);
         let mut initial = initial.to_vec();
@@ -81,14 +82,38 @@ impl Opened {
         let steps = self
             .ways(card, &mut places, settings)
             .map_err(|e| e.beside(kinetic))?;
+        let recorded = self.recorded(own, &places, &steps, settings);
         Ok(Box::new(Running {
             opened: self,
             card,
-            places: RefCell::new(places),
+            held: RefCell::new(Held { places, recorded }),
             steps,
             h: settings.h,
             kinetic,
         }))
+    }
+
+    /// The tapes of its functions. A look at one step needs none.
+    fn recorded(
+        &'static self,
+        parameters: Value<f64>,
+        places: &Places<f64>,
+        steps: &Steps,
+        settings: Settings,
+    ) -> Option<Recorded> {
+        if settings.inquiry {
+            return None;
+        }
+        let recordable = || Recordable::of(&self.functions, self.places);
+        let recordable = self.recordable.get_or_init(recordable).as_ref()?;
+        let chosen = chosen_solver(settings, self.card.solvers).ok().flatten();
+        let fixed = Fixed {
+            parameters,
+            solver: chosen.map(Value::Method),
+            step: Value::Real(settings.h),
+        };
+        let own_step = !matches!(steps, Steps::Composed(_));
+        Some(Recorded::new(recordable, fixed, places, own_step))
     }
 
     /// What makes the steps that are asked for.
@@ -267,11 +292,50 @@ enum Steps {
     Composed(Box<(Model, Composition<Model>)>),
 }
 
+/// What moves, as values at places, and as the numbers of tapes.
+struct Held {
+    places: Places<f64>,
+    recorded: Option<Recorded>,
+}
+
+impl Held {
+    /// The places, with what the tapes computed.
+    fn places(&mut self) -> &mut Places<f64> {
+        if let Some(recorded) = &mut self.recorded {
+            recorded.write(&mut self.places);
+        }
+        &mut self.places
+    }
+
+    /// The tapes go on from what is in the places.
+    fn follow(&mut self) {
+        if let Some(recorded) = &mut self.recorded {
+            recorded.follow(&self.places);
+        }
+    }
+
+    /// Runs an observer of the state; its numbers are written to `out`.
+    fn watch(&mut self, opened: &Opened, which: Watched, out: &mut [f64]) {
+        if let Some(recorded) = &mut self.recorded
+            && recorded.watch(which, &mut self.places, out)
+        {
+            return;
+        }
+        let f = &opened.functions;
+        let routine = match which {
+            Watched::Observables => &f.observe,
+            Watched::Invariants => &f.invariants,
+            Watched::Scales => &f.scales,
+        };
+        watch(self.places(), routine, out);
+    }
+}
+
 /// A running trajectory.
 struct Running {
     opened: &'static Opened,
     card: &'static Card,
-    places: RefCell<Places<f64>>,
+    held: RefCell<Held>,
     steps: Steps,
     h: f64,
     kinetic: Option<KineticWarning>,
@@ -290,42 +354,40 @@ impl Opened {
 }
 
 impl Running {
-    /// Runs an observer; its numbers are written to `out`.
-    fn watch(&self, routine: &Routine<f64>, out: &mut [f64]) {
-        watch(&mut self.places.borrow_mut(), routine, out);
-    }
-}
-
-impl Running {
     /// One step; `seen` is shown each of the model's own that it is made of, as a share of the whole one, with the state after it.
-    fn made(&mut self, seen: &mut dyn FnMut(f64, &mut Places<f64>)) -> Result<(), StepError> {
-        let places = self.places.get_mut();
+    fn made(&mut self, seen: &mut dyn FnMut(f64, &mut Held)) -> Result<(), StepError> {
+        let held = self.held.get_mut();
         match &mut self.steps {
-            Steps::Plain => {
-                let node = self.opened.node_of(places.get(at::STATE));
-                run(&self.opened.functions.step, places).map_err(|e| e.step(node))?;
-                seen(1.0, places);
-            }
-            Steps::Modified => {
-                let node = self.opened.node_of(places.get(at::STATE));
-                run(&self.opened.functions.step, places).map_err(|e| e.step(node))?;
+            Steps::Plain | Steps::Modified => {
+                let Held { places, recorded } = held;
+                if !recorded.as_mut().is_some_and(|all| all.step(places)) {
+                    let places = held.places();
+                    let node = self.opened.node_of(places.get(at::STATE));
+                    let made = run(&self.opened.functions.step, places);
+                    held.follow();
+                    made.map_err(|e| e.step(node))?;
+                }
+                if let Steps::Plain = self.steps {
+                    seen(1.0, held);
+                }
             }
             Steps::Composed(both) => {
                 let (model, composition) = &mut **both;
-                let Some(mut packed) = places.get(at::STATE).and_then(Packed::of) else {
+                let Some(mut packed) = held.places().get(at::STATE).and_then(Packed::of) else {
                     return Ok(());
                 };
-                let put_there = |here: &Packed, places: &mut Places<f64>| {
-                    if let Some(state) = places.get_mut(at::STATE) {
+                let put_there = |here: &Packed, held: &mut Held| {
+                    if let Some(state) = held.places.get_mut(at::STATE) {
                         here.put(state);
                     }
+                    held.follow();
                 };
                 let made = composition.step_in_parts(model, &mut packed, |share, here| {
-                    put_there(here, places);
-                    seen(share, places);
+                    put_there(here, held);
+                    seen(share, held);
                 });
                 // Of a step that is refused the state is that before.
-                put_there(&packed, places);
+                put_there(&packed, held);
                 made?;
             }
         }
@@ -355,7 +417,9 @@ fn watch(places: &mut Places<f64>, routine: &Routine<f64>, out: &mut [f64]) {
 
 impl Trajectory for Running {
     fn node(&self) -> u64 {
-        self.opened.node_of(self.places.borrow().get(at::STATE))
+        let held = self.held.borrow();
+        let ahead = held.recorded.as_ref().and_then(Recorded::node);
+        ahead.unwrap_or_else(|| self.opened.node_of(held.places.get(at::STATE)))
     }
 
     fn time(&self) -> f64 {
@@ -369,10 +433,10 @@ impl Trajectory for Running {
     fn step_in_parts(&mut self, seen: &mut PartSeen<'_>) -> Result<(), StepError> {
         let none = vec![0.0; self.card.observable_count()];
         let [mut before, mut after] = [none.clone(), none];
-        let observer = &self.opened.functions.observe;
-        self.watch(observer, &mut before);
-        self.made(&mut |share, places| {
-            watch(places, observer, &mut after);
+        let opened = self.opened;
+        self.observe(&mut before);
+        self.made(&mut |share, held| {
+            held.watch(opened, Watched::Observables, &mut after);
             seen(share, &before, &after);
             std::mem::swap(&mut before, &mut after);
         })
@@ -387,25 +451,29 @@ impl Trajectory for Running {
     }
 
     fn observe(&self, out: &mut [f64]) {
-        self.watch(&self.opened.functions.observe, out);
+        let mut held = self.held.borrow_mut();
+        held.watch(self.opened, Watched::Observables, out);
     }
 
     fn invariants(&self, out: &mut [f64]) {
-        self.watch(&self.opened.functions.invariants, out);
+        let mut held = self.held.borrow_mut();
+        held.watch(self.opened, Watched::Invariants, out);
     }
 
     fn scales(&self, out: &mut [f64]) {
-        self.watch(&self.opened.functions.scales, out);
+        let mut held = self.held.borrow_mut();
+        held.watch(self.opened, Watched::Scales, out);
     }
 
     fn words(&mut self, words: &mut Words) {
-        let places = self.places.get_mut();
+        let held = self.held.get_mut();
         for at in [at::STATE, at::WORK] {
-            match places.get_mut(at) {
+            match held.places().get_mut(at) {
                 Some(value) => value.words(words),
                 None => words.refuse(),
             }
         }
+        held.follow();
         if let Steps::Composed(both) = &mut self.steps {
             for places in both.1.workspaces_mut() {
                 match places.get_mut(at::WORK) {

@@ -101,6 +101,7 @@ impl Saved for Column<f64> {
             Column::Attitudes(list) => list.iter_mut().for_each(|x| x.words(words)),
             Column::Structs(_, fields, _) => fields.iter_mut().for_each(|f| f.words(words)),
             Column::Values(list) => list.iter_mut().for_each(|x| x.words(words)),
+            Column::Asked(_) => words.refuse(),
         }
     }
 }

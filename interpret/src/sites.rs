@@ -21,6 +21,24 @@ pub enum Column<T: Real> {
     Structs(Arc<Layout>, Vec<Column<T>>, usize),
     /// Any others.
     Values(Vec<Value<T>>),
+    /// Those of a list elsewhere, which notes what is asked of it.
+    Asked(Arc<dyn Asked<T>>),
+}
+
+/// A list that notes which of its sites are read.
+pub trait Asked<T: Real>: std::fmt::Debug + Send + Sync {
+    /// How many sites there are.
+    fn len(&self) -> usize;
+
+    /// The value at a site.
+    fn at(&self, site: usize) -> Option<Value<T>>;
+}
+
+impl<T: Real> PartialEq for dyn Asked<T> {
+    /// Never: the values are elsewhere.
+    fn eq(&self, _: &Self) -> bool {
+        false
+    }
 }
 
 impl<T: Real> Column<T> {
@@ -75,6 +93,7 @@ impl<T: Real> Column<T> {
             Column::Attitudes(all) => all.len(),
             Column::Structs(_, _, count) => *count,
             Column::Values(all) => all.len(),
+            Column::Asked(list) => list.len(),
         }
     }
 
@@ -90,20 +109,11 @@ impl<T: Real> Column<T> {
                 values: fields.iter().map(|f| f.get(site)).collect::<Option<_>>()?,
             }),
             Column::Values(all) => all.get(site)?.clone(),
+            Column::Asked(list) => list.at(site)?,
         })
     }
 
-    /// The list of one field.
-    pub fn field(&self, name: u32) -> Option<&Column<T>> {
-        match self {
-            Column::Structs(layout, fields, _) => {
-                fields.get(layout.fields.iter().position(|f| *f == name)?)
-            }
-            _ => None,
-        }
-    }
-
-    /// The same, to be changed.
+    /// The list of one field, to be changed.
     pub fn field_mut(&mut self, name: u32) -> Option<&mut Column<T>> {
         match self {
             Column::Structs(layout, fields, _) => {
@@ -178,6 +188,7 @@ impl<T: Real> Column<T> {
                 *count = (*count).min(to);
             }
             Column::Values(all) => all.truncate(to),
+            Column::Asked(_) => {}
         }
     }
 
@@ -200,6 +211,7 @@ impl<T: Real> Column<T> {
                 )
             }
             Column::Values(all) => Column::Values(all.get(range)?.to_vec()),
+            Column::Asked(_) => return None,
         })
     }
 

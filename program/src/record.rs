@@ -1,62 +1,12 @@
-//! A recorded evaluation: scalar operations in single assignment, equal ones computed once.
+//! Kernels recorded as tapes: an arithmetic whose numbers are the steps that compute them.
 
 use crate::arithmetic::Arithmetic;
 use crate::array::Array;
 use crate::evaluate::{Unvalued, evaluate};
 use crate::kernel::Kernel;
 use crate::operation::{Number, Single};
+use crate::tape::{Function, Recording, Scalar, Step, Tape};
 use std::cell::RefCell;
-use std::collections::HashMap;
-
-/// A number of a tape: the step that computes it.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
-pub struct Scalar(u32);
-
-impl Scalar {
-    /// The number of its step.
-    #[must_use]
-    pub fn step(self) -> usize {
-        self.0 as usize
-    }
-}
-
-/// A step of a tape. Constants are kept by their bits: equal steps are one.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum Step {
-    /// An input by its place among all numbers of all inputs.
-    Input(u32),
-    /// A constant of binary64, by its bits.
-    Double(u64),
-    /// A quotient of whole numbers.
-    Ratio(i64, i64),
-    /// π.
-    Pi,
-    /// The sum.
-    Add(Scalar, Scalar),
-    /// The difference.
-    Sub(Scalar, Scalar),
-    /// The product.
-    Mul(Scalar, Scalar),
-    /// The quotient.
-    Div(Scalar, Scalar),
-    /// The negative.
-    Neg(Scalar),
-    /// A function of one number.
-    Function(Single, Scalar),
-    /// A whole power.
-    Power(Scalar, i32),
-    /// A rational power.
-    Root(Scalar, i64, i64),
-}
-
-/// Scalar operations in single assignment.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Tape {
-    /// The steps, each after those that it uses.
-    pub steps: Vec<Step>,
-    /// The results, each array column after column.
-    pub outputs: Vec<Scalar>,
-}
 
 impl Tape {
     /// Records a kernel. `sizes` belong to declared names.
@@ -81,69 +31,31 @@ impl Tape {
         }
         let outputs = evaluate(&recorder, kernel, &inputs, sizes)?;
         let outputs = outputs.iter().flat_map(|a| a.columns().to_vec()).collect();
-        Ok(Tape {
-            steps: recorder.steps.into_inner().list,
-            outputs,
-        })
-    }
-
-    /// The results over any arithmetic; `inputs` are the numbers of all inputs, each array column after column.
-    ///
-    /// # Errors
-    /// [`Unvalued`] if an input is missing.
-    pub fn run<A: Arithmetic>(
-        &self,
-        on: &A,
-        inputs: &[A::Number],
-    ) -> Result<Vec<A::Number>, Unvalued> {
-        let mut all: Vec<A::Number> = Vec::with_capacity(self.steps.len());
-        for step in &self.steps {
-            let of = |x: &Scalar| all[x.step()];
-            let value = match step {
-                Step::Input(at) => *inputs
-                    .get(*at as usize)
-                    .ok_or_else(|| Unvalued::Input(format!("number {at}")))?,
-                Step::Double(bits) => on.constant(Number::Double(f64::from_bits(*bits))),
-                Step::Ratio(num, den) => on.constant(Number::Ratio(*num, *den)),
-                Step::Pi => on.constant(Number::Pi),
-                Step::Add(a, b) => on.add(of(a), of(b)),
-                Step::Sub(a, b) => on.sub(of(a), of(b)),
-                Step::Mul(a, b) => on.mul(of(a), of(b)),
-                Step::Div(a, b) => on.div(of(a), of(b)),
-                Step::Neg(a) => on.neg(of(a)),
-                Step::Function(which, a) => on.function(*which, of(a)),
-                Step::Power(a, n) => on.power(of(a), *n),
-                Step::Root(a, num, den) => on.root(of(a), *num, *den),
-            };
-            all.push(value);
-        }
-        Ok(self.outputs.iter().map(|x| all[x.step()]).collect())
+        Ok(recorder.recording.into_inner().tape(outputs))
     }
 }
 
-/// An arithmetic that notes what is done.
+/// An arithmetic that notes what is done. Powers and roots become the operations that the runtime's numbers take.
 #[derive(Debug, Default)]
 pub struct Recorder {
-    steps: RefCell<Steps>,
-}
-
-#[derive(Debug, Default)]
-struct Steps {
-    list: Vec<Step>,
-    known: HashMap<Step, Scalar>,
+    recording: RefCell<Recording>,
 }
 
 impl Recorder {
     fn step(&self, step: Step) -> Scalar {
-        let mut steps = self.steps.borrow_mut();
-        if let Some(known) = steps.known.get(&step) {
-            return *known;
-        }
-        // A tape of four billion steps would need 64 GiB: the work limit of a derivation ends long before.
-        let scalar = Scalar(u32::try_from(steps.list.len()).unwrap_or(u32::MAX));
-        steps.list.push(step);
-        steps.known.insert(step, scalar);
-        scalar
+        self.recording.borrow_mut().step(step)
+    }
+
+    fn double(&self, x: f64) -> Scalar {
+        self.recording.borrow_mut().double(x)
+    }
+
+    /// -1, 0 or 1 by the sign, NaN for what is not finite.
+    fn sign(&self, a: Scalar) -> Scalar {
+        let (zero, one) = (self.double(0.0), self.double(1.0));
+        let up = self.step(Step::WherePositive(a, one));
+        let down = self.step(Step::WherePositive(self.neg(a), one));
+        self.add(self.sub(up, down), self.mul(zero, a))
     }
 }
 
@@ -151,10 +63,10 @@ impl Arithmetic for Recorder {
     type Number = Scalar;
 
     fn constant(&self, number: Number) -> Scalar {
-        self.step(match number {
-            Number::Double(x) => Step::Double(x.to_bits()),
-            Number::Ratio(num, den) => Step::Ratio(num, den),
-            Number::Pi => Step::Pi,
+        self.double(match number {
+            Number::Double(x) => x,
+            Number::Ratio(num, den) => num as f64 / den as f64,
+            Number::Pi => core::f64::consts::PI,
         })
     }
 
@@ -179,23 +91,79 @@ impl Arithmetic for Recorder {
     }
 
     fn function(&self, which: Single, a: Scalar) -> Scalar {
-        self.step(Step::Function(which, a))
+        let function = match which {
+            Single::Sqrt => Function::Sqrt,
+            Single::Exp => Function::Exp,
+            Single::Log => Function::Log,
+            Single::Sin => Function::Sin,
+            Single::Cos => Function::Cos,
+            Single::Sinh => Function::Sinh,
+            Single::Cosh => Function::Cosh,
+            Single::Tanh => Function::Tanh,
+            Single::Sign => return self.sign(a),
+            Single::Abs => return self.mul(a, self.sign(a)),
+            // Not functions of a number: the evaluation does not ask for them.
+            _ => return self.double(f64::NAN),
+        };
+        self.step(Step::Function(function, a))
     }
 
+    /// By repeated squaring.
     fn power(&self, a: Scalar, exponent: i32) -> Scalar {
-        self.step(Step::Power(a, exponent))
+        let (mut square, mut rest) = (a, exponent.unsigned_abs());
+        let mut power = self.double(1.0);
+        while rest > 0 {
+            if rest & 1 == 1 {
+                power = self.mul(power, square);
+            }
+            rest >>= 1;
+            if rest > 0 {
+                square = self.mul(square, square);
+            }
+        }
+        match exponent < 0 {
+            true => self.div(self.double(1.0), power),
+            false => power,
+        }
     }
 
+    /// Whole and half-whole exponents by products and one root, others by logarithm and exponential.
     fn root(&self, a: Scalar, num: i64, den: i64) -> Scalar {
-        self.step(Step::Root(a, num, den))
+        let (num, den) = lowest_terms(num, den);
+        match (i32::try_from(num), den) {
+            (Ok(n), 1) => self.power(a, n),
+            (Ok(n), 2) => self.power(self.function(Single::Sqrt, a), n),
+            (_, 0) => self.double(f64::NAN),
+            _ => {
+                let exponent = self.constant(Number::Ratio(num, den));
+                let log = self.function(Single::Log, a);
+                self.function(Single::Exp, self.mul(log, exponent))
+            }
+        }
     }
 
-    /// An inverse looks for pivots, which a tape cannot.
+    /// An inverse looks for pivots, which a kernel's tape cannot.
     fn inverse(&self, _: &Array<Scalar>) -> Option<Array<Scalar>> {
         None
     }
 
     fn determinant(&self, _: &Array<Scalar>) -> Option<Scalar> {
         None
+    }
+}
+
+/// `num/den` with a non-negative denominator and no common factor.
+fn lowest_terms(num: i64, den: i64) -> (i64, i64) {
+    let (mut a, mut b) = (num.unsigned_abs(), den.unsigned_abs());
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    match i64::try_from(a) {
+        Ok(divisor) if divisor > 0 => {
+            let sign = if den < 0 { -1 } else { 1 };
+            let over = |x: i64| (x / divisor).saturating_mul(sign);
+            (over(num), over(den))
+        }
+        _ => (num, den),
     }
 }

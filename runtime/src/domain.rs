@@ -203,12 +203,12 @@ pub fn invertible<T: Real, const N: usize>(
     let (moved, others) = (squares(&(end - before.matrix())), (N - 1) as f64);
     let cofactors = (size * T::from_f64(1.0 / others)).powi(exponent - 1) * T::from_f64(N as f64);
     let near = det * det * T::from_f64(NEAR) - moved * cofactors;
-    if near.least() > 0.0 && margin.least() > 0.0 {
+    if near.exceeds(T::zero()) && margin.exceeds(T::zero()) {
         return Ok(());
     }
     let v = before.body_velocity(after).matrix();
     let away = v - SMatrix::identity();
-    if squares(&away).greatest() < NEAR && margin.least() > 0.0 {
+    if squares(&away).is_below(NEAR) && margin.exceeds(T::zero()) {
         return Ok(());
     }
     let lane_of = |lane: usize| {
@@ -237,12 +237,12 @@ pub fn invertible_of<T: Real>(
     let (moved, others) = (after.minus(before).squares(), (n - 1) as f64);
     let cofactors = (size * T::from_f64(1.0 / others)).powi(exponent - 1) * T::from_f64(n as f64);
     let near = det * det * T::from_f64(NEAR) - moved * cofactors;
-    if near.least() > 0.0 && margin.least() > 0.0 {
+    if near.exceeds(T::zero()) && margin.exceeds(T::zero()) {
         return Ok(());
     }
     let back = before.small_inverse();
     let v = back.unwrap_or_else(|| Dense::unknown(n, n)).times(after);
-    if v.minus_one().squares().greatest() < NEAR && margin.least() > 0.0 {
+    if v.minus_one().squares().is_below(NEAR) && margin.exceeds(T::zero()) {
         return Ok(());
     }
     let lane_of = |lane: usize| {
@@ -351,6 +351,11 @@ pub enum Domain {
     NotZero,
 }
 
+/// Whether a number is positive in all lanes, or negative in all.
+fn has_one_sign<T: Real>(x: T) -> bool {
+    x.exceeds(T::zero()) || (-x).exceeds(T::zero())
+}
+
 impl Domain {
     fn holds(self, x: f64) -> bool {
         match self {
@@ -372,7 +377,12 @@ impl Domain {
 
     /// Whether all lanes of a number are inside.
     pub fn admits<T: Real>(self, x: T) -> bool {
-        (0..T::LANES).all(|lane| self.holds(x.lane(lane)))
+        let inside = match self {
+            Self::Positive => x.exceeds(T::zero()),
+            Self::NotNegative => (-x).nowhere_positive(),
+            Self::NotZero => has_one_sign(x),
+        };
+        inside && x.is_finite() || (0..T::LANES).all(|lane| self.holds(x.lane(lane)))
     }
 
     /// Whether an argument is inside at both nodes of a step, and between them.
@@ -387,6 +397,14 @@ impl Domain {
         after: T,
         h: T,
     ) -> Result<(), Contact> {
+        let zero = T::zero();
+        let stays = || {
+            before.exceeds(zero) && after.exceeds(zero)
+                || (-before).exceeds(zero) && (-after).exceeds(zero)
+        };
+        if self.admits(before) && self.admits(after) && (self != Self::NotZero || stays()) {
+            return Ok(());
+        }
         for lane in 0..T::LANES {
             let (from, to) = (before.lane(lane), after.lane(lane));
             let crossed = self == Self::NotZero && (from < 0.0) != (to < 0.0);
@@ -421,6 +439,10 @@ impl Domain {
         moving: T,
         h: T,
     ) -> Result<(), Contact> {
+        let stays = || (-(rest * moving)).nowhere_positive();
+        if self.admits(moving) && (self != Self::NotZero || stays()) {
+            return Ok(());
+        }
         for lane in 0..T::LANES {
             let (from, to) = (rest.lane(lane), moving.lane(lane));
             let crossed = self == Self::NotZero && from * to < 0.0;

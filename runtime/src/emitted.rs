@@ -63,7 +63,7 @@ pub fn solve_or_nan<T: Real, const N: usize>(
 /// The sum of the sizes of a kinetic and a potential energy.
 #[inline]
 #[must_use]
-pub fn sum_of_sizes((kinetic, potential): (f64, f64)) -> f64 {
+pub fn sum_of_sizes<T: Real>((kinetic, potential): (T, T)) -> T {
     kinetic.abs() + potential.abs()
 }
 
@@ -75,8 +75,9 @@ const CANCELLED: f64 = 1e-12;
 /// equilibrium its energies may be rounding, which is no scale.
 #[inline]
 #[must_use]
-pub fn size_of_energy((kinetic, potential): (f64, f64), (enlarged, _): (f64, f64)) -> f64 {
-    crate::scalar::larger(kinetic.abs(), CANCELLED * enlarged.abs()) + potential.abs()
+pub fn size_of_energy<T: Real>((kinetic, potential): (T, T), (enlarged, _): (T, T)) -> T {
+    let cancelled = T::from_f64(CANCELLED) * enlarged.abs();
+    crate::scalar::greater(kinetic.abs(), cancelled) + potential.abs()
 }
 
 /// The coefficients of a pencil that do not vanish, row by row.

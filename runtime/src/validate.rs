@@ -204,7 +204,7 @@ pub fn orthogonal_of<T: Real>(
     let deviation = largest(defect.data.iter().map(|x| x.magnitude()));
     let determinant = matrix.determinant();
     // Entries of a rotation are at most 1. Written so that NaN is refused.
-    if deviation <= ROUNDINGS * T::EPSILON && determinant.least() > 0.0 {
+    if deviation <= ROUNDINGS * T::EPSILON && determinant.exceeds(T::zero()) {
         return Ok(());
     }
     Err(ParameterError {
@@ -346,7 +346,7 @@ pub fn positive_step<T: Real>(h: T) -> Result<(), ParameterError> {
 /// # Errors
 /// Carries the lane nearest to zero.
 pub fn directed_step<T: Real>(h: T) -> Result<(), ParameterError> {
-    let backwards = h.greatest() < 0.0;
+    let backwards = h.is_below(0.0);
     positive_step(if backwards { -h } else { h }).map_err(|e| ParameterError {
         remedy: "give a finite step size, of either sign, that is 1e-307 at least",
         ..e

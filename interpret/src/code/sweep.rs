@@ -1,15 +1,13 @@
 //! Loops over sites: a body that is executed at each of them. What it fills is not read by it, so that it
 //! can be taken out for as long as the loop runs.
 
-use super::flat::{Flat, Lists, Stop, traced};
-use super::{Code, Evaluated, Exit, Places, WRONG, unfit};
+use super::{Code, Evaluated, Exit, Iterate, Places, WRONG, unfit};
 use crate::failure::Failure;
+use crate::recorded::{Lists, SiteFunction};
 use crate::sites::Column;
 use crate::value::Value;
-use clebsch::Real;
 use clebsch::linalg::Dense;
 use clebsch::line;
-use std::sync::{Arc, OnceLock};
 
 /// What is done with the values of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,42 +37,38 @@ pub enum Terms {
 
 /// A list of sites or part of it.
 #[derive(Clone, Debug)]
-pub struct Slice<T: Real> {
+pub struct Slice {
     /// The place of the list.
-    pub list: Code<T>,
+    pub list: Code<f64>,
     /// The first site.
-    pub from: Option<Code<T>>,
+    pub from: Option<Code<f64>>,
     /// The one after the last.
-    pub to: Option<Code<T>>,
+    pub to: Option<Code<f64>>,
 }
 
 /// A loop.
-#[derive(Clone, Debug)]
-pub struct Sweep<T: Real> {
+#[derive(Debug)]
+pub struct Sweep {
     /// What is done with the values.
     pub kind: Kind,
     /// What is filled.
-    pub out: Vec<Slice<T>>,
+    pub out: Vec<Slice>,
     /// From which site to which, where nothing is filled.
-    pub range: Option<[Code<T>; 2]>,
-    /// The places of the parameters of the body.
-    pub parameters: Vec<usize>,
+    pub range: Option<[Code<f64>; 2]>,
     /// The body.
-    pub body: Code<T>,
-    /// The same as operations, made when it is first run; none where it has some that are not known.
-    pub flat: OnceLock<Option<Arc<Flat<T>>>>,
+    pub sites: SiteFunction,
 }
 
 /// A list that is taken out of its place, and its sites.
-struct Taken<T: Real> {
-    column: Column<T>,
+struct Taken {
+    column: Column<f64>,
     from: usize,
     to: usize,
 }
 
-impl<T: Real> Slice<T> {
+impl Slice {
     /// The first site, and the one after the last.
-    pub fn range(&self, places: &mut Places<T>) -> Result<[usize; 2], Exit<T>> {
+    pub fn range(&self, places: &mut Places<f64>) -> Result<[usize; 2], Exit<f64>> {
         let from = match &self.from {
             Some(from) => from.count(places)?,
             None => 0,
@@ -89,7 +83,7 @@ impl<T: Real> Slice<T> {
         Ok([from, to])
     }
 
-    fn taken(&self, places: &mut Places<T>) -> Result<Taken<T>, Exit<T>> {
+    fn taken(&self, places: &mut Places<f64>) -> Result<Taken, Exit<f64>> {
         let [from, to] = self.range(places)?;
         let place = unfit(self.list.place_mut(places))?;
         match std::mem::replace(place, Value::Unit) {
@@ -103,33 +97,14 @@ impl<T: Real> Slice<T> {
         }
     }
 
-    fn put_back(&self, taken: Taken<T>, places: &mut Places<T>) -> Result<(), Exit<T>> {
+    fn put_back(&self, taken: Taken, places: &mut Places<f64>) -> Result<(), Exit<f64>> {
         *unfit(self.list.place_mut(places))? = Value::Sites(taken.column);
         Ok(())
     }
 }
 
-impl<T: Real> Sweep<T> {
-    /// The value of the body at a site.
-    fn at(
-        &self,
-        arguments: impl Iterator<Item = Value<T>>,
-        places: &mut Places<T>,
-    ) -> Evaluated<T> {
-        for (at, value) in self.parameters.iter().zip(arguments) {
-            *unfit(places.get_mut(*at))? = value;
-        }
-        match self.body.run(places) {
-            Err(Exit::Return(value)) => Ok(*value),
-            other => other,
-        }
-    }
-
-    /// The loop.
-    ///
-    /// # Errors
-    /// [`Exit`] for operations that do not fit; errors at sites are values.
-    pub fn run(&self, places: &mut Places<T>) -> Evaluated<T> {
+impl Iterate<f64> for Sweep {
+    fn run(&self, places: &mut Places<f64>) -> Evaluated<f64> {
         match (self.kind, self.out.as_slice()) {
             (Kind::Fill | Kind::TryFill, [out]) => {
                 let mut taken = out.taken(places)?;
@@ -148,11 +123,11 @@ impl<T: Real> Sweep<T> {
                 let [from, to] = self.whole(places)?;
                 let mut i = from;
                 while i < to {
-                    i = self.quick(places, [i, to], Lists::none());
+                    i = self.sites.advance(places, [i, to], &mut Lists::default());
                     if i == to {
                         break;
                     }
-                    if let Value::Failed(e) = self.at([site(i)].into_iter(), places)? {
+                    if let Value::Failed(e) = self.sites.at([site(i)].into_iter(), places)? {
                         return Ok(Value::failed(Failure::At(i, e)));
                     }
                     i += 1;
@@ -166,25 +141,27 @@ impl<T: Real> Sweep<T> {
             _ => Err(Exit::Unfit(WRONG)),
         }
     }
+}
 
+impl Sweep {
     /// The values of the body at all sites.
-    fn gathered(&self, places: &mut Places<T>) -> Result<Column<T>, Exit<T>> {
+    fn gathered(&self, places: &mut Places<f64>) -> Result<Column<f64>, Exit<f64>> {
         let [from, to] = self.whole(places)?;
         let mut all = Column::Values(Vec::new());
         let mut i = from;
         while i < to {
             // The first says of what kind they are.
             if i > from {
-                let lists = Lists {
+                let mut lists = Lists {
                     gathered: Some(&mut all),
-                    ..Lists::none()
+                    ..Lists::default()
                 };
-                i = self.quick(places, [i, to], lists);
+                i = self.sites.advance(places, [i, to], &mut lists);
                 if i == to {
                     break;
                 }
             }
-            let value = self.at([site(i)].into_iter(), places)?;
+            let value = self.sites.at([site(i)].into_iter(), places)?;
             if i == from {
                 all = Column::like(&value);
             }
@@ -194,47 +171,23 @@ impl<T: Real> Sweep<T> {
         Ok(all)
     }
 
-    /// Runs sites by operations, as far as that goes: the next site that is left to the body.
-    fn quick(&self, places: &Places<T>, [from, to]: [usize; 2], mut lists: Lists<'_, T>) -> usize {
-        let flat = self.flat.get_or_init(|| {
-            let kept = lists.kept.as_ref();
-            let kept = kept.and_then(|(column, first)| column.get(*first + from));
-            let shape = |column: &Column<T>| match column {
-                Column::Arrays(dims, _) => Some(*dims),
-                _ => None,
-            };
-            let out = lists.out.iter().map(|(column, _)| shape(column));
-            let kept_shape = lists.kept.iter().map(|(column, _)| shape(column));
-            let gathered = lists.gathered.iter().map(|column| shape(column));
-            let shapes: Vec<Option<[usize; 2]>> = out.chain(kept_shape).chain(gathered).collect();
-            let made = traced(places, &self.parameters, &self.body, from, kept, &shapes);
-            made.map(Arc::new)
-        });
-        let Some(flat) = flat else { return from };
-        match flat.run(places, [from, to], &mut lists) {
-            Stop::Done => to,
-            Stop::Left(site) => site,
-            Stop::Unfit => from,
-        }
-    }
-
-    fn whole(&self, places: &mut Places<T>) -> Result<[usize; 2], Exit<T>> {
+    fn whole(&self, places: &mut Places<f64>) -> Result<[usize; 2], Exit<f64>> {
         let [from, to] = unfit(self.range.as_ref())?;
         Ok([from.count(places)?, to.count(places)?])
     }
 
-    fn filled(&self, taken: &mut Taken<T>, places: &mut Places<T>) -> Evaluated<T> {
+    fn filled(&self, taken: &mut Taken, places: &mut Places<f64>) -> Evaluated<f64> {
         let (mut i, to) = (0, taken.to - taken.from);
         while i < to {
-            let lists = Lists {
+            let mut lists = Lists {
                 out: Some((&mut taken.column, taken.from)),
-                ..Lists::none()
+                ..Lists::default()
             };
-            i = self.quick(places, [i, to], lists);
+            i = self.sites.advance(places, [i, to], &mut lists);
             if i == to {
                 break;
             }
-            let value = self.at([site(i)].into_iter(), places)?;
+            let value = self.sites.at([site(i)].into_iter(), places)?;
             if let Value::Failed(e) = value {
                 return Ok(Value::failed(Failure::At(i, e)));
             }
@@ -246,23 +199,23 @@ impl<T: Real> Sweep<T> {
 
     fn updated(
         &self,
-        out: &mut Taken<T>,
-        kept: &mut Taken<T>,
-        places: &mut Places<T>,
-    ) -> Evaluated<T> {
+        out: &mut Taken,
+        kept: &mut Taken,
+        places: &mut Places<f64>,
+    ) -> Evaluated<f64> {
         let (mut i, to) = (0, (out.to - out.from).min(kept.to - kept.from));
         while i < to {
-            let lists = Lists {
+            let mut lists = Lists {
                 out: Some((&mut out.column, out.from)),
                 kept: Some((&mut kept.column, kept.from)),
                 gathered: None,
             };
-            i = self.quick(places, [i, to], lists);
+            i = self.sites.advance(places, [i, to], &mut lists);
             if i == to {
                 break;
             }
             let keep = unfit(kept.column.get(kept.from + i))?;
-            match self.at([site(i), keep].into_iter(), places)? {
+            match self.sites.at([site(i), keep].into_iter(), places)? {
                 Value::None => return Ok(Value::failed(Failure::Site(i))),
                 Value::List(both) => {
                     let [value, keep] = both.as_slice() else {
@@ -279,13 +232,13 @@ impl<T: Real> Sweep<T> {
     }
 }
 
-fn site<T: Real>(i: usize) -> Value<T> {
+fn site(i: usize) -> Value<f64> {
     Value::Int(i64::try_from(i).unwrap_or(i64::MAX))
 }
 
 /// The sum of numbers, or of arrays component by component.
-fn summed<T: Real>(all: &Column<T>, terms: Terms, sizes: bool) -> Option<Value<T>> {
-    let of = |x: T| if sizes { x.abs() } else { x };
+fn summed(all: &Column<f64>, terms: Terms, sizes: bool) -> Option<Value<f64>> {
+    let of = |x: f64| if sizes { x.abs() } else { x };
     Some(match all {
         Column::Numbers(list) => Value::Real(line::sum(list.len(), |i| of(list[i]))),
         Column::Arrays([rows, cols], list) => {
@@ -298,7 +251,7 @@ fn summed<T: Real>(all: &Column<T>, terms: Terms, sizes: bool) -> Option<Value<T
             })
         }
         Column::Values(none) if none.is_empty() => match terms {
-            Terms::Numbers => Value::Real(T::zero()),
+            Terms::Numbers => Value::Real(0.0),
             Terms::Arrays => Value::Zeros,
         },
         _ => return None,

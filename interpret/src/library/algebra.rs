@@ -327,21 +327,19 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
         ("sum_of_sizes", 1) => |a, _| match a.first()? {
             Value::List(both) => {
                 let (kinetic, potential) = (number(both.first()?)?, number(both.get(1)?)?);
-                let sum = e::sum_of_sizes((kinetic.value(), potential.value()));
-                Some(Value::Real(T::from_f64(sum)))
+                Some(Value::Real(e::sum_of_sizes((kinetic, potential))))
             }
             _ => None,
         },
         ("size_of_energy", 2) => |a, _| match (a.first()?, a.get(1)?) {
             (Value::List(plain), Value::List(enlarged)) => {
-                let both = |list: &[Value<T>]| -> Option<(f64, f64)> {
-                    Some((
-                        number(list.first()?)?.value(),
-                        number(list.get(1)?)?.value(),
-                    ))
+                let both = |list: &[Value<T>]| -> Option<(T, T)> {
+                    Some((number(list.first()?)?, number(list.get(1)?)?))
                 };
-                let size = e::size_of_energy(both(plain)?, both(enlarged)?);
-                Some(Value::Real(T::from_f64(size)))
+                Some(Value::Real(e::size_of_energy(
+                    both(plain)?,
+                    both(enlarged)?,
+                )))
             }
             _ => None,
         },

@@ -4,7 +4,7 @@ use crate::code::Native;
 use crate::value::{Kept, Value};
 use clebsch::Real;
 use clebsch::domain;
-use clebsch::integrate::filled;
+use clebsch::integrate::{filled, fills};
 use clebsch::kinetic::KineticWarning;
 use clebsch::linalg::Dense;
 
@@ -59,14 +59,14 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
                 let entries = within
                     .clone()
                     .flat_map(|i| (0..m.cols).map(move |j| (i, j)));
-                let sizes = entries.map(|(i, j)| m.at(i, j).magnitude());
-                let filled = filled(sizes, impulse.value());
+                let entries = entries.map(|(i, j)| m.at(i, j));
+                let fills = fills(entries, *impulse);
                 Some(Value::of(Dense::from_fn(
                     m.rows,
                     m.cols,
-                    |i, j| match filled.filter(|_| within.contains(&i)) {
-                        Some(x) => T::from_f64(x),
-                        None => m.at(i, j),
+                    |i, j| match within.contains(&i) {
+                        true => filled(m.at(i, j), fills, *impulse),
+                        false => m.at(i, j),
                     },
                 )))
             }

@@ -229,7 +229,7 @@ impl Read {
 
 impl Given {
     /// The struct of this name.
-    pub fn named(shared: &mut Shared<'_, f64>, name: &str) -> Result<Self, Refused> {
+    pub fn named(shared: &mut Shared<'_>, name: &str) -> Result<Self, Refused> {
         let layout = shared.layout(name)?;
         let declared = shared.program.structs.get(name);
         let fields = declared.into_iter().flatten().map(|(field, ty)| {
@@ -288,7 +288,7 @@ pub struct Ends {
 
 impl Ends {
     /// Those of a model.
-    pub fn of(shared: &mut Shared<'_, f64>, name: &str) -> Result<Self, Refused> {
+    pub fn of(shared: &mut Shared<'_>, name: &str) -> Result<Self, Refused> {
         let mut ends = Ends::default();
         for (at, suffix) in ["First", "Last"].into_iter().enumerate() {
             let owner = format!("{name}{suffix}");
@@ -311,7 +311,7 @@ impl Ends {
     }
 
     /// A variant whose fields are ends or numbers.
-    fn whole(shared: &mut Shared<'_, f64>, name: &str) -> Result<Given, Refused> {
+    fn whole(shared: &mut Shared<'_>, name: &str) -> Result<Given, Refused> {
         let layout = shared.layout(name)?;
         let declared = shared.program.structs.get(name);
         let fields = declared.into_iter().flatten().map(|(field, ty)| {

@@ -2,9 +2,9 @@
 
 use super::expression::whole;
 use super::statement::is_place;
-use super::{Binding, Lower, Lowered, refuse};
+use super::{Binding, Lower, refuse};
 use crate::Refused;
-use crate::code::{Code, Known, Pattern, Routine};
+use crate::code::{Code, Pattern, Routine};
 use crate::program::named;
 use crate::value::{Frame, Value};
 use std::collections::BTreeMap;
@@ -18,16 +18,16 @@ fn is_pi(e: &syn::Expr) -> bool {
     path.path.segments.last().is_some_and(|s| s.ident == "PI")
 }
 
-impl<T: Lowered> Lower<'_, '_, T> {
+impl Lower<'_, '_> {
     /// A function of the runtime, if there is one.
     pub(super) fn native(
         &self,
         name: &str,
-        arguments: Vec<Code<T>>,
+        arguments: Vec<Code<f64>>,
         sizes: Vec<usize>,
-    ) -> Option<Code<T>> {
-        let native = T::native(name, arguments.len())?;
-        Some(Code::Call(native, arguments, sizes, Known::of(name)))
+    ) -> Option<Code<f64>> {
+        let native = crate::library::native(name, arguments.len())?;
+        Some(Code::Call(native, arguments, sizes, name.into()))
     }
 
     /// The sizes among generic arguments; the scalar is none of them.
@@ -63,7 +63,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// A closure, given as it is or by name.
-    pub(super) fn argument(&mut self, e: &syn::Expr) -> Result<Code<T>, Refused> {
+    pub(super) fn argument(&mut self, e: &syn::Expr) -> Result<Code<f64>, Refused> {
         if let syn::Expr::Path(p) = e
             && let Some(name) = p.path.get_ident()
             && let Some(Binding::Closure(closure)) = self.find(&name.to_string())
@@ -74,11 +74,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
         // A function of the runtime by its path.
         if let syn::Expr::Path(p) = e
             && let [.., owner, name] = &p.path.segments.iter().collect::<Vec<_>>()[..]
-            && let Some(native) = T::native(&format!("{}::{}", owner.ident, name.ident), 1)
         {
-            let at = self.fresh();
-            let call = Code::Call(native, vec![Code::Place(at)], Vec::new(), Known::Other);
-            return Ok(Code::Closure(vec![at], Box::new(call)));
+            let (name, at) = (format!("{}::{}", owner.ident, name.ident), self.fresh());
+            if let Some(call) = self.native(&name, vec![Code::Place(at)], Vec::new()) {
+                return Ok(Code::Closure(vec![at], Box::new(call)));
+            }
         }
         self.expression(e, None)
     }
@@ -87,7 +87,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         &mut self,
         c: &syn::ExprCall,
         ty: Option<&syn::Type>,
-    ) -> Result<Code<T>, Refused> {
+    ) -> Result<Code<f64>, Refused> {
         let syn::Expr::Path(path) = &*c.func else {
             return Err(refuse(c));
         };
@@ -104,7 +104,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         match names.as_slice() {
             ["T", "from_f64"] if c.args.iter().any(is_pi) => {
-                let value = T::from_f64(std::f64::consts::PI);
+                let value = std::f64::consts::PI;
                 return Ok(Code::Constant(Value::Real(value)));
             }
             ["T", "from_f64"] => {
@@ -112,9 +112,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
                     return Err(refuse(c));
                 };
                 return match argument {
-                    Code::Constant(Value::Double(x)) => {
-                        Ok(Code::Constant(Value::Real(T::from_f64(*x))))
-                    }
+                    Code::Constant(Value::Double(x)) => Ok(Code::Constant(Value::Real(*x))),
                     other => {
                         let call = self.native("from_f64", vec![other.clone()], sizes);
                         call.ok_or_else(|| refuse(c))
@@ -126,8 +124,8 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 let call = self.native("from_ratio", arguments, sizes);
                 return call.ok_or_else(|| refuse(c));
             }
-            ["T", "zero"] => return Ok(Code::Constant(Value::Real(T::zero()))),
-            ["T", "one"] => return Ok(Code::Constant(Value::Real(T::one()))),
+            ["T", "zero"] => return Ok(Code::Constant(Value::Real(0.0))),
+            ["T", "one"] => return Ok(Code::Constant(Value::Real(1.0))),
             ["SMatrix" | "SVector", "zeros"] if sizes.is_empty() => {
                 let sizes = self.sizes_of_type(ty);
                 return self
@@ -142,8 +140,8 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 for a in &c.args {
                     arguments.push(self.argument(a)?);
                 }
-                let special = T::special("from_fn").ok_or_else(|| refuse(c))?;
-                return Ok(Code::Special(special, arguments, Known::of("from_fn")));
+                let special = crate::library::special("from_fn").ok_or_else(|| refuse(c))?;
+                return Ok(Code::Special(special, arguments, "from_fn".into()));
             }
             ["SVector" | "SMatrix", "new"] => {
                 let arguments = self.all(c.args.iter())?;
@@ -201,7 +199,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// A functional of all sites that is made: those of the runtime are known here.
-    fn functional(&mut self, of: &syn::Type, c: &syn::ExprCall) -> Result<Code<T>, Refused> {
+    fn functional(&mut self, of: &syn::Type, c: &syn::ExprCall) -> Result<Code<f64>, Refused> {
         let syn::Type::Path(of) = of else {
             return Err(refuse(c));
         };
@@ -226,9 +224,9 @@ impl<T: Lowered> Lower<'_, '_, T> {
         &mut self,
         name: &str,
         list: impl Iterator<Item = &'e syn::Expr>,
-        receiver: Option<Code<T>>,
+        receiver: Option<Code<f64>>,
         sizes: Vec<usize>,
-    ) -> Result<Option<Code<T>>, Refused> {
+    ) -> Result<Option<Code<f64>>, Refused> {
         let name = match (self.shared.by_length, name) {
             (true, "dot") => "dot_sizes",
             (true, "cross") => "cross_sizes",
@@ -238,16 +236,16 @@ impl<T: Lowered> Lower<'_, '_, T> {
             (true, "validate::along_constraint") => "validate::is_determined",
             _ => name,
         };
-        let mut arguments: Vec<Code<T>> = receiver.into_iter().collect();
+        let mut arguments: Vec<Code<f64>> = receiver.into_iter().collect();
         for e in list {
             arguments.push(self.argument(e)?);
         }
         // What calls back or changes places is no function of values.
         let calls_back = arguments.iter().any(|a| matches!(a, Code::Closure(..)));
-        if let Some(special) = T::special(name)
-            && (calls_back || T::native(name, arguments.len()).is_none())
+        if let Some(special) = crate::library::special(name)
+            && (calls_back || crate::library::native::<f64>(name, arguments.len()).is_none())
         {
-            let made = Code::Special(special, arguments, Known::of(name));
+            let made = Code::Special(special, arguments, name.into());
             // An inertia of the model alone is made once.
             if name == "columns" && self.is_steady(&made, &mut Vec::new()) {
                 let at = self.fresh();
@@ -264,7 +262,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         &mut self,
         m: &syn::ExprMethodCall,
         ty: Option<&syn::Type>,
-    ) -> Result<Code<T>, Refused> {
+    ) -> Result<Code<f64>, Refused> {
         let name = m.method.to_string();
         if let (true, Some(ty)) = (name == "alike", ty) {
             let like = self
@@ -314,7 +312,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         name: &str,
         receiver: Option<&'e syn::Expr>,
         list: impl Iterator<Item = &'e syn::Expr>,
-    ) -> Result<Code<T>, Refused> {
+    ) -> Result<Code<f64>, Refused> {
         let program = self.shared.program;
         let Some(function) = program.function(owner, name) else {
             return Err(Refused::Construct(format!("{owner}::{name}")));
@@ -357,7 +355,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         &mut self,
         key: &(String, String),
         function: &syn::ImplItemFn,
-    ) -> Result<Arc<OnceLock<Routine<T>>>, Refused> {
+    ) -> Result<Arc<OnceLock<Routine<f64>>>, Refused> {
         if let Some(known) = self.shared.routines.get(key) {
             return Ok(known.clone());
         }

@@ -1,6 +1,6 @@
 //! Expressions that are no calls.
 
-use super::{Binding, Lower, Lowered, refuse};
+use super::{Binding, Lower, refuse};
 use crate::Refused;
 use crate::code::{Arm, Code, Operator, Pattern};
 use crate::program::named;
@@ -10,13 +10,13 @@ use clebsch::domain;
 use clebsch::emitted::{Method, Order};
 use std::collections::BTreeMap;
 
-impl<T: Lowered> Lower<'_, '_, T> {
+impl Lower<'_, '_> {
     /// An expression; `ty` is what is known of its type.
     pub(super) fn expression(
         &mut self,
         e: &syn::Expr,
         ty: Option<&syn::Type>,
-    ) -> Result<Code<T>, Refused> {
+    ) -> Result<Code<f64>, Refused> {
         Ok(match e {
             syn::Expr::Lit(lit) => Code::Constant(self.literal(&lit.lit)?),
             syn::Expr::Path(p) => self.path(&p.path)?.ok_or_else(|| refuse(e))?,
@@ -74,7 +74,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
                     _ => None,
                 };
                 let all = a.elems.iter().map(|e| self.expression(e, ty));
-                let all: Vec<Code<T>> = all.collect::<Result<_, _>>()?;
+                let all: Vec<Code<f64>> = all.collect::<Result<_, _>>()?;
                 match all.is_empty() {
                     // An array of nothing is a list still; a tuple of nothing is `()`.
                     true => Code::Constant(Value::List(Vec::new())),
@@ -106,13 +106,13 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// A tuple assigned to a tuple, where nothing assigned is read: one after the other.
-    fn one_by_one(&mut self, a: &syn::ExprAssign) -> Result<Option<Code<T>>, Refused> {
+    fn one_by_one(&mut self, a: &syn::ExprAssign) -> Result<Option<Code<f64>>, Refused> {
         let (syn::Expr::Tuple(left), syn::Expr::Tuple(right)) = (&*a.left, &*a.right) else {
             return Ok(None);
         };
         let (targets, values) = (self.all(left.elems.iter())?, self.all(right.elems.iter())?);
         let assigned: Vec<Option<usize>> = targets.iter().map(root).collect();
-        let apart = |value: &Code<T>| root(value).is_some_and(|r| !assigned.contains(&Some(r)));
+        let apart = |value: &Code<f64>| root(value).is_some_and(|r| !assigned.contains(&Some(r)));
         if targets.len() != values.len() || !values.iter().all(apart) {
             return Ok(None);
         }
@@ -125,11 +125,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
     pub(super) fn all<'e>(
         &mut self,
         list: impl Iterator<Item = &'e syn::Expr>,
-    ) -> Result<Vec<Code<T>>, Refused> {
+    ) -> Result<Vec<Code<f64>>, Refused> {
         list.map(|e| self.expression(e, None)).collect()
     }
 
-    fn literal(&self, lit: &syn::Lit) -> Result<Value<T>, Refused> {
+    fn literal(&self, lit: &syn::Lit) -> Result<Value<f64>, Refused> {
         Ok(match lit {
             syn::Lit::Int(n) => Value::Int(n.base10_parse().map_err(|_| refuse(lit))?),
             syn::Lit::Float(x) => Value::Double(x.base10_parse().map_err(|_| refuse(lit))?),
@@ -140,7 +140,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// What a path names: a local, a size, a constant of the runtime.
-    pub(super) fn path(&self, path: &syn::Path) -> Result<Option<Code<T>>, Refused> {
+    pub(super) fn path(&self, path: &syn::Path) -> Result<Option<Code<f64>>, Refused> {
         let constant = |value| Ok(Some(Code::Constant(value)));
         if let Some(name) = path.get_ident() {
             let name = name.to_string();
@@ -165,7 +165,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
             }
             // The number of threads changes no result.
             [.., "Threads", "ONE"] => Value::Int(1),
-            ["T", "EPSILON"] => Value::Double(T::EPSILON),
+            ["T", "EPSILON"] => Value::Double(<f64 as Real>::EPSILON),
             ["f64", "NAN"] => Value::Double(f64::NAN),
             [.., "Order", "Two"] => Value::Order(Order::Two),
             [.., "Domain", "Positive"] => Value::Domain(domain::Domain::Positive),
@@ -179,7 +179,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// A chain of operators is taken from its first operand on, not by recursion: sums over sites have hundreds of terms.
-    fn binary(&mut self, b: &syn::ExprBinary) -> Result<Code<T>, Refused> {
+    fn binary(&mut self, b: &syn::ExprBinary) -> Result<Code<f64>, Refused> {
         let mut chain = vec![b];
         let mut first = &*b.left;
         while let syn::Expr::Binary(inner) = first {
@@ -194,7 +194,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         Ok(value)
     }
 
-    fn field(&mut self, f: &syn::ExprField) -> Result<Code<T>, Refused> {
+    fn field(&mut self, f: &syn::ExprField) -> Result<Code<f64>, Refused> {
         match &f.member {
             syn::Member::Named(name) => {
                 let name = name.to_string();
@@ -211,7 +211,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         }
     }
 
-    fn conditional(&mut self, i: &syn::ExprIf) -> Result<Code<T>, Refused> {
+    fn conditional(&mut self, i: &syn::ExprIf) -> Result<Code<f64>, Refused> {
         let otherwise = match &i.else_branch {
             Some((_, e)) => Some(self.expression(e, None)?),
             None => None,
@@ -240,7 +240,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         Ok(Code::Match(Box::new(value), arms))
     }
 
-    fn matched(&mut self, m: &syn::ExprMatch) -> Result<Code<T>, Refused> {
+    fn matched(&mut self, m: &syn::ExprMatch) -> Result<Code<f64>, Refused> {
         let value = self.expression(&m.expr, None)?;
         let mut arms = Vec::new();
         for arm in &m.arms {
@@ -252,7 +252,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         Ok(Code::Match(Box::new(value), arms))
     }
 
-    fn arm(&mut self, arm: &syn::Arm) -> Result<Arm<T>, Refused> {
+    fn arm(&mut self, arm: &syn::Arm) -> Result<Arm<f64>, Refused> {
         let (pat, guard) = match &arm.pat {
             syn::Pat::Guard(guarded) => (&*guarded.pat, Some(&guarded.guard)),
             pat => (pat, None),
@@ -270,7 +270,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         })
     }
 
-    fn counted(&mut self, f: &syn::ExprForLoop) -> Result<Code<T>, Refused> {
+    fn counted(&mut self, f: &syn::ExprForLoop) -> Result<Code<f64>, Refused> {
         let (counts, down) = match &*f.expr {
             syn::Expr::MethodCall(m) if m.method == "rev" => match &*m.receiver {
                 syn::Expr::Paren(p) => (&*p.expr, true),
@@ -304,7 +304,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// A loop over the elements of an array.
-    fn each(&mut self, f: &syn::ExprForLoop, name: &syn::Ident) -> Result<Code<T>, Refused> {
+    fn each(&mut self, f: &syn::ExprForLoop, name: &syn::Ident) -> Result<Code<f64>, Refused> {
         let (list, i, own) = (self.fresh(), self.fresh(), self.fresh());
         let all = self.expression(&f.expr, None)?;
         let length = self.native("len", vec![Code::Place(list)], Vec::new());
@@ -326,7 +326,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// A closure: its parameters at places of their own.
-    pub(super) fn closure(&mut self, c: &syn::ExprClosure) -> Result<Code<T>, Refused> {
+    pub(super) fn closure(&mut self, c: &syn::ExprClosure) -> Result<Code<f64>, Refused> {
         self.scopes.push(BTreeMap::new());
         let mut parameters = Vec::new();
         let mut inputs = Vec::new();
@@ -349,7 +349,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// A struct literal.
-    fn made(&mut self, s: &syn::ExprStruct) -> Result<Code<T>, Refused> {
+    fn made(&mut self, s: &syn::ExprStruct) -> Result<Code<f64>, Refused> {
         if let Some(error) = self.error_of_line(s)? {
             return Ok(error);
         }
@@ -417,7 +417,7 @@ fn named_parts<'a>(input: &'a syn::Pat, out: &mut Vec<&'a syn::Pat>) {
 }
 
 /// The place that an expression is part of.
-fn root<T: Real>(code: &Code<T>) -> Option<usize> {
+fn root(code: &Code<f64>) -> Option<usize> {
     match code {
         Code::Place(at) => Some(*at),
         Code::Field(base, _) => root(base),
@@ -426,7 +426,7 @@ fn root<T: Real>(code: &Code<T>) -> Option<usize> {
 }
 
 /// A count.
-pub(super) fn whole<T: Real>(n: usize) -> Code<T> {
+pub(super) fn whole(n: usize) -> Code<f64> {
     Code::Constant(Value::Int(i64::try_from(n).unwrap_or(i64::MAX)))
 }
 
@@ -442,7 +442,7 @@ fn function(name: &str) -> Option<domain::Function> {
 }
 
 /// Two operands and what stands between them.
-fn joined<T: Lowered>(b: &syn::ExprBinary, x: Code<T>, y: Code<T>) -> Result<Code<T>, Refused> {
+fn joined(b: &syn::ExprBinary, x: Code<f64>, y: Code<f64>) -> Result<Code<f64>, Refused> {
     use syn::BinOp;
     let operator = match b.op {
         BinOp::Add(_) => Operator::Add,

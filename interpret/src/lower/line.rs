@@ -3,18 +3,19 @@
 
 use super::expression::whole;
 use super::statement::is_place;
-use super::{Binding, Lower, Lowered, refuse};
+use super::{Binding, Lower, refuse};
 use crate::Refused;
-use crate::code::{Arm, Code, Kind, Known, Pattern, Slice, Sweep, Terms};
+use crate::code::{Arm, Code, Kind, Pattern, Slice, Sweep, Terms};
 use crate::program::named;
+use crate::recorded::SiteFunction;
 use crate::value::Value;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use syn::parse::Parser;
 
-impl<T: Lowered> Lower<'_, '_, T> {
+impl Lower<'_, '_> {
     /// A list of sites, or a part of it.
-    fn slice(&mut self, e: &syn::Expr) -> Result<Slice<T>, Refused> {
+    fn slice(&mut self, e: &syn::Expr) -> Result<Slice, Refused> {
         let inner = past_references(e);
         let part = match inner {
             syn::Expr::Index(i) => range(&i.index).map(|r| (&*i.expr, r)),
@@ -39,7 +40,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// The two ends of a range, where they are given.
-    fn bounds(&mut self, r: &syn::ExprRange) -> Result<[Option<Code<T>>; 2], Refused> {
+    fn bounds(&mut self, r: &syn::ExprRange) -> Result<[Option<Code<f64>>; 2], Refused> {
         let mut end = |e: &Option<Box<syn::Expr>>| match e {
             Some(e) => self.expression(e, None).map(Some),
             None => Ok(None),
@@ -48,7 +49,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// A part of a list as a value.
-    pub(super) fn part(&mut self, e: &syn::Expr) -> Result<Code<T>, Refused> {
+    pub(super) fn part(&mut self, e: &syn::Expr) -> Result<Code<f64>, Refused> {
         let slice = self.slice(e)?;
         self.special("slice", ends(slice), e)
     }
@@ -56,11 +57,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
     fn special(
         &self,
         name: &str,
-        arguments: Vec<Code<T>>,
+        arguments: Vec<Code<f64>>,
         e: &impl quote::ToTokens,
-    ) -> Result<Code<T>, Refused> {
-        let special = T::special(name).ok_or_else(|| refuse(e))?;
-        Ok(Code::Special(special, arguments, Known::of(name)))
+    ) -> Result<Code<f64>, Refused> {
+        let special = crate::library::special(name).ok_or_else(|| refuse(e))?;
+        Ok(Code::Special(special, arguments, name.into()))
     }
 
     /// A loop over sites of the runtime, if a call is one.
@@ -68,7 +69,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         &mut self,
         name: &str,
         c: &syn::ExprCall,
-    ) -> Result<Option<Code<T>>, Refused> {
+    ) -> Result<Option<Code<f64>>, Refused> {
         let list: Vec<&syn::Expr> = c.args.iter().collect();
         let (kind, out, range, body) = match (name, list.as_slice()) {
             // How several sites are computed together is of no concern: one after the other they get the same.
@@ -106,13 +107,11 @@ impl<T: Lowered> Lower<'_, '_, T> {
         let Code::Closure(parameters, body) = self.argument(body)? else {
             return Err(refuse(c));
         };
-        Ok(Some(Code::Sweep(Arc::new(Sweep {
+        Ok(Some(Code::Iterate(Arc::new(Sweep {
             kind,
             out,
             range,
-            parameters,
-            body: *body,
-            flat: std::sync::OnceLock::new(),
+            sites: SiteFunction::new(parameters, *body),
         }))))
     }
 
@@ -121,7 +120,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         &mut self,
         name: &str,
         c: &syn::ExprCall,
-    ) -> Result<Option<Code<T>>, Refused> {
+    ) -> Result<Option<Code<f64>>, Refused> {
         let Some(Binding::Closure(closure)) = self.find(name) else {
             return Ok(None);
         };
@@ -131,7 +130,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
             return Err(refuse(c));
         };
         let given = parameters.into_iter().zip(arguments);
-        let mut all: Vec<Code<T>> = given
+        let mut all: Vec<Code<f64>> = given
             .map(|(at, value)| Code::Let(Pattern::Place(at), Box::new(value), None))
             .collect();
         all.push(Code::Function(body));
@@ -142,7 +141,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     pub(super) fn method_of_list(
         &mut self,
         m: &syn::ExprMethodCall,
-    ) -> Result<Option<Code<T>>, Refused> {
+    ) -> Result<Option<Code<f64>>, Refused> {
         let arguments: Vec<&syn::Expr> = m.args.iter().collect();
         Ok(Some(
             match (m.method.to_string().as_str(), arguments.as_slice()) {
@@ -208,7 +207,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// `matches!(value, pattern)` and `vec![value; count]`.
-    pub(super) fn macro_call(&mut self, m: &syn::ExprMacro) -> Result<Code<T>, Refused> {
+    pub(super) fn macro_call(&mut self, m: &syn::ExprMacro) -> Result<Code<f64>, Refused> {
         let tokens = m.mac.tokens.clone();
         match named(&m.mac.path).as_str() {
             "matches" => {
@@ -252,7 +251,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     pub(super) fn error_of_line(
         &mut self,
         s: &syn::ExprStruct,
-    ) -> Result<Option<Code<T>>, Refused> {
+    ) -> Result<Option<Code<f64>>, Refused> {
         let names: Vec<String> = s
             .path
             .segments
@@ -289,7 +288,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         &mut self,
         path: &syn::Path,
         fields: &[&syn::FieldPat],
-    ) -> Result<Option<Pattern<T>>, Refused> {
+    ) -> Result<Option<Pattern<f64>>, Refused> {
         let Some(name) = self.variant_name(path) else {
             return Ok(None);
         };
@@ -319,8 +318,8 @@ impl<T: Lowered> Lower<'_, '_, T> {
 }
 
 /// The list of a slice, and its two ends as values.
-fn ends<T: clebsch::Real>(slice: Slice<T>) -> Vec<Code<T>> {
-    let end = |e: Option<Code<T>>| e.unwrap_or(Code::Constant(Value::None));
+fn ends(slice: Slice) -> Vec<Code<f64>> {
+    let end = |e: Option<Code<f64>>| e.unwrap_or(Code::Constant(Value::None));
     vec![slice.list, end(slice.from), end(slice.to)]
 }
 

@@ -8,10 +8,9 @@ mod newton;
 mod statement;
 
 use crate::Refused;
-use crate::code::{Code, Native, Routine, Special};
+use crate::code::{Code, Routine};
 use crate::program::{Program, type_name};
 use crate::value::Layout;
-use clebsch::Real;
 use quote::ToTokens;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -20,17 +19,17 @@ use std::sync::{Arc, OnceLock};
 
 /// What a name stands for.
 #[derive(Clone)]
-enum Binding<T: Real> {
+enum Binding {
     /// A place, and the struct that stands there.
-    Place(Code<T>, Option<String>),
+    Place(Code<f64>, Option<String>),
     /// A closure, written out where it is given to a function.
     Closure(Box<syn::ExprClosure>),
 }
 
-type Routines<T> = BTreeMap<(String, String), Arc<OnceLock<Routine<T>>>>;
+type Routines = BTreeMap<(String, String), Arc<OnceLock<Routine<f64>>>>;
 
 /// What the lowering of all functions of one model shares.
-pub struct Shared<'a, T: Real> {
+pub struct Shared<'a> {
     /// The items.
     pub program: &'a Program,
     /// The values of named sizes.
@@ -45,10 +44,10 @@ pub struct Shared<'a, T: Real> {
     pub projects: bool,
     /// The first place that no function uses.
     free: usize,
-    routines: Routines<T>,
+    routines: Routines,
 }
 
-impl<'a, T: Real> Shared<'a, T> {
+impl<'a> Shared<'a> {
     /// Nothing lowered yet.
     pub fn new(program: &'a Program, sizes: BTreeMap<String, usize>) -> Self {
         let names = crate::library::NAMES.iter().zip(0..);
@@ -74,21 +73,6 @@ impl<'a, T: Real> Shared<'a, T> {
         *names.entry(name.to_owned()).or_insert(next)
     }
 
-    /// For the same program over another scalar: names have the same numbers.
-    fn over<U: Real>(&self) -> Shared<'a, U> {
-        Shared {
-            program: self.program,
-            sizes: self.sizes.clone(),
-            names: self.names.clone(),
-            layouts: BTreeMap::new(),
-            by_size: self.by_size,
-            by_length: self.by_length,
-            projects: self.projects,
-            free: 0,
-            routines: BTreeMap::new(),
-        }
-    }
-
     /// The fields of a struct.
     pub fn layout(&mut self, name: &str) -> Result<Arc<Layout>, Refused> {
         if let Some(known) = self.layouts.get(name) {
@@ -109,25 +93,10 @@ impl<'a, T: Real> Shared<'a, T> {
     }
 }
 
-/// A scalar over which functions are lowered.
-pub trait Lowered: Real {
-    /// The loop of Newton's method.
-    ///
-    /// # Errors
-    /// [`Refused`] for scalars over which no step is made.
-    fn looped(lower: &mut Lower<'_, '_, Self>, of: &newton::Looped) -> Result<Code<Self>, Refused>;
-
-    /// The functions of the runtime that are called over it.
-    fn native(name: &str, arguments: usize) -> Option<Native<Self>>;
-
-    /// Those that change their first argument, or call back.
-    fn special(name: &str) -> Option<Special<Self>>;
-}
-
 /// The lowering of one function.
-pub struct Lower<'a, 'b, T: Real> {
-    shared: &'b mut Shared<'a, T>,
-    scopes: Vec<BTreeMap<String, Binding<T>>>,
+pub struct Lower<'a, 'b> {
+    shared: &'b mut Shared<'a>,
+    scopes: Vec<BTreeMap<String, Binding>>,
     /// The next free place.
     next: usize,
     /// The type whose function is lowered, and its name.
@@ -140,12 +109,12 @@ pub struct Lower<'a, 'b, T: Real> {
 ///
 /// # Errors
 /// [`Refused`] for what emitted code may do and the interpreter does not.
-pub fn entry<T: Lowered>(
-    shared: &mut Shared<'_, T>,
+pub fn entry(
+    shared: &mut Shared<'_>,
     (ty, name): (&str, &str),
     given: &[usize],
     first: usize,
-) -> Result<Routine<T>, Refused> {
+) -> Result<Routine<f64>, Refused> {
     let program = shared.program;
     let Some(function) = program.function(ty, name) else {
         return Err(Refused::Construct(format!("{ty}::{name}")));
@@ -176,11 +145,11 @@ pub fn entry<T: Lowered>(
 }
 
 /// The same of a start that projects momenta on constraints, however far they point across.
-pub fn projecting<T: Lowered>(
-    shared: &mut Shared<'_, T>,
+pub fn projecting(
+    shared: &mut Shared<'_>,
     function: (&str, &str),
     given: &[usize],
-) -> Result<Routine<T>, Refused> {
+) -> Result<Routine<f64>, Refused> {
     // Functions that it calls are others too.
     let usual = std::mem::take(&mut shared.routines);
     shared.projects = true;
@@ -190,14 +159,14 @@ pub fn projecting<T: Lowered>(
     routine
 }
 
-impl<T: Lowered> Lower<'_, '_, T> {
-    fn bind(&mut self, name: String, binding: Binding<T>) {
+impl Lower<'_, '_> {
+    fn bind(&mut self, name: String, binding: Binding) {
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name, binding);
         }
     }
 
-    fn find(&self, name: &str) -> Option<&Binding<T>> {
+    fn find(&self, name: &str) -> Option<&Binding> {
         self.scopes.iter().rev().find_map(|s| s.get(name))
     }
 

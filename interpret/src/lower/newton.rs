@@ -1,12 +1,12 @@
 //! The loop of Newton's method, read from emitted code: what is evaluated at a trial becomes operations,
 //! what the solver does with it is the solver's own.
 
-use super::{Binding, Lower, Lowered, Shared, refuse};
+use super::{Binding, Lower, Shared, refuse};
 use crate::Refused;
-use crate::code::{Code, Native, Routine, Special};
-use crate::library;
-use crate::newton::{Held, Kind, Rest, Settled, Shape, Solve, Sought};
+use crate::code::{Code, Routine};
+use crate::newton::{Held, Kind, Settled, Shape, Solve, Sought};
 use crate::program::type_name;
+use crate::recorded::{Function, PlaceFunction};
 use crate::value::Value;
 use clebsch::solvers::newton::Rounded;
 use quote::ToTokens;
@@ -86,13 +86,13 @@ fn name_in(tokens: &impl ToTokens, beginning: &str) -> Option<String> {
     find(tokens.to_token_stream(), beginning)
 }
 
-impl<T: Lowered> Lower<'_, '_, T> {
+impl Lower<'_, '_> {
     /// `newton::Search::...()` of a declared type, as a constant.
     pub(super) fn search(
         &self,
         constructor: &str,
         ty: Option<&syn::Type>,
-    ) -> Result<Option<Code<T>>, Refused> {
+    ) -> Result<Option<Code<f64>>, Refused> {
         let tries = match constructor {
             "from_rest" => false,
             "to_try" => true,
@@ -190,11 +190,11 @@ fn capacity(ty: &syn::Type) -> Option<usize> {
 }
 
 /// A function by itself, such as the residual: its parameters stand at places from 0 on.
-fn alone<U: Lowered>(
-    shared: &mut Shared<'_, U>,
+fn alone(
+    shared: &mut Shared<'_>,
     own_type: &str,
     function: &syn::ImplItemFn,
-) -> Result<Routine<U>, Refused> {
+) -> Result<Routine<f64>, Refused> {
     let name = function.sig.ident.to_string();
     let mut lower = Lower {
         shared,
@@ -222,7 +222,7 @@ fn guard(arm: &syn::Arm) -> Option<&syn::Expr> {
     }
 }
 
-impl<'a> Lower<'a, '_, f64> {
+impl<'a> Lower<'a, '_> {
     /// The loop as one operation.
     pub(super) fn solved(&mut self, of: &Looped) -> Result<Code<f64>, Refused> {
         self.scopes.push(BTreeMap::new());
@@ -316,33 +316,35 @@ impl<'a> Lower<'a, '_, f64> {
             function("residual_at", &rounding.method.to_string()).ok_or_else(unknown)?;
         let completed_at = function("completed_at", &rounding.method.to_string());
         let tangent_at = function("tangent_at", &principal).ok_or_else(unknown)?;
-        let mut rounded = self.shared.over::<Rounded>();
-        let rounded_at = alone(&mut rounded, &own, residual_at)?;
-        let rest = match completed_at.filter(|_| !rest.is_empty()) {
-            Some(function) => Some(Rest {
-                part,
-                code: rest_code,
-                rounded_at: alone(&mut rounded, &own, function)?,
-            }),
+        let residual_at = alone(self.shared, &own, residual_at)?;
+        let rounded = |routine: &Routine<f64>| {
+            let rounded = routine.over(Rounded::exactly);
+            rounded.ok_or_else(|| refuse(of.body))
+        };
+        let completed_at = match completed_at.filter(|_| !rest.is_empty()) {
+            Some(function) => Some(rounded(&alone(self.shared, &own, function)?)?),
             None => None,
         };
+        // What is found at a trial begins with the rest of it.
+        let of_trial = |last: Code<f64>| {
+            let before = rest_code.iter().chain(&at_trial_code).cloned();
+            PlaceFunction::new(part, Code::Block(before.chain([last]).collect()))
+        };
+        let unit = unit.unwrap_or(Code::Constant(Value::Real(1.0)));
         Ok(Solve {
             search,
             node,
-            trial,
-            rest,
+            completed_at,
             known,
-            at_trial: at_trial_code,
-            residual,
+            residual: of_trial(Code::List(vec![Code::Place(trial), residual])),
             at_rest,
-            tangent,
-            unit,
+            tangent: of_trial(Code::List(vec![tangent, unit])),
             from_left: correct.method.to_string().ends_with("from_left"),
-            convex,
+            convex: convex.map(of_trial),
             settled,
-            residual_at: alone(self.shared, &own, residual_at)?,
-            rounded_at,
-            tangent_at: alone(self.shared, &own, tangent_at)?,
+            rounded_at: rounded(&residual_at)?,
+            residual_at: Function::new(residual_at),
+            tangent_at: Function::new(alone(self.shared, &own, tangent_at)?),
         })
     }
 
@@ -459,33 +461,5 @@ impl<'a> Lower<'a, '_, f64> {
         let field = field.to_string();
         let (_, ty) = fields.iter().find(|(name, _)| *name == field)?;
         Some(ty.clone())
-    }
-}
-
-impl Lowered for f64 {
-    fn looped(lower: &mut Lower<'_, '_, f64>, of: &Looped) -> Result<Code<f64>, Refused> {
-        lower.solved(of)
-    }
-
-    fn native(name: &str, arguments: usize) -> Option<Native<f64>> {
-        library::native(name, arguments)
-    }
-
-    fn special(name: &str) -> Option<Special<f64>> {
-        library::special(name)
-    }
-}
-
-impl Lowered for Rounded {
-    fn looped(_: &mut Lower<'_, '_, Self>, of: &Looped) -> Result<Code<Self>, Refused> {
-        Err(refuse(of.body))
-    }
-
-    fn native(name: &str, arguments: usize) -> Option<Native<Rounded>> {
-        library::kernel(name, arguments)
-    }
-
-    fn special(name: &str) -> Option<Special<Rounded>> {
-        library::kernel_special(name)
     }
 }

@@ -1,16 +1,15 @@
 //! Blocks, bindings and patterns.
 
-use super::{Binding, Lower, Lowered, refuse};
+use super::{Binding, Lower, refuse};
 use crate::Refused;
 use crate::code::{Code, Pattern};
 use crate::program::named;
 use crate::value::Value;
-use clebsch::Real;
 use std::collections::BTreeMap;
 
-impl<T: Lowered> Lower<'_, '_, T> {
+impl Lower<'_, '_> {
     /// The body of a function, whose type says of what shape its value is.
-    pub(super) fn body(&mut self, function: &syn::ImplItemFn) -> Result<Code<T>, Refused> {
+    pub(super) fn body(&mut self, function: &syn::ImplItemFn) -> Result<Code<f64>, Refused> {
         match &function.sig.output {
             syn::ReturnType::Type(_, ty) => self.block_of(&function.block, Some(ty)),
             syn::ReturnType::Default => self.block(&function.block),
@@ -18,11 +17,15 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// A block, with a scope of its own.
-    pub(super) fn block(&mut self, block: &syn::Block) -> Result<Code<T>, Refused> {
+    pub(super) fn block(&mut self, block: &syn::Block) -> Result<Code<f64>, Refused> {
         self.block_of(block, None)
     }
 
-    fn block_of(&mut self, block: &syn::Block, ty: Option<&syn::Type>) -> Result<Code<T>, Refused> {
+    fn block_of(
+        &mut self,
+        block: &syn::Block,
+        ty: Option<&syn::Type>,
+    ) -> Result<Code<f64>, Refused> {
         self.scopes.push(BTreeMap::new());
         let all = self.statements_of(&block.stmts, ty);
         self.scopes.pop();
@@ -33,7 +36,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         })
     }
 
-    pub(super) fn statements(&mut self, list: &[syn::Stmt]) -> Result<Vec<Code<T>>, Refused> {
+    pub(super) fn statements(&mut self, list: &[syn::Stmt]) -> Result<Vec<Code<f64>>, Refused> {
         self.statements_of(list, None)
     }
 
@@ -42,7 +45,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         &mut self,
         list: &[syn::Stmt],
         ty: Option<&syn::Type>,
-    ) -> Result<Vec<Code<T>>, Refused> {
+    ) -> Result<Vec<Code<f64>>, Refused> {
         let mut out = Vec::new();
         let mut skipped = false;
         for (i, statement) in list.iter().enumerate() {
@@ -50,7 +53,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 continue;
             }
             if let Some(looped) = super::newton::looped(statement, list.get(i + 1)) {
-                out.push(T::looped(self, &looped)?);
+                out.push(self.solved(&looped)?);
                 skipped = true;
                 continue;
             }
@@ -76,7 +79,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// What is filled in by a loop, from the model alone, is filled once.
-    fn filled_once(&mut self, list: &mut Vec<Code<T>>) {
+    fn filled_once(&mut self, list: &mut Vec<Code<f64>>) {
         for i in 0..list.len() {
             let Some(Code::Let(Pattern::Place(at), value, None)) = list.get(i) else {
                 continue;
@@ -92,14 +95,14 @@ impl<T: Lowered> Lower<'_, '_, T> {
                 continue;
             }
             self.steady.push(at);
-            let mut all: Vec<Code<T>> = list.drain(i..=i + count).collect();
+            let mut all: Vec<Code<f64>> = list.drain(i..=i + count).collect();
             all.push(Code::Constant(Value::Bool(true)));
             let made = Code::Once(self.fresh(), Box::new(Code::Block(all)));
             list.insert(i, made);
         }
     }
 
-    fn local(&mut self, local: &syn::Local, out: &mut Vec<Code<T>>) -> Result<(), Refused> {
+    fn local(&mut self, local: &syn::Local, out: &mut Vec<Code<f64>>) -> Result<(), Refused> {
         let (pat, ty) = match &local.pat {
             syn::Pat::Type(typed) => (&*typed.pat, Some(&*typed.ty)),
             other => (other, None),
@@ -191,7 +194,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
     }
 
     /// Whether a value is made of the model alone: then it is made once. `own` are the places within it.
-    pub(super) fn is_steady(&self, code: &Code<T>, own: &mut Vec<usize>) -> bool {
+    pub(super) fn is_steady(&self, code: &Code<f64>, own: &mut Vec<usize>) -> bool {
         match code {
             Code::Constant(_) => true,
             Code::Place(at) => self.steady.contains(at) || own.contains(at),
@@ -233,7 +236,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
         &mut self,
         pat: &syn::Pat,
         kind: Option<String>,
-    ) -> Result<Pattern<T>, Refused> {
+    ) -> Result<Pattern<f64>, Refused> {
         Ok(match pat {
             syn::Pat::Wild(_) => Pattern::Any,
             syn::Pat::Ident(name) if name.ident == "None" => Pattern::None,
@@ -297,7 +300,7 @@ impl<T: Lowered> Lower<'_, '_, T> {
 }
 
 /// Whether an expression names a place, which may stand for it.
-pub(super) fn is_place<T: Real>(code: &Code<T>) -> bool {
+pub(super) fn is_place(code: &Code<f64>) -> bool {
     match code {
         Code::Place(_) => true,
         Code::Field(base, _) => is_place(base),

@@ -4,6 +4,7 @@ use super::shape::Shape;
 use super::solve::{self, Solve};
 use crate::code::{Exit, Places};
 use crate::library::NAMES;
+use crate::over::over;
 use crate::value::{Layout, Struct, Value};
 use clebsch::Real;
 use clebsch::saved::{Words, sites};
@@ -115,7 +116,7 @@ pub fn remember<T: Real>(search: &mut Value<T>, node: &Value<T>, found: &Value<T
     let (Value::Search(held), Value::Struct(found)) = (search, found) else {
         return None;
     };
-    let element = super::over(found.values.first()?, &mut |x: T| x.value())?;
+    let element = over(found.values.first()?, &mut |x: T| x.value())?;
     let Value::List(element) = element else {
         return None;
     };

@@ -1,11 +1,12 @@
 //! The equations of a step as operations, and the loop that solves them: the calls that emitted code makes,
 //! in the same order.
 
-use super::over;
 use super::search::{self, Held, Sought};
 use super::shape::Shape;
 use crate::code::{Code, Exit, Iterate, Places, Routine, unfit};
 use crate::failure::Failure;
+use crate::over::over;
+use crate::recorded::{Function, PlaceFunction, run_alone};
 use crate::value::Value;
 use clebsch::Real;
 use clebsch::emitted::{StepCause, StepError};
@@ -26,18 +27,6 @@ pub struct Settled {
     pub configurations: &'static &'static [&'static str],
 }
 
-/// What is solved for beforehand.
-#[derive(Debug)]
-pub struct Rest {
-    /// Where the part that is searched for stands.
-    pub part: usize,
-    /// What makes the whole trial of it.
-    pub code: Vec<Code<f64>>,
-    /// The same by itself, over numbers with their rounding: of parameters, step, what is asked of the node,
-    /// momenta, part.
-    pub rounded_at: Routine<Rounded>,
-}
-
 /// The equations of a step.
 #[derive(Debug)]
 pub struct Solve {
@@ -45,34 +34,29 @@ pub struct Solve {
     pub search: Code<f64>,
     /// The node that is left.
     pub node: Code<f64>,
-    /// Where the trial stands.
-    pub trial: usize,
-    /// What finds the rest of it, where a part is searched for.
-    pub rest: Option<Rest>,
+    /// Of a part of a trial, if a part is searched for: the whole, over numbers with their rounding. Takes parameters, step, what is
+    /// asked of the node, momenta, part.
+    pub completed_at: Option<Routine<Rounded>>,
     /// The parameters, the step, what the residual asks of the node and its momenta.
     pub known: [Code<f64>; 4],
-    /// What both need of the trial.
-    pub at_trial: Vec<Code<f64>>,
-    /// The residual.
-    pub residual: Code<f64>,
+    /// Of a trial: the whole one and the residual.
+    pub residual: PlaceFunction,
     /// The residual at rest.
     pub at_rest: Code<f64>,
-    /// The tangent.
-    pub tangent: Code<f64>,
-    /// What the tangent stands times.
-    pub unit: Option<Code<f64>>,
+    /// Of a trial: the tangent, and what it stands times.
+    pub tangent: PlaceFunction,
     /// Whether the velocity is moved from the left.
     pub from_left: bool,
-    /// Whether the action is convex there.
-    pub convex: Option<Code<f64>>,
+    /// Of a trial: whether the action is convex there.
+    pub convex: Option<PlaceFunction>,
     /// Otherwise.
     pub settled: Settled,
     /// The residual by itself: of parameters, step, what is asked of the node, momenta, trial.
-    pub residual_at: Routine<f64>,
+    pub residual_at: Function,
     /// The same over numbers with their rounding.
     pub rounded_at: Routine<Rounded>,
     /// The tangent by itself: of parameters, step, what is asked of the node, trial.
-    pub tangent_at: Routine<f64>,
+    pub tangent_at: Function,
 }
 
 impl Iterate<f64> for Solve {
@@ -87,17 +71,6 @@ impl Iterate<f64> for Solve {
         let solved = held.solve(self, node as u64, places);
         *unfit(self.search.place_mut(places))? = Value::Search(held);
         solved
-    }
-}
-
-/// A function with places of its own.
-fn run<T: Real>(routine: &Routine<T>, given: Vec<Value<T>>) -> Option<Value<T>> {
-    let mut places = given;
-    places.resize(routine.places.max(places.len()), Value::Unit);
-    match routine.body.run(&mut places) {
-        Ok(value) => Some(value),
-        Err(Exit::Return(value)) => Some(*value),
-        Err(Exit::Unfit(_)) => None,
     }
 }
 
@@ -135,36 +108,26 @@ pub fn by(
     places: &mut Places<f64>,
 ) -> Result<Solved<Element>, Exit<f64>> {
     let size = sought.shape.parts().dimension();
+    let in_part = with.completed_at.is_some();
     loop {
         let trial = Value::List(iteration.trial().clone());
-        let trial = with.whole(trial, places)?;
+        let (whole, residual) = with.residual(&trial, size, places)?;
         if iteration.wants_scale() {
-            let rounding = with.rounding(&trial, sought, places)?;
+            let rounding = with.rounding(&whole, sought, places)?;
             iteration.set_scale(&rounding);
         }
-        *unfit(places.get_mut(with.trial))? = trial.clone();
-        for code in &with.at_trial {
-            code.run(places)?;
+        let wanted = !in_part || iteration.wants_residual();
+        if wanted && iteration.assess(residual) {
+            let (tangent, unit) = with.tangent(&trial, size, places)?;
+            iteration.set_tangent_times(tangent, unit);
         }
-        let wanted = with.rest.is_none() || iteration.wants_residual();
-        if wanted && iteration.assess(with.residual(size, places)?) {
-            let tangent = with.tangent.run(places)?;
-            let tangent = unfit(matrix(&tangent, size))?;
-            match &with.unit {
-                Some(unit) => match unit.run(places)? {
-                    Value::Real(h) => iteration.set_tangent_times(tangent, h),
-                    _ => return unfit(None),
-                },
-                None => iteration.set_tangent_times(tangent, 1.0),
-            }
-        }
-        let progress = match (&with.rest, trial) {
-            (Some(_), Value::List(whole)) => iteration.correct_part(whole, with.from_left),
+        let progress = match (in_part, whole) {
+            (true, Value::List(whole)) => iteration.correct_part(whole, with.from_left),
             _ => iteration.correct(with.from_left),
         };
         match progress {
             Progress::Continue => {}
-            Progress::Solved(solved) if with.is_convex(places)? => return Ok(solved),
+            Progress::Solved(solved) if with.is_convex(&trial, places)? => return Ok(solved),
             ended => {
                 if let Progress::Solved(solved) = &ended {
                     let at_rest = with.at_rest.run(places)?;
@@ -181,21 +144,36 @@ pub fn by(
 }
 
 impl Solve {
-    fn residual(&self, size: usize, places: &mut Places<f64>) -> Result<Vec<f64>, Exit<f64>> {
-        let residual = self.residual.run(places)?;
-        unfit(vector(&residual, size))
+    /// The whole trial and the residual there.
+    fn residual(
+        &self,
+        trial: &Value<f64>,
+        size: usize,
+        places: &mut Places<f64>,
+    ) -> Result<(Value<f64>, Vec<f64>), Exit<f64>> {
+        match self.residual.at(trial, places)? {
+            Value::List(mut both) if both.len() == 2 => {
+                let residual = unfit(both.pop().and_then(|x| vector(&x, size)))?;
+                Ok((unfit(both.pop())?, residual))
+            }
+            _ => unfit(None),
+        }
     }
 
-    /// The whole trial.
-    fn whole(&self, trial: Value<f64>, places: &mut Places<f64>) -> Result<Value<f64>, Exit<f64>> {
-        let Some(rest) = &self.rest else {
-            return Ok(trial);
-        };
-        *unfit(places.get_mut(rest.part))? = trial;
-        for code in &rest.code {
-            code.run(places)?;
+    /// The tangent and what it stands times.
+    fn tangent(
+        &self,
+        trial: &Value<f64>,
+        size: usize,
+        places: &mut Places<f64>,
+    ) -> Result<(Dense<f64>, f64), Exit<f64>> {
+        match self.tangent.at(trial, places)? {
+            Value::List(both) => match both.as_slice() {
+                [tangent, Value::Real(unit)] => Ok((unfit(matrix(tangent, size))?, *unit)),
+                _ => unfit(None),
+            },
+            _ => unfit(None),
         }
-        Ok(unfit(places.get(self.trial))?.clone())
     }
 
     fn is_principal(
@@ -212,7 +190,7 @@ impl Solve {
             true => self.known(places)?,
             false => [const { Value::Unit }; 4],
         };
-        if self.rest.is_none() {
+        if self.completed_at.is_none() {
             return Ok(self.principal(&known, sought, |equations| {
                 iteration.is_principal(solution, &at_rest, equations.residual)
             }));
@@ -225,9 +203,9 @@ impl Solve {
         Ok(iteration.is_part_of_principal(solution, &at_rest, tangent))
     }
 
-    fn is_convex(&self, places: &mut Places<f64>) -> Result<bool, Exit<f64>> {
+    fn is_convex(&self, trial: &Value<f64>, places: &mut Places<f64>) -> Result<bool, Exit<f64>> {
         match &self.convex {
-            Some(code) => Ok(matches!(code.run(places)?, Value::Bool(true))),
+            Some(convex) => Ok(matches!(convex.at(trial, places)?, Value::Bool(true))),
             None => Ok(false),
         }
     }
@@ -256,17 +234,17 @@ impl Solve {
             given.push(unfit(over(value, exactly))?);
         }
         let mut trial = unfit(over(trial, &mut Rounded::once))?;
-        if let (Some(rest), Value::List(list)) = (&self.rest, &trial) {
+        if let (Some(completed_at), Value::List(list)) = (&self.completed_at, &trial) {
             let rotation = |value: &Value<Rounded>| match value {
                 Value::Motion(g) => Value::Rotation(g.rotation),
                 other => other.clone(),
             };
             let mut known = given.clone();
             known.push(Value::List(list.iter().map(rotation).collect()));
-            trial = unfit(run(&rest.rounded_at, known))?;
+            trial = unfit(run_alone(completed_at, known))?;
         }
         given.push(trial);
-        let residual = unfit(run(&self.rounded_at, given))?;
+        let residual = unfit(run_alone(&self.rounded_at, given))?;
         let rest = unfit(over(&residual, &mut |x: Rounded| x.error()))?;
         let whole = sought.all();
         let all = unfit(vector(&rest, whole.parts().dimension()))?;
@@ -329,18 +307,15 @@ impl Solve {
         let shape = sought.all();
         let size = shape.parts().dimension();
         let residual = |trial: &Element| {
-            let all = [parameters, step, given, momenta];
-            let mut all: Vec<Value<f64>> = all.map(Value::clone).to_vec();
-            all.push(Value::List(trial.clone()));
-            let found = run(&self.residual_at, all);
+            let trial = Value::List(trial.clone());
+            let all = [parameters, step, given, momenta, &trial];
+            let found = self.residual_at.at(&all);
             let found = found.and_then(|v| vector(&v, size));
             found.unwrap_or_else(|| vec![f64::NAN; size])
         };
         let tangent = |trial: &Element| {
-            let all = [parameters, step, given];
-            let mut all: Vec<Value<f64>> = all.map(Value::clone).to_vec();
-            all.push(Value::List(trial.clone()));
-            let found = run(&self.tangent_at, all);
+            let trial = Value::List(trial.clone());
+            let found = self.tangent_at.at(&[parameters, step, given, &trial]);
             let found = found.and_then(|v| matrix(&v, size));
             found.unwrap_or_else(|| Dense::unknown(size, size))
         };

@@ -265,9 +265,9 @@ impl<T: Real> Rotation<T> {
         let quarter = T::from_f64(0.25);
         // Half the angle, squared.
         let square = v.dot(v) * quarter;
-        let (cosine, sinc) = if square.greatest() < 1e-2 {
+        let (cosine, sinc) = if square.is_below(1e-2) {
             half_angle_series(square)
-        } else if square.least() > 0.0 {
+        } else if square.exceeds(T::zero()) {
             let half = square.sqrt();
             (half.cos(), half.sin() / half)
         } else {
@@ -366,8 +366,7 @@ fn turned_by<T: Real>(xi: &[T], product: impl Fn([T; 4]) -> [T; 4]) -> Rotation<
     // (1 + e)^(-1/2) is 1 - e/2 up to 3 e^2/8: for small corrections, root and quotient are
     // not waited for. The element itself is unit.
     let excess = x * x + y * y + z * z;
-    let largest = excess.greatest();
-    if T::ORDER == 0 && largest * largest < T::EPSILON {
+    if T::ORDER == 0 && (excess * excess).is_below(T::EPSILON) {
         let scale = T::one() - excess * half;
         return Rotation {
             q: times(turned, scale),

@@ -129,7 +129,7 @@ impl<T: Real> Group<T> for UnitQuaternion<T> {
     #[inline]
     fn extents(&self, out: &mut [f64]) {
         self.0.extents(out);
-        let near = self.real().least() > 0.0;
+        let near = self.real().exceeds(T::zero());
         if let (Some(first), false) = (out.first_mut(), near) {
             *first = f64::INFINITY;
         }
@@ -150,7 +150,7 @@ impl<T: Real> Group<T> for UnitQuaternion<T> {
 
     #[inline(always)]
     fn is_within(&self, reach: &[f64]) -> bool {
-        self.0.is_within(reach) & (self.real().least() > 0.0)
+        self.0.is_within(reach) & (self.real().exceeds(T::zero()))
     }
 }
 

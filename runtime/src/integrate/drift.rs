@@ -3,7 +3,7 @@
 
 use crate::card::Card;
 use crate::saved::{Saved, Words};
-use crate::scalar::{Real, larger};
+use crate::scalar::{Real, greater, larger};
 use nalgebra::SMatrix;
 
 /// The drift of one component of one invariant since the run began.
@@ -69,18 +69,28 @@ pub fn not_less<T: Real, const R: usize, const C: usize>(
     impulse: T,
 ) -> SMatrix<T, R, C> {
     let mut taken = momentum;
-    let rows = momentum.rows(from, count);
-    if let Some(x) = filled(rows.iter().map(|x| x.value().abs()), impulse.value()) {
-        taken.rows_mut(from, count).fill(T::from_f64(x));
+    let fills = fills(momentum.rows(from, count).iter().copied(), impulse);
+    for entry in taken.rows_mut(from, count).iter_mut() {
+        *entry = filled(*entry, fills, impulse);
     }
     taken
 }
 
-/// What all entries of these sizes are taken to be, where they are much less than the impulse; a body at rest has no rounding.
+/// 1 in the lanes where all of these entries are much less than the impulse, else 0. A body at rest has no rounding, and an impulse that
+/// is not finite is no scale.
 #[doc(hidden)]
-pub fn filled(sizes: impl Iterator<Item = f64>, impulse: f64) -> Option<f64> {
-    let most = sizes.fold(0.0, larger);
-    (impulse.is_finite() && most > 0.0 && SHARE * most < impulse).then_some(impulse)
+pub fn fills<T: Real>(entries: impl Iterator<Item = T>, impulse: T) -> T {
+    let one = T::one();
+    let most = entries.map(T::abs).fold(T::zero(), greater);
+    let moves = most.where_positive(one);
+    let less = (impulse - T::from_f64(SHARE) * most).where_positive(moves);
+    (T::from_f64(f64::MAX) - impulse).where_positive(less)
+}
+
+/// What an entry is taken to be: the impulse where this is 1.
+#[doc(hidden)]
+pub fn filled<T: Real>(entry: T, fills: T, impulse: T) -> T {
+    fills.where_positive(impulse) + (T::one() - fills).where_positive(entry)
 }
 
 /// A rate at which a constraint would be left by less than this part of its terms in a step is measured by that: a bound of

@@ -23,7 +23,7 @@ pub use composition::{Composition, CompositionOrder};
 pub use described::{Described, only_size, open};
 pub use drift::Drift;
 #[doc(hidden)]
-pub use drift::{filled, not_less};
+pub use drift::{filled, fills, not_less};
 pub use ensemble::{Ensemble, EnsembleError, InstructionSet, Work};
 pub use halved::{Halved, Halvings};
 pub use longest_step::{Effort, LongestStep, Unknown};

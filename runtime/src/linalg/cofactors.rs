@@ -59,7 +59,7 @@ pub(super) fn by_cofactors<T: Real, const N: usize>(
         _ => size * size * size,
     };
     // Also refuses NaN.
-    let well = (det * det * T::from_f64(WELL * WELL) - most).least() > 0.0;
+    let well = (det * det * T::from_f64(WELL * WELL) - most).exceeds(T::zero());
     well.then(|| adjugate * (T::one() / det))
 }
 

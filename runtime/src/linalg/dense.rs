@@ -2,8 +2,8 @@
 //! one on matrices of a static size, in the same order, so that results agree to the last bit.
 //! Takes and gives lists of entries; allocates.
 
-use super::elimination::weight;
-use super::{balance, even_degrees, held_scales};
+use super::elimination::{is_usable, weight};
+use super::{even_degrees, held_scales};
 use crate::Real;
 use nalgebra::SMatrix;
 
@@ -224,21 +224,33 @@ impl<T: Real> Dense<T> {
     /// Solves for several right sides at once and gives the determinant along, of the leading `size` rows
     /// and columns; as `eliminate_leading` of static sizes.
     fn eliminated(&self, right: &Self, size: usize) -> Option<(Self, T)> {
-        let (mut a, mut x) = (self.clone(), right.clone());
         let size = size.min(self.rows).min(self.cols);
+        let sizes = [self.rows, self.cols, right.cols, size];
+        let inputs = || [self.data.as_slice(), &right.data].concat();
+        if let Some(whole) = T::whole(eliminated, &sizes, &inputs, right.data.len() + 2) {
+            let (data, last) = whole.split_at(right.data.len());
+            let &[det, found] = last else {
+                return None;
+            };
+            let solution = Self {
+                data: data.to_vec(),
+                ..right.clone()
+            };
+            return (found == T::one()).then_some((solution, det));
+        }
+        let (mut a, mut x) = (self.clone(), right.clone());
         let mut det = T::one();
         for k in 0..size {
             let mut pivot = k;
             let mut best = weight(a.at(k, k));
             for i in k + 1..size {
                 let candidate = weight(a.at(i, k));
-                if candidate > best {
+                if candidate.exceeds(best) {
                     best = candidate;
                     pivot = i;
                 }
             }
-            // Also refuses NaN.
-            if !(best > 0.0 && best.is_finite()) {
+            if !is_usable(best) {
                 return None;
             }
             if pivot != k {
@@ -345,7 +357,7 @@ impl<T: Real> Dense<T> {
     /// The inverse of a matrix whose rows and columns are brought to one size first, by powers of two.
     pub fn balanced_inverse(&self) -> Option<Self> {
         let n = self.rows;
-        let scale: Vec<T> = (0..n).map(|i| balance(self.at(i, i))).collect();
+        let scale: Vec<T> = (0..n).map(|i| self.at(i, i).balance()).collect();
         let scaled = |a: &Self| {
             let mut out = a.clone();
             for (column, s) in out.data.chunks_mut(n.max(1)).zip(&scale) {
@@ -362,7 +374,7 @@ impl<T: Real> Dense<T> {
     /// The solution of `A x = b`, rows and columns brought to one size first.
     pub fn balanced_solution(&self, b: &[T]) -> Option<Vec<T>> {
         let n = self.rows;
-        let scale: Vec<T> = (0..n).map(|i| balance(self.at(i, i))).collect();
+        let scale: Vec<T> = (0..n).map(|i| self.at(i, i).balance()).collect();
         let at = |i: usize| scale.get(i).copied().unwrap_or_else(T::one);
         let scaled = Self::from_fn(n, n, |i, j| self.at(i, j) * at(i) * at(j));
         let right = b.iter().zip(&scale).map(|(x, s)| *x * *s).collect();
@@ -391,6 +403,25 @@ impl<T: Real> Dense<T> {
             Some(x) => Some(x.times(right)),
             None => self.solved(right),
         }
+    }
+}
+
+/// [`Dense::eliminated`] as a function of numbers: the matrix and the right sides; the solutions, the determinant, and 1 if
+/// there are any.
+fn eliminated(sizes: &[usize], inputs: &[f64], outputs: &mut [f64]) {
+    let &[rows, cols, sides, size] = sizes else {
+        return;
+    };
+    let part = |from: usize, cols: usize| Dense {
+        rows,
+        cols,
+        data: inputs.get(from..from + rows * cols).unwrap_or(&[]).to_vec(),
+    };
+    let found = part(0, cols).eliminated(&part(rows * cols, sides), size);
+    if let (Some((x, det)), Some((flag, rest))) = (found, outputs.split_last_mut()) {
+        let made = x.data.into_iter().chain([det]);
+        rest.iter_mut().zip(made).for_each(|(slot, x)| *slot = x);
+        *flag = 1.0;
     }
 }
 

@@ -105,13 +105,12 @@ fn eliminate_leading<T: Real, const N: usize, const M: usize>(
         let mut best = weight(a[k][k]);
         for (i, entry) in a[k].iter().enumerate().take(size).skip(k + 1) {
             let candidate = weight(*entry);
-            if candidate > best {
+            if candidate.exceeds(best) {
                 best = candidate;
                 pivot = i;
             }
         }
-        // Also refuses NaN.
-        if !(best > 0.0 && best.is_finite()) {
+        if !is_usable(best) {
             return None;
         }
         if pivot != k {
@@ -149,32 +148,22 @@ fn eliminate_leading<T: Real, const N: usize, const M: usize>(
     Some((SMatrix::from_data(nalgebra::ArrayStorage(x)), det))
 }
 
-/// The smallest absolute real part over the lanes: a pivot is as good as its worst lane. NaN
-/// weighs nothing.
+/// The absolute value by which pivots are compared, without derivatives. NaN weighs nothing.
 #[inline(always)]
-pub(super) fn weight<T: Real>(x: T) -> f64 {
-    (x.where_positive(x) - (-x).where_positive(x)).least()
+pub(crate) fn weight<T: Real>(x: T) -> T {
+    x.where_positive(x) - (-x).where_positive(x)
 }
 
-/// A power of two near `1 / sqrt(|x|)`, lane by lane; 1 for zero. Rows and columns of a matrix
-/// multiplied by those of its diagonal have one size, whatever their units.
-pub fn balance<T: Real>(x: T) -> T {
-    let mut scale = T::one();
-    for lane in 0..T::LANES {
-        let x = x.lane(lane).abs();
-        let exponent = (x.to_bits() >> 52) as i32 - 1023;
-        if x.is_normal() {
-            let root = f64::from((-exponent).div_euclid(2)).exp2();
-            scale.set_lane(lane, T::One::from_f64(root));
-        }
-    }
-    scale
+/// Whether a pivot of this weight is positive and finite in its worst lane.
+#[inline(always)]
+pub(crate) fn is_usable<T: Real>(weight: T) -> bool {
+    weight.exceeds(T::zero()) && !weight.exceeds(T::from_f64(f64::MAX))
 }
 
 /// Zero in every lane: the row of an equation that its own unknown does not enter, as of a held constraint.
 #[inline(always)]
 pub(super) fn vanishes<T: Real>(x: T) -> bool {
-    x.least() == 0.0 && x.greatest() == 0.0
+    x.nowhere_positive() && (-x).nowhere_positive()
 }
 
 /// The solution of the leading `size` equations, rows and columns multiplied by scales first.
@@ -192,7 +181,7 @@ pub fn solve_scaled<T: Real, const N: usize>(
 }
 
 /// Scales of rows and columns of a symmetric matrix in which the diagonal vanishes where a constraint is held: those of
-/// [`balance`], and for a constraint a power of two that brings its row, so scaled, to the size of the others. False, and no scales,
+/// [`Real::balance`], and for a constraint a power of two that brings its row, so scaled, to the size of the others. False, and no scales,
 /// where no constraint is held. Without them light bodies would be lost beside the constraints, whose entries do not
 /// depend on masses.
 #[inline]
@@ -202,7 +191,7 @@ pub fn held_scales<T: Real>(scale: &mut [T], entry: impl Fn(usize, usize) -> T) 
         return false;
     }
     for (i, scale) in scale.iter_mut().enumerate() {
-        *scale = balance(entry(i, i));
+        *scale = entry(i, i).balance();
     }
     for i in (0..size).filter(|i| vanishes(entry(*i, *i))) {
         let mut square = T::zero();
@@ -210,7 +199,7 @@ pub fn held_scales<T: Real>(scale: &mut [T], entry: impl Fn(usize, usize) -> T) 
             let x = entry(i, j) * scale[j];
             square += x * x;
         }
-        scale[i] = balance(square);
+        scale[i] = square.balance();
     }
     true
 }

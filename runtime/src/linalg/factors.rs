@@ -3,7 +3,7 @@
 //! in, elimination with pivots where they do not.
 
 use super::elimination::vanishes;
-use super::{Dense, balance, solve_scaled};
+use super::{Dense, solve_scaled};
 use crate::Real;
 use crate::saved::{Saved, Words};
 use nalgebra::{SMatrix, SVector};
@@ -86,7 +86,7 @@ fn with_pivots<T: Real, const D: usize>(
     b: &SVector<T, D>,
     size: usize,
 ) -> Option<SVector<T, D>> {
-    let scale: [T; D] = core::array::from_fn(|i| balance(columns[i][i]));
+    let scale: [T; D] = core::array::from_fn(|i| columns[i][i].balance());
     solve_scaled(|i, j| columns[j][i], b, &scale, size)
 }
 

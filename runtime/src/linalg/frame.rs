@@ -30,7 +30,7 @@ pub fn principal_frame<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix
                 let off = a[(p, q)];
                 // 1 where the entry is more than rounding.
                 let active = positive(off * off - noise);
-                if active.greatest() <= 0.0 {
+                if active.nowhere_positive() {
                     continue;
                 }
                 worked = true;

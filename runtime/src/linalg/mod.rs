@@ -22,9 +22,10 @@ pub use cofactors::{adjugate, small_inverse, small_solve};
 pub use dense::Dense;
 pub use eigenvalues::symmetric_eigenvalues;
 pub use elimination::{
-    balance, determinant, held_scales, inverse, inverse_leading, solve, solve_leading, solve_many,
+    determinant, held_scales, inverse, inverse_leading, solve, solve_leading, solve_many,
     solve_scaled,
 };
+pub(crate) use elimination::{is_usable, weight};
 pub use factors::{DenseFactors, Factors};
 pub use frame::principal_frame;
 pub use inclusion::{columns_from, inclusion, into_columns, into_rows, rows_from};

@@ -8,8 +8,8 @@
 use crate::Real;
 
 /// By what pivots are chosen: their size in the lane where it is least.
-fn weight<T: Real>(x: T) -> f64 {
-    (x * x).least()
+fn weight<T: Real>(x: T) -> T {
+    x * x
 }
 
 /// Factors a matrix of size `n`; false where no pivot is found, or it is not finite.
@@ -18,14 +18,13 @@ pub(super) fn factor<T: Real>(n: usize, a: &mut [T], pivots: &mut [usize]) -> bo
     for k in 0..n {
         let mut best = k;
         for i in k + 1..n {
-            if weight(a[n * k + i]) > weight(a[n * k + best]) {
+            if weight(a[n * k + i]).exceeds(weight(a[n * k + best])) {
                 best = i;
             }
         }
         pivots[k] = best;
         let size = weight(a[n * k + best]);
-        // Also refuses NaN.
-        if !(size > 0.0 && size.is_finite()) {
+        if !crate::linalg::is_usable(size) {
             return false;
         }
         if best != k {

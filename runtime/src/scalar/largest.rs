@@ -2,6 +2,8 @@
 //! `f64::max` gives the other number beside a NaN: folded over residuals it would call a lost
 //! solution a perfect one. Every test of smallness therefore folds by [`larger`].
 
+use super::Real;
+
 /// The larger of two numbers; NaN if either is.
 #[inline(always)]
 #[must_use]
@@ -17,9 +19,31 @@ pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().map(f64::abs).fold(0.0, larger)
 }
 
+/// The greater of two numbers in each lane, by their real parts; NaN if the second is.
+#[inline]
+#[must_use]
+pub fn greater<T: Real>(a: T, b: T) -> T {
+    let one = T::one();
+    let mask = (a - b).where_positive(one);
+    mask.where_positive(a) + (one - mask).where_positive(b)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{larger, largest};
+    use super::{greater, larger, largest};
+
+    #[test]
+    fn the_greater_is_one_of_both() {
+        for [a, b] in [
+            [1.0, 2.0],
+            [2.0, 1.0],
+            [0.0, f64::INFINITY],
+            [f64::INFINITY; 2],
+        ] {
+            assert_eq!(greater(a, b), larger(a, b));
+        }
+        assert!(greater(2.0, f64::NAN).is_nan());
+    }
 
     #[test]
     fn nan_wins_wherever_it_stands() {

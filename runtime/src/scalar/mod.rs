@@ -13,7 +13,7 @@ mod rounded;
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use lanes::Lanes;
-pub use largest::{larger, largest};
+pub use largest::{greater, larger, largest};
 pub use one::InLanes;
 pub(crate) use over::of_scalars;
 pub use over::{OfScalars, gather, lane};
@@ -106,6 +106,19 @@ pub trait Real:
         self.greatest() <= 0.0
     }
 
+    /// Whether the smallest real part over the lanes is larger than that of `other`; false if one of both is NaN. The same
+    /// as `least() > other.least()`.
+    #[inline(always)]
+    fn exceeds(self, other: Self) -> bool {
+        self.least() > other.least()
+    }
+
+    /// Whether the real part is less than `bound` in every lane; false if any is NaN. The same as `greatest() < bound`.
+    #[inline(always)]
+    fn is_below(self, bound: f64) -> bool {
+        self.greatest() < bound
+    }
+
     /// `then` in the lanes where the real part of `self` is positive, zero in the others.
     ///
     /// This is how an iteration freezes the lanes that are done. NaN counts as not positive.
@@ -186,6 +199,33 @@ pub trait Real:
             (_, 0) => Self::from_f64(f64::NAN),
             _ => (self.ln() * Self::from_ratio(num, den)).exp(),
         }
+    }
+
+    /// A power of two near `1 / sqrt(|x|)`, lane by lane, without derivatives; 1 for what is zero, subnormal or not finite.
+    /// Rows and columns of a matrix multiplied by those of its diagonal have one size, whatever their units.
+    fn balance(self) -> Self {
+        let mut scale = Self::one();
+        for lane in 0..Self::LANES {
+            let x = self.lane(lane).abs();
+            let exponent = (x.to_bits() >> 52) as i32 - 1023;
+            if x.is_normal() {
+                let root = f64::from((-exponent).div_euclid(2)).exp2();
+                scale.set_lane(lane, Self::One::from_f64(root));
+            }
+        }
+        scale
+    }
+
+    /// The outputs of a function that this scalar takes as a whole: of whole numbers that say how large it is, and the inputs.
+    /// Nothing for scalars that compute it step by step.
+    #[doc(hidden)]
+    fn whole(
+        _function: fn(&[usize], &[f64], &mut [f64]),
+        _sizes: &[usize],
+        _inputs: &dyn Fn() -> Vec<Self>,
+        _outputs: usize,
+    ) -> Option<Vec<Self>> {
+        None
     }
 
     /// Whether every lane and every derivative part is finite.

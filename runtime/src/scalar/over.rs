@@ -141,6 +141,20 @@ impl<A: OfScalars, B: OfScalars<Scalar = A::Scalar>> OfScalars for (A, B) {
 
 /// Implements [`OfScalars`] for a type of the runtime, given its fields.
 macro_rules! of_scalars {
+    // With fields that are no scalars.
+    ($Type:ident { $($field:tt),+ ; $($shared:ident),+ }) => {
+        impl<T: $crate::Real> $crate::scalar::OfScalars for $Type<T> {
+            type Scalar = T;
+            type Over<U: $crate::Real> = $Type<U>;
+
+            fn over<U: $crate::Real>(&self, change: &mut impl FnMut(T) -> U) -> $Type<U> {
+                $Type {
+                    $($field: $crate::scalar::OfScalars::over(&self.$field, change),)+
+                    $($shared: self.$shared,)+
+                }
+            }
+        }
+    };
     ($Type:ident $(<$($N:ident),+>)? { $($field:tt),+ }) => {
         impl<$($(const $N: usize,)+)? T: $crate::Real> $crate::scalar::OfScalars for $Type<$($($N,)+)? T> {
             type Scalar = T;

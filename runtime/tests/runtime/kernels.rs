@@ -6,8 +6,8 @@ use clebsch::emitted as e;
 use clebsch::nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 use clebsch::{Real, linalg};
 use clebsch_program::{
-    Arithmetic, Array, Dim, Kernel, Kind, Misfit, Number, Operation, Pair, Shape, Single, Tape,
-    Unvalued, Value, evaluate,
+    Arithmetic, Array, Dim, Kernel, Kind, Machine, Misfit, Number, Operation, Pair, Shape, Single,
+    Tape, Unvalued, Value, evaluate,
 };
 
 /// Random operands of each operation and shape.
@@ -148,7 +148,13 @@ fn gives(what: &str, given: &[Array<f64>], make: &dyn Fn(&[Value]) -> Operation,
     let numbers: Vec<f64> = given.iter().flat_map(|a| a.columns().to_vec()).collect();
     match Tape::of(&kernel, &[]) {
         Ok(tape) => {
-            let found = tape.run(&Numbers, &numbers).expect("as many numbers");
+            let machine = Machine::new(&tape, numbers.len());
+            let mut frame = machine.frame::<1>();
+            for (slot, x) in frame.inputs().iter_mut().zip(&numbers) {
+                *slot = [*x];
+            }
+            assert!(machine.run(&mut frame), "{what} decides nothing");
+            let found: Vec<f64> = machine.gives(&frame, 0).collect();
             let agree = found.iter().zip(wanted).all(|(f, w)| same(*f, *w));
             assert!(
                 agree,

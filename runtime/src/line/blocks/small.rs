@@ -96,11 +96,11 @@ fn inverse<T: Real, const N: usize>(
         largest *= *square;
     }
     // Not so where a number is none, or too large or small to be squared.
-    let mut far = (volume * volume - largest * T::from_f64(VOLUME)).least() > 0.0;
+    let mut far = (volume * volume - largest * T::from_f64(VOLUME)).exceeds(T::zero());
     if let Some(own) = own {
         for k in 0..N {
             let before = dot(&own[k], &own[k]);
-            far &= (squares[k] - before * T::from_f64(LEFT)).least() > 0.0;
+            far &= (squares[k] - before * T::from_f64(LEFT)).exceeds(T::zero());
         }
     }
     if !far {

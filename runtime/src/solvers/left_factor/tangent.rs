@@ -2,6 +2,7 @@
 //! Takes `A`; gives a factorisation that serves several right sides.
 
 use crate::Real;
+use crate::linalg::{is_usable, weight};
 use nalgebra::SMatrix;
 
 /// Unknowns of the largest size: pairs of eight axes.
@@ -17,12 +18,6 @@ pub(super) struct Tangent<T, const N: usize> {
 #[inline(always)]
 const fn place<const N: usize>(i: usize, j: usize) -> usize {
     i * (2 * N - i - 1) / 2 + (j - i - 1)
-}
-
-/// The smallest absolute real part over the lanes: a pivot is as good as its worst lane.
-#[inline(always)]
-fn weight<T: Real>(x: T) -> f64 {
-    (x.where_positive(x) - (-x).where_positive(x)).least()
 }
 
 impl<T: Real, const N: usize> Tangent<T, N> {
@@ -66,12 +61,11 @@ impl<T: Real, const N: usize> Tangent<T, N> {
             let (mut pivot, mut best) = (k, weight(rows[k][k]));
             for (i, row) in rows.iter().enumerate().take(Self::UNKNOWNS).skip(k + 1) {
                 let candidate = weight(row[k]);
-                if candidate > best {
+                if candidate.exceeds(best) {
                     (pivot, best) = (i, candidate);
                 }
             }
-            // Also refuses NaN.
-            if !(best > 0.0 && best.is_finite()) {
+            if !is_usable(best) {
                 return false;
             }
             pivots[k] = pivot;

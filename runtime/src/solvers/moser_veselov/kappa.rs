@@ -7,6 +7,7 @@
 
 use super::Poinsot;
 use crate::Real;
+use crate::scalar::of_scalars;
 use crate::scalar::one::in_lanes;
 
 /// Below this, `s2 e / s3` leaves the quartic so close to its linear part that the series start is
@@ -43,7 +44,12 @@ in_lanes!(Symmetric {
     easy
 });
 
-crate::saved!([] Symmetric { zeroth, first, second, easy });
+of_scalars!(Symmetric {
+    zeroth,
+    first,
+    second,
+    easy
+});
 
 impl<T: Real> Symmetric<T> {
     pub(super) fn new(s1: T, s2: T, s3: T) -> Self {
@@ -171,11 +177,11 @@ impl<T: Real> Quartic<T> {
             let (value, fall) = (self.value(k), self.fall(k));
             // 1 in the lanes still on their way, 0 in those that have arrived.
             let active = slow * (value - noise).where_positive(one);
-            if active.greatest() <= 0.0 {
+            if active.nowhere_positive() {
                 return self.finished(k);
             }
             let descent = active * fall + (one - active);
-            let descends = descent.least() > 0.0;
+            let descends = descent.exceeds(T::zero());
             if !descends {
                 return None;
             }
@@ -245,7 +251,7 @@ fn hard<T: Real>(body: &Symmetric<T>, a: T, energy: T, deviation: T) -> Option<T
     let mut active = one - slow;
     let mut k = quartic.start(deviation);
     for _ in 0..MOST_FAST {
-        if active.greatest() <= 0.0 {
+        if active.nowhere_positive() {
             break;
         }
         let last = choose(easy, one, quartic.arrives(k));
@@ -254,7 +260,7 @@ fn hard<T: Real>(body: &Symmetric<T>, a: T, energy: T, deviation: T) -> Option<T
     }
     slow += active;
     k = quartic.polished(k);
-    if slow.greatest() > 0.0 {
+    if !slow.nowhere_positive() {
         k = choose(slow, quartic.monotone(slow)?, k);
     }
     Some(k)

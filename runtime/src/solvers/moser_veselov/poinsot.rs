@@ -6,6 +6,7 @@ use super::kappa::Symmetric;
 use crate::Real;
 use crate::linalg::{determinant, symmetric_eigenvalues};
 use crate::said::place;
+use crate::scalar::of_scalars;
 use crate::scalar::one::in_lanes;
 use crate::validate::{ROUNDINGS, mirrored_difference};
 use core::fmt;
@@ -62,7 +63,11 @@ in_lanes!(Poinsot {
     s1, s2, s3, symmetric, energy, deviation; unit, diagonal
 });
 
-crate::saved!([] Form { squares, products });
+of_scalars!(Form { squares, products });
+of_scalars!(Poinsot {
+    j, half_over_unit, moments, products, rest, differences, adjugate_moments, adjugate_products,
+    s1, s2, s3, symmetric, energy, deviation; unit, diagonal
+});
 crate::saved!([] Poinsot {
     j, unit, half_over_unit, moments, products, rest, differences, adjugate_moments,
     adjugate_products, s1, s2, s3, symmetric, energy, deviation, diagonal

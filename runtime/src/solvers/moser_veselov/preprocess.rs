@@ -128,5 +128,5 @@ fn positive<T: Real>(a: &Matrix3<T>) -> bool {
     let [[xx, xy, _], [_, yy, _], _] = a.data.0;
     [xx, xx * yy - xy * xy, linalg::determinant(a)]
         .iter()
-        .all(|minor| minor.least() > 0.0)
+        .all(|minor| minor.exceeds(T::zero()))
 }

@@ -54,7 +54,19 @@ crate::saved!([] QuaternionBody {
     linear_moments, linear_products, zeroth, first, second, quick, exact, easy, moderate, diagonal
 });
 
+crate::scalar::of_scalars!(QuaternionBody {
+    half_over_unit, real, moments, products, differences, inverse_moments, inverse_products,
+    linear_moments, linear_products, zeroth, first, second, quick, exact, easy, moderate;
+    unit, diagonal
+});
+
 impl<T: Real> QuaternionBody<T> {
+    /// Whether the off-diagonal entries are exactly zero, which steps make use of.
+    #[doc(hidden)]
+    pub fn is_diagonal(&self) -> bool {
+        self.diagonal
+    }
+
     /// Validates `A` (symmetric up to a few roundings) and `β`, in every lane; `field` is what `A`
     /// is called.
     ///

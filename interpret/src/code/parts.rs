@@ -1,0 +1,139 @@
+//! What an operation consists of, and what it reads of the places around it.
+
+use super::{Code, Operator, Pattern};
+use clebsch::Real;
+use std::collections::BTreeSet;
+
+impl<T: Real> Code<T> {
+    /// The operations that it consists of. Those of functions that it calls are not among them.
+    pub fn parts(&self) -> Vec<&Code<T>> {
+        match self {
+            Code::Constant(_) | Code::Place(_) | Code::Iterate(_) => Vec::new(),
+            Code::Field(a, _)
+            | Code::Inner(a)
+            | Code::Negative(a)
+            | Code::Not(a)
+            | Code::Closure(_, a)
+            | Code::Once(_, a)
+            | Code::Momentum(_, a)
+            | Code::Function(a)
+            | Code::Return(a)
+            | Code::Try(a) => vec![a],
+            Code::Binary(_, a, b)
+            | Code::Lazy(_, a, b)
+            | Code::While(a, b)
+            | Code::Increase(a, b)
+            | Code::Repeat(a, b) => vec![a, b],
+            Code::Index(a, all) => std::iter::once(&**a).chain(all).collect(),
+            Code::Assign(all, a) => all.iter().chain([&**a]).collect(),
+            Code::Call(_, all, ..)
+            | Code::Special(_, all, _)
+            | Code::Routine(_, all)
+            | Code::Block(all)
+            | Code::List(all) => all.iter().collect(),
+            Code::Let(_, a, b) => [Some(&**a), b.as_deref()].into_iter().flatten().collect(),
+            Code::If(a, b, c) => {
+                let all = [Some(&**a), Some(&**b), c.as_deref()];
+                all.into_iter().flatten().collect()
+            }
+            Code::Match(value, arms) => {
+                let arms = arms
+                    .iter()
+                    .flat_map(|arm| arm.guard.iter().chain([&arm.body]));
+                std::iter::once(&**value).chain(arms).collect()
+            }
+            Code::For(_, a, b, c) | Code::Down(_, a, b, c) => vec![a, b, c],
+            Code::Struct(_, given, base) => {
+                let given = given.iter().map(|(_, code)| code);
+                given.chain(base.as_deref()).collect()
+            }
+        }
+    }
+
+    /// The places that it fills.
+    pub fn fills(&self, out: &mut BTreeSet<usize>) {
+        match self {
+            Code::Let(pattern, ..) => pattern.fills(out),
+            Code::Match(_, arms) => arms.iter().for_each(|arm| arm.pattern.fills(out)),
+            Code::Closure(places, _) => out.extend(places),
+            Code::Once(at, _) | Code::For(at, ..) | Code::Down(at, ..) => {
+                out.insert(*at);
+            }
+            Code::Assign(targets, _) => out.extend(targets.iter().filter_map(Code::root)),
+            Code::Increase(target, _) => out.extend(target.root()),
+            _ => {}
+        }
+        for part in self.parts() {
+            part.fills(out);
+        }
+    }
+
+    /// The place that a path such as `state.places` begins with.
+    pub fn root(&self) -> Option<usize> {
+        match self {
+            Code::Place(at) => Some(*at),
+            Code::Field(base, _) => base.root(),
+            _ => None,
+        }
+    }
+
+    /// The paths that it reads from places which it does not fill itself, each as long as it is written.
+    pub fn reads<'a>(&'a self, filled: &BTreeSet<usize>, out: &mut Vec<&'a Code<T>>) {
+        match self.root() {
+            Some(root) if filled.contains(&root) => {}
+            Some(_) => out.push(self),
+            None => {
+                for part in self.parts() {
+                    part.reads(filled, out);
+                }
+            }
+        }
+    }
+
+    /// Whether a site may be taken for the last of a list: `site.min(list.len() - 1)`.
+    pub fn clamps(&self) -> bool {
+        let own = matches!(self, Code::Call(_, _, _, name) if &**name == "min");
+        own || self.parts().into_iter().any(Code::clamps)
+    }
+
+    /// Whether the operations that it takes may depend on a count, such as the site of a loop.
+    pub fn chooses(&self) -> bool {
+        let own = match self {
+            Code::Binary(operator, ..) => !matches!(
+                operator,
+                Operator::Add | Operator::Sub | Operator::Mul | Operator::Div
+            ),
+            Code::Match(_, arms) => arms.iter().any(|arm| arm.pattern.is_exact()),
+            Code::Call(_, _, _, name) => {
+                matches!(&**name, "max" | "saturating_sub" | "usize::from")
+            }
+            Code::Routine(..) | Code::Iterate(_) => true,
+            _ => false,
+        };
+        own || self.parts().into_iter().any(Code::chooses)
+    }
+}
+
+impl<T: Real> Pattern<T> {
+    fn fills(&self, out: &mut BTreeSet<usize>) {
+        match self {
+            Pattern::Place(at) => {
+                out.insert(*at);
+            }
+            Pattern::List(all) | Pattern::Or(all) => all.iter().for_each(|p| p.fills(out)),
+            Pattern::Done(inner) | Pattern::Failed(inner) => inner.fills(out),
+            Pattern::Variant(_, fields) => fields.iter().for_each(|(_, p)| p.fills(out)),
+            Pattern::Any | Pattern::None | Pattern::Exactly(_) => {}
+        }
+    }
+
+    fn is_exact(&self) -> bool {
+        match self {
+            Pattern::Exactly(_) => true,
+            Pattern::List(all) | Pattern::Or(all) => all.iter().any(Pattern::is_exact),
+            Pattern::Done(inner) | Pattern::Failed(inner) => inner.is_exact(),
+            Pattern::Variant(_, fields) => fields.iter().any(|(_, p)| p.is_exact()),
+            Pattern::Any | Pattern::Place(_) | Pattern::None => false,
+        }
+    }
+}

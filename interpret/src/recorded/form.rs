@@ -1,0 +1,75 @@
+//! Operations among places that others fill, over the scalar that records.
+
+use super::Traced;
+use super::ask::Asker;
+use crate::code::{Code, Exit, Places};
+use crate::over::alike;
+use crate::value::Value;
+use std::collections::BTreeSet;
+
+/// Operations over the scalar that records, and the paths of what they read around them.
+#[derive(Debug)]
+pub struct Form {
+    body: Code<Traced>,
+    paths: Vec<Code<f64>>,
+}
+
+impl Form {
+    /// The form of a body with these parameters; nothing if it has operations that only plain numbers have.
+    pub fn of(parameters: &[usize], body: &Code<f64>) -> Option<Self> {
+        let mut filled: BTreeSet<usize> = parameters.iter().copied().collect();
+        body.fills(&mut filled);
+        let mut paths = Vec::new();
+        body.reads(&filled, &mut paths);
+        let mut distinct: Vec<Code<f64>> = Vec::new();
+        for path in paths {
+            if distinct.iter().all(|other| !is_same(other, path)) {
+                distinct.push(path.clone());
+            }
+        }
+        Some(Form {
+            body: body.over(Traced::constant)?,
+            paths: distinct,
+        })
+    }
+
+    /// Places with what the body reads, as inputs.
+    pub fn places(&self, asker: &mut Asker, places: &Places<f64>) -> Option<Places<Traced>> {
+        let mut own = vec![Value::Unit; places.len()];
+        for path in &self.paths {
+            asker.provide(path, places, &mut own)?;
+        }
+        Some(own)
+    }
+
+    /// The value; nothing for errors, which are left to plain numbers.
+    pub fn run(&self, own: &mut Places<Traced>) -> Option<Value<Traced>> {
+        match self.body.run(own) {
+            Ok(Value::Failed(_)) | Err(Exit::Unfit(_)) => None,
+            Ok(value) => Some(value),
+            Err(Exit::Return(value)) => match *value {
+                Value::Failed(_) => None,
+                value => Some(value),
+            },
+        }
+    }
+}
+
+/// Whether two paths are one.
+pub fn is_same(a: &Code<f64>, b: &Code<f64>) -> bool {
+    match (a, b) {
+        (Code::Place(a), Code::Place(b)) => a == b,
+        (Code::Field(a, name), Code::Field(b, other)) => name == other && is_same(a, b),
+        _ => false,
+    }
+}
+
+/// Whether what stands at paths is as it was, but for its numbers. Of a list its length is compared.
+pub fn stands(fixed: &[(Code<f64>, Value<f64>)], places: &Places<f64>) -> bool {
+    let same = |(path, value): &(Code<f64>, Value<f64>)| match (path.place(places), value) {
+        (Some(Value::Sites(column)), Value::Int(n)) => i64::try_from(column.len()) == Ok(*n),
+        (Some(own), value) => alike(own, value),
+        (None, _) => false,
+    };
+    fixed.iter().all(same)
+}

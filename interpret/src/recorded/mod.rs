@@ -1,0 +1,443 @@
+//! The functions of a trajectory as tapes of scalar operations, recorded at its start.
+//!
+//! A tape computes what the function computes, to the last bit, as long as its decisions come out as they did when it
+//! was recorded. Otherwise the function itself is run. What no tape stands for, such as an iteration, is left to it too.
+
+mod ask;
+mod form;
+mod function;
+mod places;
+mod sites;
+mod traced;
+
+pub use function::{Function, run as run_alone};
+pub use places::PlaceFunction;
+pub use sites::{Lists, SiteFunction};
+pub use traced::Traced;
+
+use crate::code::{Exit, Library, Native, Places, Routine, Special};
+use crate::library;
+use crate::opened::{Functions, at};
+use crate::over::{alike, numbers, over};
+use crate::value::Value;
+use clebsch_program::{Frame, Machine, Tape};
+use traced::record;
+
+impl Library for Traced {
+    fn native(name: &str, arguments: usize) -> Option<Native<Self>> {
+        library::native(name, arguments)
+    }
+
+    fn special(name: &str) -> Option<Special<Self>> {
+        library::special(name)
+    }
+}
+
+/// The functions that are recorded.
+#[derive(Debug)]
+pub struct Recordable {
+    new: Routine<Traced>,
+    with_solver: Option<Routine<Traced>>,
+    step: Option<Routine<Traced>>,
+    watched: [Option<Routine<Traced>>; 3],
+    places: usize,
+}
+
+/// What is watched at a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Watched {
+    /// The observables.
+    Observables,
+    /// The invariants.
+    Invariants,
+    /// Their scales.
+    Scales,
+}
+
+impl Recordable {
+    /// The functions of a model over the scalar that records; nothing if its parameters cannot be prepared over it.
+    pub fn of(functions: &Functions, places: usize) -> Option<Self> {
+        let over = |routine: &Routine<f64>| routine.over(Traced::constant);
+        Some(Recordable {
+            new: over(&functions.new)?,
+            with_solver: functions.with_solver.as_ref().and_then(over),
+            step: over(&functions.step),
+            watched: [
+                over(&functions.observe),
+                over(&functions.invariants),
+                over(&functions.scales),
+            ],
+            places,
+        })
+    }
+
+    /// Places with the model prepared from constant parameters.
+    fn places(&self, fixed: &Fixed) -> Option<Places<Traced>> {
+        let mut places = vec![Value::Unit; self.places];
+        *places.get_mut(at::GIVEN)? = constant(&fixed.parameters)?;
+        let model = run(&self.new, &mut places)?;
+        *places.get_mut(at::MODEL)? = model;
+        if let Some(method) = &fixed.solver {
+            let with_solver = self.with_solver.as_ref()?;
+            *places.get_mut(at::GIVEN)? = constant(method)?;
+            let model = run(with_solver, &mut places)?;
+            *places.get_mut(at::MODEL)? = model;
+        }
+        *places.get_mut(at::STEP)? = constant(&fixed.step)?;
+        Some(places)
+    }
+}
+
+/// What does not change while a trajectory runs.
+#[derive(Debug)]
+pub struct Fixed {
+    /// The parameters as given.
+    pub parameters: Value<f64>,
+    /// The solver that was chosen.
+    pub solver: Option<Value<f64>>,
+    /// The step size.
+    pub step: Value<f64>,
+}
+
+fn run(routine: &Routine<Traced>, places: &mut Places<Traced>) -> Option<Value<Traced>> {
+    match routine.body.run(places) {
+        Ok(Value::Failed(_)) | Err(Exit::Unfit(_)) => None,
+        Ok(value) => Some(value),
+        Err(Exit::Return(value)) => match *value {
+            Value::Failed(_) => None,
+            value => Some(value),
+        },
+    }
+}
+
+fn constant(value: &Value<f64>) -> Option<Value<Traced>> {
+    over(value, &mut Traced::constant)
+}
+
+/// Puts each count of a value farther by its own distance: the first by 1000, the next by 2000 and so on.
+fn shift(value: &mut Value<Traced>, next: &mut i64) {
+    each_count(value, &mut |n| {
+        *next += 1000;
+        *n += *next;
+    });
+}
+
+fn each_count<T: clebsch::Real>(value: &mut Value<T>, met: &mut dyn FnMut(&mut i64)) {
+    match value {
+        Value::Int(n) => met(n),
+        Value::Struct(s) => s.values.iter_mut().for_each(|v| each_count(v, met)),
+        Value::List(list) => list.iter_mut().for_each(|v| each_count(v, met)),
+        _ => {}
+    }
+}
+
+/// The value with every count zero.
+fn uncounted(value: &Value<Traced>) -> Value<Traced> {
+    let mut value = value.clone();
+    each_count(&mut value, &mut |n| *n = 0);
+    value
+}
+
+fn counts<T: clebsch::Real>(value: &Value<T>, out: &mut Vec<i64>) {
+    match value {
+        Value::Int(n) => out.push(*n),
+        Value::Struct(s) => s.values.iter().for_each(|v| counts(v, out)),
+        Value::List(list) => list.iter().for_each(|v| counts(v, out)),
+        _ => {}
+    }
+}
+
+/// A function as a tape, by how it decided where it was recorded.
+#[derive(Debug)]
+struct Way {
+    machine: Machine,
+    frame: Frame<1>,
+    /// By how much each count grows.
+    growth: Vec<i64>,
+}
+
+impl Way {
+    /// Computes on these numbers; false where a decision comes out otherwise.
+    fn follows(&mut self, numbers: &[f64]) -> bool {
+        // A workspace that is no plain numbers is behind the inputs.
+        let own = numbers.get(..self.machine.inputs());
+        let loaded = own.and_then(|own| load(self.frame.inputs(), own));
+        loaded.is_some() && self.machine.run(&mut self.frame)
+    }
+}
+
+/// The ways of one function, that used last at the end, and how many more are recorded.
+#[derive(Debug)]
+struct Ways {
+    known: Vec<Way>,
+    left: usize,
+}
+
+impl Ways {
+    fn new(records: bool) -> Self {
+        Ways {
+            known: Vec::new(),
+            left: if records { function::MOST } else { 0 },
+        }
+    }
+
+    /// The way that stands for the function at these numbers, which has computed on them. If none does, one is made.
+    fn found(&mut self, numbers: &[f64], make: impl FnOnce() -> Option<Way>) -> Option<&mut Way> {
+        let known = self.known.iter_mut().rposition(|way| way.follows(numbers));
+        match known {
+            Some(at) if at + 1 == self.known.len() => {}
+            Some(at) => {
+                let way = self.known.remove(at);
+                self.known.push(way);
+            }
+            None if self.left > 0 => {
+                self.left -= 1;
+                let mut made = make()?;
+                if !made.follows(numbers) {
+                    return None;
+                }
+                self.known.push(made);
+            }
+            None => return None,
+        }
+        self.known.last_mut()
+    }
+}
+
+/// The tapes of a trajectory, and the numbers of its state and workspace.
+#[derive(Debug)]
+pub struct Recorded {
+    functions: &'static Recordable,
+    fixed: Fixed,
+    step: Ways,
+    watched: [Ways; 3],
+    numbers: Vec<f64>,
+    counts: Vec<i64>,
+    /// Whether the numbers are newer than the places.
+    is_ahead: bool,
+}
+
+impl Recorded {
+    /// Nothing recorded yet. Steps are recorded if they are the model's own.
+    pub fn new(
+        functions: &'static Recordable,
+        fixed: Fixed,
+        places: &Places<f64>,
+        own_step: bool,
+    ) -> Self {
+        let mut recorded = Recorded {
+            functions,
+            fixed,
+            step: Ways::new(own_step && functions.step.is_some()),
+            watched: functions.watched.each_ref().map(|f| Ways::new(f.is_some())),
+            numbers: Vec::new(),
+            counts: Vec::new(),
+            is_ahead: false,
+        };
+        recorded.follow(places);
+        recorded
+    }
+
+    /// Takes the numbers of the places, which something else has changed.
+    pub fn follow(&mut self, places: &Places<f64>) {
+        self.numbers.clear();
+        self.counts.clear();
+        self.is_ahead = false;
+        for value in [places.get(at::STATE), places.get(at::WORK)]
+            .into_iter()
+            .flatten()
+        {
+            let before = self.numbers.len();
+            if numbers(value, &mut self.numbers).is_none() {
+                self.numbers.truncate(before);
+            }
+            counts(value, &mut self.counts);
+        }
+    }
+
+    /// Puts the numbers into the places, if they are newer.
+    pub fn write(&mut self, places: &mut Places<f64>) {
+        put(&self.numbers, &self.counts, &mut self.is_ahead, places);
+    }
+
+    /// Makes a step; false if the function itself has to.
+    pub fn step(&mut self, places: &mut Places<f64>) -> bool {
+        let Self {
+            functions, fixed, ..
+        } = self;
+        let way = self.step.found(&self.numbers, || {
+            put(&self.numbers, &self.counts, &mut self.is_ahead, places);
+            recorded_step(functions, fixed, places)
+        });
+        let Some(way) = way else {
+            return false;
+        };
+        for (slot, x) in self
+            .numbers
+            .iter_mut()
+            .zip(way.machine.gives(&way.frame, 0))
+        {
+            *slot = x;
+        }
+        for (n, growth) in self.counts.iter_mut().zip(&way.growth) {
+            *n += growth;
+        }
+        self.is_ahead = true;
+        true
+    }
+
+    /// The node, if the numbers are newer than the places: the only count of a state.
+    pub fn node(&self) -> Option<u64> {
+        let node = self.counts.first().filter(|_| self.is_ahead);
+        node.and_then(|n| u64::try_from(*n).ok())
+    }
+
+    /// Writes what is watched; false if the function itself has to.
+    pub fn watch(&mut self, which: Watched, places: &mut Places<f64>, out: &mut [f64]) -> bool {
+        let Self {
+            functions,
+            fixed,
+            watched: [observables, invariants, scales],
+            ..
+        } = self;
+        let ways = match which {
+            Watched::Observables => observables,
+            Watched::Invariants => invariants,
+            Watched::Scales => scales,
+        };
+        let way = ways.found(&self.numbers, || {
+            put(&self.numbers, &self.counts, &mut self.is_ahead, places);
+            recorded_watch(functions, which, fixed, places)
+        });
+        let Some(way) = way.filter(|way| way.machine.outputs() == out.len()) else {
+            return false;
+        };
+        for (slot, x) in out.iter_mut().zip(way.machine.gives(&way.frame, 0)) {
+            *slot = x;
+        }
+        true
+    }
+}
+
+fn put(numbers: &[f64], counts: &[i64], is_ahead: &mut bool, places: &mut Places<f64>) {
+    if !std::mem::take(is_ahead) {
+        return;
+    }
+    let mut numbers = numbers.iter().copied();
+    let mut counts = counts.iter().copied();
+    for place in [at::STATE, at::WORK] {
+        let Some(value) = places.get_mut(place) else {
+            continue;
+        };
+        let own = over(value, &mut |x: f64| numbers.next().unwrap_or(x));
+        if let Some(mut own) = own {
+            each_count(&mut own, &mut |n| *n = counts.next().unwrap_or(*n));
+            *value = own;
+        }
+    }
+}
+
+/// Puts numbers into inputs; nothing if these are fewer.
+fn load(inputs: &mut [[f64; 1]], numbers: &[f64]) -> Option<()> {
+    for (slot, x) in inputs.get_mut(..numbers.len())?.iter_mut().zip(numbers) {
+        *slot = [*x];
+    }
+    Some(())
+}
+
+/// A tape with so many inputs, and the growth of counts.
+type Once = ((Tape, usize), Vec<i64>);
+
+/// Records twice, with different counts: where these enter a number or a decision, there is no tape.
+fn twice(once: impl Fn(bool) -> Option<Once>) -> Option<Way> {
+    let first = once(false)?;
+    if once(true)? != first {
+        return None;
+    }
+    let ((tape, inputs), growth) = first;
+    let machine = Machine::new(&tape, inputs);
+    let frame = machine.frame();
+    Some(Way {
+        machine,
+        frame,
+        growth,
+    })
+}
+
+/// The numbers of a value as inputs; its counts shifted, if wanted, and noted.
+fn input(
+    value: &Value<f64>,
+    shifted: bool,
+    next: &mut i64,
+    noted: &mut Vec<i64>,
+) -> Option<Value<Traced>> {
+    // A value that is no plain numbers makes no inputs.
+    numbers(value, &mut Vec::new())?;
+    let mut value = over(value, &mut Traced::input)?;
+    if shifted {
+        shift(&mut value, next);
+    }
+    counts(&value, noted);
+    Some(value)
+}
+
+fn recorded_step(all: &Recordable, fixed: &Fixed, from: &Places<f64>) -> Option<Way> {
+    let routine = all.step.as_ref()?;
+    twice(|shifted| {
+        let mut places = all.places(fixed)?;
+        let mut growth = Vec::new();
+        let recorded = record(|| {
+            let (mut before, mut after, mut next) = (Vec::new(), Vec::new(), 0);
+            let mut whole = Vec::new();
+            for at in [at::STATE, at::WORK] {
+                let value = input(from.get(at)?, shifted, &mut next, &mut before)?;
+                whole.push(value.clone());
+                *places.get_mut(at)? = value;
+            }
+            run(routine, &mut places)?;
+            let mut outputs = Vec::new();
+            for (at, before) in [at::STATE, at::WORK].into_iter().zip(&whole) {
+                let value = places
+                    .get(at)
+                    .filter(|value| alike(&uncounted(before), &uncounted(value)))?;
+                numbers(value, &mut outputs)?;
+                counts(value, &mut after);
+            }
+            growth = after.iter().zip(&before).map(|(a, b)| a - b).collect();
+            Some(outputs)
+        })?;
+        Some((recorded, growth))
+    })
+}
+
+fn recorded_watch(
+    all: &Recordable,
+    which: Watched,
+    fixed: &Fixed,
+    from: &Places<f64>,
+) -> Option<Way> {
+    let routine = all.watched.get(which as usize)?.as_ref()?;
+    twice(|shifted| {
+        let mut places = all.places(fixed)?;
+        let recorded = record(|| {
+            let (mut next, mut noted) = (0, Vec::new());
+            let state = input(from.get(at::STATE)?, shifted, &mut next, &mut noted)?;
+            *places.get_mut(at::STATE)? = state;
+            // What is asked of a workspace that is no plain numbers is not recorded.
+            if let Some(work) = input(from.get(at::WORK)?, shifted, &mut next, &mut noted) {
+                *places.get_mut(at::WORK)? = work;
+            }
+            *places.get_mut(at::OUT)? = Value::List(Vec::new());
+            run(routine, &mut places)?;
+            let Value::List(list) = places.get(at::OUT)? else {
+                return None;
+            };
+            let numbers = list.iter().map(|x| match x {
+                Value::Real(x) => Some(*x),
+                _ => None,
+            });
+            numbers.collect()
+        })?;
+        Some((recorded, Vec::new()))
+    })
+}

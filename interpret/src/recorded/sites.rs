@@ -1,0 +1,239 @@
+//! The body of a loop over sites as a tape: recorded at two neighbouring sites, run at many side by side.
+//!
+//! A list is read at a site that moves with that of the loop, or at one that does not: which, the two recordings tell.
+//! A body whose operations may depend on the number of a site is run itself.
+
+mod load;
+mod run;
+
+use super::ask::{Asker, Fixed, Read};
+use super::form::Form;
+use super::function::MOST;
+use super::traced::record;
+use crate::code::{Code, Evaluated, Exit, Places, unfit};
+use crate::over::{numbers, over};
+use crate::sites::Column;
+use crate::value::Value;
+use clebsch::linalg::Dense;
+use run::SiteTape;
+use std::sync::{Arc, OnceLock, PoisonError, RwLock};
+
+/// The lists that a loop fills, each from a site on.
+#[derive(Default)]
+pub struct Lists<'a> {
+    /// What is filled.
+    pub out: Option<(&'a mut Column<f64>, usize)>,
+    /// What is kept for each site, and changed.
+    pub kept: Option<(&'a mut Column<f64>, usize)>,
+    /// Values that are put one after the other.
+    pub gathered: Option<&'a mut Column<f64>>,
+}
+
+impl Lists<'_> {
+    /// The shapes of what comes out, where these are arrays.
+    fn shapes(&self) -> Vec<Option<[usize; 2]>> {
+        let shape = |column: &Column<f64>| match column {
+            Column::Arrays(dims, _) => Some(*dims),
+            _ => None,
+        };
+        let filled = self.out.iter().chain(&self.kept);
+        let filled = filled.map(|(column, _)| shape(column));
+        let gathered = self.gathered.iter().map(|column| shape(column));
+        filled.chain(gathered).collect()
+    }
+}
+
+/// The body of a loop, a function of a site and, for some loops, of what is kept there.
+#[derive(Debug)]
+pub struct SiteFunction {
+    parameters: Vec<usize>,
+    body: Code<f64>,
+    /// With whether it takes sites beyond a list for the last of it.
+    form: OnceLock<Option<(Form, bool)>>,
+    /// The newest last.
+    tapes: RwLock<Vec<Arc<SiteTape>>>,
+    /// How often recording failed.
+    failures: RwLock<usize>,
+}
+
+impl SiteFunction {
+    /// A body with its parameters at these places.
+    pub fn new(parameters: Vec<usize>, body: Code<f64>) -> Self {
+        SiteFunction {
+            parameters,
+            body,
+            form: OnceLock::new(),
+            tapes: RwLock::default(),
+            failures: RwLock::default(),
+        }
+    }
+
+    /// The value of the body, run itself.
+    pub fn at(
+        &self,
+        arguments: impl Iterator<Item = Value<f64>>,
+        places: &mut Places<f64>,
+    ) -> Evaluated<f64> {
+        for (at, value) in self.parameters.iter().zip(arguments) {
+            *unfit(places.get_mut(*at))? = value;
+        }
+        match self.body.run(places) {
+            Err(Exit::Return(value)) => Ok(*value),
+            other => other,
+        }
+    }
+
+    /// Runs sites by a tape, as far as that goes: the next site that is left to the body.
+    pub fn advance(
+        &self,
+        places: &Places<f64>,
+        [from, to]: [usize; 2],
+        lists: &mut Lists<'_>,
+    ) -> usize {
+        let Some(form) = self.form.get_or_init(|| self.form()) else {
+            return from;
+        };
+        let mut site = from;
+        while site < to {
+            let before = site;
+            let fitting: Vec<Arc<SiteTape>> = {
+                let tapes = self.tapes.read().unwrap_or_else(PoisonError::into_inner);
+                tapes
+                    .iter()
+                    .rev()
+                    .filter(|tape| tape.fits(places))
+                    .cloned()
+                    .collect()
+            };
+            // The newest runs as many sites as it can, others those that it leaves.
+            for (k, tape) in fitting.iter().enumerate() {
+                let end = if k == 0 { to } else { to.min(site + 1) };
+                site = tape.run(places, [site, end], lists).unwrap_or(site);
+                if site > before {
+                    break;
+                }
+            }
+            if site > before {
+                continue;
+            }
+            // In the middle, so that neighbours are there; later where a decision came out otherwise.
+            let at = match fitting.first() {
+                None => from + (to - from - 1) / 2,
+                Some(tape) if tape.admits(places, site) => site,
+                Some(_) => return site,
+            };
+            let made = (at + 1 < to)
+                .then(|| self.recorded(form, places, at, lists))
+                .flatten();
+            let Some(tape) = made else {
+                return site;
+            };
+            site = tape.run(places, [site, to], lists).unwrap_or(site);
+            if site == before {
+                return site;
+            }
+        }
+        site
+    }
+
+    fn form(&self) -> Option<(Form, bool)> {
+        if self.body.chooses() {
+            return None;
+        }
+        let form = Form::of(&self.parameters, &self.body)?;
+        Some((form, self.body.clamps()))
+    }
+
+    fn recorded(
+        &self,
+        (form, clamps): &(Form, bool),
+        places: &Places<f64>,
+        site: usize,
+        lists: &Lists<'_>,
+    ) -> Option<Arc<SiteTape>> {
+        let failures = *self.failures.read().unwrap_or_else(PoisonError::into_inner);
+        if failures >= MOST {
+            return None;
+        }
+        let first = self.once(form, places, site, lists);
+        let made = first.and_then(|first| {
+            let second = self.once(form, places, site + 1, lists)?;
+            SiteTape::of([site, site + 1], [first, second], *clamps)
+        });
+        match made {
+            Some(tape) => {
+                let tape = Arc::new(tape);
+                let mut tapes = self.tapes.write().unwrap_or_else(PoisonError::into_inner);
+                if tapes.len() == MOST {
+                    tapes.remove(0);
+                }
+                tapes.push(tape.clone());
+                Some(tape)
+            }
+            None => {
+                *self
+                    .failures
+                    .write()
+                    .unwrap_or_else(PoisonError::into_inner) += 1;
+                None
+            }
+        }
+    }
+
+    /// The body at one site.
+    fn once(
+        &self,
+        form: &Form,
+        places: &Places<f64>,
+        site: usize,
+        lists: &Lists<'_>,
+    ) -> Option<Once> {
+        let mut asker = Asker::new(site);
+        let mut gives = Vec::new();
+        let (tape, inputs) = record(|| {
+            let mut own = form.places(&mut asker, places)?;
+            *own.get_mut(*self.parameters.first()?)? = Value::Int(i64::try_from(site).ok()?);
+            if let (Some((kept, from)), Some(at)) = (&lists.kept, self.parameters.get(1)) {
+                *own.get_mut(*at)? = asker.kept(kept, from + site)?;
+            }
+            let value = form.run(&mut own)?;
+            let shapes = lists.shapes();
+            let values = match (shapes.len(), value) {
+                (_, Value::None) => return None,
+                (0, _) => Vec::new(),
+                (1, value) => vec![value],
+                (2, Value::List(both)) => both,
+                _ => return None,
+            };
+            let mut outputs = Vec::new();
+            for (value, shape) in values.into_iter().zip(shapes) {
+                let value = match (value, shape) {
+                    (Value::Zeros, Some([rows, cols])) => Value::of(Dense::zeros(rows, cols)),
+                    (value, _) => value,
+                };
+                gives.push(over(&value, &mut |_| 0.0)?);
+                numbers(&value, &mut outputs)?;
+            }
+            Some(outputs)
+        })?;
+        let (reads, fixed) = asker.told();
+        Some(Once {
+            tape,
+            inputs,
+            reads,
+            fixed,
+            gives,
+        })
+    }
+}
+
+/// A recording at one site.
+struct Once {
+    tape: clebsch_program::Tape,
+    inputs: usize,
+    /// Where inputs come from.
+    reads: Vec<Read>,
+    /// What is no numbers, by its path: a tape holds as long as these are the same.
+    fixed: Fixed,
+    gives: Vec<Value<f64>>,
+}

@@ -1,0 +1,258 @@
+//! A tape of sites and how it runs: numbers are taken from lists, computed side by side and put into lists.
+
+use super::load::{column, extend, fill, numbers_of, store};
+use super::{Lists, Once};
+use crate::code::{Code, Places};
+use crate::over::alike;
+use crate::recorded::ask::{Fixed, From, List};
+use crate::recorded::form::{is_same, stands};
+use crate::sites::Column;
+use crate::value::Value;
+use clebsch_program::{Frame, Machine, WIDTH};
+use std::sync::{Mutex, PoisonError};
+
+/// So few sites are run one by one.
+const FEW: usize = 8;
+
+/// A value that is read: its kind, and which of its components enter which inputs.
+#[derive(Debug)]
+struct Source<F> {
+    from: F,
+    kind: Value<f64>,
+    components: Vec<(usize, usize)>,
+}
+
+/// Where a value stands that is the same for all sites.
+#[derive(Debug)]
+enum Steady {
+    Around(Code<f64>),
+    Of(List, usize),
+}
+
+/// A tape of sites.
+#[derive(Debug)]
+pub struct SiteTape {
+    machine: Machine,
+    steady: Vec<Source<Steady>>,
+    /// Values of lists, so far from the site of the loop.
+    moving: Vec<Source<(List, isize)>>,
+    fixed: Fixed,
+    gives: Vec<Value<f64>>,
+    frames: Mutex<Vec<Frames>>,
+}
+
+type Frames = (Frame<1>, Frame<WIDTH>);
+
+impl SiteTape {
+    /// The tape of recordings at two sites; nothing where they differ. If the body `clamps` sites to a list, a list that
+    /// is read at one site must have one.
+    pub fn of([here, there]: [usize; 2], [first, second]: [Once; 2], clamps: bool) -> Option<Self> {
+        let values = first.gives.iter().zip(&second.gives);
+        let same_kinds =
+            first.gives.len() == second.gives.len() && values.clone().all(|(a, b)| alike(a, b));
+        let same = first.tape == second.tape && first.reads.len() == second.reads.len();
+        if !(same && same_kinds) {
+            return None;
+        }
+        let machine = Machine::new(&first.tape, first.inputs);
+        let (mut steady, mut moving) = (Vec::new(), Vec::new());
+        for (a, b) in first.reads.into_iter().zip(second.reads) {
+            if a.first != b.first || !alike(&a.kind, &b.kind) {
+                return None;
+            }
+            let inputs = (0..a.count).map(|component| (a.first + component, component));
+            let components: Vec<_> = inputs.filter(|(input, _)| machine.reads(*input)).collect();
+            let kind = a.kind;
+            let (from, off) = match (a.from, b.from) {
+                (From::Around(path), From::Around(_)) => (Steady::Around(path), None),
+                (From::Of(list, site, alone), From::Of(other, second, _)) => {
+                    let paths = match (&list.path, &other.path) {
+                        (Some(a), Some(b)) => is_same(a, b),
+                        (None, None) => true,
+                        _ => false,
+                    };
+                    if !paths || list.fields != other.fields {
+                        return None;
+                    }
+                    let off = isize::try_from(site).ok()? - isize::try_from(here).ok()?;
+                    match (second + here == site + there, second == site) {
+                        (true, _) => (Steady::Of(list, site), Some(off)),
+                        (_, true) if alone || !clamps => (Steady::Of(list, site), None),
+                        _ => return None,
+                    }
+                }
+                _ => return None,
+            };
+            if components.is_empty() {
+                continue;
+            }
+            match (from, off) {
+                (Steady::Of(list, _), Some(off)) => moving.push(Source {
+                    from: (list, off),
+                    kind,
+                    components,
+                }),
+                (from, _) => steady.push(Source {
+                    from,
+                    kind,
+                    components,
+                }),
+            }
+        }
+        Some(SiteTape {
+            machine,
+            steady,
+            moving,
+            fixed: first.fixed,
+            gives: first.gives,
+            frames: Mutex::default(),
+        })
+    }
+
+    /// Whether what is no numbers is as it was recorded.
+    pub fn fits(&self, places: &Places<f64>) -> bool {
+        stands(&self.fixed, places)
+    }
+
+    /// Whether the neighbours of a site are there.
+    pub fn admits(&self, places: &Places<f64>, site: usize) -> bool {
+        self.admitted(places, site, site + 1).is_some()
+    }
+
+    /// Runs sites from `from` to the one before `to`: the next that is left to the body.
+    pub fn run(
+        &self,
+        places: &Places<f64>,
+        sites: [usize; 2],
+        lists: &mut Lists<'_>,
+    ) -> Option<usize> {
+        let mut pool = self.frames.lock().unwrap_or_else(PoisonError::into_inner);
+        let frames = pool.pop();
+        drop(pool);
+        let mut frames = frames.unwrap_or_else(|| (self.machine.frame(), self.machine.frame()));
+        let done = self.run_in(places, sites, lists, &mut frames);
+        let mut pool = self.frames.lock().unwrap_or_else(PoisonError::into_inner);
+        pool.push(frames);
+        done
+    }
+
+    fn run_in(
+        &self,
+        places: &Places<f64>,
+        [from, to]: [usize; 2],
+        lists: &mut Lists<'_>,
+        (one, wide): &mut Frames,
+    ) -> Option<usize> {
+        let Some(to) = self.admitted(places, from, to) else {
+            return Some(from);
+        };
+        self.load_steady(places, one.inputs())?;
+        if to - from > FEW {
+            self.load_steady(places, wide.inputs())?;
+        }
+        let mut site = from;
+        while site < to {
+            let count = (to - site).min(WIDTH);
+            if count > FEW {
+                self.load(places, lists, [site, count], wide.inputs())?;
+                if self.machine.run_wide(wide) {
+                    let output = |which| self.machine.output(wide, which).as_slice();
+                    self.store(lists, [site, count], &output)?;
+                    site += count;
+                    continue;
+                }
+            }
+            for _ in 0..count {
+                self.load(places, lists, [site, 1], one.inputs())?;
+                if !self.machine.run(one) {
+                    return Some(site);
+                }
+                let output = |which| self.machine.output(one, which).as_slice();
+                self.store(lists, [site, 1], &output)?;
+                site += 1;
+            }
+        }
+        Some(to)
+    }
+
+    /// The site after the last whose neighbours are there; nothing if those of the first are not.
+    fn admitted(&self, places: &Places<f64>, from: usize, to: usize) -> Option<usize> {
+        let mut end = to;
+        for source in &self.moving {
+            let (list, off) = &source.from;
+            from.checked_add_signed(*off)?;
+            if let Some(column) = column(list, places) {
+                end = end.min(column.len().checked_add_signed(-*off)?);
+            }
+        }
+        (from < end).then_some(end)
+    }
+
+    fn load_steady<const L: usize>(
+        &self,
+        places: &Places<f64>,
+        inputs: &mut [[f64; L]],
+    ) -> Option<()> {
+        let mut own = Vec::new();
+        for source in &self.steady {
+            match &source.from {
+                Steady::Around(path) => {
+                    numbers_of(path.place(places)?, &source.kind, &mut own)?;
+                }
+                Steady::Of(list, site) => {
+                    let value = column(list, places)?.get(*site)?;
+                    numbers_of(&value, &source.kind, &mut own)?;
+                }
+            }
+            for (input, component) in &source.components {
+                *inputs.get_mut(*input)? = [*own.get(*component)?; L];
+            }
+        }
+        Some(())
+    }
+
+    fn load<const L: usize>(
+        &self,
+        places: &Places<f64>,
+        lists: &Lists<'_>,
+        [site, count]: [usize; 2],
+        inputs: &mut [[f64; L]],
+    ) -> Option<()> {
+        for source in &self.moving {
+            let (list, off) = &source.from;
+            let from = site.checked_add_signed(*off)?;
+            let column: &Column<f64> = match (&list.path, &lists.kept) {
+                (None, Some((kept, _))) => kept,
+                _ => column(list, places)?,
+            };
+            fill(
+                column,
+                &source.kind,
+                [from, count],
+                &source.components,
+                inputs,
+            )?;
+        }
+        Some(())
+    }
+
+    fn store<'a>(
+        &self,
+        lists: &mut Lists<'_>,
+        [site, count]: [usize; 2],
+        output: &impl Fn(usize) -> &'a [f64],
+    ) -> Option<()> {
+        let mut next = 0;
+        let mut gives = self.gives.iter();
+        for (column, from) in [&mut lists.out, &mut lists.kept].into_iter().flatten() {
+            let sites = [*from + site, count];
+            store(column, sites, gives.next()?, &mut next, output)?;
+        }
+        if let Some(column) = &mut lists.gathered {
+            let (kind, from) = (gives.next()?, column.len());
+            extend(column, count, kind)?;
+            store(column, [from, count], kind, &mut next, output)?;
+        }
+        Some(())
+    }
+}

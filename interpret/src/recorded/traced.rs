@@ -1,0 +1,292 @@
+//! A scalar that notes what is done to it, so that one evaluation of any generic code becomes a tape.
+//!
+//! Decisions that the code takes by the methods of [`Real`] which give a truth become guards of the tape. A number that
+//! leaves the tape in any other way, as `value()` does, spoils the recording: what is decided by it could not be seen.
+
+use clebsch::Real;
+use clebsch_program::{Function, Recording, Scalar, Step, Tape, Test};
+use num_traits::{One, Zero};
+use std::cell::RefCell;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A number with the step that computes it; constants have none.
+#[derive(Clone, Copy, Debug)]
+pub struct Traced {
+    value: f64,
+    at: Option<Scalar>,
+}
+
+/// What is recorded in this thread.
+#[derive(Default)]
+struct Here {
+    recording: Recording,
+    inputs: u32,
+    spoiled: bool,
+}
+
+thread_local! {
+    static HERE: RefCell<Option<Here>> = const { RefCell::new(None) };
+}
+
+/// Most steps of a tape: what takes more is not recorded.
+const MOST: usize = 1 << 16;
+
+/// Records what `body` does; it gives the numbers that the tape is to compute. Nothing if that cannot be told from
+/// tests of numbers alone.
+pub fn record(body: impl FnOnce() -> Option<Vec<Traced>>) -> Option<(Tape, usize)> {
+    HERE.set(Some(Here::default()));
+    let outputs = body();
+    let mut here = HERE.take()?;
+    let fits = !here.spoiled && here.recording.len() <= MOST;
+    let outputs = outputs.filter(|_| fits)?;
+    let steps = outputs.iter().map(|x| x.step_in(&mut here.recording));
+    let steps: Vec<Scalar> = steps.collect();
+    Some((here.recording.tape(steps), here.inputs as usize))
+}
+
+/// Does something with the recording, if there is one.
+fn noted<R>(what: impl FnOnce(&mut Here) -> R) -> Option<R> {
+    HERE.with_borrow_mut(|here| here.as_mut().map(what))
+}
+
+impl Traced {
+    /// A constant.
+    pub const fn constant(value: f64) -> Self {
+        Traced { value, at: None }
+    }
+
+    /// The next input, with the value that it has while the tape is recorded.
+    pub fn input(value: f64) -> Self {
+        let at = noted(|here| {
+            here.inputs += 1;
+            here.recording.step(Step::Input(here.inputs - 1))
+        });
+        Traced { value, at }
+    }
+
+    fn step_in(self, recording: &mut Recording) -> Scalar {
+        match self.at {
+            Some(at) => at,
+            None => recording.double(self.value),
+        }
+    }
+
+    fn one(self, value: f64, step: impl FnOnce(Scalar) -> Step) -> Self {
+        let made = |at| noted(|here| here.recording.step(step(at)));
+        Traced {
+            value,
+            at: self.at.and_then(made),
+        }
+    }
+
+    fn two(self, other: Self, value: f64, step: impl FnOnce(Scalar, Scalar) -> Step) -> Self {
+        if self.at.is_none() && other.at.is_none() {
+            return Traced::constant(value);
+        }
+        let at = noted(|here| {
+            let a = self.step_in(&mut here.recording);
+            let b = other.step_in(&mut here.recording);
+            here.recording.step(step(a, b))
+        });
+        Traced { value, at }
+    }
+
+    fn function(self, function: Function) -> Self {
+        self.one(function.of(self.value), |a| Step::Function(function, a))
+    }
+
+    /// Notes how a test of two numbers came out.
+    fn asked(self, other: Self, holds: bool, test: impl FnOnce(Scalar, Scalar) -> Test) -> bool {
+        if self.at.is_some() || other.at.is_some() {
+            noted(|here| {
+                let a = self.step_in(&mut here.recording);
+                let b = other.step_in(&mut here.recording);
+                here.recording.guard(test(a, b), holds);
+            });
+        }
+        holds
+    }
+
+    /// Its value leaves the tape.
+    fn read(self) -> f64 {
+        if self.at.is_some() {
+            noted(|here| here.spoiled = true);
+        }
+        self.value
+    }
+}
+
+impl PartialEq for Traced {
+    fn eq(&self, other: &Self) -> bool {
+        self.asked(*other, self.value == other.value, Test::Equal)
+    }
+}
+
+macro_rules! operators {
+    ($($Trait:ident $method:ident $Assign:ident $assign:ident $op:tt),*) => {$(
+        impl $Trait for Traced {
+            type Output = Self;
+            fn $method(self, other: Self) -> Self {
+                self.two(other, self.value $op other.value, Step::$Trait)
+            }
+        }
+        impl $Assign for Traced {
+            fn $assign(&mut self, other: Self) {
+                *self = *self $op other;
+            }
+        }
+    )*};
+}
+
+operators!(
+    Add add AddAssign add_assign +,
+    Sub sub SubAssign sub_assign -,
+    Mul mul MulAssign mul_assign *,
+    Div div DivAssign div_assign /
+);
+
+impl Neg for Traced {
+    type Output = Self;
+    fn neg(self) -> Self {
+        self.one(-self.value, Step::Neg)
+    }
+}
+
+impl Zero for Traced {
+    fn zero() -> Self {
+        Traced::constant(0.0)
+    }
+
+    fn is_zero(&self) -> bool {
+        *self == Self::zero()
+    }
+}
+
+impl One for Traced {
+    fn one() -> Self {
+        Traced::constant(1.0)
+    }
+}
+
+impl Real for Traced {
+    type One = Self;
+    const EPSILON: f64 = <f64 as Real>::EPSILON;
+    const ORDER: u32 = 0;
+
+    fn from_f64(x: f64) -> Self {
+        Traced::constant(x)
+    }
+
+    fn value(self) -> f64 {
+        self.read()
+    }
+
+    fn one_of(&self, _: usize) -> Self {
+        *self
+    }
+
+    fn set_lane(&mut self, _: usize, one: Self) {
+        *self = one;
+    }
+
+    fn magnitude(self) -> f64 {
+        self.read().abs()
+    }
+
+    fn least(self) -> f64 {
+        self.read()
+    }
+
+    fn greatest(self) -> f64 {
+        self.read()
+    }
+
+    fn nowhere_positive(self) -> bool {
+        self.asked(Self::zero(), self.value <= 0.0, Test::AtMost)
+    }
+
+    fn exceeds(self, other: Self) -> bool {
+        other.asked(self, self.value > other.value, Test::Less)
+    }
+
+    fn is_below(self, bound: f64) -> bool {
+        self.asked(Self::from_f64(bound), self.value < bound, Test::Less)
+    }
+
+    fn where_positive(self, then: Self) -> Self {
+        let value = if self.value > 0.0 { then.value } else { 0.0 };
+        match self.at {
+            // A constant decides for good.
+            None if self.value > 0.0 => then,
+            None => Self::zero(),
+            Some(_) => self.two(then, value, Step::WherePositive),
+        }
+    }
+
+    fn sqrt(self) -> Self {
+        self.function(Function::Sqrt)
+    }
+
+    fn exp(self) -> Self {
+        self.function(Function::Exp)
+    }
+
+    fn ln(self) -> Self {
+        self.function(Function::Log)
+    }
+
+    fn sin(self) -> Self {
+        self.function(Function::Sin)
+    }
+
+    fn cos(self) -> Self {
+        self.function(Function::Cos)
+    }
+
+    fn sinh(self) -> Self {
+        self.function(Function::Sinh)
+    }
+
+    fn cosh(self) -> Self {
+        self.function(Function::Cosh)
+    }
+
+    fn tanh(self) -> Self {
+        self.function(Function::Tanh)
+    }
+
+    fn balance(self) -> Self {
+        self.function(Function::Balance)
+    }
+
+    fn whole(
+        function: fn(&[usize], &[f64], &mut [f64]),
+        sizes: &[usize],
+        inputs: &dyn Fn() -> Vec<Self>,
+        outputs: usize,
+    ) -> Option<Vec<Self>> {
+        let inputs = inputs();
+        // What is the same always is computed step by step.
+        if inputs.iter().all(|x| x.at.is_none()) {
+            return None;
+        }
+        let numbers: Vec<f64> = inputs.iter().map(|x| x.value).collect();
+        let mut values = vec![f64::NAN; outputs];
+        function(sizes, &numbers, &mut values);
+        noted(|here| {
+            let own = inputs.iter().map(|x| x.step_in(&mut here.recording));
+            let own: Vec<Scalar> = own.collect();
+            let steps = here.recording.call(function, sizes, own, outputs);
+            let made = steps.into_iter().zip(values);
+            made.map(|(at, value)| Traced {
+                value,
+                at: Some(at),
+            })
+            .collect()
+        })
+    }
+
+    fn is_finite(self) -> bool {
+        self.asked(self, self.value.is_finite(), |a, _| Test::Finite(a))
+    }
+}
