@@ -1,5 +1,6 @@
 //! Steps whose equations have several roots: a step takes the one that follows from rest, or is refused at the fold.
-//! Reference numbers come from a continuation in small parts of the momentum, in two million parts for the hoop.
+//! Reference numbers come from a continuation in small parts of the momentum, in two million parts for the hoop, or by
+//! arclength; those of one field from its momentum at 400,000 velocities.
 
 use crate::common::{Folder, rotor};
 
@@ -13,6 +14,17 @@ fn stepped(folder: &Folder, model: &str, case: &str) -> Vec<f64> {
     last.split(',')
         .map(|x| x.parse().expect("a number"))
         .collect()
+}
+
+/// One step of a model from a case; the run must refuse it at this part of the momentum.
+fn folds(name: &str, model: &str, case: &str, share: &str) {
+    let folder = Folder::new(name);
+    let model = folder.write(&format!("{name}.clebsch"), model);
+    let text = format!("model = \"{name}\"\nsteps = 1\n{case}");
+    let case = folder.write(&format!("{name}.toml"), &text);
+    let done = rotor(&format!("run {model} --case {case}")).exits(1);
+    let words = format!("the tangent becomes singular when {share}");
+    assert!(done.err.contains(&words), "{}", done.err);
 }
 
 /// Straight ahead lies another root, where the bead has crossed the axis of the hoop.
@@ -41,20 +53,90 @@ fn a_bead_on_a_free_hoop_turns_back_before_the_axis() {
 /// The mass grows a hundredfold in the middle of the way; beyond the fold lies another root.
 #[test]
 fn a_heavy_place_on_the_way_is_not_passed_over() {
-    let folder = Folder::new("bump");
-    let model = folder.write(
-        "bump.clebsch",
-        "model Bump { param a, w: Real; field x: Real; let d = next(x) - x; let c = (x + next(x))/2;
-            lagrangian = d^2/(2*h)*(1 + a*exp(-c^2/(2*w^2))); }",
+    let model = "model Bump { param a, w: Real; field x: Real; let d = next(x) - x; let c = (x + next(x))/2;
+            lagrangian = d^2/(2*h)*(1 + a*exp(-c^2/(2*w^2))); }";
+    let case = |a, w, x, momentum| {
+        format!(
+            "h = 1.0\n[parameters]\na = {a}\nw = {w}\n[initial]\nx = {x}\nmomentum = {momentum}\n"
+        )
+    };
+    folds(
+        "bump",
+        model,
+        &case("100.0", "0.1", "-1.56", "4.59"),
+        "0.459250",
     );
-    let case = folder.write(
-        "bump.toml",
-        "model = \"bump\"\nh = 1.0\nsteps = 1\n[parameters]\na = 100.0\nw = 0.1\n\
-         [initial]\nx = -1.56\nmomentum = 4.59\n",
+    // Here the place is as wide as 0.006 of the way of its argument.
+    folds(
+        "bump",
+        model,
+        &case("1.0", "0.0064", "-0.42", "2.08"),
+        "0.374210",
     );
-    let done = rotor(&format!("run {model} --case {case}")).exits(1);
-    let words = "the tangent becomes singular when 0.459250 of the momentum is reached";
-    assert!(done.err.contains(words), "{}", done.err);
+    folds(
+        "bump",
+        model,
+        &case("10.0", "0.004", "-0.28", "1.19"),
+        "0.434710",
+    );
+}
+
+/// A bead is carried through the axis of its hoop several times; about the axis it would turn a hundred times as fast.
+#[test]
+fn a_bead_that_crosses_the_axis_many_times_is_refused() {
+    let model = "model Hoop { param m, R, g, I: Real; field th, ph: Real;
+            let d = next(th) - th; let e = next(ph) - ph; let s = sin((th + next(th))/2);
+            lagrangian = m*R^2*d^2/(2*h) + (m*R^2*s^2 + I)*e^2/(2*h) + h*m*g*R*cos(th); }";
+    for (case, share) in [
+        (
+            "h = 6.335884451259102\n[parameters]\nm = 6.145165427904088\nR = 1.2615222303303002\n\
+             g = 2.633469266364787\nI = 0.003553537103770711\n[initial]\nth = 1.1374016857258447\n\
+             ph = -2.360840029490718\nmomentum_th = -0.028880358006107235\nmomentum_ph = -0.10187415901979992\n",
+            "0.073866",
+        ),
+        (
+            "h = 9.643095153532146\n[parameters]\nm = 3.25591722502067\nR = 1.038954485468665\n\
+             g = 1.45739723243316\nI = 0.07294714331337958\n[initial]\nth = -2.1478249185773777\n\
+             ph = -2.51271091108193\nmomentum_th = 0.2204622746956638\nmomentum_ph = -0.2056635438146722\n",
+            "0.077783",
+        ),
+    ] {
+        folds("hoop", model, case, share);
+    }
+}
+
+/// The mass is large where the step begins, within a fortieth of the way or a fifth.
+#[test]
+fn a_mass_that_falls_near_rest_is_not_left_behind() {
+    let model = "model Pmass { param m, a, l: Real; field X: Vec<2>;
+            let d = next(X) - X; let c = (X + next(X))/2;
+            lagrangian = m*(dot(d, d) + a*dot(c, d)^2/l^2)/(2*h)*exp(-dot(c, c)/(2*l^2)) + m*a*dot(d, d)/(2*h); }";
+    for (case, share) in [
+        (
+            "h = 5.7289395266444805\n[parameters]\nm = 0.017305994444519187\na = 0.013984708739245181\nl = 1.0\n\
+             [initial]\nX = [0.07793505534974289, 1.2928186879576133]\n\
+             momentum = [0.0008569030708842089, 0.0032266316098219275]\n",
+            "0.341362",
+        ),
+        (
+            "h = 7.398613743193748\n[parameters]\nm = 0.014318063082730351\na = 0.4172390904007519\n\
+             l = 5.632519126991175e-07\n[initial]\nX = [-4.2928930502436434e-07, 3.592155275977712e-07]\n\
+             momentum = [3.3320844516378814e-09, 1.003345926059844e-08]\n",
+            "0.383318",
+        ),
+    ] {
+        folds("pmass", model, case, share);
+    }
+}
+
+/// The place concerns a field that moves a thousandth as far as another one.
+#[test]
+fn a_light_place_beside_a_long_way_is_not_passed_over() {
+    let model = "model Beside { param M, a, w: Real; field x, X: Real; let d = next(x) - x; let f = next(X) - X;
+            let c = (x + next(x))/2; lagrangian = M*f^2/(2*h) + d^2/(2*h)*(1 + a*exp(-c^2/(2*w^2))); }";
+    let case = "h = 1.0\n[parameters]\nM = 0.25\na = -0.5\nw = 0.2\n[initial]\nx = -0.41\nX = 0.0\n\
+                momentum_x = 3.59\nmomentum_X = 1400.0\n";
+    folds("beside", model, case, "0.126995");
 }
 
 /// At rest nothing but the rounding of the constraint is left to solve for.

@@ -4,13 +4,16 @@
 
 mod alone;
 mod any_size;
+mod changes;
 mod corrections;
 mod failure;
+mod looks;
 mod parts;
 pub(crate) mod principal;
 mod reduced;
 mod saved;
 mod scale;
+mod stage;
 mod verdict;
 
 pub use crate::scalar::Rounded;

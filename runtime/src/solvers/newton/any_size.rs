@@ -10,9 +10,11 @@ mod saved;
 pub use chart::{Chart, Lane};
 
 use super::corrections::{Corrections, Next, Residual};
-use super::parts::points;
+use super::looks::{Left, Look, looks, shared_noise};
+use super::parts::Aside;
 use super::principal::{Fold, Traced, trace};
 use super::scale::{Tangent, measure};
+use super::stage::{less, times};
 use super::{
     BOUND_ROUNDINGS, CONVERGED_ROUNDINGS, LAST_ATTEMPT, LATE, LEAST_SHARE, MOST_ITERATIONS,
     NewtonError, NewtonFailure, OLDEST_SCALE, OLDEST_TANGENT, Progress, REMEMBERED, Solved,
@@ -20,6 +22,7 @@ use super::{
 };
 use crate::linalg::{Dense, DenseFactors};
 use crate::scalar::Real;
+use crate::scalar::larger;
 
 /// The rounding of plain numbers.
 const UNIT: f64 = <f64 as Real>::EPSILON;
@@ -237,7 +240,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         let (chart, size) = (self.whole, self.whole.parts().dimension());
         let (factors, units) = self.search.whole.get_or_insert_with(|| {
             let tangent = tangent();
-            let units = chart.parts().units(&|i, j| tangent.at(i, j));
+            let units = chart.parts().units(&|i, j| tangent.at(i, j), Aside::OfStep);
             let mut factors = DenseFactors::none(size, true);
             factors.set(tangent);
             (factors, units)
@@ -270,19 +273,34 @@ impl<C: Chart> AnyNewton<'_, C> {
         };
         let parts = chart.parts();
         let ways = parts.lengths(&x);
-        let varies_little = |share: f64| {
-            let step: Vec<f64> = x.iter().map(|x| -x * share).collect();
+        let near = |off: &[f64], noise: &dyn Fn(usize) -> f64| {
+            let off = parts.lengths(off);
+            let squares = ways.iter().zip(&off).map(|(x, y)| [x * x, y * y]);
+            parts.are_near(&squares.collect::<Vec<_>>(), units, noise)
+        };
+        // Where noise is not known, differences may be those of rounding.
+        let shared = shared_noise(&search.noise, units);
+        let known = shared > 0.0;
+        let noises = |b: usize| larger(noise(b), shared * units.get(b).copied().unwrap_or(0.0));
+        let mut so_far = Left::nothing(vec![0.0; x.len()]);
+        let varies_little = |look: Look| {
+            let step: Vec<f64> = x.iter().map(|x| -x * look.share).collect();
             let found = residual(&chart.retract(&chart.identity(), &step));
-            let goals = at_rest.iter().map(|x| x * (1.0 - share));
+            let goals = at_rest.iter().map(|x| x * (1.0 - look.share));
             let left = found.iter().zip(goals).map(|(x, y)| (x - y) * search.unit);
             let left: Vec<f64> = left.collect();
             search.factors.solve(&left).is_some_and(|off| {
-                let off = parts.lengths(&off);
-                let squares = ways.iter().zip(&off).map(|(x, y)| [x * x, y * y]);
-                parts.are_near(&squares.collect::<Vec<_>>(), units, &noise)
+                let judged = so_far.next(look, &off, |x, y| less(x, y));
+                let mut judged = judged.iter().flatten();
+                near(&off, &noise)
+                    && (!known
+                        || judged.all(|x| {
+                            let difference: Vec<f64> = times(&x.difference, x.factor);
+                            near(&difference, &|b: usize| x.noise(noises(b)))
+                        }))
             })
         };
-        !search.open || points().all(varies_little)
+        !search.open || looks().all(varies_little)
     }
 
     /// Whether the test of a solution evaluates the equations.

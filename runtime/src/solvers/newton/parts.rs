@@ -2,6 +2,7 @@
 //! translations do not add up.
 //! Takes coordinates and a tangent; gives lengths, the units of parts, and the course of a stage.
 
+use super::looks::{Left, looks, shared_noise};
 use super::principal::FALLS;
 use crate::groups::Group;
 use crate::scalar::{Real, larger};
@@ -21,16 +22,31 @@ const STEP_TURN: f64 = 1.5;
 /// any error would be small.
 const STEP_WAY: f64 = 2.0;
 
-/// In how many pieces the way is looked at, where a part lacks a scale of its own.
-const PIECES: u8 = 16;
-
-/// The points between these pieces, as shares of the way.
-pub(super) fn points() -> impl Iterator<Item = f64> {
-    (1..PIECES).map(|k| f64::from(k) / f64::from(PIECES))
-}
-
 /// A part that moves little is measured by this share of the part that moves most.
 const ASIDE: f64 = 0.05;
+
+/// The same of a part without a scale of its own, in a step judged by one correction: its equations may vary over any
+/// length, also over that by which it moves little.
+const OPEN_ASIDE: f64 = 1e-3;
+
+/// By which share of the part that moves most others are measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Aside {
+    /// In a step judged by one correction.
+    OfStep,
+    /// In a stage, which looks at the tangent of all parts besides.
+    OfStage,
+}
+
+impl Aside {
+    /// That of a part; `open` where it lacks a scale of its own.
+    pub(super) fn of(self, open: bool) -> f64 {
+        match self {
+            Self::OfStep if open => OPEN_ASIDE,
+            _ => ASIDE,
+        }
+    }
+}
 
 /// The coordinates of a velocity and the parts that they belong to.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,9 +99,9 @@ impl Parts {
     }
 
     /// The unit of length of each part: see [`Kinds::units_into`].
-    pub(super) fn units(&self, entry: &dyn Fn(usize, usize) -> f64) -> Vec<f64> {
+    pub(super) fn units(&self, entry: &dyn Fn(usize, usize) -> f64, aside: Aside) -> Vec<f64> {
         let mut units = vec![1.0; self.count()];
-        self.kinds().units_into(entry, &mut units);
+        self.kinds().units_into(entry, aside, &mut units);
         units
     }
 
@@ -108,7 +124,8 @@ impl Parts {
         noise: impl Fn(usize) -> f64,
     ) -> Vec<f64> {
         let mut course = vec![0.0; self.count()];
-        course_into(lengths, units, &self.pure, noise, &mut course);
+        let kinds = self.kinds();
+        course_into(&kinds, Aside::OfStage, [lengths, units], noise, &mut course);
         course
     }
 
@@ -122,7 +139,7 @@ impl Parts {
     ) -> bool {
         let mut lists = [vec![0.0; self.count()], vec![0.0; self.count()]];
         let [ways, course] = &mut lists;
-        are_near_beside(squares, units, &self.pure, noise, [ways, course])
+        are_near_beside(squares, units, &self.kinds(), noise, [ways, course])
     }
 
     /// The coordinate that moves most.
@@ -170,7 +187,12 @@ impl Kinds<'_> {
     /// angles of the same element. A part that its own equations do not contain is a multiplier: its unit is the value that
     /// acts in the equations of the others as one unit of theirs, times so many that it is measured by all of the part that
     /// moves most. It differs from a velocity in that it may jump. `entry` is the tangent.
-    pub(super) fn units_into(&self, entry: &dyn Fn(usize, usize) -> f64, units: &mut [f64]) {
+    pub(super) fn units_into(
+        &self,
+        entry: &dyn Fn(usize, usize) -> f64,
+        aside: Aside,
+        units: &mut [f64],
+    ) {
         for (b, own) in units.iter_mut().enumerate() {
             let unit = (self.block(b.saturating_sub(1), entry) / self.block(b, entry)).sqrt();
             *own = match self.pure[b] {
@@ -192,7 +214,8 @@ impl Kinds<'_> {
                     }
                 }
             }
-            units[b] = if unit.is_finite() { unit / ASIDE } else { 0.0 };
+            let aside = aside.of(self.open[b]);
+            units[b] = if unit.is_finite() { unit / aside } else { 0.0 };
         }
     }
 }
@@ -212,9 +235,9 @@ pub(super) fn with_kinds<T, G: Group<T>, R, const D: usize>(
 
 /// The course of [`Parts::course`], for as many parts as `course` has.
 fn course_into(
-    lengths: &[f64],
-    units: &[f64],
-    pure: &[bool],
+    Kinds { pure, open, .. }: &Kinds<'_>,
+    aside: Aside,
+    [lengths, units]: [&[f64]; 2],
     noise: impl Fn(usize) -> f64,
     course: &mut [f64],
 ) {
@@ -228,8 +251,9 @@ fn course_into(
     }
     // A body may go many times its own size in a step, and need not turn for that.
     let turns = pure.iter().take(course.len()).any(|pure| *pure);
-    let aside = ASIDE * if turns { most.min(1.0) } else { most };
+    let most = if turns { most.min(1.0) } else { most };
     for (b, own) in course.iter_mut().enumerate() {
+        let aside = aside.of(open[b]) * most;
         let (length, least) = match pure[b] {
             // Coordinates of rotations grow without bound near half a turn.
             true if lengths[b] > TURN => (TURN, aside * units[b]),
@@ -245,14 +269,15 @@ fn course_into(
 fn are_near_beside(
     squares: &[[f64; 2]],
     units: &[f64],
-    pure: &[bool],
+    kinds: &Kinds<'_>,
     noise: impl Fn(usize) -> f64,
     [ways, course]: [&mut [f64]; 2],
 ) -> bool {
     for (way, [square, _]) in ways.iter_mut().zip(squares) {
         *way = square.sqrt();
     }
-    course_into(ways, units, pure, noise, course);
+    course_into(kinds, Aside::OfStep, [ways, units], noise, course);
+    let pure = kinds.pure;
     let mut each = squares.iter().zip(course.iter()).enumerate();
     each.all(|(b, ([way, off], course))| {
         let most = most_of_step(b, units, |b| pure[b]);
@@ -303,19 +328,35 @@ pub(super) fn varies_little<T: Real, G: Group<T>, const D: usize>(
     units: &[f64; D],
     noise: &[f64; D],
 ) -> bool {
-    points().all(|share| {
-        let at = G::identity().retract((-*correction * T::from_f64(share)).as_slice());
-        let Some(off) = left(share, &at) else {
-            return false;
-        };
+    let size = G::DIMENSION.min(D);
+    let near = |off: &SVector<T, D>, noise: &[f64; D]| {
         let mut squares = [[T::zero(); 2]; D];
-        for k in 0..G::DIMENSION.min(D) {
+        for k in 0..size {
             if let Some([way, left]) = squares.get_mut(G::part_of(k)) {
                 *way += correction[k] * correction[k];
                 *left += off[k] * off[k];
             }
         }
         are_near::<T, G, D>(&squares, units, noise)
+    };
+    let shared = shared_noise(&noise[..G::PARTS.min(D)], units);
+    let noises: [f64; D] = core::array::from_fn(|b| larger(noise[b], shared * units[b]));
+    // Where noise is not known, differences may be those of rounding.
+    let known = shared > 0.0;
+    let mut so_far = Left::nothing(SVector::zeros());
+    looks().all(|look| {
+        let at = G::identity().retract((-*correction * T::from_f64(look.share)).as_slice());
+        let Some(off) = left(look.share, &at) else {
+            return false;
+        };
+        let judged = so_far.next(look, &off, |x, y| x - y);
+        let mut judged = judged.iter().flatten();
+        near(&off, noise)
+            && (!known
+                || judged.all(|x| {
+                    let difference = x.difference * T::from_f64(x.factor);
+                    near(&difference, &noises.map(|own| x.noise(own)))
+                }))
     })
 }
 
@@ -352,7 +393,7 @@ fn near_beside<T: Real, G: Group<T>, const D: usize>(
         let lists = [&mut ways[..count], &mut course[..count]];
         with_kinds::<T, G, _, D>(|kinds| {
             let (own, units) = (&own[..count], &units[..count]);
-            are_near_beside(own, units, kinds.pure, |b| noise[b], lists)
+            are_near_beside(own, units, kinds, |b| noise[b], lists)
         })
     };
     (0..T::LANES).all(of)

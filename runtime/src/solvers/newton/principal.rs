@@ -7,11 +7,13 @@
 //!
 //! The curve is followed in stages. A stage is accepted where its first two corrections by one tangent fall by a factor
 //! of four, which bounds how the tangent changes along it (Deuflhard, Newton Methods for Nonlinear Problems, 2011,
-//! sections 2.1 and 5.1). That is a test at points, not a proof.
+//! sections 2.1 and 5.1). Where a part lacks a scale of its own the equations and the tangent are also looked at on the
+//! way: see [`stage`](super::stage). All are tests at points, not proofs.
 //!
 //! Takes the equations of one lane; gives the root, or how far the curve could be followed.
 
-use super::parts::{Parts, points};
+use super::parts::Parts;
+use super::stage::{AIM, Ended, Stage, ended, ratio, times};
 use crate::groups::Group;
 use crate::linalg::Dense;
 use nalgebra::{SMatrix, SVector};
@@ -22,29 +24,9 @@ pub(crate) const FALLS: f64 = 0.25;
 /// Most stages on the way.
 const MOST_STAGES: usize = 1000;
 
-/// Most corrections of a stage after the first two; they fall quadratically.
-const MOST_CORRECTIONS: usize = 12;
-
-/// The last stage ends with a correction that is this part of its length: what is left is the square. Close to a fold
-/// rounding permits no less.
-const SOLVED: f64 = 1e-6;
-
-/// Corrections of this part of the noise of a length are rounding.
-const ROUNDED: f64 = 0.1;
-
-/// Another stage can begin so near the end of one.
-const NEAR: f64 = 1e-3;
-
-/// The part of a stage that is tried where corrections do not fall.
-const WORSE: f64 = 0.2;
-
 /// Bounds of the length of a stage, in lengths of the one before.
 const LONGER: f64 = 4.0;
 const SHORTER: f64 = 0.5;
-
-/// The part of the longest admissible length that is tried, and the least part of a refused length.
-const AIM: f64 = 0.8;
-const SHORTEST_TRY: f64 = 0.1;
 
 /// A rest of the way that is this part of a stage joins it.
 const JOINS: f64 = 0.1;
@@ -129,58 +111,6 @@ pub(super) trait Curve {
     fn tangent(&self, at: &Self::Velocity) -> Dense<f64>;
 }
 
-/// A point of the curve, and the tangent there.
-struct Stage<G> {
-    velocity: G,
-    residual: Vec<f64>,
-    inverse: Dense<f64>,
-    units: Vec<f64>,
-    /// Whether a part lacks a scale of its own.
-    open: bool,
-}
-
-impl<G: Clone> Stage<G> {
-    /// `None` where the tangent is singular or not finite.
-    fn at<C: Curve<Velocity = G>>(curve: &C, velocity: G) -> Option<Self> {
-        let tangent = curve.tangent(&velocity);
-        let inverse = tangent.balanced_inverse().filter(Dense::is_finite)?;
-        Some(Self {
-            residual: curve.residual(&velocity),
-            units: curve.parts().units(&|i, j| tangent.at(i, j)),
-            open: curve.parts().kinds().are_open(&|i, j| tangent.at(i, j)),
-            velocity,
-            inverse,
-        })
-    }
-
-    /// The correction by this tangent where the residual is to become `goal`.
-    fn correction(&self, goal: &[f64], residual: &[f64]) -> Vec<f64> {
-        corrected(&self.inverse, goal, residual)
-    }
-}
-
-fn corrected(inverse: &Dense<f64>, goal: &[f64], residual: &[f64]) -> Vec<f64> {
-    let change = goal.iter().zip(residual).map(|(x, y)| x - y);
-    inverse.times(&Dense::column_of(change.collect())).data
-}
-
-fn times(x: &[f64], factor: f64) -> Vec<f64> {
-    x.iter().map(|x| x * factor).collect()
-}
-
-/// The larger of two; NaN where one is.
-fn worse(a: f64, b: f64) -> f64 {
-    if b <= a { a } else { b + 0.0 * a }
-}
-
-/// The largest length over its bound; NaN where any is.
-fn ratio(lengths: &[f64], bounds: &[f64]) -> f64 {
-    let each = lengths.iter().zip(bounds);
-    // A part without length and bound does not move.
-    let each = each.map(|(x, bound)| if *x == 0.0 { 0.0 } else { x / bound });
-    crate::scalar::largest(each)
-}
-
 /// Finds the principal root, or shows that `solution` is.
 ///
 /// # Errors
@@ -193,7 +123,8 @@ pub(super) fn trace<C: Curve>(
 ) -> Result<Traced<C::Velocity>, Fold> {
     let nowhere = || Fold::at(0.0, 0);
     let parts = curve.parts();
-    let mut stage = Stage::at(curve, curve.rest()).ok_or_else(nowhere)?;
+    let tangent = curve.tangent(&curve.rest());
+    let mut stage = Stage::at(curve, curve.rest(), &tangent).ok_or_else(nowhere)?;
     let at_rest = stage.residual.clone();
     let nothing = vec![0.0; at_rest.len()];
     let (mut share, mut length) = (0.0, 1.0_f64);
@@ -221,12 +152,14 @@ pub(super) fn trace<C: Curve>(
             }
             Ok(Ended {
                 velocity: next,
+                tangent,
                 fall,
                 ..
             }) => {
                 share = end;
                 length *= (AIM * FALLS / fall).clamp(SHORTER, LONGER);
-                match Stage::at(curve, next) {
+                let tangent = tangent.unwrap_or_else(|| curve.tangent(&next));
+                match Stage::at(curve, next, &tangent) {
                     Some(next) => stage = next,
                     None => break,
                 }
@@ -239,87 +172,6 @@ pub(super) fn trace<C: Curve>(
         return Err(nowhere());
     }
     Err(Fold::at(share, parts.fastest(&toward, &stage.units)))
-}
-
-/// The end of a stage.
-struct Ended<G> {
-    velocity: G,
-    /// The lengths of its course.
-    course: Vec<f64>,
-    /// The second correction over the first: it grows with the length of the stage.
-    fall: f64,
-}
-
-/// The end of a stage, or the part of its length to try next.
-fn ended<C: Curve>(
-    curve: &C,
-    stage: &Stage<C::Velocity>,
-    goal: &[f64],
-    last: bool,
-) -> Result<Ended<C::Velocity>, f64> {
-    let parts = curve.parts();
-    let first = stage.correction(goal, &stage.residual);
-    let course = parts.course(&parts.lengths(&first), &stage.units, |b| curve.noise(b));
-    let mut at = curve.moved(&stage.velocity, &first);
-    let second = stage.correction(goal, &curve.residual(&at));
-    let mut fall = ratio(&parts.lengths(&second), &course);
-    if stage.open {
-        for share in points() {
-            let between = goal.iter().zip(&stage.residual);
-            let between: Vec<f64> = between.map(|(x, y)| y + share * (x - y)).collect();
-            let there = curve.moved(&stage.velocity, &times(&first, share));
-            let off = stage.correction(&between, &curve.residual(&there));
-            fall = worse(fall, ratio(&parts.lengths(&off), &course));
-        }
-    }
-    if !course.iter().all(|x| x.is_finite()) || !fall.is_finite() {
-        return Err(WORSE);
-    }
-    if fall > FALLS {
-        return Err((AIM * FALLS / fall).clamp(SHORTEST_TRY, AIM));
-    }
-    at = curve.moved(&at, &second);
-    let enough = if last { SOLVED } else { NEAR };
-    let mut before = fall;
-    for _ in 0..MOST_CORRECTIONS {
-        if !last && before <= enough {
-            break;
-        }
-        let inverse = curve.tangent(&at).balanced_inverse().ok_or(WORSE)?;
-        let correction = corrected(&inverse, goal, &curve.residual(&at));
-        let lengths = parts.lengths(&correction);
-        let known = lengths.iter().enumerate();
-        let known: Vec<f64> = known
-            .map(|(b, x)| {
-                if *x <= ROUNDED * curve.noise(b) {
-                    0.0
-                } else {
-                    *x
-                }
-            })
-            .collect();
-        let size = ratio(&known, &course);
-        at = curve.moved(&at, &correction);
-        if size <= enough {
-            before = size;
-            break;
-        }
-        // NaN does not fall.
-        let falls = size <= 0.5 * before;
-        if !falls {
-            return Err(WORSE);
-        }
-        before = size;
-    }
-    let velocity = at;
-    match before <= enough {
-        true => Ok(Ended {
-            velocity,
-            course,
-            fall,
-        }),
-        false => Err(WORSE),
-    }
 }
 
 /// The equations of one lane on a group that is a type. What follows the curve is compiled once for each group, not for

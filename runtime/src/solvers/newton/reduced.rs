@@ -1,7 +1,7 @@
 //! Equations of which some unknowns are solved for beforehand, in closed form: Newton's method finds the others.
 //! Takes an element with all unknowns; gives the part that is searched for.
 
-use super::parts::{comes_near, with_kinds};
+use super::parts::{Aside, comes_near, with_kinds};
 use super::{Newton, Progress, Solved};
 use crate::groups::{Group, RigidMotion, Rotation};
 use crate::linalg::Factors;
@@ -37,7 +37,7 @@ impl<T: Real, W, const E: usize> AtRest<T, W, E> {
     {
         let units = &mut self.units[..W::PARTS.min(E)];
         let entry = |i, j| tangent[(i, j)].lane(0);
-        with_kinds::<T, W, _, E>(|kinds| kinds.units_into(&entry, units));
+        with_kinds::<T, W, _, E>(|kinds| kinds.units_into(&entry, Aside::OfStep, units));
         let mut factors = Factors::none();
         factors.set(tangent, W::DIMENSION);
         for (k, mut column) in self.inverse.column_iter_mut().enumerate() {

@@ -2,7 +2,7 @@
 //! beside its scale, and no smaller than what rounding of the velocities leaves of it.
 //! Takes the tangent factored last, as absolute values, and scales; raises them. Gives what corrections are measured by.
 
-use super::parts::Kinds;
+use super::parts::{Aside, Kinds};
 use crate::scalar::larger;
 
 /// The root of the rounding.
@@ -19,7 +19,7 @@ pub(super) fn measure(
     weights: &[f64],
     [units, noise]: [&mut [f64]; 2],
 ) {
-    kinds.units_into(entry, units);
+    kinds.units_into(entry, Aside::OfStep, units);
     // Own equations, and those that the own unknown does not enter, as of a held constraint.
     let of = |k: usize| {
         let rows = (0..kinds.size).filter(|i| *i == k || entry(*i, *i) == 0.0);
@@ -42,7 +42,8 @@ pub(super) fn measure(
     // Multipliers are as uncertain as what they act on.
     for (b, (own, unit)) in noise.iter_mut().zip(units.iter()).enumerate() {
         if kinds.own(b).all(|k| entry(k, k) == 0.0) {
-            *own = larger(*own, most * unit);
+            let [step, stage] = [Aside::OfStep, Aside::OfStage].map(|x| x.of(kinds.open[b]));
+            *own = larger(*own, most * unit * (step / stage));
         }
     }
 }

@@ -1,0 +1,125 @@
+//! How much the tangent changes along a stage.
+//!
+//! What the tangent is at a place, in units of that at the beginning, less one, has eigenvalues that are the same in all
+//! coordinates and units. They tell of parts that move little as of those that move far, and of directions in which nothing
+//! moves. Where all are below one the tangent is regular.
+//!
+//! Only coordinates without a scale of their own are looked at: those of rotations turn with the motion.
+//!
+//! Takes tangents; gives the largest modulus of these eigenvalues.
+
+use super::parts::Parts;
+use crate::linalg::Dense;
+use crate::scalar::largest;
+
+/// The largest change along a stage.
+pub(super) const CHANGE: f64 = 0.75;
+
+/// Between places whose tangents differ by more, another one is looked at.
+const DIFFERENCE: f64 = 0.125;
+
+/// In how many pieces a stage is looked at first, and how often a piece is halved at most.
+const PIECES: u8 = 4;
+const HALVINGS: u8 = 6;
+
+/// How often a matrix is squared: the norm of its power of eight is that of its largest eigenvalue to the eighth, times a
+/// factor of a few.
+const SQUARINGS: u8 = 3;
+
+/// Changes from the tangent at the beginning of a stage.
+pub(super) struct Changes<'a> {
+    inverse: &'a Dense<f64>,
+    /// The coordinates without a scale of their own, and their units.
+    units: Vec<(usize, f64)>,
+}
+
+impl<'a> Changes<'a> {
+    /// From a tangent given by its inverse; `units` are those of the parts.
+    pub(super) fn from(inverse: &'a Dense<f64>, units: &[f64], parts: &Parts) -> Self {
+        let known = |x: f64| if x > 0.0 && x.is_finite() { x } else { 1.0 };
+        let of = |k: usize| {
+            let part = parts.part_of(k);
+            let open = parts.open.get(part).copied().unwrap_or(false);
+            let unit = units.get(part).copied().unwrap_or(1.0);
+            open.then(|| (k, known(unit)))
+        };
+        Self {
+            inverse,
+            units: (0..parts.dimension()).filter_map(of).collect(),
+        }
+    }
+
+    /// The largest change on the way to a tangent `end`, where `tangent` is that at a share of it. No more is looked at once
+    /// it is too large.
+    pub(super) fn on_the_way(&self, tangent: &dyn Fn(f64) -> Dense<f64>, end: &Dense<f64>) -> f64 {
+        let last = self.seen(end);
+        let mut most = modulus(last.clone());
+        let mut before = (0.0, Dense::zeros(last.rows, last.cols));
+        for k in 1..=PIECES {
+            // NaN is too much.
+            let little = most <= CHANGE;
+            if !little {
+                break;
+            }
+            let share = f64::from(k) / f64::from(PIECES);
+            let there = match k == PIECES {
+                true => last.clone(),
+                false => self.seen(&tangent(share)),
+            };
+            let there = (share, there);
+            most = largest([most, self.between(tangent, [&before, &there], HALVINGS)]);
+            before = there;
+        }
+        most
+    }
+
+    /// The largest change on a piece of the way that follows its beginning.
+    fn between(
+        &self,
+        tangent: &dyn Fn(f64) -> Dense<f64>,
+        [from, to]: [&(f64, Dense<f64>); 2],
+        halvings: u8,
+    ) -> f64 {
+        let most = modulus(to.1.clone());
+        let looks = halvings > 0 && most <= CHANGE;
+        if !looks || modulus(to.1.minus(&from.1)) <= DIFFERENCE {
+            return most;
+        }
+        let share = 0.5 * (from.0 + to.0);
+        let middle = (share, self.seen(&tangent(share)));
+        let before = self.between(tangent, [from, &middle], halvings - 1);
+        let after = self.between(tangent, [&middle, to], halvings - 1);
+        largest([before, after])
+    }
+
+    /// A tangent in units of that at the beginning, less one.
+    fn seen(&self, tangent: &Dense<f64>) -> Dense<f64> {
+        let less = self.inverse.times(tangent).minus_one();
+        let size = self.units.len();
+        Dense::from_fn(size, size, |i, j| {
+            match (self.units.get(i), self.units.get(j)) {
+                (Some((row, own)), Some((column, other))) => less.at(*row, *column) * (other / own),
+                _ => 0.0,
+            }
+        })
+    }
+}
+
+/// The largest modulus of the eigenvalues, or somewhat more; a bound where that is small.
+fn modulus(mut a: Dense<f64>) -> f64 {
+    let mut size = a.squares().sqrt();
+    let mut modulus = size;
+    for squared in 1..=SQUARINGS {
+        if modulus <= DIFFERENCE || !modulus.is_finite() {
+            break;
+        }
+        a = a.scaled(1.0 / size);
+        a = a.times(&a);
+        size = a.squares().sqrt();
+        modulus *= (0..squared).fold(size, |x, _| x.sqrt());
+        if size == 0.0 {
+            break;
+        }
+    }
+    modulus
+}

@@ -1,0 +1,292 @@
+//! A stage of the curve that leads from rest to the principal root: from a point of the curve to the next one.
+//!
+//! Where a part lacks a scale of its own, as a field, equations may vary over any length of it. There the equations are
+//! looked at on the way, more closely where they are rough; and so is the tangent, which tells of parts that move little
+//! as well.
+//!
+//! Takes the equations and a part of the way; gives the next point, or a shorter part to try.
+
+use super::changes::{CHANGE, Changes};
+use super::looks::{Judged, Left, looks, shared_noise};
+use super::parts::Aside;
+use super::principal::{Curve, FALLS};
+use crate::linalg::Dense;
+use crate::scalar::larger;
+
+/// Most corrections of a stage after the first two; they fall quadratically.
+const MOST_CORRECTIONS: usize = 12;
+
+/// The last stage ends with a correction that is this part of its length: what is left is the square. Close to a fold
+/// rounding permits no less.
+const SOLVED: f64 = 1e-6;
+
+/// Corrections of this part of the noise of a length are rounding.
+const ROUNDED: f64 = 0.1;
+
+/// Another stage can begin so near the end of one.
+const NEAR: f64 = 1e-3;
+
+/// The part of a stage that is tried where corrections do not fall.
+const WORSE: f64 = 0.2;
+
+/// In a stage the equations may change by so many times as much as in a step judged by one correction: by three quarters.
+const STEEP: f64 = 1.5;
+
+/// How often a rough piece of the way is halved at most, and the least change of the slope in a piece that is.
+const HALVINGS: u8 = 5;
+const BEND: f64 = 1e-2;
+
+/// The part of the longest admissible length that is tried, and the least part of a refused length.
+pub(super) const AIM: f64 = 0.8;
+const SHORTEST_TRY: f64 = 0.1;
+
+/// A point of the curve, and the tangent there.
+pub(super) struct Stage<G> {
+    velocity: G,
+    pub residual: Vec<f64>,
+    inverse: Dense<f64>,
+    pub units: Vec<f64>,
+    /// Whether a part lacks a scale of its own.
+    open: bool,
+}
+
+impl<G: Clone> Stage<G> {
+    /// `None` where the tangent is singular or not finite.
+    pub(super) fn at<C: Curve<Velocity = G>>(
+        curve: &C,
+        velocity: G,
+        tangent: &Dense<f64>,
+    ) -> Option<Self> {
+        let inverse = tangent.balanced_inverse().filter(Dense::is_finite)?;
+        Some(Self {
+            residual: curve.residual(&velocity),
+            units: curve
+                .parts()
+                .units(&|i, j| tangent.at(i, j), Aside::OfStage),
+            open: curve.parts().kinds().are_open(&|i, j| tangent.at(i, j)),
+            velocity,
+            inverse,
+        })
+    }
+
+    /// The correction by this tangent where the residual is to become `goal`.
+    pub(super) fn correction(&self, goal: &[f64], residual: &[f64]) -> Vec<f64> {
+        corrected(&self.inverse, goal, residual)
+    }
+}
+
+fn corrected(inverse: &Dense<f64>, goal: &[f64], residual: &[f64]) -> Vec<f64> {
+    let change = goal.iter().zip(residual).map(|(x, y)| x - y);
+    inverse.times(&Dense::column_of(change.collect())).data
+}
+
+pub(super) fn times(x: &[f64], factor: f64) -> Vec<f64> {
+    x.iter().map(|x| x * factor).collect()
+}
+
+pub(super) fn less(x: &[f64], y: &[f64]) -> Vec<f64> {
+    x.iter().zip(y).map(|(x, y)| x - y).collect()
+}
+
+/// The larger of two; NaN where one is.
+fn worse(a: f64, b: f64) -> f64 {
+    if b <= a { a } else { b + 0.0 * a }
+}
+
+/// The largest length over its bound; NaN where any is.
+pub(super) fn ratio(lengths: &[f64], bounds: &[f64]) -> f64 {
+    let each = lengths.iter().zip(bounds);
+    // A part without length and bound does not move.
+    let each = each.map(|(x, bound)| if *x == 0.0 { 0.0 } else { x / bound });
+    crate::scalar::largest(each)
+}
+
+/// The end of a stage.
+pub(super) struct Ended<G> {
+    pub velocity: G,
+    /// The tangent there, where it was looked at.
+    pub tangent: Option<Dense<f64>>,
+    /// The lengths of its course.
+    pub course: Vec<f64>,
+    /// The second correction over the first: it grows with the length of the stage.
+    pub fall: f64,
+}
+
+/// The end of a stage, or the part of its length to try next.
+pub(super) fn ended<C: Curve>(
+    curve: &C,
+    stage: &Stage<C::Velocity>,
+    goal: &[f64],
+    last: bool,
+) -> Result<Ended<C::Velocity>, f64> {
+    let parts = curve.parts();
+    let first = stage.correction(goal, &stage.residual);
+    let course = parts.course(&parts.lengths(&first), &stage.units, |b| curve.noise(b));
+    let mut at = curve.moved(&stage.velocity, &first);
+    let second = stage.correction(goal, &curve.residual(&at));
+    let mut fall = ratio(&parts.lengths(&second), &course);
+    let mut steepest = 0.0;
+    if stage.open {
+        let [left, slope] = on_the_way(curve, stage, goal, &first, &course);
+        fall = worse(fall, left);
+        steepest = slope;
+    }
+    let most = worse(fall, steepest);
+    if !course.iter().all(|x| x.is_finite()) || !most.is_finite() {
+        return Err(WORSE);
+    }
+    if most > FALLS {
+        return Err((AIM * FALLS / most).clamp(SHORTEST_TRY, AIM));
+    }
+    at = curve.moved(&at, &second);
+    let enough = if last { SOLVED } else { NEAR };
+    let mut before = fall;
+    for _ in 0..MOST_CORRECTIONS {
+        if !last && before <= enough {
+            break;
+        }
+        let inverse = curve.tangent(&at).balanced_inverse().ok_or(WORSE)?;
+        let correction = corrected(&inverse, goal, &curve.residual(&at));
+        let lengths = parts.lengths(&correction);
+        let known = lengths.iter().enumerate();
+        let known: Vec<f64> = known
+            .map(|(b, x)| {
+                if *x <= ROUNDED * curve.noise(b) {
+                    0.0
+                } else {
+                    *x
+                }
+            })
+            .collect();
+        let size = ratio(&known, &course);
+        at = curve.moved(&at, &correction);
+        if size <= enough {
+            before = size;
+            break;
+        }
+        // NaN does not fall.
+        let falls = size <= 0.5 * before;
+        if !falls {
+            return Err(WORSE);
+        }
+        before = size;
+    }
+    // NaN is not near.
+    let solved = before <= enough;
+    if !solved {
+        return Err(WORSE);
+    }
+    let tangent = stage.open.then(|| curve.tangent(&at));
+    if let Some(end) = &tangent {
+        let way = |share: f64| {
+            let straight = curve.moved(&stage.velocity, &times(&first, share));
+            curve.tangent(&curve.moved(&straight, &times(&second, share * share)))
+        };
+        let changes = Changes::from(&stage.inverse, &stage.units, parts);
+        let change = changes.on_the_way(&way, end);
+        if !change.is_finite() {
+            return Err(WORSE);
+        }
+        if change > CHANGE {
+            return Err((AIM * CHANGE / change).clamp(SHORTEST_TRY, AIM));
+        }
+    }
+    Ok(Ended {
+        velocity: at,
+        tangent,
+        course,
+        fall,
+    })
+}
+
+/// What is left at a look and gained between two, over the course.
+struct Judges<'a> {
+    value: &'a dyn Fn(&[f64]) -> f64,
+    slope: &'a dyn Fn(&Judged<Vec<f64>>) -> f64,
+}
+
+/// The most that the equations leave on the way of a stage, and the most that they gain between two looks, as corrections
+/// over the course.
+fn on_the_way<C: Curve>(
+    curve: &C,
+    stage: &Stage<C::Velocity>,
+    goal: &[f64],
+    first: &[f64],
+    course: &[f64],
+) -> [f64; 2] {
+    let off = |share: f64| {
+        let between = goal.iter().zip(&stage.residual);
+        let between: Vec<f64> = between.map(|(x, y)| y + share * (x - y)).collect();
+        let there = curve.moved(&stage.velocity, &times(first, share));
+        stage.correction(&between, &curve.residual(&there))
+    };
+    let of = |x: &[f64]| ratio(&curve.parts().lengths(x), course);
+    let own: Vec<f64> = (0..curve.parts().count()).map(|b| curve.noise(b)).collect();
+    let shared = shared_noise(&own, &stage.units);
+    // Where noise is not known, slopes may be those of rounding.
+    let known = shared > 0.0;
+    let noise = |b: usize| {
+        let unit = stage.units.get(b).copied().unwrap_or(0.0);
+        larger(curve.noise(b), shared * unit)
+    };
+    // Rounding does not count.
+    let judge = |x: &Judged<Vec<f64>>| {
+        let lengths = curve.parts().lengths(&times(&x.difference, x.factor));
+        let known = lengths.iter().enumerate().map(|(b, length)| {
+            match *length <= FALLS * x.noise(noise(b)) {
+                true => 0.0,
+                false => *length,
+            }
+        });
+        ratio(&known.collect::<Vec<_>>(), course) / STEEP
+    };
+    let nothing = vec![0.0; first.len()];
+    let mut seen = vec![(0.0, nothing.clone())];
+    let mut so_far = Left::nothing(nothing);
+    let (mut left, mut steepest, mut rough) = (0.0, 0.0, vec![]);
+    // The tangent holds where the stage begins.
+    for look in looks().filter(|look| look.is_regular()) {
+        let here = off(look.share);
+        let [slope, fourth] = so_far.next(look, &here, |x, y| less(x, y));
+        left = worse(left, of(&here));
+        if known {
+            steepest = worse(steepest, slope.as_ref().map_or(0.0, judge));
+        }
+        seen.push((look.share, here));
+        rough.push(fourth.is_some_and(|x| judge(&x) > FALLS));
+    }
+    let judges = Judges {
+        value: &of,
+        slope: &judge,
+    };
+    for (k, ends) in seen.windows(2).enumerate() {
+        // A fourth difference is of four pieces.
+        let is_rough = rough.iter().skip(k).take(4).any(|x| *x);
+        if let ([from, to], true) = (ends, known && is_rough && worse(left, steepest) <= FALLS) {
+            steepest = worse(steepest, left_between(&off, &judges, [from, to], HALVINGS));
+        }
+    }
+    [left, steepest]
+}
+
+/// The same between two looks, where the equations are rough.
+fn left_between(
+    off: &dyn Fn(f64) -> Vec<f64>,
+    judges: &Judges<'_>,
+    [from, to]: [&(f64, Vec<f64>); 2],
+    halvings: u8,
+) -> f64 {
+    let half = 0.5 * (to.0 - from.0);
+    let middle = (from.0 + half, off(from.0 + half));
+    let [before, after] = [less(&middle.1, &from.1), less(&to.1, &middle.1)];
+    let bend = (judges.slope)(&Judged::slope(less(&after, &before), half));
+    let slopes = [before, after].map(|x| (judges.slope)(&Judged::slope(x, half)));
+    let most = slopes.into_iter().fold((judges.value)(&middle.1), worse);
+    let halved = halvings > 0 && most <= FALLS && bend > BEND;
+    if !halved {
+        return most;
+    }
+    let ends = [[from, &middle], [&middle, to]];
+    let each = ends.map(|ends| left_between(off, judges, ends, halvings - 1));
+    each.into_iter().fold(most, worse)
+}
