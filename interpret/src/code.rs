@@ -132,7 +132,7 @@ pub struct Arm<T: Real> {
     pub body: Code<T>,
 }
 
-/// What repeats operations.
+/// A loop: Newton's method, or one over sites.
 pub trait Iterate<T: Real>: std::fmt::Debug + Send + Sync {
     /// To the solution, or the last site.
     ///

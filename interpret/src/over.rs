@@ -100,7 +100,7 @@ pub fn numbers<T: Real>(value: &Value<T>, out: &mut Vec<T>) -> Option<()> {
     Some(())
 }
 
-/// Whether two values have the same kinds of parts, of the same sizes, and the same parts that are no numbers.
+/// Whether two values agree in everything but their numbers: in kinds, sizes, counts and names.
 pub fn alike<T: Real>(a: &Value<T>, b: &Value<T>) -> bool {
     let lists = |a: &[Value<T>], b: &[Value<T>]| {
         a.len() == b.len() && a.iter().zip(b).all(|(a, b)| alike(a, b))

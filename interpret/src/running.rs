@@ -292,7 +292,7 @@ enum Steps {
     Composed(Box<(Model, Composition<Model>)>),
 }
 
-/// What moves, as values at places, and as the numbers of tapes.
+/// State and workspace, as values at places and as the numbers of tapes.
 struct Held {
     places: Places<f64>,
     recorded: Option<Recorded>,

@@ -21,7 +21,7 @@ pub enum Column<T: Real> {
     Structs(Arc<Layout>, Vec<Column<T>>, usize),
     /// Any others.
     Values(Vec<Value<T>>),
-    /// Those of a list elsewhere, which notes what is asked of it.
+    /// A list elsewhere that notes which of its values are read.
     Asked(Arc<dyn Asked<T>>),
 }
 

@@ -38,7 +38,7 @@ enum Check {
     Finite(Register, bool),
 }
 
-/// A tape that runs. Inputs stand in the first registers, constants in the next, then what is computed.
+/// A tape that runs. The first registers hold inputs, the next constants, the others results.
 #[derive(Clone, Debug)]
 pub struct Machine {
     inputs: usize,

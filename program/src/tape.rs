@@ -98,7 +98,7 @@ pub enum Step {
     Function(Function, Scalar),
     /// The second where the first is positive, else zero. NaN is not positive.
     WherePositive(Scalar, Scalar),
-    /// An output of a call: the number of the call, and that of the output.
+    /// An output of a call, by the numbers of both.
     Output(u32, u32),
 }
 
@@ -142,10 +142,10 @@ impl Test {
     }
 }
 
-/// A decision that was taken: a tape stands for an evaluation as long as every test of it comes out as recorded.
+/// A decision that was taken. A tape computes the recorded function as long as every test comes out as it did.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Guard {
-    /// What was asked.
+    /// The test.
     pub test: Test,
     /// The answer.
     pub holds: bool,

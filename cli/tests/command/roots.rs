@@ -1,6 +1,6 @@
 //! Steps whose equations have several roots: a step takes the one that follows from rest, or is refused at the fold.
 //! Reference numbers come from a continuation in small parts of the momentum, in two million parts for the hoop, or by
-//! arclength; those of one field from its momentum at 400,000 velocities.
+//! arclength; those for one field come from its momentum at 400,000 velocities.
 
 use crate::common::{Folder, rotor};
 

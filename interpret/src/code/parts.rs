@@ -1,4 +1,4 @@
-//! What an operation consists of, and what it reads of the places around it.
+//! The parts of an operation, and the places around it that it reads.
 
 use super::{Code, Operator, Pattern};
 use clebsch::Real;

@@ -325,7 +325,7 @@ impl<'a> Lower<'a, '_> {
             Some(function) => Some(rounded(&alone(self.shared, &own, function)?)?),
             None => None,
         };
-        // What is found at a trial begins with the rest of it.
+        // The operations at a trial first complete it.
         let of_trial = |last: Code<f64>| {
             let before = rest_code.iter().chain(&at_trial_code).cloned();
             PlaceFunction::new(part, Code::Block(before.chain([last]).collect()))

@@ -34,20 +34,20 @@ pub struct Solve {
     pub search: Code<f64>,
     /// The node that is left.
     pub node: Code<f64>,
-    /// Of a part of a trial, if a part is searched for: the whole, over numbers with their rounding. Takes parameters, step, what is
-    /// asked of the node, momenta, part.
+    /// If Newton's method searches for a part of the trial: the whole trial over numbers with their rounding. It takes
+    /// parameters, step, values of the node, momenta and the part.
     pub completed_at: Option<Routine<Rounded>>,
     /// The parameters, the step, what the residual asks of the node and its momenta.
     pub known: [Code<f64>; 4],
-    /// Of a trial: the whole one and the residual.
+    /// The whole trial and the residual there. The argument is the trial.
     pub residual: PlaceFunction,
     /// The residual at rest.
     pub at_rest: Code<f64>,
-    /// Of a trial: the tangent, and what it stands times.
+    /// The tangent and its factor. The argument is the trial.
     pub tangent: PlaceFunction,
     /// Whether the velocity is moved from the left.
     pub from_left: bool,
-    /// Of a trial: whether the action is convex there.
+    /// Whether the action is convex. The argument is the trial.
     pub convex: Option<PlaceFunction>,
     /// Otherwise.
     pub settled: Settled,
@@ -160,7 +160,7 @@ impl Solve {
         }
     }
 
-    /// The tangent and what it stands times.
+    /// The tangent and its factor.
     fn tangent(
         &self,
         trial: &Value<f64>,

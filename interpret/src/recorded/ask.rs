@@ -1,4 +1,4 @@
-//! What stands around a loop, over the scalar that records: every number an input, noted with where it was read.
+//! The values around a loop over the scalar that records. Each number is an input, noted with the place it came from.
 
 use crate::code::{Code, Places};
 use crate::over::{numbers, over};
@@ -67,7 +67,7 @@ impl Log {
 /// How far from its own site a body may read.
 const NEAR: usize = 8;
 
-/// A list that notes what is asked of it.
+/// A list that notes which of its values are read.
 #[derive(Debug)]
 struct Leaf {
     list: List,
@@ -96,7 +96,7 @@ impl Asked<Traced> for Leaf {
     }
 }
 
-/// What stands at paths, and is to be as it was.
+/// Values at paths, which a tape relies on: all but their numbers.
 pub type Fixed = Vec<(Code<f64>, Value<f64>)>;
 
 /// Provides what a body reads at one site.
@@ -116,7 +116,7 @@ impl Asker {
         }
     }
 
-    /// What was read, and what else stands where, to be compared: of a list, how long it is.
+    /// The values that were read, and the values that a tape relies on; for a list, its length.
     pub fn told(self) -> (Vec<Read>, Fixed) {
         let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
         (std::mem::take(&mut log.reads), self.fixed)
@@ -141,7 +141,7 @@ impl Asker {
         Some(())
     }
 
-    /// What is kept at a site of the loop.
+    /// The value that the loop keeps at a site.
     pub fn kept(&self, column: &Column<f64>, site: usize) -> Option<Value<Traced>> {
         let list = List {
             path: None,
@@ -161,7 +161,7 @@ impl Asker {
                 };
                 Some(Value::Sites(self.column(&list, column)?))
             }
-            // What a body does not read of it may be anything.
+            // The body need not read every field.
             Value::Struct(s) => {
                 let mut values = Vec::new();
                 for (name, value) in s.layout.fields.iter().zip(&s.values) {

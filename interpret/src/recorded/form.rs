@@ -64,7 +64,7 @@ pub fn is_same(a: &Code<f64>, b: &Code<f64>) -> bool {
     }
 }
 
-/// Whether what stands at paths is as it was, but for its numbers. Of a list its length is compared.
+/// Whether the values at paths agree with these in all but their numbers. A list is compared by its length.
 pub fn stands(fixed: &[(Code<f64>, Value<f64>)], places: &Places<f64>) -> bool {
     let same = |(path, value): &(Code<f64>, Value<f64>)| match (path.place(places), value) {
         (Some(Value::Sites(column)), Value::Int(n)) => i64::try_from(column.len()) == Ok(*n),

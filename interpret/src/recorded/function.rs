@@ -1,4 +1,4 @@
-//! A function of numbers, recorded when it is first called. It stands for itself: no place of a trajectory enters.
+//! A function of numbers, recorded when it is first called. It depends on its arguments alone.
 
 use super::traced::{Traced, record};
 use crate::code::{Exit, Routine};

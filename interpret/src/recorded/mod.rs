@@ -1,7 +1,7 @@
 //! The functions of a trajectory as tapes of scalar operations, recorded at its start.
 //!
 //! A tape computes what the function computes, to the last bit, as long as its decisions come out as they did when it
-//! was recorded. Otherwise the function itself is run. What no tape stands for, such as an iteration, is left to it too.
+//! was recorded. Otherwise clebsch runs the function itself, as it does for an iteration.
 
 mod ask;
 mod form;
@@ -43,7 +43,7 @@ pub struct Recordable {
     places: usize,
 }
 
-/// What is watched at a node.
+/// The functions that a run evaluates at a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Watched {
     /// The observables.
@@ -88,7 +88,7 @@ impl Recordable {
     }
 }
 
-/// What does not change while a trajectory runs.
+/// The values that stay the same while a trajectory runs.
 #[derive(Debug)]
 pub struct Fixed {
     /// The parameters as given.
@@ -159,7 +159,7 @@ struct Way {
 impl Way {
     /// Computes on these numbers; false where a decision comes out otherwise.
     fn follows(&mut self, numbers: &[f64]) -> bool {
-        // A workspace that is no plain numbers is behind the inputs.
+        // The workspace comes last: its numbers may be more than the tape reads.
         let own = numbers.get(..self.machine.inputs());
         let loaded = own.and_then(|own| load(self.frame.inputs(), own));
         loaded.is_some() && self.machine.run(&mut self.frame)
@@ -181,7 +181,7 @@ impl Ways {
         }
     }
 
-    /// The way that stands for the function at these numbers, which has computed on them. If none does, one is made.
+    /// The way that computes the function at these numbers, and has done so. If there is none, one is recorded.
     fn found(&mut self, numbers: &[f64], make: impl FnOnce() -> Option<Way>) -> Option<&mut Way> {
         let known = self.known.iter_mut().rposition(|way| way.follows(numbers));
         match known {
@@ -348,7 +348,7 @@ fn load(inputs: &mut [[f64; 1]], numbers: &[f64]) -> Option<()> {
 /// A tape with so many inputs, and the growth of counts.
 type Once = ((Tape, usize), Vec<i64>);
 
-/// Records twice, with different counts: where these enter a number or a decision, there is no tape.
+/// Records twice, with different counts: if these enter a number or a decision, recording gives up.
 fn twice(once: impl Fn(bool) -> Option<Once>) -> Option<Way> {
     let first = once(false)?;
     if once(true)? != first {
@@ -371,7 +371,7 @@ fn input(
     next: &mut i64,
     noted: &mut Vec<i64>,
 ) -> Option<Value<Traced>> {
-    // A value that is no plain numbers makes no inputs.
+    // A solver's memory cannot be an input.
     numbers(value, &mut Vec::new())?;
     let mut value = over(value, &mut Traced::input)?;
     if shifted {
@@ -423,7 +423,7 @@ fn recorded_watch(
             let (mut next, mut noted) = (0, Vec::new());
             let state = input(from.get(at::STATE)?, shifted, &mut next, &mut noted)?;
             *places.get_mut(at::STATE)? = state;
-            // What is asked of a workspace that is no plain numbers is not recorded.
+            // A function that reads a solver's memory is not recorded.
             if let Some(work) = input(from.get(at::WORK)?, shifted, &mut next, &mut noted) {
                 *places.get_mut(at::WORK)? = work;
             }

@@ -1,4 +1,4 @@
-//! A part of a function, such as the residual at a trial, as tapes. What stands around it enters as numbers.
+//! A part of a function, such as the residual at a trial, as tapes. Values around it enter as numbers.
 
 use super::ask::{Asker, Fixed, From};
 use super::form::{Form, stands};
@@ -23,7 +23,7 @@ struct Tape {
     frames: Mutex<Vec<Frame<1>>>,
 }
 
-/// Operations on one argument, which stands at a place, and on other places.
+/// Operations on one argument, given its place, and on other places.
 #[derive(Debug)]
 pub struct PlaceFunction {
     argument: usize,

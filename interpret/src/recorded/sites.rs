@@ -1,6 +1,6 @@
 //! The body of a loop over sites as a tape: recorded at two neighbouring sites, run at many side by side.
 //!
-//! A list is read at a site that moves with that of the loop, or at one that does not: which, the two recordings tell.
+//! A body reads a list at a distance from the loop's site, or at a fixed site. The two recordings tell which.
 //! A body whose operations may depend on the number of a site is run itself.
 
 mod load;
@@ -21,9 +21,9 @@ use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 /// The lists that a loop fills, each from a site on.
 #[derive(Default)]
 pub struct Lists<'a> {
-    /// What is filled.
+    /// The list that the loop fills.
     pub out: Option<(&'a mut Column<f64>, usize)>,
-    /// What is kept for each site, and changed.
+    /// The list that the loop reads and changes, site by site.
     pub kept: Option<(&'a mut Column<f64>, usize)>,
     /// Values that are put one after the other.
     pub gathered: Option<&'a mut Column<f64>>,
@@ -233,7 +233,7 @@ struct Once {
     inputs: usize,
     /// Where inputs come from.
     reads: Vec<Read>,
-    /// What is no numbers, by its path: a tape holds as long as these are the same.
+    /// The values that the tape relies on.
     fixed: Fixed,
     gives: Vec<Value<f64>>,
 }

@@ -16,7 +16,7 @@ pub struct Traced {
     at: Option<Scalar>,
 }
 
-/// What is recorded in this thread.
+/// The recording of this thread.
 #[derive(Default)]
 struct Here {
     recording: Recording,
@@ -266,7 +266,7 @@ impl Real for Traced {
         outputs: usize,
     ) -> Option<Vec<Self>> {
         let inputs = inputs();
-        // What is the same always is computed step by step.
+        // A call on constants is computed now.
         if inputs.iter().all(|x| x.at.is_none()) {
             return None;
         }

@@ -76,8 +76,8 @@ pub fn not_less<T: Real, const R: usize, const C: usize>(
     taken
 }
 
-/// 1 in the lanes where all of these entries are much less than the impulse, else 0. A body at rest has no rounding, and an impulse that
-/// is not finite is no scale.
+/// 1 in the lanes where all of these entries are much less than the impulse, else 0. A body at rest keeps its entries, and so does one whose impulse
+/// is not finite.
 #[doc(hidden)]
 pub fn fills<T: Real>(entries: impl Iterator<Item = T>, impulse: T) -> T {
     let one = T::one();
@@ -87,7 +87,7 @@ pub fn fills<T: Real>(entries: impl Iterator<Item = T>, impulse: T) -> T {
     (T::from_f64(f64::MAX) - impulse).where_positive(less)
 }
 
-/// What an entry is taken to be: the impulse where this is 1.
+/// The entry, or the impulse where `fills` is 1.
 #[doc(hidden)]
 pub fn filled<T: Real>(entry: T, fills: T, impulse: T) -> T {
     fills.where_positive(impulse) + (T::one() - fills).where_positive(entry)

@@ -180,9 +180,9 @@ pub fn solve_scaled<T: Real, const N: usize>(
     Some(SVector::from_fn(|i, _| x[i] * scale[i]))
 }
 
-/// Scales of rows and columns of a symmetric matrix in which the diagonal vanishes where a constraint is held: those of
-/// [`Real::balance`], and for a constraint a power of two that brings its row, so scaled, to the size of the others. False, and no scales,
-/// where no constraint is held. Without them light bodies would be lost beside the constraints, whose entries do not
+/// Scales of rows and columns of a symmetric matrix whose diagonal vanishes where a constraint is held. [`Real::balance`] gives
+/// them; a constraint has a power of two that brings its row, so scaled, to the size of the others. False, and no scales,
+/// if no constraint is held. Without them light bodies would be lost beside the constraints, whose entries do not
 /// depend on masses.
 #[inline]
 pub fn held_scales<T: Real>(scale: &mut [T], entry: impl Fn(usize, usize) -> T) -> bool {

@@ -106,8 +106,7 @@ pub trait Real:
         self.greatest() <= 0.0
     }
 
-    /// Whether the smallest real part over the lanes is larger than that of `other`; false if one of both is NaN. The same
-    /// as `least() > other.least()`.
+    /// Whether `least() > other.least()`; false if one of both is NaN.
     #[inline(always)]
     fn exceeds(self, other: Self) -> bool {
         self.least() > other.least()
@@ -202,7 +201,7 @@ pub trait Real:
     }
 
     /// A power of two near `1 / sqrt(|x|)`, lane by lane, without derivatives; 1 for what is zero, subnormal or not finite.
-    /// Rows and columns of a matrix multiplied by those of its diagonal have one size, whatever their units.
+    /// Multiplied by the powers of the diagonal, rows and columns of a matrix have one size, whatever their units.
     fn balance(self) -> Self {
         let mut scale = Self::one();
         for lane in 0..Self::LANES {

@@ -141,7 +141,7 @@ impl<A: OfScalars, B: OfScalars<Scalar = A::Scalar>> OfScalars for (A, B) {
 
 /// Implements [`OfScalars`] for a type of the runtime, given its fields.
 macro_rules! of_scalars {
-    // With fields that are no scalars.
+    // With fields of other types.
     ($Type:ident { $($field:tt),+ ; $($shared:ident),+ }) => {
         impl<T: $crate::Real> $crate::scalar::OfScalars for $Type<T> {
             type Scalar = T;

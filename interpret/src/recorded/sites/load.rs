@@ -30,8 +30,8 @@ pub fn numbers_of(value: &Value<f64>, kind: &Value<f64>, out: &mut Vec<f64>) -> 
     }
 }
 
-/// Fills inputs with components of the values at so many sites of a list, from one on. Lanes beyond repeat the last. The components are told
-/// with their inputs.
+/// Fills inputs with components of the values at so many sites of a list, from one on. Lanes beyond repeat the last. `components` pairs inputs with
+/// components.
 pub fn fill<const L: usize>(
     column: &Column<f64>,
     kind: &Value<f64>,

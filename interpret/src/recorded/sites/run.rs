@@ -22,7 +22,7 @@ struct Source<F> {
     components: Vec<(usize, usize)>,
 }
 
-/// Where a value stands that is the same for all sites.
+/// The place of a value that is the same for all sites.
 #[derive(Debug)]
 enum Steady {
     Around(Code<f64>),
@@ -109,7 +109,7 @@ impl SiteTape {
         })
     }
 
-    /// Whether what is no numbers is as it was recorded.
+    /// Whether the values that the tape relies on are as they were.
     pub fn fits(&self, places: &Places<f64>) -> bool {
         stands(&self.fixed, places)
     }
@@ -175,7 +175,7 @@ impl SiteTape {
         Some(to)
     }
 
-    /// The site after the last whose neighbours are there; nothing if those of the first are not.
+    /// The site after the last whose neighbours are there; nothing if the first site lacks one.
     fn admitted(&self, places: &Places<f64>, from: usize, to: usize) -> Option<usize> {
         let mut end = to;
         for source in &self.moving {

@@ -278,7 +278,7 @@ impl<C: Chart> AnyNewton<'_, C> {
             let squares = ways.iter().zip(&off).map(|(x, y)| [x * x, y * y]);
             parts.are_near(&squares.collect::<Vec<_>>(), units, noise)
         };
-        // Where noise is not known, differences may be those of rounding.
+        // Where noise is not known, differences may be rounding.
         let shared = shared_noise(&search.noise, units);
         let known = shared > 0.0;
         let noises = |b: usize| larger(noise(b), shared * units.get(b).copied().unwrap_or(0.0));

@@ -1,10 +1,10 @@
 //! How much the tangent changes along a stage.
 //!
-//! What the tangent is at a place, in units of that at the beginning, less one, has eigenvalues that are the same in all
+//! The tangent at a place times the inverse of the first, less one, has eigenvalues that are the same in all
 //! coordinates and units. They tell of parts that move little as of those that move far, and of directions in which nothing
 //! moves. Where all are below one the tangent is regular.
 //!
-//! Only coordinates without a scale of their own are looked at: those of rotations turn with the motion.
+//! Only coordinates without a scale of their own are looked at: rotations turn with the motion.
 //!
 //! Takes tangents; gives the largest modulus of these eigenvalues.
 
@@ -22,7 +22,7 @@ const DIFFERENCE: f64 = 0.125;
 const PIECES: u8 = 4;
 const HALVINGS: u8 = 6;
 
-/// How often a matrix is squared: the norm of its power of eight is that of its largest eigenvalue to the eighth, times a
+/// How often a matrix is squared: the norm of its eighth power is the largest eigenvalue to the eighth, times a
 /// factor of a few.
 const SQUARINGS: u8 = 3;
 
@@ -34,7 +34,7 @@ pub(super) struct Changes<'a> {
 }
 
 impl<'a> Changes<'a> {
-    /// From a tangent given by its inverse; `units` are those of the parts.
+    /// From a tangent given by its inverse; `units` belong to the parts.
     pub(super) fn from(inverse: &'a Dense<f64>, units: &[f64], parts: &Parts) -> Self {
         let known = |x: f64| if x > 0.0 && x.is_finite() { x } else { 1.0 };
         let of = |k: usize| {

@@ -1,6 +1,6 @@
-//! Where equations are looked at on the way from rest, or along a stage of it, and what is asked there.
+//! The places on the way from rest, or along a stage, at which equations are looked at, and the tests there.
 //!
-//! What a correction leaves at the looks, as a share of the way, tells how the equations vary: its differences from look to
+//! A correction leaves a share of the way at each look, which tells how the equations vary: its differences from look to
 //! look are what the tangent at hand does not foresee. Fourth differences of smooth equations are small; larger ones are
 //! the tails of something between two looks.
 //!
@@ -72,12 +72,12 @@ pub(super) fn shared_noise(noise: &[f64], units: &[f64]) -> f64 {
 pub(super) struct Judged<V> {
     pub difference: V,
     pub factor: f64,
-    /// The noise of the difference as so many times that of what is left.
+    /// How many times the noise of the remainder the difference has.
     noise: f64,
 }
 
 impl<V> Judged<V> {
-    /// What is gained between looks that are so far apart.
+    /// The gain between looks that are so far apart.
     #[inline(always)]
     pub(super) fn slope(difference: V, apart: f64) -> Self {
         Self {
@@ -94,7 +94,7 @@ impl<V> Judged<V> {
     }
 }
 
-/// What is left at the looks so far.
+/// The remainders at the looks so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Left<V> {
     /// The last one and its differences, up to the third.
@@ -110,7 +110,7 @@ impl<V: Clone> Left<V> {
         }
     }
 
-    /// What another look leaves: the slope from the look before, and the fourth difference where there is one.
+    /// The remainder at another look: the slope from the look before, and the fourth difference where there is one.
     #[inline(always)]
     pub(super) fn next(
         &mut self,

@@ -341,7 +341,7 @@ pub(super) fn varies_little<T: Real, G: Group<T>, const D: usize>(
     };
     let shared = shared_noise(&noise[..G::PARTS.min(D)], units);
     let noises: [f64; D] = core::array::from_fn(|b| larger(noise[b], shared * units[b]));
-    // Where noise is not known, differences may be those of rounding.
+    // Where noise is not known, differences may be rounding.
     let known = shared > 0.0;
     let mut so_far = Left::nothing(SVector::zeros());
     looks().all(|look| {

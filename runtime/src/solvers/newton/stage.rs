@@ -199,7 +199,7 @@ pub(super) fn ended<C: Curve>(
     })
 }
 
-/// What is left at a look and gained between two, over the course.
+/// The remainder at a look and the gain between two, over the course.
 struct Judges<'a> {
     value: &'a dyn Fn(&[f64]) -> f64,
     slope: &'a dyn Fn(&Judged<Vec<f64>>) -> f64,
@@ -223,7 +223,7 @@ fn on_the_way<C: Curve>(
     let of = |x: &[f64]| ratio(&curve.parts().lengths(x), course);
     let own: Vec<f64> = (0..curve.parts().count()).map(|b| curve.noise(b)).collect();
     let shared = shared_noise(&own, &stage.units);
-    // Where noise is not known, slopes may be those of rounding.
+    // Where noise is not known, slopes may be rounding.
     let known = shared > 0.0;
     let noise = |b: usize| {
         let unit = stage.units.get(b).copied().unwrap_or(0.0);
