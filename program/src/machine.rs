@@ -170,8 +170,9 @@ impl<const L: usize> Frame<L> {
 impl Called {
     #[cold]
     fn run<const L: usize>(&self, r: &mut [[f64; L]], [inputs, outputs]: &mut [Vec<f64>; 2]) {
-        let lanes = r.first().map_or(0, |x| x.len());
-        for lane in 0..lanes {
+        // Registers are chosen by number, lanes by place.
+        #[allow(clippy::needless_range_loop)]
+        for lane in 0..L {
             inputs.clear();
             inputs.extend(self.inputs.iter().map(|x| r[*x as usize][lane]));
             outputs.clear();

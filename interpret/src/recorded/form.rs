@@ -42,17 +42,20 @@ impl Form {
         Some(own)
     }
 
-    /// The value; nothing for errors, which are left to plain numbers.
+    /// The value, if there is one.
     pub fn run(&self, own: &mut Places<Traced>) -> Option<Value<Traced>> {
-        match self.body.run(own) {
-            Ok(Value::Failed(_)) | Err(Exit::Unfit(_)) => None,
-            Ok(value) => Some(value),
-            Err(Exit::Return(value)) => match *value {
-                Value::Failed(_) => None,
-                value => Some(value),
-            },
-        }
+        value_of(&self.body, own)
     }
+}
+
+/// The value of operations; nothing for errors, which are left to plain numbers.
+pub fn value_of(body: &Code<Traced>, places: &mut Places<Traced>) -> Option<Value<Traced>> {
+    let value = match body.run(places) {
+        Ok(value) => value,
+        Err(Exit::Return(value)) => *value,
+        Err(Exit::Unfit(_)) => return None,
+    };
+    Some(value).filter(|value| !matches!(value, Value::Failed(_)))
 }
 
 /// Whether two paths are one.

@@ -15,12 +15,13 @@ pub use places::PlaceFunction;
 pub use sites::{Lists, SiteFunction};
 pub use traced::Traced;
 
-use crate::code::{Exit, Library, Native, Places, Routine, Special};
+use crate::code::{Library, Native, Places, Routine, Special};
 use crate::library;
 use crate::opened::{Functions, at};
 use crate::over::{alike, numbers, over};
 use crate::value::Value;
 use clebsch_program::{Frame, Machine, Tape};
+use form::value_of;
 use traced::record;
 
 impl Library for Traced {
@@ -100,14 +101,7 @@ pub struct Fixed {
 }
 
 fn run(routine: &Routine<Traced>, places: &mut Places<Traced>) -> Option<Value<Traced>> {
-    match routine.body.run(places) {
-        Ok(Value::Failed(_)) | Err(Exit::Unfit(_)) => None,
-        Ok(value) => Some(value),
-        Err(Exit::Return(value)) => match *value {
-            Value::Failed(_) => None,
-            value => Some(value),
-        },
-    }
+    value_of(&routine.body, places)
 }
 
 fn constant(value: &Value<f64>) -> Option<Value<Traced>> {
