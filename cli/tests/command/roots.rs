@@ -82,6 +82,30 @@ fn a_heavy_place_on_the_way_is_not_passed_over() {
 }
 
 /// A bead is carried through the axis of its hoop several times; about the axis it would turn a hundred times as fast.
+/// The first correction ends before a bump, and the solution found lies behind it. The first root of `T = 1`, where
+/// `T = (1 + e) d + x e d²/(4 w²)`, `x = d/2 - c` and `e = -exp(-x²/(2 w²))/2`, lies before it.
+#[test]
+fn a_bump_beyond_the_first_correction_is_not_passed_over() {
+    let folder = Folder::new("beyond");
+    let model = folder.write(
+        "bump.clebsch",
+        "model Bump { param c, w: Real; field q: Real; let d = next(q) - q; let y = ((q + next(q))/2 - c)/w;
+            lagrangian = (1 - exp(-y^2/2)/2)*d^2/(2*h); }",
+    );
+    let case = folder.write(
+        "bump.toml",
+        "model = \"bump\"\nh = 1.0\nsteps = 1\n[parameters]\nc = 0.447946\nw = 0.011662\n\
+         [initial]\nq = 0.0\nmomentum = 1.0\n",
+    );
+    let row = stepped(&folder, &model, &case);
+    let [c, w, d] = [0.447946, 0.011662, row[2]];
+    let x = d / 2.0 - c;
+    let e = -0.5 * f64::exp(-x * x / (2.0 * w * w));
+    let found = (1.0 + e) * d + x * e * d * d / (4.0 * w * w);
+    assert!((found - 1.0).abs() < 1e-12, "{found} at {d}");
+    assert!(d < 0.87, "{d} lies behind the fold at 0.8726");
+}
+
 #[test]
 fn a_bead_that_crosses_the_axis_many_times_is_refused() {
     let model = "model Hoop { param m, R, g, I: Real; field th, ph: Real;

@@ -300,7 +300,14 @@ impl<C: Chart> AnyNewton<'_, C> {
                         }))
             })
         };
-        !search.open || looks().all(varies_little)
+        let mut lengths = vec![0.0; parts.count()];
+        chart.extents(solution, &mut lengths);
+        let shares = lengths.iter().zip(&ways).zip(&parts.open);
+        let shares = shares
+            .filter(|(_, open)| **open)
+            .map(|((length, way), _)| length / way);
+        let reach = shares.filter(|x| x.is_finite()).fold(1.0, larger);
+        !search.open || looks(reach).all(varies_little)
     }
 
     /// Whether the test of a solution evaluates the equations.

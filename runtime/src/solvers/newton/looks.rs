@@ -42,21 +42,25 @@ impl Look {
     }
 }
 
-/// All looks at a way.
+/// A solution is at most so many times as far as the first correction that comes near it, with room for rounding.
+const FARTHEST: f64 = 1.4;
+
+/// All looks at a way, up to a share of it: 1, or more if the solution lies beyond the end of the way.
 #[inline(always)]
-pub(super) fn looks() -> impl Iterator<Item = Look> {
+pub(super) fn looks(share: f64) -> impl Iterator<Item = Look> {
+    let last = share.clamp(1.0, FARTHEST);
     let first = Look {
         share: FIRST,
         apart: FIRST,
         number: None,
     };
     let apart = 1.0 / f64::from(PIECES);
-    let others = (1..PIECES).map(move |k| Look {
+    let others = (1..2 * PIECES).map(move |k| Look {
         share: f64::from(k) * apart,
         apart,
         number: Some(k),
     });
-    core::iter::once(first).chain(others)
+    core::iter::once(first).chain(others.take_while(move |look| look.share < last))
 }
 
 /// The noise of differences: equations of other parts bring theirs, so that all parts are as uncertain as the one that is

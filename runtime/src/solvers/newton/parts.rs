@@ -319,11 +319,27 @@ pub(super) fn comes_near<T: Real, G: Group<T>, const D: usize>(
     are_near::<T, G, D>(&squares, units, noise)
 }
 
-/// Whether equations vary little on the way from rest to the end of `correction`, taken back. `left` gives their rest at a
-/// point of the way, as a correction by the tangent at hand.
+/// How far the solution is, as a share of the way that a correction goes, in the open parts.
+fn reach<T: Real, G: Group<T>, const D: usize>(correction: &SVector<T, D>, solution: &G) -> f64 {
+    let mut lengths = [0.0; D];
+    solution.extents(&mut lengths);
+    let mut squares = [0.0; D];
+    for k in 0..G::DIMENSION.min(D) {
+        if let Some(square) = squares.get_mut(G::part_of(k)) {
+            *square += (correction[k] * correction[k]).greatest();
+        }
+    }
+    let open = (0..G::PARTS.min(D)).filter(|b| G::is_open(*b));
+    let shares = open.map(|b| lengths[b] / squares[b].sqrt());
+    shares.filter(|x| x.is_finite()).fold(1.0, larger)
+}
+
+/// Whether equations vary little on the way from rest to the end of `correction`, taken back, and on to the solution.
+/// `left` gives their rest at a point of the way, as a correction by the tangent at hand.
 #[inline(never)]
 pub(super) fn varies_little<T: Real, G: Group<T>, const D: usize>(
     correction: &SVector<T, D>,
+    solution: &G,
     left: impl Fn(f64, &G) -> Option<SVector<T, D>>,
     units: &[f64; D],
     noise: &[f64; D],
@@ -344,7 +360,7 @@ pub(super) fn varies_little<T: Real, G: Group<T>, const D: usize>(
     // Where noise is not known, differences may be rounding.
     let known = shared > 0.0;
     let mut so_far = Left::nothing(SVector::zeros());
-    looks().all(|look| {
+    looks(reach::<T, G, D>(correction, solution)).all(|look| {
         let at = G::identity().retract((-*correction * T::from_f64(look.share)).as_slice());
         let Some(off) = left(look.share, &at) else {
             return false;

@@ -245,7 +245,7 @@ fn on_the_way<C: Curve>(
     let mut so_far = Left::nothing(nothing);
     let (mut left, mut steepest, mut rough) = (0.0, 0.0, vec![]);
     // The tangent holds where the stage begins.
-    for look in looks().filter(|look| look.is_regular()) {
+    for look in looks(1.0).filter(|look| look.is_regular()) {
         let here = off(look.share);
         let [slope, fourth] = so_far.next(look, &here, |x, y| less(x, y));
         left = worse(left, of(&here));

@@ -54,7 +54,7 @@ where
             let goal = at_rest * T::from_f64(1.0 - share);
             search.factors.solve(&((residual(at) - goal) * search.unit))
         };
-        !search.open || varies_little(&correction, left, units, noise)
+        !search.open || varies_little(&correction, solution, left, units, noise)
     }
 
     /// The verdict on a solution, or on none, before any lane is judged.
