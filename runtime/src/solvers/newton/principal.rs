@@ -31,6 +31,10 @@ const SHORTER: f64 = 0.5;
 /// A rest of the way that is this part of a stage joins it.
 const JOINS: f64 = 0.1;
 
+/// Stages that end before this share of the way are judged by two corrections alone. Where the tangent at rest is nearly
+/// singular and grows, a closer look would make them shorter than momenta are known.
+const LOOKED_AT: f64 = 1e-6;
+
 /// The shortest stage tried, as a part of the way: a root so close to a fold is not taken. Rounding decides there.
 const SHORTEST: f64 = 1e-9;
 
@@ -137,7 +141,7 @@ pub(super) fn trace<C: Curve>(
         }
         length = end - share;
         let goal = times(&at_rest, 1.0 - end);
-        match ended(curve, &stage, &goal, last) {
+        match ended(curve, &stage, &goal, last, end >= LOOKED_AT) {
             Ok(Ended {
                 velocity: root,
                 course,

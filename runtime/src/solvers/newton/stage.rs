@@ -112,12 +112,13 @@ pub(super) struct Ended<G> {
     pub fall: f64,
 }
 
-/// The end of a stage, or the part of its length to try next.
+/// The end of a stage, or the part of its length to try next. `is_looked_at` says whether the equations on the way count.
 pub(super) fn ended<C: Curve>(
     curve: &C,
     stage: &Stage<C::Velocity>,
     goal: &[f64],
     last: bool,
+    is_looked_at: bool,
 ) -> Result<Ended<C::Velocity>, f64> {
     let parts = curve.parts();
     let first = stage.correction(goal, &stage.residual);
@@ -126,7 +127,8 @@ pub(super) fn ended<C: Curve>(
     let second = stage.correction(goal, &curve.residual(&at));
     let mut fall = ratio(&parts.lengths(&second), &course);
     let mut steepest = 0.0;
-    if stage.open {
+    let looks = stage.open && is_looked_at;
+    if looks {
         let [left, slope] = on_the_way(curve, stage, goal, &first, &course);
         fall = worse(fall, left);
         steepest = slope;
@@ -176,7 +178,7 @@ pub(super) fn ended<C: Curve>(
     if !solved {
         return Err(WORSE);
     }
-    let tangent = stage.open.then(|| curve.tangent(&at));
+    let tangent = looks.then(|| curve.tangent(&at));
     if let Some(end) = &tangent {
         let way = |share: f64| {
             let straight = curve.moved(&stage.velocity, &times(&first, share));
