@@ -108,7 +108,7 @@ fn a_bump_beyond_the_first_correction_is_not_passed_over() {
 
 #[test]
 fn a_bead_that_crosses_the_axis_many_times_is_refused() {
-    let model = "model Hoop { param m, R, g, I: Real; field th, ph: Real;
+    let model = "model Crossing { param m, R, g, I: Real; field th, ph: Real;
             let d = next(th) - th; let e = next(ph) - ph; let s = sin((th + next(th))/2);
             lagrangian = m*R^2*d^2/(2*h) + (m*R^2*s^2 + I)*e^2/(2*h) + h*m*g*R*cos(th); }";
     for (case, share) in [
@@ -125,7 +125,7 @@ fn a_bead_that_crosses_the_axis_many_times_is_refused() {
             "0.077783",
         ),
     ] {
-        folds("hoop", model, case, share);
+        folds("crossing", model, case, share);
     }
 }
 
