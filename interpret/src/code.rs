@@ -356,6 +356,17 @@ impl<T: Real> Code<T> {
         unfit(self.run(places)?.count())
     }
 
+    /// The value of a function with this body, also if it returns from within.
+    ///
+    /// # Errors
+    /// [`Exit::Unfit`] for values that an operation does not take.
+    pub fn returned(&self, places: &mut Places<T>) -> Evaluated<T> {
+        match self.run(places) {
+            Err(Exit::Return(value)) => Ok(*value),
+            other => other,
+        }
+    }
+
     /// The value.
     ///
     /// # Errors
@@ -416,10 +427,7 @@ impl<T: Real> Code<T> {
                 Value::Failed(e) => Some(Value::Failed(e.clone())),
                 value => Value::momentum(*frame, value),
             }),
-            Code::Function(body) => match body.run(places) {
-                Err(Exit::Return(value)) => Ok(*value),
-                other => other,
-            },
+            Code::Function(body) => body.returned(places),
             Code::Return(value) => Err(Exit::Return(Box::new(value.run(places)?))),
             Code::Try(value) => match value.run(places)? {
                 Value::Failed(e) => Err(Exit::Return(Box::new(Value::Failed(e)))),
@@ -569,10 +577,7 @@ impl<T: Real> Code<T> {
         for (at, value) in parameters.iter().zip(arguments) {
             *unfit(places.get_mut(*at))? = value;
         }
-        match body.run(places) {
-            Err(Exit::Return(value)) => Ok(*value),
-            other => other,
-        }
+        body.returned(places)
     }
 }
 

@@ -16,7 +16,7 @@ use std::cell::RefCell;
 use std::sync::Arc;
 
 /// Runs a function to its value; what cannot be is an error of the step.
-fn run(routine: &Routine<f64>, places: &mut Places<f64>) -> Result<Value<f64>, Failure> {
+pub fn run(routine: &Routine<f64>, places: &mut Places<f64>) -> Result<Value<f64>, Failure> {
     let value = match routine.body.run(places) {
         Ok(value) => value,
         Err(Exit::Return(value)) => *value,
@@ -28,7 +28,8 @@ fn run(routine: &Routine<f64>, places: &mut Places<f64>) -> Result<Value<f64>, F
     }
 }
 
-fn put(places: &mut Places<f64>, at: usize, value: Value<f64>) {
+/// Puts a value into a place.
+pub fn put(places: &mut Places<f64>, at: usize, value: Value<f64>) {
     if let Some(place) = places.get_mut(at) {
         *place = value;
     }
@@ -82,7 +83,7 @@ impl Opened {
         let steps = self
             .ways(card, &mut places, settings)
             .map_err(|e| e.beside(kinetic))?;
-        let recorded = self.recorded(own, &places, &steps, settings);
+        let recorded = self.recorded(own, &steps, settings);
         Ok(Box::new(Running {
             opened: self,
             card,
@@ -97,7 +98,6 @@ impl Opened {
     fn recorded(
         &'static self,
         parameters: Value<f64>,
-        places: &Places<f64>,
         steps: &Steps,
         settings: Settings,
     ) -> Option<Recorded> {
@@ -113,7 +113,7 @@ impl Opened {
             step: Value::Real(settings.h),
         };
         let own_step = !matches!(steps, Steps::Composed(_));
-        Some(Recorded::new(recordable, fixed, places, own_step))
+        Some(Recorded::new(recordable, fixed, own_step))
     }
 
     /// What makes the steps that are asked for.
@@ -310,7 +310,7 @@ impl Held {
     /// The tapes go on from what is in the places.
     fn follow(&mut self) {
         if let Some(recorded) = &mut self.recorded {
-            recorded.follow(&self.places);
+            recorded.follow();
         }
     }
 

@@ -203,10 +203,7 @@ pub(super) fn called<T: Real>(
         own.push(a.run(places)?);
     }
     own.resize(routine.places.max(own.len()), Value::Unit);
-    let value = match routine.body.run(&mut own) {
-        Err(Exit::Return(value)) => *value,
-        other => other?,
-    };
+    let value = routine.body.returned(&mut own)?;
     for (a, changed) in arguments.iter().zip(own) {
         // What was lent is given back; what was not changed is put back as it was.
         if let Some(place) = a.place_mut(places) {

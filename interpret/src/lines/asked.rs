@@ -1,9 +1,10 @@
 //! What a line is asked at its node: energies, conserved totals and the sizes of their terms, and what is observed at sites.
 //! Takes the routines of the model; gives numbers.
 
-use super::{LineTrajectory, columns, coordinates, numbers, put, run};
+use super::{LineTrajectory, columns, coordinates, numbers};
 use crate::code::Routine;
 use crate::opened::at;
+use crate::running::{put, run};
 use crate::value::Value;
 
 impl LineTrajectory {

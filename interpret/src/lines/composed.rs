@@ -2,9 +2,10 @@
 //! see [`CompositionOrder`].
 //! Takes a line at its start; its steps are then composed.
 
-use super::{LineTrajectory, Unstarted, put, run};
+use super::{LineTrajectory, Unstarted};
 use crate::code::Places;
 use crate::opened::at;
+use crate::running::{put, run};
 use crate::value::Value;
 use clebsch::integrate::CompositionOrder;
 use clebsch::line::{LineError, Stamp, shorter};

@@ -16,11 +16,12 @@ pub(crate) use given::extent;
 pub use trajectory::LineTrajectory;
 
 use crate::Refused;
-use crate::code::{Exit, Places, Routine};
+use crate::code::{Places, Routine};
 use crate::failure::Failure;
 use crate::lower::{self, Shared, entry};
 use crate::opened::at;
 use crate::program::Program;
+use crate::running::{put, run};
 use crate::sites::Column;
 use crate::value::Value;
 use clebsch::StepCause;
@@ -513,25 +514,6 @@ fn held<'a>(line: &'a core_line::Line, function: &str) -> Option<(&'a str, bool)
 fn unread() -> Failure {
     let what = "the start of a line";
     Failure::Cause(StepCause::Unread { what })
-}
-
-fn put(places: &mut Places<f64>, at: usize, value: Value<f64>) {
-    if let Some(place) = places.get_mut(at) {
-        *place = value;
-    }
-}
-
-/// Runs a function to its value.
-fn run(routine: &Routine<f64>, places: &mut Places<f64>) -> Result<Value<f64>, Failure> {
-    let value = match routine.body.run(places) {
-        Ok(value) => value,
-        Err(Exit::Return(value)) => *value,
-        Err(Exit::Unfit(what)) => Value::failed(StepCause::Unread { what }),
-    };
-    match value {
-        Value::Failed(e) => Err(*e),
-        value => Ok(value),
-    }
 }
 
 /// How many numbers a total has, by its type.

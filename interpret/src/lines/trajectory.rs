@@ -2,9 +2,10 @@
 //! Takes a model and the places of its routines; goes from node to node.
 
 use super::composed::Composed;
-use super::{LineModel, coordinates, run};
+use super::{LineModel, coordinates};
 use crate::code::Places;
 use crate::opened::at;
+use crate::running::run;
 use crate::value::Value;
 use clebsch::line::LineError;
 use clebsch::saved::{Saved, Words};

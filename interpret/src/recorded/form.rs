@@ -2,7 +2,7 @@
 
 use super::Traced;
 use super::ask::Asker;
-use crate::code::{Code, Exit, Places};
+use crate::code::{Code, Places};
 use crate::over::alike;
 use crate::value::Value;
 use std::collections::BTreeSet;
@@ -50,12 +50,8 @@ impl Form {
 
 /// The value of operations; nothing for errors, which are left to plain numbers.
 pub fn value_of(body: &Code<Traced>, places: &mut Places<Traced>) -> Option<Value<Traced>> {
-    let value = match body.run(places) {
-        Ok(value) => value,
-        Err(Exit::Return(value)) => *value,
-        Err(Exit::Unfit(_)) => return None,
-    };
-    Some(value).filter(|value| !matches!(value, Value::Failed(_)))
+    let value = body.returned(places).ok();
+    value.filter(|value| !matches!(value, Value::Failed(_)))
 }
 
 /// Whether two paths are one.

@@ -1,21 +1,22 @@
 //! A function of numbers, recorded when it is first called. It depends on its arguments alone.
 
+use super::form::value_of;
+use super::kept::{Pool, Tapes};
 use super::traced::{Traced, record};
-use crate::code::{Exit, Routine};
-use crate::over::{numbers, over};
+use crate::code::Routine;
+use crate::over::{alike, numbers, over};
 use crate::value::Value;
 use clebsch::Real;
-use clebsch_program::Machine;
-use std::sync::{Arc, OnceLock, PoisonError, RwLock};
+use clebsch_program::{Frame, Machine};
+use std::sync::OnceLock;
 
-/// Most tapes of a function: where decisions come out in more ways than these, it is run itself.
-pub(super) const MOST: usize = 8;
-
-/// A tape, and the value whose numbers it computes.
+/// A tape, the kinds of its arguments, and the value whose numbers it computes.
 #[derive(Debug)]
 struct Tape {
     machine: Machine,
+    takes: Vec<Value<f64>>,
     gives: Value<f64>,
+    frames: Pool<Frame<1>>,
 }
 
 /// A function and its tapes.
@@ -23,8 +24,7 @@ struct Tape {
 pub struct Function {
     plain: Routine<f64>,
     traced: OnceLock<Option<Routine<Traced>>>,
-    /// The newest last; as many as were tried.
-    tapes: RwLock<Vec<Option<Arc<Tape>>>>,
+    tapes: Tapes<Tape>,
 }
 
 impl Function {
@@ -33,77 +33,65 @@ impl Function {
         Function {
             plain,
             traced: OnceLock::new(),
-            tapes: RwLock::default(),
+            tapes: Tapes::new(),
         }
     }
 
     /// The value at these arguments; nothing where it has none.
     pub fn at(&self, given: &[&Value<f64>]) -> Option<Value<f64>> {
+        let by_tape = self.by_tape(given);
+        by_tape.or_else(|| run(&self.plain, given.iter().map(|x| (*x).clone()).collect()))
+    }
+
+    fn by_tape(&self, given: &[&Value<f64>]) -> Option<Value<f64>> {
         let mut all = Vec::new();
-        if given
-            .iter()
-            .try_for_each(|x| numbers(x, &mut all))
-            .is_some()
-        {
-            let tapes = self.tapes.read().unwrap_or_else(PoisonError::into_inner);
-            let known = tapes.iter().rev().flatten();
-            if let Some(found) = known.into_iter().find_map(|tape| tape.at(&all)) {
-                return Some(found);
-            }
-            let tried = tapes.len();
-            drop(tapes);
-            if tried < MOST
-                && let Some(found) = self.recorded(given, &all)
-            {
-                return Some(found);
-            }
-        }
-        run(&self.plain, given.iter().map(|x| (*x).clone()).collect())
+        given.iter().try_for_each(|x| numbers(x, &mut all))?;
+        let computes = |tape: &Tape| tape.at(given, &all);
+        self.tapes.compute(computes, || self.recorded(given))
     }
 
-    /// The same by a tape that is made.
-    fn recorded(&self, given: &[&Value<f64>], all: &[f64]) -> Option<Value<f64>> {
-        let traced = self
-            .traced
-            .get_or_init(|| self.plain.over(Traced::constant));
-        let made = traced.as_ref().and_then(|traced| tape_of(traced, given));
-        let made = made.map(Arc::new);
-        let mut tapes = self.tapes.write().unwrap_or_else(PoisonError::into_inner);
-        tapes.push(made.clone());
-        drop(tapes);
-        made?.at(all)
+    fn recorded(&self, given: &[&Value<f64>]) -> Option<Tape> {
+        let traced = || self.plain.over(Traced::constant);
+        let traced = self.traced.get_or_init(traced).as_ref()?;
+        let mut gives = None;
+        let (tape, inputs) = record(|| {
+            let inputs = given.iter().map(|value| over(value, &mut Traced::input));
+            let mut places: Vec<Value<Traced>> = inputs.collect::<Option<_>>()?;
+            places.resize(traced.places.max(places.len()), Value::Unit);
+            let found = value_of(&traced.body, &mut places)?;
+            gives = over(&found, &mut |_| 0.0);
+            let mut out = Vec::new();
+            numbers(&found, &mut out)?;
+            Some(out)
+        })?;
+        Some(Tape {
+            machine: Machine::new(&tape, inputs),
+            takes: given.iter().map(|x| (*x).clone()).collect(),
+            gives: gives?,
+            frames: Pool::new(),
+        })
     }
-}
-
-fn tape_of(traced: &Routine<Traced>, given: &[&Value<f64>]) -> Option<Tape> {
-    let mut gives = None;
-    let (tape, inputs) = record(|| {
-        let mut places = Vec::with_capacity(traced.places);
-        for value in given {
-            places.push(over(value, &mut Traced::input)?);
-        }
-        let found = run(traced, places)?;
-        gives = over(&found, &mut |_| 0.0);
-        let mut out = Vec::new();
-        numbers(&found, &mut out)?;
-        Some(out)
-    })?;
-    Some(Tape {
-        machine: Machine::new(&tape, inputs),
-        gives: gives?,
-    })
 }
 
 impl Tape {
-    fn at(&self, all: &[f64]) -> Option<Value<f64>> {
-        let mut frame = self.machine.frame::<1>();
-        let fits = self.machine.inputs() == all.len();
-        let loaded = super::load(frame.inputs().get_mut(..all.len())?, all);
-        if !fits || loaded.is_none() || !self.machine.run(&mut frame) {
+    /// The value at arguments of these numbers; nothing for other kinds of arguments.
+    fn at(&self, given: &[&Value<f64>], all: &[f64]) -> Option<Value<f64>> {
+        let same = given.len() == self.takes.len()
+            && given.iter().zip(&self.takes).all(|(a, b)| alike(a, b));
+        if !same {
             return None;
         }
-        let mut made = self.machine.gives(&frame, 0);
-        over(&self.gives, &mut |x| made.next().unwrap_or(x))
+        self.frames.with(
+            || self.machine.frame(),
+            |frame| {
+                super::load(frame.inputs(), all)?;
+                if !self.machine.run(frame) {
+                    return None;
+                }
+                let mut made = self.machine.gives(frame, 0);
+                over(&self.gives, &mut |x| made.next().unwrap_or(x))
+            },
+        )
     }
 }
 
@@ -111,9 +99,5 @@ impl Tape {
 pub fn run<T: Real>(routine: &Routine<T>, given: Vec<Value<T>>) -> Option<Value<T>> {
     let mut places = given;
     places.resize(routine.places.max(places.len()), Value::Unit);
-    match routine.body.run(&mut places) {
-        Ok(value) => Some(value),
-        Err(Exit::Return(value)) => Some(*value),
-        Err(Exit::Unfit(_)) => None,
-    }
+    routine.body.returned(&mut places).ok()
 }

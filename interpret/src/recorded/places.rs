@@ -2,13 +2,13 @@
 
 use super::ask::{Asker, Fixed, From};
 use super::form::{Form, stands};
-use super::function::MOST;
+use super::kept::{Pool, Tapes};
 use super::traced::record;
-use crate::code::{Code, Evaluated, Exit, Places, unfit};
-use crate::over::{numbers, over};
+use crate::code::{Code, Evaluated, Places, unfit};
+use crate::over::{alike, numbers, over};
 use crate::value::Value;
 use clebsch_program::{Frame, Machine};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
+use std::sync::OnceLock;
 
 /// A tape with the places of its inputs.
 #[derive(Debug)]
@@ -16,11 +16,12 @@ struct Tape {
     machine: Machine,
     /// Paths around, each with its first input and how many it has.
     around: Vec<(Code<f64>, usize, usize)>,
-    /// The first input of the argument.
+    /// The argument, for its kind, and its first input.
+    takes: Value<f64>,
     argument: usize,
     fixed: Fixed,
     gives: Value<f64>,
-    frames: Mutex<Vec<Frame<1>>>,
+    frames: Pool<Frame<1>>,
 }
 
 /// Operations on one argument, given its place, and on other places.
@@ -29,8 +30,7 @@ pub struct PlaceFunction {
     argument: usize,
     body: Code<f64>,
     form: OnceLock<Option<Form>>,
-    /// The newest last; as many as were tried.
-    tapes: RwLock<Vec<Option<Arc<Tape>>>>,
+    tapes: Tapes<Tape>,
 }
 
 impl PlaceFunction {
@@ -40,7 +40,7 @@ impl PlaceFunction {
             argument,
             body,
             form: OnceLock::new(),
-            tapes: RwLock::default(),
+            tapes: Tapes::new(),
         }
     }
 
@@ -53,30 +53,16 @@ impl PlaceFunction {
             return Ok(value);
         }
         *unfit(places.get_mut(self.argument))? = argument.clone();
-        match self.body.run(places) {
-            Err(Exit::Return(value)) => Ok(*value),
-            other => other,
-        }
+        self.body.returned(places)
     }
 
     fn by_tape(&self, argument: &Value<f64>, places: &Places<f64>) -> Option<Value<f64>> {
         let mut own = Vec::new();
         numbers(argument, &mut own)?;
-        let tapes = self.tapes.read().unwrap_or_else(PoisonError::into_inner);
-        let mut known = tapes.iter().rev().flatten();
-        if let Some(value) = known.find_map(|tape| tape.at(&own, places)) {
-            return Some(value);
-        }
-        let tried = tapes.len();
-        drop(tapes);
-        if tried == MOST {
-            return None;
-        }
-        let made = self.recorded(argument, places).map(Arc::new);
-        let mut tapes = self.tapes.write().unwrap_or_else(PoisonError::into_inner);
-        tapes.push(made.clone());
-        drop(tapes);
-        made?.at(&own, places)
+        self.tapes.compute(
+            |tape| tape.at(argument, &own, places),
+            || self.recorded(argument, places),
+        )
     }
 
     fn recorded(&self, argument: &Value<f64>, places: &Places<f64>) -> Option<Tape> {
@@ -100,10 +86,11 @@ impl PlaceFunction {
         let mut made = Tape {
             machine,
             around: Vec::new(),
+            takes: argument.clone(),
             argument: 0,
             fixed,
             gives: gives?,
-            frames: Mutex::default(),
+            frames: Pool::new(),
         };
         for read in reads {
             match read.from {
@@ -122,20 +109,15 @@ impl PlaceFunction {
 }
 
 impl Tape {
-    fn at(&self, argument: &[f64], places: &Places<f64>) -> Option<Value<f64>> {
-        if !stands(&self.fixed, places) {
+    /// The value at an argument of these numbers; nothing for another kind of argument, or other values around.
+    fn at(&self, argument: &Value<f64>, own: &[f64], places: &Places<f64>) -> Option<Value<f64>> {
+        if !alike(argument, &self.takes) || !stands(&self.fixed, places) {
             return None;
         }
-        let mut pool = self.frames.lock().unwrap_or_else(PoisonError::into_inner);
-        let frame = pool.pop();
-        drop(pool);
-        let mut frame = frame.unwrap_or_else(|| self.machine.frame());
-        let value = self.in_frame(argument, places, &mut frame);
-        self.frames
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .push(frame);
-        value
+        self.frames.with(
+            || self.machine.frame(),
+            |frame| self.in_frame(own, places, frame),
+        )
     }
 
     fn in_frame(

@@ -8,14 +8,15 @@ mod run;
 
 use super::ask::{Asker, Fixed, Read};
 use super::form::Form;
-use super::function::MOST;
+use super::kept::MOST;
 use super::traced::record;
-use crate::code::{Code, Evaluated, Exit, Places, unfit};
+use crate::code::{Code, Evaluated, Places, unfit};
 use crate::over::{numbers, over};
 use crate::sites::Column;
 use crate::value::Value;
 use clebsch::linalg::Dense;
 use run::SiteTape;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
 /// The lists that a loop fills, each from a site on.
@@ -53,7 +54,7 @@ pub struct SiteFunction {
     /// The newest last.
     tapes: RwLock<Vec<Arc<SiteTape>>>,
     /// How often recording failed.
-    failures: RwLock<usize>,
+    failures: AtomicUsize,
 }
 
 impl SiteFunction {
@@ -64,7 +65,7 @@ impl SiteFunction {
             body,
             form: OnceLock::new(),
             tapes: RwLock::default(),
-            failures: RwLock::default(),
+            failures: AtomicUsize::default(),
         }
     }
 
@@ -77,10 +78,7 @@ impl SiteFunction {
         for (at, value) in self.parameters.iter().zip(arguments) {
             *unfit(places.get_mut(*at))? = value;
         }
-        match self.body.run(places) {
-            Err(Exit::Return(value)) => Ok(*value),
-            other => other,
-        }
+        self.body.returned(places)
     }
 
     /// Runs sites by a tape, as far as that goes: the next site that is left to the body.
@@ -151,8 +149,7 @@ impl SiteFunction {
         site: usize,
         lists: &Lists<'_>,
     ) -> Option<Arc<SiteTape>> {
-        let failures = *self.failures.read().unwrap_or_else(PoisonError::into_inner);
-        if failures >= MOST {
+        if self.failures.load(Ordering::Relaxed) >= MOST {
             return None;
         }
         let first = self.once(form, places, site, lists);
@@ -171,10 +168,7 @@ impl SiteFunction {
                 Some(tape)
             }
             None => {
-                *self
-                    .failures
-                    .write()
-                    .unwrap_or_else(PoisonError::into_inner) += 1;
+                self.failures.fetch_add(1, Ordering::Relaxed);
                 None
             }
         }

@@ -6,10 +6,10 @@ use crate::code::{Code, Places};
 use crate::over::alike;
 use crate::recorded::ask::{Fixed, From, List};
 use crate::recorded::form::{is_same, stands};
+use crate::recorded::kept::Pool;
 use crate::sites::Column;
 use crate::value::Value;
 use clebsch_program::{Frame, Machine, WIDTH};
-use std::sync::{Mutex, PoisonError};
 
 /// So few sites are run one by one.
 const FEW: usize = 8;
@@ -38,7 +38,7 @@ pub struct SiteTape {
     moving: Vec<Source<(List, isize)>>,
     fixed: Fixed,
     gives: Vec<Value<f64>>,
-    frames: Mutex<Vec<Frames>>,
+    frames: Pool<Frames>,
 }
 
 type Frames = (Frame<1>, Frame<WIDTH>);
@@ -105,7 +105,7 @@ impl SiteTape {
             moving,
             fixed: first.fixed,
             gives: first.gives,
-            frames: Mutex::default(),
+            frames: Pool::new(),
         })
     }
 
@@ -126,14 +126,9 @@ impl SiteTape {
         sites: [usize; 2],
         lists: &mut Lists<'_>,
     ) -> Option<usize> {
-        let mut pool = self.frames.lock().unwrap_or_else(PoisonError::into_inner);
-        let frames = pool.pop();
-        drop(pool);
-        let mut frames = frames.unwrap_or_else(|| (self.machine.frame(), self.machine.frame()));
-        let done = self.run_in(places, sites, lists, &mut frames);
-        let mut pool = self.frames.lock().unwrap_or_else(PoisonError::into_inner);
-        pool.push(frames);
-        done
+        let frames = || (self.machine.frame(), self.machine.frame());
+        self.frames
+            .with(frames, |frames| self.run_in(places, sites, lists, frames))
     }
 
     fn run_in(

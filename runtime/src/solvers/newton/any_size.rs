@@ -271,6 +271,9 @@ impl<C: Chart> AnyNewton<'_, C> {
         let Some(x) = correction.filter(|x| comes_near(chart, x, solution, units, &noise)) else {
             return false;
         };
+        if !search.open {
+            return true;
+        }
         let parts = chart.parts();
         let ways = parts.lengths(&x);
         let near = |off: &[f64], noise: &dyn Fn(usize) -> f64| {
@@ -307,7 +310,7 @@ impl<C: Chart> AnyNewton<'_, C> {
             .filter(|(_, open)| **open)
             .map(|((length, way), _)| length / way);
         let reach = shares.filter(|x| x.is_finite()).fold(1.0, larger);
-        !search.open || looks(reach).all(varies_little)
+        looks(reach).all(varies_little)
     }
 
     /// Whether the test of a solution evaluates the equations.

@@ -1,0 +1,329 @@
+//! The functions of a trajectory as tapes: its step, and what a run evaluates at nodes.
+
+use super::counts::{counts, each_count, shift, uncounted};
+use super::form::value_of;
+use super::traced::{Traced, record};
+use super::ways::{Way, Ways};
+use crate::code::{Places, Routine};
+use crate::opened::{Functions, at};
+use crate::over::{alike, numbers, over};
+use crate::value::Value;
+use clebsch_program::{Machine, Tape};
+
+/// The functions that are recorded.
+#[derive(Debug)]
+pub struct Recordable {
+    new: Routine<Traced>,
+    with_solver: Option<Routine<Traced>>,
+    step: Option<Routine<Traced>>,
+    watched: [Option<Routine<Traced>>; 3],
+    places: usize,
+}
+
+/// The functions that a run evaluates at a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Watched {
+    /// The observables.
+    Observables,
+    /// The invariants.
+    Invariants,
+    /// Their scales.
+    Scales,
+}
+
+impl Recordable {
+    /// The functions of a model over the scalar that records; nothing if its parameters cannot be prepared over it.
+    pub fn of(functions: &Functions, places: usize) -> Option<Self> {
+        let over = |routine: &Routine<f64>| routine.over(Traced::constant);
+        Some(Recordable {
+            new: over(&functions.new)?,
+            with_solver: functions.with_solver.as_ref().and_then(over),
+            step: over(&functions.step),
+            watched: [
+                over(&functions.observe),
+                over(&functions.invariants),
+                over(&functions.scales),
+            ],
+            places,
+        })
+    }
+
+    /// Places with the model prepared from constant parameters.
+    fn places(&self, fixed: &Fixed) -> Option<Places<Traced>> {
+        let mut places = vec![Value::Unit; self.places];
+        *places.get_mut(at::GIVEN)? = constant(&fixed.parameters)?;
+        let model = value_of(&self.new.body, &mut places)?;
+        *places.get_mut(at::MODEL)? = model;
+        if let Some(method) = &fixed.solver {
+            let with_solver = self.with_solver.as_ref()?;
+            *places.get_mut(at::GIVEN)? = constant(method)?;
+            let model = value_of(&with_solver.body, &mut places)?;
+            *places.get_mut(at::MODEL)? = model;
+        }
+        *places.get_mut(at::STEP)? = constant(&fixed.step)?;
+        Some(places)
+    }
+}
+
+/// The values that stay the same while a trajectory runs.
+#[derive(Debug)]
+pub struct Fixed {
+    /// The parameters as given.
+    pub parameters: Value<f64>,
+    /// The solver that was chosen.
+    pub solver: Option<Value<f64>>,
+    /// The step size.
+    pub step: Value<f64>,
+}
+
+fn constant(value: &Value<f64>) -> Option<Value<Traced>> {
+    over(value, &mut Traced::constant)
+}
+
+/// The tapes of a trajectory, and the numbers of its state and workspace.
+#[derive(Debug)]
+pub struct Recorded {
+    functions: &'static Recordable,
+    fixed: Fixed,
+    step: Ways,
+    watched: [Ways; 3],
+    numbers: Vec<f64>,
+    counts: Vec<i64>,
+    newest: Newest,
+}
+
+/// Where the newest state and workspace are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Newest {
+    /// In the numbers of the tapes.
+    Numbers,
+    /// In the places.
+    Places,
+    /// In both.
+    Both,
+}
+
+impl Recorded {
+    /// Nothing recorded yet. Steps are recorded if they are the model's own.
+    pub fn new(functions: &'static Recordable, fixed: Fixed, own_step: bool) -> Self {
+        Recorded {
+            functions,
+            fixed,
+            step: Ways::new(own_step && functions.step.is_some()),
+            watched: functions.watched.each_ref().map(|f| Ways::new(f.is_some())),
+            numbers: Vec::new(),
+            counts: Vec::new(),
+            newest: Newest::Places,
+        }
+    }
+
+    /// Something else has changed the places.
+    pub fn follow(&mut self) {
+        self.newest = Newest::Places;
+    }
+
+    /// Takes the numbers of the places, if these are newer.
+    fn read(&mut self, places: &Places<f64>) {
+        if self.newest != Newest::Places {
+            return;
+        }
+        self.newest = Newest::Both;
+        self.numbers.clear();
+        self.counts.clear();
+        for value in [at::STATE, at::WORK]
+            .iter()
+            .filter_map(|at| places.get(*at))
+        {
+            let before = self.numbers.len();
+            if numbers(value, &mut self.numbers).is_none() {
+                self.numbers.truncate(before);
+            }
+            counts(value, &mut self.counts);
+        }
+    }
+
+    /// Puts the numbers into the places, if they are newer.
+    pub fn write(&mut self, places: &mut Places<f64>) {
+        put(&self.numbers, &self.counts, &mut self.newest, places);
+    }
+
+    /// Makes a step; false if the function itself has to.
+    pub fn step(&mut self, places: &mut Places<f64>) -> bool {
+        if self.step.are_none() {
+            return false;
+        }
+        self.read(places);
+        let Self {
+            functions, fixed, ..
+        } = self;
+        let way = self.step.found(&self.numbers, || {
+            put(&self.numbers, &self.counts, &mut self.newest, places);
+            recorded_step(functions, fixed, places)
+        });
+        let Some(way) = way else {
+            return false;
+        };
+        for (slot, x) in self
+            .numbers
+            .iter_mut()
+            .zip(way.machine.gives(&way.frame, 0))
+        {
+            *slot = x;
+        }
+        for (n, growth) in self.counts.iter_mut().zip(&way.growth) {
+            *n += growth;
+        }
+        self.newest = Newest::Numbers;
+        true
+    }
+
+    /// The node, if the numbers are newer than the places: the only count of a state.
+    pub fn node(&self) -> Option<u64> {
+        let newer = self.newest == Newest::Numbers;
+        let node = self.counts.first().filter(|_| newer);
+        node.and_then(|n| u64::try_from(*n).ok())
+    }
+
+    /// Writes what is watched; false if the function itself has to.
+    pub fn watch(&mut self, which: Watched, places: &mut Places<f64>, out: &mut [f64]) -> bool {
+        self.read(places);
+        let Self {
+            functions,
+            fixed,
+            watched: [observables, invariants, scales],
+            ..
+        } = self;
+        let ways = match which {
+            Watched::Observables => observables,
+            Watched::Invariants => invariants,
+            Watched::Scales => scales,
+        };
+        let way = ways.found(&self.numbers, || {
+            put(&self.numbers, &self.counts, &mut self.newest, places);
+            recorded_watch(functions, which, fixed, places)
+        });
+        let Some(way) = way.filter(|way| way.machine.outputs() == out.len()) else {
+            return false;
+        };
+        for (slot, x) in out.iter_mut().zip(way.machine.gives(&way.frame, 0)) {
+            *slot = x;
+        }
+        true
+    }
+}
+
+fn put(numbers: &[f64], counts: &[i64], newest: &mut Newest, places: &mut Places<f64>) {
+    if *newest != Newest::Numbers {
+        return;
+    }
+    *newest = Newest::Both;
+    let mut numbers = numbers.iter().copied();
+    let mut counts = counts.iter().copied();
+    for place in [at::STATE, at::WORK] {
+        let Some(value) = places.get_mut(place) else {
+            continue;
+        };
+        let own = over(value, &mut |x: f64| numbers.next().unwrap_or(x));
+        if let Some(mut own) = own {
+            each_count(&mut own, &mut |n| *n = counts.next().unwrap_or(*n));
+            *value = own;
+        }
+    }
+}
+
+/// A tape with so many inputs, and the growth of counts.
+type Once = ((Tape, usize), Vec<i64>);
+
+/// Records twice, with different counts: if these enter a number or a decision, recording gives up.
+fn twice(once: impl Fn(bool) -> Option<Once>) -> Option<Way> {
+    let first = once(false)?;
+    if once(true)? != first {
+        return None;
+    }
+    let ((tape, inputs), growth) = first;
+    let machine = Machine::new(&tape, inputs);
+    let frame = machine.frame();
+    Some(Way {
+        machine,
+        frame,
+        growth,
+    })
+}
+
+/// The numbers of a value as inputs; its counts shifted, if wanted, and noted.
+fn input(
+    value: &Value<f64>,
+    shifted: bool,
+    next: &mut i64,
+    noted: &mut Vec<i64>,
+) -> Option<Value<Traced>> {
+    // A solver's memory cannot be an input.
+    numbers(value, &mut Vec::new())?;
+    let mut value = over(value, &mut Traced::input)?;
+    if shifted {
+        shift(&mut value, next);
+    }
+    counts(&value, noted);
+    Some(value)
+}
+
+fn recorded_step(all: &Recordable, fixed: &Fixed, from: &Places<f64>) -> Option<Way> {
+    let routine = all.step.as_ref()?;
+    twice(|shifted| {
+        let mut places = all.places(fixed)?;
+        let mut growth = Vec::new();
+        let recorded = record(|| {
+            let (mut before, mut after, mut next) = (Vec::new(), Vec::new(), 0);
+            let mut whole = Vec::new();
+            for at in [at::STATE, at::WORK] {
+                let value = input(from.get(at)?, shifted, &mut next, &mut before)?;
+                whole.push(value.clone());
+                *places.get_mut(at)? = value;
+            }
+            value_of(&routine.body, &mut places)?;
+            let mut outputs = Vec::new();
+            for (at, before) in [at::STATE, at::WORK].into_iter().zip(&whole) {
+                let value = places
+                    .get(at)
+                    .filter(|value| alike(&uncounted(before), &uncounted(value)))?;
+                numbers(value, &mut outputs)?;
+                counts(value, &mut after);
+            }
+            growth = after.iter().zip(&before).map(|(a, b)| a - b).collect();
+            Some(outputs)
+        })?;
+        Some((recorded, growth))
+    })
+}
+
+fn recorded_watch(
+    all: &Recordable,
+    which: Watched,
+    fixed: &Fixed,
+    from: &Places<f64>,
+) -> Option<Way> {
+    let routine = all.watched.get(which as usize)?.as_ref()?;
+    twice(|shifted| {
+        let mut places = all.places(fixed)?;
+        let recorded = record(|| {
+            let (mut next, mut noted) = (0, Vec::new());
+            let state = input(from.get(at::STATE)?, shifted, &mut next, &mut noted)?;
+            *places.get_mut(at::STATE)? = state;
+            // A function that reads a solver's memory is not recorded.
+            if let Some(work) = input(from.get(at::WORK)?, shifted, &mut next, &mut noted) {
+                *places.get_mut(at::WORK)? = work;
+            }
+            *places.get_mut(at::OUT)? = Value::List(Vec::new());
+            value_of(&routine.body, &mut places)?;
+            let Value::List(list) = places.get(at::OUT)? else {
+                return None;
+            };
+            let numbers = list.iter().map(|x| match x {
+                Value::Real(x) => Some(*x),
+                _ => None,
+            });
+            numbers.collect()
+        })?;
+        Some((recorded, Vec::new()))
+    })
+}
