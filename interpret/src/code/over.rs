@@ -34,6 +34,7 @@ struct Change<T, U> {
 }
 
 impl<T: Real, U: Library> Change<T, U> {
+    #[inline(never)]
     fn value(self, value: &Value<T>) -> Option<Value<U>> {
         over(value, &mut |x| (self.change)(x))
     }
@@ -42,8 +43,13 @@ impl<T: Real, U: Library> Change<T, U> {
         self.code(code).map(Box::new)
     }
 
+    #[inline(never)]
     fn all(self, all: &[Code<T>]) -> Option<Vec<Code<U>>> {
-        all.iter().map(|code| self.code(code)).collect()
+        let mut changed = Vec::with_capacity(all.len());
+        for code in all {
+            changed.push(self.code(code)?);
+        }
+        Some(changed)
     }
 
     /// An operation that may be missing.
@@ -54,6 +60,7 @@ impl<T: Real, U: Library> Change<T, U> {
         }
     }
 
+    #[inline(never)]
     fn pattern(self, pattern: &Pattern<T>) -> Option<Pattern<U>> {
         let boxed = |inner: &Pattern<T>| self.pattern(inner).map(Box::new);
         let each = |all: &[Pattern<T>]| -> Option<Vec<Pattern<U>>> {
@@ -76,15 +83,30 @@ impl<T: Real, U: Library> Change<T, U> {
         })
     }
 
-    fn arm(self, arm: &Arm<T>) -> Option<Arm<U>> {
-        let guard = self.perhaps(arm.guard.as_ref())?;
-        Some(Arm {
-            pattern: self.pattern(&arm.pattern)?,
-            guard: guard.map(|guard| *guard),
-            body: self.code(&arm.body)?,
-        })
+    #[inline(never)]
+    fn arms(self, arms: &[Arm<T>]) -> Option<Vec<Arm<U>>> {
+        let mut changed = Vec::with_capacity(arms.len());
+        for arm in arms {
+            let guard = self.perhaps(arm.guard.as_ref())?;
+            changed.push(Arm {
+                pattern: self.pattern(&arm.pattern)?,
+                guard: guard.map(|guard| *guard),
+                body: self.code(&arm.body)?,
+            });
+        }
+        Some(changed)
     }
 
+    #[inline(never)]
+    fn fields(self, given: &[(usize, Code<T>)]) -> Option<Vec<(usize, Code<U>)>> {
+        let mut changed = Vec::with_capacity(given.len());
+        for (at, code) in given {
+            changed.push((*at, self.code(code)?));
+        }
+        Some(changed)
+    }
+
+    #[inline(never)]
     fn routine(self, routine: &OnceLock<Routine<T>>) -> Option<Arc<OnceLock<Routine<U>>>> {
         let deeper = Change {
             depth: self.depth + 1,
@@ -128,13 +150,7 @@ impl<T: Real, U: Library> Change<T, U> {
                 let otherwise = self.perhaps(otherwise.as_deref())?;
                 Code::If(self.boxed(condition)?, self.boxed(then)?, otherwise)
             }
-            Code::Match(value, arms) => {
-                let arms = arms
-                    .iter()
-                    .map(|arm| self.arm(arm))
-                    .collect::<Option<_>>()?;
-                Code::Match(self.boxed(value)?, arms)
-            }
+            Code::Match(value, arms) => Code::Match(self.boxed(value)?, self.arms(arms)?),
             Code::While(condition, body) => Code::While(self.boxed(condition)?, self.boxed(body)?),
             Code::For(at, from, to, body) => {
                 Code::For(*at, self.boxed(from)?, self.boxed(to)?, self.boxed(body)?)
@@ -147,8 +163,7 @@ impl<T: Real, U: Library> Change<T, U> {
                 Code::Increase(self.boxed(target)?, self.boxed(value)?)
             }
             Code::Struct(layout, given, base) => {
-                let field = |(at, code): &(usize, Code<T>)| Some((*at, self.code(code)?));
-                let given = given.iter().map(field).collect::<Option<_>>()?;
+                let given = self.fields(given)?;
                 Code::Struct(layout.clone(), given, self.perhaps(base.as_deref())?)
             }
             Code::List(all) => Code::List(self.all(all)?),

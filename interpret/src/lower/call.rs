@@ -102,65 +102,8 @@ impl Lower<'_, '_> {
         let sizes = self.sizes_of(path);
         let names: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        match names.as_slice() {
-            ["T", "from_f64"] if c.args.iter().any(is_pi) => {
-                let value = std::f64::consts::PI;
-                return Ok(Code::Constant(Value::Real(value)));
-            }
-            ["T", "from_f64"] => {
-                let [argument] = &self.all(c.args.iter())?[..] else {
-                    return Err(refuse(c));
-                };
-                return match argument {
-                    Code::Constant(Value::Double(x)) => Ok(Code::Constant(Value::Real(*x))),
-                    other => {
-                        let call = self.native("from_f64", vec![other.clone()], sizes);
-                        call.ok_or_else(|| refuse(c))
-                    }
-                };
-            }
-            ["T", "from_ratio"] => {
-                let arguments = self.all(c.args.iter())?;
-                let call = self.native("from_ratio", arguments, sizes);
-                return call.ok_or_else(|| refuse(c));
-            }
-            ["T", "zero"] => return Ok(Code::Constant(Value::Real(0.0))),
-            ["T", "one"] => return Ok(Code::Constant(Value::Real(1.0))),
-            ["SMatrix" | "SVector", "zeros"] if sizes.is_empty() => {
-                let sizes = self.sizes_of_type(ty);
-                return self
-                    .native("zeros", Vec::new(), sizes)
-                    .ok_or_else(|| refuse(c));
-            }
-            ["SMatrix" | "SVector", "from_fn"] => {
-                let mut arguments = vec![
-                    whole(sizes.first().copied().unwrap_or(1)),
-                    whole(sizes.get(1).copied().unwrap_or(1)),
-                ];
-                for a in &c.args {
-                    arguments.push(self.argument(a)?);
-                }
-                let special = crate::library::special("from_fn").ok_or_else(|| refuse(c))?;
-                return Ok(Code::Special(special, arguments, "from_fn".into()));
-            }
-            ["SVector" | "SMatrix", "new"] => {
-                let arguments = self.all(c.args.iter())?;
-                return self
-                    .native("single", arguments, sizes)
-                    .ok_or_else(|| refuse(c));
-            }
-            ["newton", "Turn"] => return Ok(Code::List(self.all(c.args.iter())?)),
-            ["newton", "Search", constructor] => {
-                return self.search(constructor, ty)?.ok_or_else(|| refuse(c));
-            }
-            [.., "repeat_n"] => {
-                let [value, count] = &self.all(c.args.iter())?[..] else {
-                    return Err(refuse(c));
-                };
-                let (value, count) = (value.clone(), count.clone());
-                return Ok(Code::Repeat(Box::new(value), Box::new(count)));
-            }
-            _ => {}
+        if let Some(made) = self.made_by_name(c, &names, &sizes, ty)? {
+            return Ok(made);
         }
         if let [.., owner, name] = names.as_slice()
             && let Some(sweep) = self.sweep(&format!("{owner}::{name}"), c)?
@@ -198,7 +141,60 @@ impl Lower<'_, '_> {
             .ok_or_else(|| refuse(c))
     }
 
+    /// Numbers, matrices and lists made by functions whose names say how.
+    #[inline(never)]
+    fn made_by_name(
+        &mut self,
+        c: &syn::ExprCall,
+        names: &[&str],
+        sizes: &[usize],
+        ty: Option<&syn::Type>,
+    ) -> Result<Option<Code<f64>>, Refused> {
+        let made = match names {
+            ["T", "from_f64"] if c.args.iter().any(is_pi) => {
+                Some(Code::Constant(Value::Real(std::f64::consts::PI)))
+            }
+            ["T", "from_f64"] => match self.all(c.args.iter())?.pop() {
+                Some(Code::Constant(Value::Double(x))) => Some(Code::Constant(Value::Real(x))),
+                Some(other) => self.native("from_f64", vec![other], Vec::new()),
+                None => None,
+            },
+            ["T", "from_ratio"] => {
+                let arguments = self.all(c.args.iter())?;
+                self.native("from_ratio", arguments, Vec::new())
+            }
+            ["T", "zero"] => Some(Code::Constant(Value::Real(0.0))),
+            ["T", "one"] => Some(Code::Constant(Value::Real(1.0))),
+            ["SMatrix" | "SVector", "zeros"] if sizes.is_empty() => {
+                let sizes = self.sizes_of_type(ty);
+                self.native("zeros", Vec::new(), sizes)
+            }
+            ["SMatrix" | "SVector", "from_fn"] => {
+                let size = |at: usize| whole(sizes.get(at).copied().unwrap_or(1));
+                let mut arguments = vec![size(0), size(1)];
+                for a in &c.args {
+                    arguments.push(self.argument(a)?);
+                }
+                let special = crate::library::special("from_fn");
+                special.map(|special| Code::Special(special, arguments, "from_fn".into()))
+            }
+            ["SVector" | "SMatrix", "new"] => {
+                let arguments = self.all(c.args.iter())?;
+                self.native("single", arguments, sizes.to_vec())
+            }
+            ["newton", "Turn"] => Some(Code::List(self.all(c.args.iter())?)),
+            ["newton", "Search", constructor] => self.search(constructor, ty)?,
+            [.., "repeat_n"] => match <[Code<f64>; 2]>::try_from(self.all(c.args.iter())?) {
+                Ok([value, count]) => Some(Code::Repeat(Box::new(value), Box::new(count))),
+                Err(_) => None,
+            },
+            _ => return Ok(None),
+        };
+        made.map(Some).ok_or_else(|| refuse(c))
+    }
+
     /// A functional of all sites that is made: those of the runtime are known here.
+    #[inline(never)]
     fn functional(&mut self, of: &syn::Type, c: &syn::ExprCall) -> Result<Code<f64>, Refused> {
         let syn::Type::Path(of) = of else {
             return Err(refuse(c));

@@ -35,17 +35,7 @@ impl Lower<'_, '_> {
             }
             syn::Expr::Binary(b) => self.binary(b)?,
             syn::Expr::Field(f) => self.field(f)?,
-            syn::Expr::Index(i) => {
-                if let syn::Expr::Range(_) = &*i.index {
-                    return self.part(e);
-                }
-                let base = self.expression(&i.expr, None)?;
-                let at = match &*i.index {
-                    syn::Expr::Tuple(t) => self.all(t.elems.iter())?,
-                    one => vec![self.expression(one, None)?],
-                };
-                Code::Index(Box::new(base), at)
-            }
+            syn::Expr::Index(i) => self.element(e, i)?,
             syn::Expr::Call(c) => self.call(c, ty)?,
             syn::Expr::MethodCall(m) => self.method(m, ty)?,
             // Braces about a place make a copy, which is changed in its stead.
@@ -55,32 +45,10 @@ impl Lower<'_, '_> {
             },
             syn::Expr::If(i) => self.conditional(i)?,
             syn::Expr::Match(m) => self.matched(m)?,
-            syn::Expr::Assign(a) => {
-                if let Some(all) = self.one_by_one(a)? {
-                    return Ok(all);
-                }
-                let value = self.expression(&a.right, None)?;
-                let targets = match &*a.left {
-                    syn::Expr::Tuple(t) => self.all(t.elems.iter())?,
-                    one => vec![self.expression(one, None)?],
-                };
-                Code::Assign(targets, Box::new(value))
-            }
+            syn::Expr::Assign(a) => self.assigned(a)?,
             syn::Expr::Struct(s) => self.made(s)?,
             syn::Expr::Tuple(t) => Code::List(self.all(t.elems.iter())?),
-            syn::Expr::Array(a) => {
-                let ty = match ty {
-                    Some(syn::Type::Array(of)) => Some(&*of.elem),
-                    _ => None,
-                };
-                let all = a.elems.iter().map(|e| self.expression(e, ty));
-                let all: Vec<Code<f64>> = all.collect::<Result<_, _>>()?;
-                match all.is_empty() {
-                    // An array of nothing is a list still; a tuple of nothing is `()`.
-                    true => Code::Constant(Value::List(Vec::new())),
-                    false => Code::List(all),
-                }
-            }
+            syn::Expr::Array(a) => self.array(a, ty)?,
             syn::Expr::Repeat(r) => {
                 let (value, count) = (self.expression(&r.expr, None)?, self.size(&r.len));
                 let count = count.ok_or_else(|| refuse(&r.len))?;
@@ -105,7 +73,50 @@ impl Lower<'_, '_> {
         })
     }
 
+    /// An element, or a range of them.
+    #[inline(never)]
+    fn element(&mut self, e: &syn::Expr, i: &syn::ExprIndex) -> Result<Code<f64>, Refused> {
+        if let syn::Expr::Range(_) = &*i.index {
+            return self.part(e);
+        }
+        let base = self.expression(&i.expr, None)?;
+        let at = match &*i.index {
+            syn::Expr::Tuple(t) => self.all(t.elems.iter())?,
+            one => vec![self.expression(one, None)?],
+        };
+        Ok(Code::Index(Box::new(base), at))
+    }
+
+    #[inline(never)]
+    fn assigned(&mut self, a: &syn::ExprAssign) -> Result<Code<f64>, Refused> {
+        if let Some(all) = self.one_by_one(a)? {
+            return Ok(all);
+        }
+        let value = self.expression(&a.right, None)?;
+        let targets = match &*a.left {
+            syn::Expr::Tuple(t) => self.all(t.elems.iter())?,
+            one => vec![self.expression(one, None)?],
+        };
+        Ok(Code::Assign(targets, Box::new(value)))
+    }
+
+    #[inline(never)]
+    fn array(&mut self, a: &syn::ExprArray, ty: Option<&syn::Type>) -> Result<Code<f64>, Refused> {
+        let ty = match ty {
+            Some(syn::Type::Array(of)) => Some(&*of.elem),
+            _ => None,
+        };
+        let all = a.elems.iter().map(|e| self.expression(e, ty));
+        let all: Vec<Code<f64>> = all.collect::<Result<_, _>>()?;
+        Ok(match all.is_empty() {
+            // An array of nothing is a list still; a tuple of nothing is `()`.
+            true => Code::Constant(Value::List(Vec::new())),
+            false => Code::List(all),
+        })
+    }
+
     /// A tuple assigned to a tuple, where nothing assigned is read: one after the other.
+    #[inline(never)]
     fn one_by_one(&mut self, a: &syn::ExprAssign) -> Result<Option<Code<f64>>, Refused> {
         let (syn::Expr::Tuple(left), syn::Expr::Tuple(right)) = (&*a.left, &*a.right) else {
             return Ok(None);
@@ -140,6 +151,7 @@ impl Lower<'_, '_> {
     }
 
     /// What a path names: a local, a size, a constant of the runtime.
+    #[inline(never)]
     pub(super) fn path(&self, path: &syn::Path) -> Result<Option<Code<f64>>, Refused> {
         let constant = |value| Ok(Some(Code::Constant(value)));
         if let Some(name) = path.get_ident() {
@@ -211,6 +223,7 @@ impl Lower<'_, '_> {
         }
     }
 
+    #[inline(never)]
     fn conditional(&mut self, i: &syn::ExprIf) -> Result<Code<f64>, Refused> {
         let otherwise = match &i.else_branch {
             Some((_, e)) => Some(self.expression(e, None)?),
@@ -240,6 +253,7 @@ impl Lower<'_, '_> {
         Ok(Code::Match(Box::new(value), arms))
     }
 
+    #[inline(never)]
     fn matched(&mut self, m: &syn::ExprMatch) -> Result<Code<f64>, Refused> {
         let value = self.expression(&m.expr, None)?;
         let mut arms = Vec::new();
@@ -270,6 +284,7 @@ impl Lower<'_, '_> {
         })
     }
 
+    #[inline(never)]
     fn counted(&mut self, f: &syn::ExprForLoop) -> Result<Code<f64>, Refused> {
         let (counts, down) = match &*f.expr {
             syn::Expr::MethodCall(m) if m.method == "rev" => match &*m.receiver {
@@ -326,6 +341,7 @@ impl Lower<'_, '_> {
     }
 
     /// A closure: its parameters at places of their own.
+    #[inline(never)]
     pub(super) fn closure(&mut self, c: &syn::ExprClosure) -> Result<Code<f64>, Refused> {
         self.scopes.push(BTreeMap::new());
         let mut parameters = Vec::new();
@@ -349,6 +365,7 @@ impl Lower<'_, '_> {
     }
 
     /// A struct literal.
+    #[inline(never)]
     fn made(&mut self, s: &syn::ExprStruct) -> Result<Code<f64>, Refused> {
         if let Some(error) = self.error_of_line(s)? {
             return Ok(error);

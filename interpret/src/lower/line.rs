@@ -49,6 +49,7 @@ impl Lower<'_, '_> {
     }
 
     /// A part of a list as a value.
+    #[inline(never)]
     pub(super) fn part(&mut self, e: &syn::Expr) -> Result<Code<f64>, Refused> {
         let slice = self.slice(e)?;
         self.special("slice", ends(slice), e)
@@ -65,6 +66,7 @@ impl Lower<'_, '_> {
     }
 
     /// A loop over sites of the runtime, if a call is one.
+    #[inline(never)]
     pub(super) fn sweep(
         &mut self,
         name: &str,
@@ -116,6 +118,7 @@ impl Lower<'_, '_> {
     }
 
     /// A closure that stands under a name, called.
+    #[inline(never)]
     pub(super) fn called_back(
         &mut self,
         name: &str,
@@ -138,6 +141,7 @@ impl Lower<'_, '_> {
     }
 
     /// Methods of lists, and those that change a part of something.
+    #[inline(never)]
     pub(super) fn method_of_list(
         &mut self,
         m: &syn::ExprMethodCall,
@@ -207,6 +211,7 @@ impl Lower<'_, '_> {
     }
 
     /// `matches!(value, pattern)` and `vec![value; count]`.
+    #[inline(never)]
     pub(super) fn macro_call(&mut self, m: &syn::ExprMacro) -> Result<Code<f64>, Refused> {
         let tokens = m.mac.tokens.clone();
         match named(&m.mac.path).as_str() {

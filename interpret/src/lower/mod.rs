@@ -1,5 +1,8 @@
 //! From the emitted functions to operations over numbered places: names are looked up here and never
 //! again. Functions are written out where they are called, but for those that are rarely called.
+//!
+//! Calls nest some hundred deep. Functions marked `inline(never)` keep the frames of the recursion small: a thread has two
+//! megabytes of stack.
 
 mod call;
 mod expression;

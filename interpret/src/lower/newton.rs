@@ -88,6 +88,7 @@ fn name_in(tokens: &impl ToTokens, beginning: &str) -> Option<String> {
 
 impl Lower<'_, '_> {
     /// `newton::Search::...()` of a declared type, as a constant.
+    #[inline(never)]
     pub(super) fn search(
         &self,
         constructor: &str,
@@ -224,6 +225,7 @@ fn guard(arm: &syn::Arm) -> Option<&syn::Expr> {
 
 impl<'a> Lower<'a, '_> {
     /// The loop as one operation.
+    #[inline(never)]
     pub(super) fn solved(&mut self, of: &Looped) -> Result<Code<f64>, Refused> {
         self.scopes.push(BTreeMap::new());
         let solve = self.solve(of);

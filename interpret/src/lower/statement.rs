@@ -79,6 +79,7 @@ impl Lower<'_, '_> {
     }
 
     /// What is filled in by a loop, from the model alone, is filled once.
+    #[inline(never)]
     fn filled_once(&mut self, list: &mut Vec<Code<f64>>) {
         for i in 0..list.len() {
             let Some(Code::Let(Pattern::Place(at), value, None)) = list.get(i) else {
@@ -102,6 +103,7 @@ impl Lower<'_, '_> {
         }
     }
 
+    #[inline(never)]
     fn local(&mut self, local: &syn::Local, out: &mut Vec<Code<f64>>) -> Result<(), Refused> {
         let (pat, ty) = match &local.pat {
             syn::Pat::Type(typed) => (&*typed.pat, Some(&*typed.ty)),
@@ -174,6 +176,7 @@ impl Lower<'_, '_> {
     }
 
     /// `let (a, b) = (&x, &y)`: names for what stands somewhere, if all of it does.
+    #[inline(never)]
     fn lent(&mut self, names: &syn::PatTuple, values: &syn::ExprTuple) -> Result<bool, Refused> {
         let mut bound = Vec::new();
         for (name, value) in names.elems.iter().zip(&values.elems) {
