@@ -42,6 +42,8 @@ pub fn run_process() -> ExitCode {
 /// of one's own needs to call.
 #[must_use]
 pub fn run_process_on(gallery: &Gallery) -> ExitCode {
+    #[cfg(feature = "native")]
+    clebsch_native::install();
     let mut streams = Streams {
         input: &mut io::stdin(),
         out: &mut io::stdout(),

@@ -7,8 +7,11 @@
 
 mod arithmetic;
 mod array;
+mod compiled;
 mod evaluate;
+mod instruction;
 mod kernel;
+mod layout;
 mod listing;
 mod machine;
 mod operation;
@@ -19,7 +22,9 @@ mod verify;
 
 pub use arithmetic::{Arithmetic, Doubles, Functionals};
 pub use array::Array;
+pub use compiled::{Compiled, Compiler, compile_by};
 pub use evaluate::{Unvalued, evaluate};
+pub use instruction::{Called, Check, Instruction, Register};
 pub use kernel::{Input, Kernel, Line, Value};
 pub use machine::{Frame, Machine, WIDTH};
 pub use operation::{Call, Form, Number, Operation, Pair, Single};

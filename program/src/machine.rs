@@ -1,54 +1,23 @@
 //! A tape made ready to run: dead steps left out, values in as few registers as they need. One run computes one set of
 //! inputs, or several side by side, one in each lane.
 
-use crate::tape::{Function, Guard, Scalar, Step, Tape, Test, Whole};
-
-/// A place of a value.
-type Register = u32;
-
-/// An operation; its last register takes the result.
-#[derive(Clone, Copy, PartialEq, Debug)]
-enum Op {
-    Add(Register, Register, Register),
-    Sub(Register, Register, Register),
-    Mul(Register, Register, Register),
-    Div(Register, Register, Register),
-    Neg(Register, Register),
-    Function(Function, Register, Register),
-    WherePositive(Register, Register, Register),
-    Call(u32),
-}
-
-/// A call on registers.
-#[derive(Clone, Debug)]
-struct Called {
-    function: Whole,
-    sizes: Vec<usize>,
-    inputs: Vec<Register>,
-    /// Nothing for an output that is not used.
-    outputs: Vec<Option<Register>>,
-}
-
-/// A test on registers.
-#[derive(Clone, Copy, PartialEq, Debug)]
-enum Check {
-    AtMost(Register, Register, bool),
-    Less(Register, Register, bool),
-    Equal(Register, Register, bool),
-    Finite(Register, bool),
-}
+use crate::compiled::Code;
+use crate::instruction::{Called, Check, Instruction, Register};
+use crate::layout::Layout;
+use crate::tape::{Function, Tape};
 
 /// A tape that runs. The first registers hold inputs, the next constants, the others results.
 #[derive(Clone, Debug)]
 pub struct Machine {
-    inputs: usize,
-    reads: Vec<bool>,
-    constants: Vec<f64>,
-    registers: usize,
-    ops: Vec<Op>,
-    calls: Vec<Called>,
-    checks: Vec<Check>,
-    outputs: Vec<Register>,
+    pub(crate) inputs: usize,
+    pub(crate) reads: Vec<bool>,
+    pub(crate) constants: Vec<f64>,
+    pub(crate) registers: usize,
+    pub(crate) instructions: Vec<Instruction>,
+    pub(crate) calls: Vec<Called>,
+    pub(crate) checks: Vec<Check>,
+    pub(crate) outputs: Vec<Register>,
+    pub(crate) code: Code,
 }
 
 /// Registers of a machine, `L` runs side by side.
@@ -57,6 +26,8 @@ pub struct Frame<const L: usize> {
     registers: Vec<[f64; L]>,
     /// Numbers that enter a call, and that leave it.
     called: [Vec<f64>; 2],
+    /// How often the machine has run in it.
+    runs: u32,
 }
 
 impl Machine {
@@ -87,7 +58,43 @@ impl Machine {
     /// How many operations a run takes.
     #[must_use]
     pub fn operations(&self) -> usize {
-        self.ops.len()
+        self.instructions.len()
+    }
+
+    /// How many registers it has.
+    #[must_use]
+    pub fn registers(&self) -> usize {
+        self.registers
+    }
+
+    /// The constants, in the registers behind the inputs.
+    #[must_use]
+    pub fn constants(&self) -> &[f64] {
+        &self.constants
+    }
+
+    /// The operations, in their order.
+    #[must_use]
+    pub fn instructions(&self) -> &[Instruction] {
+        &self.instructions
+    }
+
+    /// The calls.
+    #[must_use]
+    pub fn calls(&self) -> &[Called] {
+        &self.calls
+    }
+
+    /// The tests.
+    #[must_use]
+    pub fn checks(&self) -> &[Check] {
+        &self.checks
+    }
+
+    /// The registers of the outputs.
+    #[must_use]
+    pub fn results(&self) -> &[Register] {
+        &self.outputs
     }
 
     /// Registers with its constants.
@@ -101,13 +108,17 @@ impl Machine {
         Frame {
             registers,
             called: [Vec::new(), Vec::new()],
+            runs: 0,
         }
     }
 
     /// Computes on the inputs in `frame`. False if a decision comes out otherwise than recorded: the outputs then mean
     /// nothing.
     pub fn run(&self, frame: &mut Frame<1>) -> bool {
-        self.computes(frame)
+        match self.code.at(&mut frame.runs, self) {
+            Some(code) => code.run(&mut frame.registers),
+            None => self.computes(frame),
+        }
     }
 
     /// Computes on [`WIDTH`] sets of inputs side by side. False if a decision comes out otherwise in any of them.
@@ -118,19 +129,19 @@ impl Machine {
     #[inline(always)]
     fn computes<const L: usize>(&self, frame: &mut Frame<L>) -> bool {
         let r = frame.registers.as_mut_slice();
-        for op in &self.ops {
+        for op in &self.instructions {
             match *op {
-                Op::Add(a, b, to) => two(r, a, b, to, |x, y| x + y),
-                Op::Sub(a, b, to) => two(r, a, b, to, |x, y| x - y),
-                Op::Mul(a, b, to) => two(r, a, b, to, |x, y| x * y),
-                Op::Div(a, b, to) => two(r, a, b, to, |x, y| x / y),
-                Op::Neg(a, to) => one(r, a, to, |x| -x),
-                Op::Function(Function::Sqrt, a, to) => one(r, a, to, f64::sqrt),
-                Op::Function(function, a, to) => one(r, a, to, |x| function.of(x)),
-                Op::WherePositive(a, b, to) => {
+                Instruction::Add(a, b, to) => two(r, a, b, to, |x, y| x + y),
+                Instruction::Sub(a, b, to) => two(r, a, b, to, |x, y| x - y),
+                Instruction::Mul(a, b, to) => two(r, a, b, to, |x, y| x * y),
+                Instruction::Div(a, b, to) => two(r, a, b, to, |x, y| x / y),
+                Instruction::Neg(a, to) => one(r, a, to, |x| -x),
+                Instruction::Function(Function::Sqrt, a, to) => one(r, a, to, f64::sqrt),
+                Instruction::Function(function, a, to) => one(r, a, to, |x| function.of(x)),
+                Instruction::WherePositive(a, b, to) => {
                     two(r, a, b, to, |x, y| if x > 0.0 { y } else { 0.0 });
                 }
-                Op::Call(which) => self.calls[which as usize].run(r, &mut frame.called),
+                Instruction::Call(which) => self.calls[which as usize].run(r, &mut frame.called),
             }
         }
         self.checks.iter().all(|check| match *check {
@@ -164,26 +175,6 @@ impl<const L: usize> Frame<L> {
     #[inline]
     pub fn inputs(&mut self) -> &mut [[f64; L]] {
         &mut self.registers
-    }
-}
-
-impl Called {
-    #[cold]
-    fn run<const L: usize>(&self, r: &mut [[f64; L]], [inputs, outputs]: &mut [Vec<f64>; 2]) {
-        // Registers are chosen by number, lanes by place.
-        #[allow(clippy::needless_range_loop)]
-        for lane in 0..L {
-            inputs.clear();
-            inputs.extend(self.inputs.iter().map(|x| r[*x as usize][lane]));
-            outputs.clear();
-            outputs.resize(self.outputs.len(), f64::NAN);
-            (self.function)(&self.sizes, inputs, outputs);
-            for (to, x) in self.outputs.iter().zip(outputs.iter()) {
-                if let Some(to) = to {
-                    r[*to as usize][lane] = *x;
-                }
-            }
-        }
     }
 }
 
@@ -262,141 +253,5 @@ mod wide {
     #[cfg(not(feature = "simd"))]
     pub(super) fn run(machine: &Machine, frame: &mut Frame<WIDTH>) -> bool {
         machine.computes(frame)
-    }
-}
-
-/// Where values stand, found by going through the tape once.
-struct Layout {
-    inputs: usize,
-    reads: Vec<bool>,
-    constants: Vec<f64>,
-    /// The register of each step that is used.
-    of: Vec<Option<Register>>,
-    registers: usize,
-}
-
-impl Layout {
-    fn of(tape: &Tape, inputs: usize) -> Self {
-        // The last step that uses each value; what leaves the tape is used to the end.
-        let mut last = vec![None; tape.steps.len()];
-        let end = tape.steps.len();
-        let guarded = tape.guards.iter().flat_map(|g| g.test.uses());
-        for used in guarded.flatten().chain(tape.outputs.iter().copied()) {
-            last[used.step()] = Some(end);
-        }
-        for (at, step) in tape.steps.iter().enumerate().rev() {
-            if last[at].is_some() {
-                for used in tape.uses(*step) {
-                    last[used.step()] = last[used.step()].max(Some(at));
-                }
-            }
-        }
-        let mut layout = Layout {
-            inputs,
-            reads: vec![false; inputs],
-            constants: Vec::new(),
-            of: vec![None; end],
-            registers: 0,
-        };
-        for (at, step) in tape.steps.iter().enumerate() {
-            match step {
-                Step::Input(place) => {
-                    layout.of[at] = Some(*place);
-                    if let Some(reads) = layout.reads.get_mut(*place as usize) {
-                        *reads = last[at].is_some();
-                    }
-                }
-                Step::Double(bits) if last[at].is_some() => {
-                    layout.of[at] = Some((inputs + layout.constants.len()) as Register);
-                    layout.constants.push(f64::from_bits(*bits));
-                }
-                _ => {}
-            }
-        }
-        layout.registers = inputs + layout.constants.len();
-        let mut free: Vec<Register> = Vec::new();
-        for (at, step) in tape.steps.iter().enumerate() {
-            let computes = !matches!(step, Step::Input(_) | Step::Double(_));
-            if !computes || last[at].is_none() {
-                continue;
-            }
-            // A register that is read for the last time may take the result, but not one of a call: its inputs are read
-            // once for all its outputs.
-            let fixed = inputs + layout.constants.len();
-            let [a, b] = step.uses();
-            let b = b.filter(|b| Some(*b) != a);
-            for used in [a, b].into_iter().flatten() {
-                let register = layout.of[used.step()].filter(|r| *r as usize >= fixed);
-                if last[used.step()] == Some(at) {
-                    free.extend(register);
-                }
-            }
-            layout.of[at] = Some(free.pop().unwrap_or_else(|| {
-                layout.registers += 1;
-                (layout.registers - 1) as Register
-            }));
-        }
-        layout
-    }
-
-    fn machine(self, tape: &Tape) -> Machine {
-        // Every value that is used has a register.
-        let of = |x: Scalar| self.of[x.step()].unwrap_or(0);
-        let mut calls: Vec<Called> = Vec::new();
-        let mut place = vec![None; tape.calls.len()];
-        let mut op = |(step, to): (&Step, &Option<Register>)| {
-            let to = (*to)?;
-            Some(match *step {
-                Step::Input(_) | Step::Double(_) => return None,
-                Step::Output(which, output) => {
-                    let (call, output) = (tape.calls.get(which as usize)?, output as usize);
-                    let known = place.get_mut(which as usize)?;
-                    let at = *known.get_or_insert(calls.len());
-                    if at == calls.len() {
-                        calls.push(Called {
-                            function: *tape.functions.get(call.function)?,
-                            sizes: call.sizes.clone(),
-                            inputs: call.inputs.iter().map(|x| of(*x)).collect(),
-                            outputs: vec![None; call.outputs],
-                        });
-                    }
-                    let outputs = &mut calls.get_mut(at)?.outputs;
-                    let is_first = outputs.iter().all(Option::is_none);
-                    *outputs.get_mut(output)? = Some(to);
-                    return is_first.then_some(Op::Call(at as u32));
-                }
-                Step::Add(a, b) => Op::Add(of(a), of(b), to),
-                Step::Sub(a, b) => Op::Sub(of(a), of(b), to),
-                Step::Mul(a, b) => Op::Mul(of(a), of(b), to),
-                Step::Div(a, b) => Op::Div(of(a), of(b), to),
-                Step::Neg(a) => Op::Neg(of(a), to),
-                Step::Function(f, a) => Op::Function(f, of(a), to),
-                Step::WherePositive(a, b) => Op::WherePositive(of(a), of(b), to),
-            })
-        };
-        let check = |Guard { test, holds }: &Guard| match *test {
-            Test::AtMost(a, b) => Check::AtMost(of(a), of(b), *holds),
-            Test::Less(a, b) => Check::Less(of(a), of(b), *holds),
-            Test::Finite(a) => Check::Finite(of(a), *holds),
-            Test::Equal(a, b) => Check::Equal(of(a), of(b), *holds),
-        };
-        let ops = tape
-            .steps
-            .iter()
-            .zip(&self.of)
-            .filter_map(&mut op)
-            .collect();
-        let checks = tape.guards.iter().map(check).collect();
-        let outputs = tape.outputs.iter().map(|x| of(*x)).collect();
-        Machine {
-            inputs: self.inputs,
-            reads: self.reads,
-            ops,
-            calls,
-            checks,
-            outputs,
-            constants: self.constants,
-            registers: self.registers,
-        }
     }
 }

@@ -1,0 +1,34 @@
+//! Code of the processor for the tapes of model files.
+//!
+//! A tape is straight: operations on numbers, then tests. Cranelift makes one function of it, which computes the same
+//! numbers as [`Machine::run`](clebsch_program::Machine::run), to the last bit: no operations are contracted or
+//! reordered, and sine, exponential and the like are those of the runtime. All `unsafe` code of the project is here.
+
+#![allow(unsafe_code)]
+
+mod calls;
+mod code;
+mod generate;
+
+pub use code::{Native, Refusal};
+
+use clebsch_program::{Compiled, Compiler, Machine, compile_by};
+use std::sync::Arc;
+
+/// Compiling takes as long as some thousand runs save.
+const AFTER: u32 = 4000;
+
+/// From now on, tapes of this process that run often are compiled. False if another compiler was set before.
+pub fn install() -> bool {
+    install_after(AFTER)
+}
+
+/// As [`install`], with the number of runs after which a tape is compiled.
+pub fn install_after(after: u32) -> bool {
+    compile_by(Compiler { compile, after })
+}
+
+fn compile(machine: &Machine) -> Option<Arc<dyn Compiled>> {
+    let native = Native::of(machine).ok()?;
+    Some(Arc::new(native))
+}
