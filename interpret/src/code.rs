@@ -6,6 +6,7 @@ mod parts;
 mod sweep;
 
 use crate::failure::Failure;
+use crate::recorded::Traced;
 use crate::sites::Column;
 use crate::value::{Frame, Layout, Value};
 use apply::{apply, called, listed, made, many, matched, one, operation, repeated, two};
@@ -30,6 +31,11 @@ pub trait Library: Real {
 
     /// One that changes its first argument, or calls back.
     fn special(name: &str) -> Option<Special<Self>>;
+
+    /// A loop over it, of what records the loop.
+    fn iterate(_recorded: Option<Arc<dyn Iterate<Traced>>>) -> Option<Arc<dyn Iterate<Self>>> {
+        None
+    }
 }
 
 impl Library for f64 {
@@ -139,6 +145,11 @@ pub trait Iterate<T: Real>: std::fmt::Debug + Send + Sync {
     /// # Errors
     /// [`Exit`] with the error of the step.
     fn run(&self, places: &mut Places<T>) -> Result<Value<T>, Exit<T>>;
+
+    /// The loop as a part of a recording, if it can be one.
+    fn recorded(self: Arc<Self>) -> Option<Arc<dyn Iterate<Traced>>> {
+        None
+    }
 }
 
 /// An expression or a statement.

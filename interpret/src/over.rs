@@ -51,6 +51,8 @@ pub fn over<T: Real, U: Real>(
         Value::Domain(domain) => Value::Domain(*domain),
         Value::Function(function) => Value::Function(*function),
         Value::Call(call) => Value::Call(call),
+        // A search is in plain numbers, whatever the scalar around it.
+        Value::Search(search) => Value::Search(search.clone()),
         Value::Struct(s) => Value::Struct(Struct {
             layout: s.layout.clone(),
             values: all(&s.values, change)?,
@@ -90,6 +92,7 @@ pub fn numbers<T: Real>(value: &Value<T>, out: &mut Vec<T>) -> Option<()> {
                 numbers(value, out)?;
             }
         }
+        Value::Search(_) => {}
         other => {
             over(other, &mut |x| {
                 out.push(x);
@@ -98,6 +101,27 @@ pub fn numbers<T: Real>(value: &Value<T>, out: &mut Vec<T>) -> Option<()> {
         }
     }
     Some(())
+}
+
+/// Puts numbers into a value, in the order of [`over`].
+pub fn fill(value: &mut Value<f64>, from: &mut impl Iterator<Item = f64>) {
+    let mut next = |x: &mut f64| *x = from.next().unwrap_or(*x);
+    match value {
+        Value::Real(x) => next(x),
+        Value::Vector(v) | Value::Momentum(_, v) => v.iter_mut().for_each(next),
+        Value::Matrix(m) => m.iter_mut().for_each(next),
+        Value::Dense(a) | Value::Element(_, a) | Value::Impulse(_, a) => {
+            a.data.iter_mut().for_each(next);
+        }
+        Value::Struct(s) => s.values.iter_mut().for_each(|value| fill(value, from)),
+        Value::List(list) => list.iter_mut().for_each(|value| fill(value, from)),
+        Value::Search(_) => {}
+        other => {
+            if let Some(made) = over(other, &mut |x: f64| from.next().unwrap_or(x)) {
+                *other = made;
+            }
+        }
+    }
 }
 
 /// Whether two values agree in everything but their numbers: in kinds, sizes, counts and names.

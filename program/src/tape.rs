@@ -230,6 +230,12 @@ impl Recording {
         self.steps.len()
     }
 
+    /// How many decisions are noted.
+    #[must_use]
+    pub fn guards(&self) -> usize {
+        self.guards.len()
+    }
+
     /// Whether nothing is recorded yet.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -10,7 +10,7 @@ use std::sync::{Arc, OnceLock};
 const DEEPEST: usize = 64;
 
 impl<T: Real> Routine<T> {
-    /// The function over another scalar; nothing if it iterates, loops over sites or calls what that scalar lacks.
+    /// The function over another scalar; nothing if it loops or calls what that scalar lacks.
     pub fn over<U: Library>(&self, change: fn(T) -> U) -> Option<Routine<U>> {
         Some(Routine {
             places: self.places,
@@ -138,7 +138,7 @@ impl<T: Real, U: Library> Change<T, U> {
             }
             Code::Routine(routine, list) => Code::Routine(self.routine(routine)?, self.all(list)?),
             Code::Closure(places, body) => Code::Closure(places.clone(), self.boxed(body)?),
-            Code::Iterate(_) => return None,
+            Code::Iterate(iterate) => Code::Iterate(U::iterate(iterate.clone().recorded())?),
             Code::Block(all) => Code::Block(self.all(all)?),
             Code::Let(pattern, value, otherwise) => {
                 let pattern = self.pattern(pattern)?;

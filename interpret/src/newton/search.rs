@@ -47,6 +47,11 @@ impl Held {
         }
     }
 
+    /// Takes over what another one measured of the equations: see [`AnySearch::measure_as`].
+    pub fn measure_as(&mut self, other: &Held) {
+        self.search.measure_as(&other.search);
+    }
+
     /// From here on steps are only tried.
     pub fn only_try(&mut self) {
         self.search.only_try();

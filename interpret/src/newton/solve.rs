@@ -6,7 +6,7 @@ use super::shape::Shape;
 use crate::code::{Code, Exit, Iterate, Places, Routine, unfit};
 use crate::failure::Failure;
 use crate::over::over;
-use crate::recorded::{Function, PlaceFunction, run_alone};
+use crate::recorded::{Function, PlaceFunction, RecordedSolve, Traced, run_alone};
 use crate::value::Value;
 use clebsch::Real;
 use clebsch::emitted::{StepCause, StepError};
@@ -14,6 +14,7 @@ use clebsch::linalg::Dense;
 use clebsch::solvers::newton::{
     self, AnyNewton, Chart, Lane, NewtonError, Progress, Rounded, Solved,
 };
+use std::sync::Arc;
 
 /// What is done where a solution is not known to be principal, or none was found.
 #[derive(Debug)]
@@ -71,6 +72,10 @@ impl Iterate<f64> for Solve {
         let solved = held.solve(self, node as u64, places);
         *unfit(self.search.place_mut(places))? = Value::Search(held);
         solved
+    }
+
+    fn recorded(self: Arc<Self>) -> Option<Arc<dyn Iterate<Traced>>> {
+        Some(Arc::new(RecordedSolve::of(self)?))
     }
 }
 

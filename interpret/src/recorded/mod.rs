@@ -1,7 +1,8 @@
 //! Functions as tapes of scalar operations, recorded when they are first called.
 //!
 //! A tape computes what the function computes, to the last bit, as long as its decisions come out as they did when it
-//! was recorded. Otherwise clebsch runs the function itself, as it does for an iteration.
+//! was recorded. Otherwise clebsch runs the function itself. Newton's iteration stands between two tapes: the first computes
+//! what the equations need, the second the step from their solution.
 
 mod ask;
 mod counts;
@@ -10,6 +11,7 @@ mod function;
 mod kept;
 mod places;
 mod sites;
+mod solves;
 mod traced;
 mod trajectory;
 mod ways;
@@ -17,11 +19,13 @@ mod ways;
 pub use function::{Function, run as run_alone};
 pub use places::PlaceFunction;
 pub use sites::{Lists, SiteFunction};
+pub use solves::RecordedSolve;
 pub use traced::Traced;
 pub use trajectory::{Fixed, Recordable, Recorded, Watched};
 
-use crate::code::{Library, Native, Special};
+use crate::code::{Iterate, Library, Native, Special};
 use crate::library;
+use std::sync::Arc;
 
 impl Library for Traced {
     fn native(name: &str, arguments: usize) -> Option<Native<Self>> {
@@ -29,7 +33,14 @@ impl Library for Traced {
     }
 
     fn special(name: &str) -> Option<Special<Self>> {
-        library::special(name)
+        match name {
+            "remember" => Some(solves::remember),
+            _ => library::special(name),
+        }
+    }
+
+    fn iterate(recorded: Option<Arc<dyn Iterate<Traced>>>) -> Option<Arc<dyn Iterate<Self>>> {
+        recorded
     }
 }
 

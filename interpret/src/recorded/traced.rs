@@ -3,6 +3,8 @@
 //! Decisions that the code takes by the methods of [`Real`] which give a truth become guards of the tape. A number that
 //! leaves the tape in any other way, as `value()` does, spoils the recording: what is decided by it could not be seen.
 
+use super::solves::{Cut, SolvedHere};
+use crate::value::Value;
 use clebsch::Real;
 use clebsch_program::{Function, Recording, Scalar, Step, Tape, Test};
 use num_traits::{One, Zero};
@@ -22,6 +24,8 @@ struct Here {
     recording: Recording,
     inputs: u32,
     spoiled: bool,
+    cuts: Vec<Cut>,
+    model: Option<Value<f64>>,
 }
 
 thread_local! {
@@ -34,14 +38,50 @@ const MOST: usize = 1 << 16;
 /// Records what `body` does; it gives the numbers that the tape is to compute. Nothing if that cannot be told from
 /// tests of numbers alone.
 pub fn record(body: impl FnOnce() -> Option<Vec<Traced>>) -> Option<(Tape, usize)> {
-    HERE.set(Some(Here::default()));
+    let (tape, inputs, cuts) = record_with_solves(None, body)?;
+    cuts.is_empty().then_some((tape, inputs))
+}
+
+/// As [`record`], of a function that solves equations of `model` on the way.
+pub fn record_with_solves(
+    model: Option<Value<f64>>,
+    body: impl FnOnce() -> Option<Vec<Traced>>,
+) -> Option<(Tape, usize, Vec<Cut>)> {
+    HERE.set(Some(Here {
+        model,
+        ..Here::default()
+    }));
     let outputs = body();
     let mut here = HERE.take()?;
     let fits = !here.spoiled && here.recording.len() <= MOST;
     let outputs = outputs.filter(|_| fits)?;
     let steps = outputs.iter().map(|x| x.step_in(&mut here.recording));
     let steps: Vec<Scalar> = steps.collect();
-    Some((here.recording.tape(steps), here.inputs as usize))
+    Some((here.recording.tape(steps), here.inputs as usize, here.cuts))
+}
+
+/// The model whose equations are solved.
+pub fn model() -> Option<Value<f64>> {
+    noted(|here| here.model.clone()).flatten()
+}
+
+/// Ends a part of the recording, which computes `outputs`; the next part takes as inputs what is solved for.
+pub fn cut(outputs: &[Traced], solved: SolvedHere) {
+    noted(|here| {
+        let steps = outputs.iter().map(|x| x.step_in(&mut here.recording));
+        let outputs = steps.collect();
+        here.cuts.push(Cut {
+            outputs,
+            guards: here.recording.guards(),
+            inputs: here.inputs as usize,
+            solved,
+        });
+    });
+}
+
+/// Does something with the newest cut.
+pub fn with_newest_cut<R>(what: impl FnOnce(&mut Cut) -> R) -> Option<R> {
+    noted(|here| here.cuts.last_mut().map(what)).flatten()
 }
 
 /// Does something with the recording, if there is one.
@@ -62,6 +102,16 @@ impl Traced {
             here.recording.step(Step::Input(here.inputs - 1))
         });
         Traced { value, at }
+    }
+
+    /// Its value where it is recorded, for what decides nothing.
+    pub fn seen(self) -> f64 {
+        self.value
+    }
+
+    /// Which step computes it.
+    pub fn at(self) -> Option<Scalar> {
+        self.at
     }
 
     fn step_in(self, recording: &mut Recording) -> Scalar {

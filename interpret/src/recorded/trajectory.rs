@@ -2,11 +2,12 @@
 
 use super::counts::{counts, each_count, shift, uncounted};
 use super::form::value_of;
-use super::traced::{Traced, record};
-use super::ways::{Way, Ways};
+use super::solves::{Cut, in_parts};
+use super::traced::{Traced, record, record_with_solves};
+use super::ways::{Node, Way, Ways};
 use crate::code::{Places, Routine};
 use crate::opened::{Functions, at};
-use crate::over::{alike, numbers, over};
+use crate::over::{alike, fill, numbers, over};
 use crate::value::Value;
 use clebsch_program::{Machine, Tape};
 
@@ -156,7 +157,12 @@ impl Recorded {
         let Self {
             functions, fixed, ..
         } = self;
-        let way = self.step.found(&self.numbers, || {
+        let node = Node {
+            numbers: &self.numbers,
+            first: self.counts.first().copied().unwrap_or(0),
+            places,
+        };
+        let way = self.step.found(node, |places| {
             put(&self.numbers, &self.counts, &mut self.newest, places);
             recorded_step(functions, fixed, places)
         });
@@ -198,7 +204,12 @@ impl Recorded {
             Watched::Invariants => invariants,
             Watched::Scales => scales,
         };
-        let way = ways.found(&self.numbers, || {
+        let node = Node {
+            numbers: &self.numbers,
+            first: self.counts.first().copied().unwrap_or(0),
+            places,
+        };
+        let way = ways.found(node, |places| {
             put(&self.numbers, &self.counts, &mut self.newest, places);
             recorded_watch(functions, which, fixed, places)
         });
@@ -223,30 +234,38 @@ fn put(numbers: &[f64], counts: &[i64], newest: &mut Newest, places: &mut Places
         let Some(value) = places.get_mut(place) else {
             continue;
         };
-        let own = over(value, &mut |x: f64| numbers.next().unwrap_or(x));
-        if let Some(mut own) = own {
-            each_count(&mut own, &mut |n| *n = counts.next().unwrap_or(*n));
-            *value = own;
+        if recordable(value) {
+            fill(value, &mut numbers);
+            each_count(value, &mut |n| *n = counts.next().unwrap_or(*n));
         }
     }
 }
 
-/// A tape with so many inputs, and the growth of counts.
-type Once = ((Tape, usize), Vec<i64>);
+/// Whether a tape can take a value. A solver's memory it cannot.
+fn recordable(value: &Value<f64>) -> bool {
+    numbers(value, &mut Vec::new()).is_some()
+}
+
+/// A tape with so many inputs and the cuts on its way, and the growth of counts.
+type Once = ((Tape, usize, Vec<Cut>), Vec<i64>);
 
 /// Records twice, with different counts: if these enter a number or a decision, recording gives up.
 fn twice(once: impl Fn(bool) -> Option<Once>) -> Option<Way> {
-    let first = once(false)?;
-    if once(true)? != first {
+    let ((tape, inputs, cuts), growth) = once(false)?;
+    let ((other, _, others), grown) = once(true)?;
+    let agree = cuts.len() == others.len() && cuts.iter().zip(&others).all(|(a, b)| a.agrees(b));
+    if !agree || tape != other || growth != grown {
         return None;
     }
-    let ((tape, inputs), growth) = first;
-    let machine = Machine::new(&tape, inputs);
+    let (between, last) = in_parts(tape, cuts);
+    let machine = Machine::new(&last, inputs);
     let frame = machine.frame();
     Some(Way {
+        between,
         machine,
         frame,
         growth,
+        numbers: Vec::new(),
     })
 }
 
@@ -257,7 +276,6 @@ fn input(
     next: &mut i64,
     noted: &mut Vec<i64>,
 ) -> Option<Value<Traced>> {
-    // A solver's memory cannot be an input.
     numbers(value, &mut Vec::new())?;
     let mut value = over(value, &mut Traced::input)?;
     if shifted {
@@ -272,7 +290,8 @@ fn recorded_step(all: &Recordable, fixed: &Fixed, from: &Places<f64>) -> Option<
     twice(|shifted| {
         let mut places = all.places(fixed)?;
         let mut growth = Vec::new();
-        let recorded = record(|| {
+        let model = from.get(at::MODEL).cloned();
+        let recorded = record_with_solves(model, || {
             let (mut before, mut after, mut next) = (Vec::new(), Vec::new(), 0);
             let mut whole = Vec::new();
             for at in [at::STATE, at::WORK] {
@@ -309,7 +328,7 @@ fn recorded_watch(
             let (mut next, mut noted) = (0, Vec::new());
             let state = input(from.get(at::STATE)?, shifted, &mut next, &mut noted)?;
             *places.get_mut(at::STATE)? = state;
-            // A function that reads a solver's memory is not recorded.
+            // A function that reads the memory of a solver is not recorded.
             if let Some(work) = input(from.get(at::WORK)?, shifted, &mut next, &mut noted) {
                 *places.get_mut(at::WORK)? = work;
             }
@@ -324,6 +343,7 @@ fn recorded_watch(
             });
             numbers.collect()
         })?;
-        Some((recorded, Vec::new()))
+        let (tape, inputs) = recorded;
+        Some(((tape, inputs, Vec::new()), Vec::new()))
     })
 }

@@ -2,26 +2,74 @@
 
 use super::kept::MOST;
 use super::load;
+use super::solves::{Between, Went};
+use crate::code::Places;
 use clebsch_program::{Frame, Machine};
 
-/// A function as a tape, by how it decided where it was recorded.
+/// A function as tapes, by how it decided where it was recorded.
 #[derive(Debug)]
 pub struct Way {
-    /// The tape.
+    /// What is solved on the way, with the tapes before.
+    pub between: Vec<Between>,
+    /// The last tape.
     pub machine: Machine,
     /// Its registers.
     pub frame: Frame<1>,
     /// By how much each count grows.
     pub growth: Vec<i64>,
+    /// The numbers it starts from, and solutions behind them.
+    pub numbers: Vec<f64>,
+}
+
+/// Where a function is evaluated.
+pub struct Node<'a> {
+    /// The numbers of state and workspace.
+    pub numbers: &'a [f64],
+    /// The first count.
+    pub first: i64,
+    /// The places, which have the searches.
+    pub places: &'a mut Places<f64>,
 }
 
 impl Way {
-    /// Computes on these numbers; false where a decision comes out otherwise.
-    fn follows(&mut self, numbers: &[f64]) -> bool {
-        // The workspace comes last: its numbers may be more than the tape reads.
-        let own = numbers.get(..self.machine.inputs());
-        let loaded = own.and_then(|own| load(self.frame.inputs(), own));
-        loaded.is_some() && self.machine.run(&mut self.frame)
+    /// Computes the function at a node.
+    fn follows(&mut self, node: &mut Node) -> Went {
+        let given = match self.between.first() {
+            Some(_) => node.numbers.len(),
+            // The workspace comes last: its numbers may be more than the tape reads.
+            None => self.machine.inputs(),
+        };
+        let Some(own) = node.numbers.get(..given) else {
+            return Went::Elsewhere;
+        };
+        self.numbers.clear();
+        self.numbers.extend_from_slice(own);
+        for at in 0..self.between.len() {
+            let went = match self.between.get_mut(at) {
+                Some(next) => next.solve(&mut self.numbers, node.first, node.places),
+                None => Went::Unsolved,
+            };
+            if went != Went::On {
+                self.undo(at, node.places);
+                return went;
+            }
+        }
+        let loaded = load(self.frame.inputs(), &self.numbers);
+        if loaded.is_none() || !self.machine.run(&mut self.frame) {
+            self.undo(self.between.len(), node.places);
+            return Went::Elsewhere;
+        }
+        for solved in &self.between {
+            solved.remember(node.first, node.places);
+        }
+        Went::On
+    }
+
+    /// Searches are as they were before the parts up to `at`.
+    fn undo(&self, at: usize, places: &mut Places<f64>) {
+        for solved in self.between.iter().take(at + 1).rev() {
+            solved.undo(places);
+        }
     }
 }
 
@@ -46,29 +94,31 @@ impl Ways {
         self.known.is_empty() && self.left == 0
     }
 
-    /// The way that computes the function at these numbers, and has done so. If there is none, one is recorded.
+    /// The way that computes the function at a node, and has done so. If there is none, one is recorded.
     pub fn found(
         &mut self,
-        numbers: &[f64],
-        make: impl FnOnce() -> Option<Way>,
+        mut node: Node,
+        make: impl FnOnce(&mut Places<f64>) -> Option<Way>,
     ) -> Option<&mut Way> {
-        let known = self.known.iter_mut().rposition(|way| way.follows(numbers));
-        match known {
-            Some(at) if at + 1 == self.known.len() => {}
-            Some(at) => {
-                let way = self.known.remove(at);
-                self.known.push(way);
-            }
-            None if self.left > 0 => {
-                self.left -= 1;
-                let mut made = make()?;
-                if !made.follows(numbers) {
-                    return None;
+        for at in (0..self.known.len()).rev() {
+            match self.known.get_mut(at)?.follows(&mut node) {
+                Went::On => {
+                    if at + 1 < self.known.len() {
+                        let way = self.known.remove(at);
+                        self.known.push(way);
+                    }
+                    return self.known.last_mut();
                 }
-                self.known.push(made);
+                Went::Elsewhere => {}
+                Went::Unsolved => return None,
             }
-            None => return None,
         }
+        self.left = self.left.checked_sub(1)?;
+        let mut made = make(node.places)?;
+        if made.follows(&mut node) != Went::On {
+            return None;
+        }
+        self.known.push(made);
         self.known.last_mut()
     }
 }

@@ -170,12 +170,29 @@ fn substitute<T: Real, const D: usize>(a: &[[T; D]; D], mut x: [T; D]) -> [T; D]
 }
 
 /// The same of a matrix whose size is known when a model is read, over plain numbers.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct DenseFactors {
     /// As [`Factors`] has them.
     columns: Dense<f64>,
     in_blocks: bool,
     blocks: bool,
+}
+
+impl Clone for DenseFactors {
+    fn clone(&self) -> Self {
+        DenseFactors {
+            columns: self.columns.clone(),
+            in_blocks: self.in_blocks,
+            blocks: self.blocks,
+        }
+    }
+
+    // Those before a step are kept without allocating anew.
+    fn clone_from(&mut self, source: &Self) {
+        (self.columns.rows, self.columns.cols) = (source.columns.rows, source.columns.cols);
+        self.columns.data.clone_from(&source.columns.data);
+        (self.in_blocks, self.blocks) = (source.in_blocks, source.blocks);
+    }
 }
 
 impl Saved for DenseFactors {
