@@ -1,0 +1,33 @@
+//! The models of the gallery, read from their texts and run by native code from the third step on, against the same models
+//! built: steps, observables, invariants and scales agree to the last bit.
+
+#[path = "../../interpret/tests/side_by_side/mod.rs"]
+mod side_by_side;
+
+use clebsch::card::Settings;
+use clebsch_models::gallery;
+use side_by_side::compare;
+
+/// How many steps are compared. Chains and fluids run in lanes, of which little is compiled.
+const STEPS: u64 = 200;
+const STEPS_OF_MANY: u64 = 5;
+
+#[test]
+fn steps_agree_to_the_last_bit() {
+    assert!(clebsch_native::install_after(2));
+    for entry in gallery() {
+        let card = clebsch_interpret::card(entry.card.source).expect("a model of the gallery");
+        for case in &entry.cases {
+            let built = entry.card_of(case);
+            let sizes: Vec<usize> = built.dimensions.iter().map(|d| d.value).collect();
+            let read = (card.sized)(&sizes).expect("sizes of the gallery");
+            let steps = match entry.family {
+                clebsch_models::Family::Chain | clebsch_models::Family::Fluid => STEPS_OF_MANY,
+                _ => STEPS,
+            };
+            let settings = Settings::step(case.h);
+            let made = compare(&built, &read, case, settings, steps.min(case.steps));
+            assert!(made > 0, "{} {}", card.name, case.name);
+        }
+    }
+}
