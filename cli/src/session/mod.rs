@@ -1,0 +1,16 @@
+//! Cases that a program runs in place of a command, as the Python package does. The plan, the steps, the names of the arrays and
+//! the verdicts are those of `clebsch run`; samples stay in memory, and whoever calls decides how long to wait.
+
+mod edit;
+mod layout;
+mod model;
+mod request;
+mod running;
+
+pub use crate::plan::Plan;
+pub use crate::trajectory::verdict::{Outcome, Verdict};
+pub use edit::{quoted, quoted_key, with_value, without};
+pub use layout::{Columns, Layout, layout};
+pub use model::{Model, Planned};
+pub use request::Request;
+pub use running::{Rows, Running, StepLimits};
