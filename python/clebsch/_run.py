@@ -1,0 +1,495 @@
+"""The results of a run, as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._errors import DataError, InvariantError, StepError
+from ._progress import Progress
+
+if TYPE_CHECKING:
+    from . import _clebsch
+    from ._model import Model
+
+_INVARIANT = "invariant_"
+
+
+class Invariant(NamedTuple):
+    """What became of an invariant along a run.
+
+    Attributes
+    ----------
+    name, formula : str
+        What it is.
+    exact : bool
+        Whether it is conserved to rounding. The others oscillate within a bound.
+    scale : float
+        The sum of the absolute values of its terms, the largest along the run.
+    worst : float
+        The largest drift at a sample, relative to the scale. It is absolute if the scale is zero.
+    last : float
+        The drift at the end, with its sign.
+    bound : float or None
+        The bound of the case.
+    verdict : str
+        The word of the command: ``"within bound"``, ``"EXCEEDED"`` or ``"no bound"``.
+    """
+
+    name: str
+    formula: str
+    exact: bool
+    scale: float
+    worst: float
+    last: float
+    bound: float | None
+    verdict: str
+
+
+class Layout:
+    """Where the arrays of a run are in its rows."""
+
+    def __init__(self, running: _clebsch.Running) -> None:
+        self.arrays = {name: (shape, kind, numbers) for name, shape, kind, numbers in running.arrays()}
+
+    def of_sites(self, name: str) -> bool:
+        """Whether the first index of a value is a site."""
+        shape, kind, numbers = self.arrays[name]
+        return kind == "listed" or (kind == "blocks" and (numbers[3] > 1 or (len(shape) > 0 and numbers[2] < int(np.prod(shape)))))
+
+    def array(self, name: str, rows: NDArray[np.float64]) -> NDArray[Any]:
+        """The array of a name, as a view on the rows where its columns stand at equal distances."""
+        shape, kind, numbers = self.arrays[name]
+        whole = (len(rows), *shape)
+        if kind == "sites":
+            return numbers
+        if kind == "listed":
+            return rows[:, numbers].reshape(whole)
+        start, step, size, count = numbers
+        if count == 1:
+            return rows[:, start : start + size].reshape(whole)
+        along, across = rows.strides
+        view = np.lib.stride_tricks.as_strided(
+            rows[:, start:], shape=(len(rows), count, size), strides=(along, step * across, across)
+        )
+        return view.reshape(whole)
+
+
+class Sample:
+    """The state at one sample, for the functions of `observe`.
+
+    ``s["q"]`` is the value of the quantity `q`, ``s.t`` the time, ``s.node`` the number of the node, ``s.energy`` the energy.
+    ``s.parameters`` has the parameters by name.
+    """
+
+    __slots__ = ("_layout", "_row", "node", "parameters", "t")
+
+    def __init__(self, layout: Layout, node: int, time: float, row: NDArray[np.float64], parameters: Mapping[str, Any]) -> None:
+        self._layout = layout
+        self._row = row.reshape(1, -1)
+        self.node = node
+        self.t = time
+        self.parameters = parameters
+
+    def __getitem__(self, name: str) -> Any:
+        found = self._layout.array(_known(self._layout.arrays, name), self._row)[0]
+        return float(found) if np.ndim(found) == 0 else found
+
+    def keys(self) -> list[str]:
+        """The names of the quantities.
+
+        Returns
+        -------
+        list of str
+        """
+        return [name for name in self._layout.arrays if name not in ("node", "time")]
+
+    @property
+    def energy(self) -> float:
+        """float : The energy, kinetic plus potential."""
+        return self[_INVARIANT + "energy"]
+
+    def __repr__(self) -> str:
+        return f"<Sample at node {self.node}, t = {self.t}: {', '.join(self.keys())}>"
+
+
+class Run:
+    """The results of a run.
+
+    ``run["q"]`` is the array of the quantity `q`: its first index is the sample, the others are those of the quantity. The names
+    and shapes are those of ``trajectory.npz``, which the command writes: the observables under their names, the invariants with
+    ``invariant_`` before theirs, which may be left out. Arrays are views on the same memory where that is possible.
+
+    Attributes
+    ----------
+    t : ndarray of float, shape (samples,)
+        The time of each sample, in the unit of time of the model.
+    node : ndarray of int, shape (samples,)
+        The number of steps before each sample.
+    model : Model
+        The model.
+    steps : int
+        The number of steps that were made.
+    stopped : str or None
+        Why the run ended before its end. None if it is complete.
+    warnings : list of str
+        What is doubtful about the run.
+    """
+
+    def __init__(self, model: Model, running: _clebsch.Running, observed: Mapping[str, list[Any]], stopped: str | None) -> None:
+        self.model = model
+        self._running = running
+        nodes, self.t, self._rows = running.take()
+        self.node = nodes.view(np.int64)
+        self.stopped = stopped
+        self.steps = running.summary()[0]
+        self._known_layout: Layout | None = None
+        self._known_case: dict[str, Any] | None = None
+        self._known_outcomes: list[dict[str, Any]] | None = None
+        self._observed = {name: np.asarray(values) for name, values in observed.items()}
+
+    # Arrays.
+
+    @property
+    def _layout(self) -> Layout:
+        if self._known_layout is None:
+            self._known_layout = Layout(self._running)
+        return self._known_layout
+
+    def keys(self) -> list[str]:
+        """The names of all arrays.
+
+        Returns
+        -------
+        list of str
+        """
+        return [*self._layout.arrays, *self._observed]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.keys())
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.keys() or f"{_INVARIANT}{name}" in self._layout.arrays
+
+    def __len__(self) -> int:
+        """The number of samples."""
+        return len(self.t)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        if name in self._observed:
+            return self._observed[name]
+        if name == "time":
+            return self.t
+        if name == "node":
+            return self.node
+        return self._layout.array(_known(self._layout.arrays, name), self._rows)
+
+    @property
+    def energy(self) -> NDArray[np.float64]:
+        """ndarray, shape (samples,) : The energy, kinetic plus potential, in the unit of energy of the model."""
+        return self["energy"]
+
+    @property
+    def complete(self) -> bool:
+        """bool : Whether all steps were made."""
+        return self.stopped is None
+
+    # What was run.
+
+    @property
+    def case(self) -> dict[str, Any]:
+        """dict : The numbers of the run: `h`, `steps`, `every`, `order`, and `parameters` and `initial` with all values."""
+        if self._known_case is None:
+            self._known_case = self._running.case()
+        return self._known_case
+
+    @property
+    def h(self) -> float:
+        """float : The step size."""
+        return self.case["h"]
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """dict : The values of all parameters, as arrays."""
+        return self.case["parameters"]
+
+    @property
+    def initial(self) -> dict[str, Any]:
+        """dict : The initial values, with the momenta that belong to velocities, as arrays."""
+        return self.case["initial"]
+
+    # What was conserved.
+
+    def _outcomes(self) -> list[dict[str, Any]]:
+        if self._known_outcomes is None:
+            self._known_outcomes = self._running.outcomes()
+        return self._known_outcomes
+
+    @property
+    def invariants(self) -> dict[str, Invariant]:
+        """dict of str to Invariant : What became of each invariant, as in the table of the command."""
+        return {
+            own["name"]: Invariant(**{key: own[key] for key in Invariant._fields}) for own in self._outcomes()
+        }
+
+    @property
+    def drift(self) -> dict[str, NDArray[np.float64]]:
+        """dict of str to ndarray : The drift of each invariant since the start, relative to its scale, at every sample.
+
+        The shape is (samples,), or (samples, n) for an invariant of n components. A component whose scale is zero has its
+        absolute drift.
+        """
+        found = {}
+        for own in self._outcomes():
+            values = self._layout.array(_INVARIANT + own["name"], self._rows)
+            scales = np.where(own["scales"] > 0, own["scales"], 1.0)
+            found[own["name"]] = (values - values[:1]) / (scales if values.ndim > 1 else scales[0])
+        return found
+
+    @property
+    def stated(self) -> tuple[str, int, bool | None] | None:
+        """tuple or None : What the action as stated says of the judged steps.
+
+        A sentence, the number of judged steps, and whether they hold. None if no step was to be judged.
+        """
+        return self._running.stated()
+
+    @property
+    def substeps(self) -> tuple[int, int] | None:
+        """tuple of int or None : How many steps were made by substeps, and by how many at most. None without `halve`."""
+        return self._running.halvings()
+
+    @property
+    def warnings(self) -> list[str]:
+        """list of str : What is doubtful about the run."""
+        return self._running.warnings()
+
+    def check(self) -> Run:
+        """Compare the drift of every invariant with its bound.
+
+        An invariant that is conserved to rounding has the bound 1e-12 if the case gives none.
+
+        Returns
+        -------
+        Run
+            The run itself.
+
+        Raises
+        ------
+        InvariantError
+            An invariant left its bound, or a judged step does not solve the equations of the action as stated.
+        """
+        beyond = [own for own in self._outcomes() if own["exceeded"]]
+        wrong = [
+            f"{own['name']} drifts by {own['worst']:.3e}, more than its bound {own['bound']}"
+            if own["bound"] is not None
+            else f"{own['name']} is not a number"
+            for own in beyond
+        ]
+        stated = self.stated
+        if stated is not None and stated[2] is False:
+            wrong.append(f"steps do not solve the equations of the action as stated: {stated[0]}")
+        if wrong:
+            text = "; ".join(wrong) + ". Reduce h, or give a larger bound by bounds={...}"
+            raise InvariantError(text, tuple(own["name"] for own in beyond), self)
+        return self
+
+    # Other forms.
+
+    def to_pandas(self):
+        """The samples as a table.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each sample, with the time as index. The columns are those of ``trajectory.csv``: components count from 1,
+            rows before columns.
+        """
+        import pandas as pd
+
+        frame = pd.DataFrame(self._rows, columns=self._running.columns(), copy=False)
+        frame.insert(0, "node", self.node)
+        frame.index = pd.Index(self.t, name="time")
+        extra = {}
+        for name, values in self._observed.items():
+            if values.ndim == 1:
+                extra[name] = values
+            else:
+                flat = values.reshape(len(values), -1)
+                extra.update({f"{name}_{at + 1}": flat[:, at] for at in range(flat.shape[1])})
+        return frame.assign(**extra) if extra else frame
+
+    def to_xarray(self):
+        """The arrays with names for their indices.
+
+        Returns
+        -------
+        xarray.Dataset
+            Its dimensions are `time`, ``site_n`` for the n sites of a chain, ``component_n`` for vectors, and ``row_n`` and
+            ``column_n`` for matrices. The attributes have the name of the model and the step size.
+        """
+        import xarray as xr
+
+        arrays = {}
+        for name in self.keys():
+            if name in ("time", "node"):
+                continue
+            values = self[name]
+            if name in self._layout.arrays and self._layout.arrays[name][1] == "sites":
+                arrays[name] = ((f"site_{len(values)}",), values)
+                continue
+            sited = name in self._layout.arrays and self._layout.of_sites(name)
+            arrays[name] = (("time", *_dimensions(values.shape[1:], sited)), values)
+        coordinates = {"time": self.t, "node": ("time", self.node)}
+        attributes = {"model": self.model.name, "h": self.h, "stopped": self.stopped or ""}
+        return xr.Dataset(arrays, coords=coordinates, attrs=attributes)
+
+    # Pictures.
+
+    def plot(self, *names: str):
+        """Draw quantities and the drift of the invariants against time.
+
+        Parameters
+        ----------
+        *names : str
+            Names of arrays. By default the vectors and numbers that the model observes.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        from ._plots import plot
+
+        return plot(self, names)
+
+    def animate(self, name: str | None = None, seconds: float = 8.0):
+        """Show the motion as a film.
+
+        Parameters
+        ----------
+        name : str, optional
+            The quantity to show: a rotation as three axes, a place in the plane or in space as a point with its path, values
+            at the sites of a chain as a line, the particles of a fluid as points. By default the first such quantity.
+        seconds : float, default 8
+            The length of the film.
+
+        Returns
+        -------
+        matplotlib.animation.FuncAnimation
+            Notebooks play it. Its method `save` writes a file.
+        """
+        from ._plots import animate
+
+        return animate(self, name, seconds)
+
+    def __repr__(self) -> str:
+        lines = [
+            f"<Run of {self.model.name}: {self.steps} steps of h = {self.h:g} to t = {self.t[-1] if len(self.t) else 0:g}, {len(self)} samples>"
+        ]
+        for own in self.invariants.values():
+            lines.append(f"  {own.name}: drift {own.worst:.2e}, {own.verdict}")
+        if self.stopped:
+            lines.append(f"  stopped: {self.stopped}")
+        lines.extend(f"  warning: {text}" for text in self.warnings)
+        return "\n".join(lines)
+
+
+def _known(arrays: Mapping[str, Any], name: str) -> str:
+    """The name of an array, of an invariant also without its prefix."""
+    if name in arrays:
+        return name
+    if f"{_INVARIANT}{name}" in arrays:
+        return _INVARIANT + name
+    import difflib
+
+    near = difflib.get_close_matches(name, arrays, 1)
+    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(arrays)}"
+    raise KeyError(f"no array {name!r}; {hint}")
+
+
+def _dimensions(shape: tuple[int, ...], sited: bool) -> list[str]:
+    names = []
+    if sited and shape:
+        names.append(f"site_{shape[0]}")
+        shape = shape[1:]
+    if len(shape) == 1:
+        names.append(f"component_{shape[0]}")
+    elif len(shape) == 2:
+        names.extend([f"row_{shape[0]}", f"column_{shape[1]}"])
+    else:
+        names.extend(f"index{at}_{size}" for at, size in enumerate(shape))
+    return names
+
+
+# How long the compiled code keeps control before the bar and the functions of `observe` have their turn.
+_TURN = 0.1
+
+
+def finished(
+    model: Model,
+    running: _clebsch.Running,
+    observe: Mapping[str, Callable[[Sample], Any]] | None,
+    progress: bool,
+) -> Run:
+    """Make all steps; gives the run, also if it is interrupted."""
+    observed: dict[str, list[Any]] = {}
+    watch: Callable[[], None] | None = None
+    if observe:
+        observed, watch = _watched(running, observe)
+    bar: Progress | None = None
+    stopped = None
+    try:
+        over, failed = running.advance(_TURN)
+        if watch is not None:
+            watch()
+        if not over:
+            bar = Progress(running.case()["steps"], "step", progress)
+            while not over:
+                over, failed = running.advance(_TURN)
+                if watch is not None:
+                    watch()
+                bar.tell(running.summary()[0])
+    except KeyboardInterrupt:
+        failed = None
+        running.end_here()
+        stopped = "interrupted"
+        if watch is not None:
+            watch()
+    finally:
+        if bar is not None:
+            bar.close()
+    if failed is not None:
+        node, time, text = failed
+        run = Run(model, running, observed, text)
+        raise StepError(text, node, time, run=run if run.steps > 0 else None)
+    return Run(model, running, observed, stopped)
+
+
+def _watched(
+    running: _clebsch.Running, observe: Mapping[str, Callable[[Sample], Any]]
+) -> tuple[dict[str, list[Any]], Callable[[], None]]:
+    """Lists that grow by what functions give at new samples."""
+    layout = Layout(running)
+    for name, function in observe.items():
+        if name in layout.arrays:
+            raise DataError(f"observe: the run has an array {name!r} already; choose another name", "observe")
+        if not callable(function):
+            raise DataError(f"observe: {name!r} is not a function of a sample", "observe")
+    parameters = running.case()["parameters"]
+    lists: dict[str, list[Any]] = {name: [] for name in observe}
+    seen = 0
+
+    def watch() -> None:
+        nonlocal seen
+        samples = running.summary()[3]
+        while seen < samples:
+            node, time, row = running.sample(seen)
+            sample = Sample(layout, node, time, row, parameters)
+            for name, function in observe.items():
+                lists[name].append(function(sample))
+            seen += 1
+
+    return lists, watch
