@@ -93,7 +93,9 @@ class Ensemble:
 
     def __repr__(self) -> str:
         stopped = f", {len(self.stopped)} of them stopped" if self.stopped else ""
-        return f"<Ensemble of {len(self)} bodies of {self.runs[0].model.name}: {len(self.t)} samples to t = {self.t[-1]:g}{stopped}>"
+        return (
+            f"<Ensemble of {len(self)} bodies of {self.runs[0].model.name}: {len(self.t)} samples to t = {self.t[-1]:g}{stopped}>"
+        )
 
 
 def ensembled(
@@ -115,7 +117,8 @@ def ensembled(
         raise DataError(f"ensemble: the arrays have different numbers of bodies: {told}; give each the same number", "initial")
     if not different:
         raise DataError("ensemble: no array has a value for each body; give one with the body as its first index", "initial")
-    cases, options = [], {}
+    cases: list[tuple[str, str]] = []
+    options: dict[str, Any] = {}
     for at in range(different[0]):
         own = {key: body(at) for key, (_, body) in bodies.items()}
         file, text, options = model._compose(case, {**values, **own})
@@ -129,6 +132,8 @@ def ensembled(
         bar.close()
     runs = []
     for at, (running, why) in enumerate(ended):
+        if running is None and why == "interrupted":
+            raise KeyboardInterrupt
         if running is None:
             text = (why or "").removeprefix(f"{cases[at][0]}:")
             raise DataError(f"body {at}: {text.strip()}")
@@ -161,7 +166,9 @@ def _bodies(key: str, own: Any, model: Model):
 
 def _shapes(model: Model, key: str) -> dict[str, tuple[tuple[int, ...], str]]:
     if model._inner.has_sites:
-        raise DataError("ensemble: the values of a chain have an index of sites; give a sequence of dictionaries, one for each body", key)
+        raise DataError(
+            "ensemble: the values of a chain have an index of sites; give a sequence of dictionaries, one for each body", key
+        )
     fields = [*model.card["parameters"], *model.card["initial"]]
     return {field["name"]: (field["shape"], field["kind"]) for field in fields}
 

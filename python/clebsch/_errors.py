@@ -23,9 +23,7 @@ class ModelError(ClebschError, ValueError):
         What to write instead.
     """
 
-    def __init__(
-        self, text: str, line: int | None = None, column: int | None = None, hint: str | None = None
-    ) -> None:
+    def __init__(self, text: str, line: int | None = None, column: int | None = None, hint: str | None = None) -> None:
         super().__init__(text)
         self.line = line
         self.column = column
@@ -117,6 +115,9 @@ def _argument(text: str) -> str | None:
     found = re.search(rf"\b({tables})\.\w+", text)
     if found:
         return found.group(0)
+    found = re.search(rf"unknown key `(\w+)` in \[({tables})\]", text)
+    if found:
+        return f"{found.group(2)}.{found.group(1)}"
     found = re.search(rf"\[({tables})\]", text)
     if found:
         return found.group(1)

@@ -310,9 +310,9 @@ class Model:
         Returns
         -------
         pandas.DataFrame
-            One row for each point, the last name varies fastest: the values, `status` (``"complete"``, ``"stopped"`` or
-            ``"refused"``), `why`, `steps`, `time`, `within_bounds`, the drift of every invariant, and the observables at the
-            end. A dictionary of arrays if pandas is not installed.
+            One row for each point, the last name varies fastest: the values, `status` (``"complete"``, ``"stopped"``,
+            ``"refused"``, or ``"interrupted"`` after Ctrl-C), `why`, `steps`, `time`, `within_bounds`, the drift of every invariant, and the observables at the
+            end. A varied initial value whose name is that of an observable has the column ``initial.name``. A dictionary of arrays if pandas is not installed.
 
         Raises
         ------

@@ -79,7 +79,9 @@ def _draw_drift(axis: Any, run: Run) -> None:
 def _moving(run: Run) -> str:
     """The first quantity that a film shows."""
     kinds = {field["name"]: field["kind"] for field in run._running.fields()["observables"]}
-    candidates = [name for name in run.keys() if name not in ("time", "node") and not name.startswith(("invariant_", "sites_of_"))]
+    candidates = [
+        name for name in run.keys() if name not in ("time", "node") and not name.startswith(("invariant_", "sites_of_"))
+    ]
     for name in candidates:
         if name in run._layout.arrays and run._layout.of_sites(name) and "momentum" not in name and run[name].ndim <= 3:
             return name

@@ -58,7 +58,9 @@ class Layout:
     def of_sites(self, name: str) -> bool:
         """Whether the first index of a value is a site."""
         shape, kind, numbers = self.arrays[name]
-        return kind == "listed" or (kind == "blocks" and (numbers[3] > 1 or (len(shape) > 0 and numbers[2] < int(np.prod(shape)))))
+        return kind == "listed" or (
+            kind == "blocks" and (numbers[3] > 1 or (len(shape) > 0 and numbers[2] < int(np.prod(shape))))
+        )
 
     def array(self, name: str, rows: NDArray[np.float64]) -> NDArray[Any]:
         """The array of a name, as a view on the rows where its columns stand at equal distances."""
@@ -231,9 +233,7 @@ class Run:
     @property
     def invariants(self) -> dict[str, Invariant]:
         """dict of str to Invariant : What became of each invariant, as in the table of the command."""
-        return {
-            own["name"]: Invariant(**{key: own[key] for key in Invariant._fields}) for own in self._outcomes()
-        }
+        return {own["name"]: Invariant(**{key: own[key] for key in Invariant._fields}) for own in self._outcomes()}
 
     @property
     def drift(self) -> dict[str, NDArray[np.float64]]:

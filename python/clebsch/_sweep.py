@@ -16,12 +16,19 @@ if TYPE_CHECKING:
     from ._model import Model
 
 
+# An index of an array, and the sign with which a value stands there.
+_Entry = tuple[tuple[int, ...], float]
+
+
 class _Axis:
     """One direction of the grid: what is varied, and its values."""
 
     def __init__(self, name: str, values: Any, model: Model, numbers: Mapping[str, Any], kinds: Mapping[str, str]) -> None:
         self.name = name
-        self.values = list(values)
+        self.values: list[Any] = list(values)
+        self.table: str | None
+        self.key: str
+        self.entries: list[_Entry]
         if name == "h":
             self.table, self.key, self.entries = None, "h", []
             return
@@ -55,7 +62,7 @@ class _Axis:
         return {self.name: self.values}
 
 
-def _entries(name: str, component: str, shape: tuple[int, ...], kind: str) -> list[tuple[tuple[int, ...], float]]:
+def _entries(name: str, component: str, shape: tuple[int, ...], kind: str) -> list[_Entry]:
     """The entries that a component names, with their signs: of a symmetric or skew matrix also the mirror image."""
     wrong = DataError(f"vary: {name!r} names no component of an array of shape {shape}; components count from 1", "vary")
     if len(shape) == 1:
@@ -72,9 +79,11 @@ def _entries(name: str, component: str, shape: tuple[int, ...], kind: str) -> li
     if not (0 <= i < shape[0] and 0 <= j < shape[1]):
         raise wrong
     if kind in ("Rotation", "RigidMotion", "UnitQuaternion"):
-        raise DataError(f"vary: {name!r} cannot be varied alone, since the matrix would be no rotation; give whole rotations", "vary")
+        raise DataError(
+            f"vary: {name!r} cannot be varied alone, since the matrix would be no rotation; give whole rotations", "vary"
+        )
     mirror = {"Symmetric": 1.0, "SecondMoments": 1.0, "Skew": -1.0}.get(kind)
-    entries = [((i, j), 1.0)]
+    entries: list[_Entry] = [((i, j), 1.0)]
     if mirror is not None and i != j:
         entries.append(((j, i), mirror))
     return entries
@@ -90,12 +99,14 @@ def swept(
     values: dict[str, Any],
 ) -> Any:
     """The table of a sweep."""
-    if h is not None and np.ndim(h) > 0:
+    if h is not None:
         if "h" in vary:
             raise DataError("h: given twice, by `h` and by `vary`; give one of them", "h")
-        vary["h"] = list(np.asarray(h, dtype=float))
-    elif h is not None:
-        values["h"] = float(h)
+        sizes = np.asarray(h, dtype=float)
+        if sizes.ndim > 0:
+            vary["h"] = sizes.tolist()
+        else:
+            values["h"] = float(sizes)
     if not vary:
         raise DataError("vary: give at least one name with its values, such as vary=dict(k=[1, 2])", "vary")
     if values.get("every") is not None:
@@ -109,18 +120,19 @@ def swept(
     kinds = {field["name"]: field["kind"] for field in (*fields["parameters"], *fields["initial"])}
     axes = [_Axis(name, own, model, numbers, kinds) for name, own in vary.items()]
     points = list(itertools.product(*(range(len(axis.values)) for axis in axes)))
-    cases, options = [], {}
+    cases: list[tuple[str, str]] = []
+    options: dict[str, Any] = {}
     keep_time = values.get("steps") is None and values.get("until") is None and "h" in vary
     until = numbers["h"] * numbers["steps"] if keep_time else None
     for point in points:
         tables = {key: dict(values.get(key) or {}) for key in ("parameters", "initial")}
-        own = {**values, **({"until": until} if until is not None else {})}
+        there = {**values, **({"until": until} if until is not None else {})}
         for axis, at in zip(axes, point):
             axis.put(axis.values[at], tables)
             if axis.table is None:
-                own["h"] = float(axis.values[at])
-        own.update({key: table or None for key, table in tables.items()})
-        file, text, options = model._compose(case, own)
+                there["h"] = float(axis.values[at])
+        there.update({key: table or None for key, table in tables.items()})
+        file, text, options = model._compose(case, there)
         cases.append((file, text))
     bar = Progress(len(cases), "point", progress)
     try:
@@ -165,14 +177,14 @@ def _placed(model: Model, name: str) -> tuple[str, str]:
     return _table_of(model, table), name
 
 
-def _table(
-    axes: list[_Axis], points: list[tuple[int, ...]], ended: list[Any], names: list[str], invariants: list[str]
-) -> Any:
+def _table(axes: list[_Axis], points: list[tuple[int, ...]], ended: list[Any], names: list[str], invariants: list[str]) -> Any:
     """One row for each point."""
     observables = [name for name in names if not name.startswith("invariant_")]
     columns: dict[str, Any] = {}
     for number, axis in enumerate(axes):
         for name, values in axis.columns().items():
+            # An initial value may have the name of what is observed at the end.
+            name = f"{axis.table}.{name}" if name in observables else name
             columns[name] = np.array([values[point[number]] for point in points])
     count = len(points)
     status, why = np.empty(count, dtype=object), np.empty(count, dtype=object)
@@ -185,7 +197,7 @@ def _table(
         if own is None:
             status[at] = "interrupted" if text == "interrupted" else "refused"
             continue
-        status[at] = "stopped" if text else "complete"
+        status[at] = "interrupted" if text == "interrupted" else "stopped" if text else "complete"
         steps[at], _, time[at], samples = own.summary()
         within[at] = True
         for outcome in own.outcomes():

@@ -6,6 +6,7 @@ use crate::model::Model;
 use crate::options::request;
 use crate::running::Running;
 use clebsch_cli::session::{self, Request};
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::num::NonZero;
@@ -22,9 +23,12 @@ enum Ended {
     Stopped(Box<session::Running>, String),
     /// It did not start.
     Refused(String),
-    /// It was not begun, or not finished, when the call was interrupted.
+    /// It was not begun when the call was interrupted.
     Left,
 }
+
+/// Why a run ended that was interrupted.
+const INTERRUPTED: &str = "interrupted";
 
 /// A run between two looks at whether to stop.
 const AT_A_TIME: Duration = Duration::from_millis(50);
@@ -56,11 +60,13 @@ fn one(
             Err(error) => return Ended::Stopped(running, error.to_string()),
         }
     }
-    Ended::Left
+    // What was computed is kept.
+    running.end_here();
+    Ended::Stopped(running, INTERRUPTED.to_owned())
 }
 
 /// Runs cases, each given by what messages call it and by its text, on `workers` threads, by default one for each core. Gives for each
-/// case its run or None, and why it ended before its end. `tell` is called now and then with the number of cases that are done.
+/// case its run or None, and why it ended before its end, which is `interrupted` after Ctrl-C. `tell` is called now and then with the number of cases that are done.
 #[pyfunction]
 pub(crate) fn run_many<'py>(
     py: Python<'py>,
@@ -123,7 +129,13 @@ pub(crate) fn run_many<'py>(
             }
         }
     });
-    interrupted?;
+    // Ctrl-C ends the cases, and those that were computed are worth keeping.
+    interrupted.or_else(
+        |error| match error.is_instance_of::<PyKeyboardInterrupt>(py) {
+            true => Ok(()),
+            false => Err(error),
+        },
+    )?;
     guarded(|| {
         let out = PyList::empty(py);
         for (place, (file, _)) in ended.into_iter().zip(&cases) {
@@ -132,7 +144,7 @@ pub(crate) fn run_many<'py>(
                 Ended::Whole(running) => (Some(running), None),
                 Ended::Stopped(running, why) => (Some(running), Some(why)),
                 Ended::Refused(why) => (None, Some(why)),
-                Ended::Left => (None, Some("interrupted".to_owned())),
+                Ended::Left => (None, Some(INTERRUPTED.to_owned())),
             };
             let running = running.map(|running| Py::new(py, Running::of(*running, file)));
             out.append((running.transpose()?, why))?;

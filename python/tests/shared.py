@@ -5,6 +5,7 @@ from __future__ import annotations
 import pathlib
 
 import numpy as np
+
 import clebsch as cl
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import platform
 import sys
 
-import numpy as np
 import pytest
 from shared import ROOT
 
@@ -57,7 +56,14 @@ SHORT = 10
 
 
 def test_numbers_are_written_as_the_command_writes_them():
-    for x, text in [(1.0, "1.0"), (1e-7, "1e-7"), (-2.5e20, "-2.5e20"), (1e15, "1000000000000000.0"), (0.1, "0.1"), (1e-5, "1e-5")]:
+    for x, text in [
+        (1.0, "1.0"),
+        (1e-7, "1e-7"),
+        (-2.5e20, "-2.5e20"),
+        (1e15, "1000000000000000.0"),
+        (0.1, "0.1"),
+        (1e-5, "1e-5"),
+    ]:
         assert written(x) == text
 
 
