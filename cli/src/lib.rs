@@ -46,8 +46,8 @@ pub fn run_process_on(gallery: &Gallery) -> ExitCode {
     ExitCode::from(on_streams_of_process(std::env::args_os(), gallery))
 }
 
-/// Runs `arguments` (the first is the program's name) on the shipped models and the streams of the process, as a program of another
-/// language does that carries the command; gives the exit code.
+/// Runs `arguments` (the first is the program's name) on the shipped models and the streams of the process, for programs of other
+/// languages; gives the exit code.
 pub fn run_arguments(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     on_streams_of_process(arguments, &Gallery::shipped())
 }

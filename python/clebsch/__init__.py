@@ -29,7 +29,7 @@ Ensemble
 axis_angle
     The matrix of a rotation.
 ModelError, DataError, StepError, InvariantError
-    What can be wrong.
+    The exceptions.
 """
 
 from ._clebsch import __version__

@@ -186,7 +186,7 @@ def for_notebook(markdown: str) -> str:
     return re.sub(r"\$`(.+?)`\$", lambda m: f"${m.group(1)}$", out)
 
 
-# What a reader wants first: the equations, and what they conserve.
+# Readers first want the equations and the invariants.
 _BRIEF = re.compile(r"Discrete (Lagrangian|Euler)|Equations of a site|Moser|Solution of a step|Invariants|Limit")
 
 

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class ClebschError(Exception):
-    """What clebsch rejects. The other exceptions of the package derive from it."""
+    """The base class of the exceptions of the package."""
 
 
 class ModelError(ClebschError, ValueError):
@@ -20,7 +20,7 @@ class ModelError(ClebschError, ValueError):
     line, column : int or None
         The place of the first mistake, counted from 1.
     hint : str or None
-        What to write instead.
+        The correction.
     """
 
     def __init__(self, text: str, line: int | None = None, column: int | None = None, hint: str | None = None) -> None:
@@ -60,9 +60,9 @@ class StepError(ClebschError, RuntimeError):
     time : float or None
         The time at that node, in the unit of time of the model.
     hint : str or None
-        What to change.
+        The remedy.
     run : Run or None
-        What was computed up to that node. It is None if the first step failed.
+        The results up to that node. It is None if the first step failed.
     """
 
     def __init__(

@@ -28,7 +28,7 @@ class Model:
     text : str
         The statement of the model, ``model Name { ... }``. The language reference is ``docs/language.md`` of the project.
     name : str, default "model"
-        What messages call the text.
+        The name of the text in messages.
 
     Raises
     ------
@@ -78,7 +78,7 @@ class Model:
         self._bases: dict[str | None, tuple[str, str]] = {}
         self._cases: list[tuple[str, str]] | None = None
 
-    # What it is.
+    # Statement.
 
     @property
     def name(self) -> str:
@@ -92,7 +92,7 @@ class Model:
 
     @property
     def doc(self) -> str:
-        """str : What the model is, by the documentation comments of its text."""
+        """str : The documentation comments of the text."""
         return self.card["doc"]
 
     @property
@@ -155,7 +155,7 @@ class Model:
         """
         return self._inner.case(name)
 
-    # What it does.
+    # Runs.
 
     def run(
         self,
@@ -198,7 +198,7 @@ class Model:
             ``dict(axis=[0, 0, 1], angle=1)``. Momenta have the names of `initial`. In their place stand
             ``velocity_x`` for a field `x`, and for a rotation ``angular_velocity`` in the body frame or
             ``spatial_angular_velocity`` in the space frame; if several bodies turn, with the body's name behind it, as in
-            ``angular_velocity_R``. What has neither starts at rest.
+            ``angular_velocity_R``. A configuration without either starts at rest.
         h : float, optional
             The step size, in the unit of time of the model.
         steps : int, optional
@@ -311,8 +311,9 @@ class Model:
         -------
         pandas.DataFrame
             One row for each point, the last name varies fastest: the values, `status` (``"complete"``, ``"stopped"``,
-            ``"refused"``, or ``"interrupted"`` after Ctrl-C), `why`, `steps`, `time`, `within_bounds`, the drift of every invariant, and the observables at the
-            end. A varied initial value whose name is that of an observable has the column ``initial.name``. A dictionary of arrays if pandas is not installed.
+            ``"refused"``, or ``"interrupted"`` after Ctrl-C), `why`, `steps`, `time`, `within_bounds`, the drift of every
+            invariant, and the observables at the end. If a varied initial value and an observable have the same name, the
+            column of the initial value is ``initial.name``. A dictionary of arrays if pandas is not installed.
 
         Raises
         ------
@@ -366,7 +367,7 @@ class Model:
     # How a case is put together.
 
     def _base(self, case: str | None) -> tuple[str, str] | None:
-        """What messages call the case that values are put into, and its text."""
+        """The name in messages of the case that values are put into, and its text."""
         if case is None and not self.cases:
             return None
         # A file may have changed.
@@ -377,7 +378,7 @@ class Model:
         return self._bases[case]
 
     def _compose(self, case: str | None, values: Mapping[str, Any]) -> tuple[str, str, dict[str, Any]]:
-        """What messages call the case, its text, and the options."""
+        """The name of the case in messages, its text, and the options."""
         unknown = [key for key in values if key not in _TABLES and key not in _TOP and key not in _OPTIONS]
         if unknown:
             from ._errors import DataError
@@ -403,8 +404,9 @@ class Model:
     # How it is shown.
 
     def __repr__(self) -> str:
-        cases = f", cases {', '.join(self.cases)}" if self.cases else ""
-        return f"<Model {self.name}: parameters {', '.join(self._short('parameters'))}; initial {', '.join(self._short('initial'))}{cases}>"
+        parameters, initial = (", ".join(self._short(which)) for which in ("parameters", "initial"))
+        cases = f"; cases {', '.join(self.cases)}" if self.cases else ""
+        return f"<Model {self.name}: parameters {parameters}; initial {initial}{cases}>"
 
     def _short(self, which: str) -> list[str]:
         """The names of fields, those of a quantity at many sites once."""

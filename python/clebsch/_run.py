@@ -19,12 +19,12 @@ _INVARIANT = "invariant_"
 
 
 class Invariant(NamedTuple):
-    """What became of an invariant along a run.
+    """The outcome of an invariant along a run.
 
     Attributes
     ----------
     name, formula : str
-        What it is.
+        The name and the formula.
     exact : bool
         Whether it is conserved to rounding. The others oscillate within a bound.
     scale : float
@@ -138,7 +138,7 @@ class Run:
     stopped : str or None
         Why the run ended before its end. None if it is complete.
     warnings : list of str
-        What is doubtful about the run.
+        Warnings: a kinetic energy that is not positive definite, an invariant that was lost.
     """
 
     def __init__(self, model: Model, running: _clebsch.Running, observed: Mapping[str, list[Any]], stopped: str | None) -> None:
@@ -199,7 +199,7 @@ class Run:
         """bool : Whether all steps were made."""
         return self.stopped is None
 
-    # What was run.
+    # Numbers of the run.
 
     @property
     def case(self) -> dict[str, Any]:
@@ -223,7 +223,7 @@ class Run:
         """dict : The initial values, with the momenta that belong to velocities, as arrays."""
         return self.case["initial"]
 
-    # What was conserved.
+    # Invariants.
 
     def _outcomes(self) -> list[dict[str, Any]]:
         if self._known_outcomes is None:
@@ -232,7 +232,7 @@ class Run:
 
     @property
     def invariants(self) -> dict[str, Invariant]:
-        """dict of str to Invariant : What became of each invariant, as in the table of the command."""
+        """dict of str to Invariant : The outcome of each invariant, as in the table of the command."""
         return {own["name"]: Invariant(**{key: own[key] for key in Invariant._fields}) for own in self._outcomes()}
 
     @property
@@ -251,7 +251,7 @@ class Run:
 
     @property
     def stated(self) -> tuple[str, int, bool | None] | None:
-        """tuple or None : What the action as stated says of the judged steps.
+        """tuple or None : The verdict of the action as stated on the judged steps.
 
         A sentence, the number of judged steps, and whether they hold. None if no step was to be judged.
         """
@@ -264,7 +264,7 @@ class Run:
 
     @property
     def warnings(self) -> list[str]:
-        """list of str : What is doubtful about the run."""
+        """list of str : Warnings: a kinetic energy that is not positive definite, an invariant that was lost."""
         return self._running.warnings()
 
     def check(self) -> Run:
@@ -386,9 +386,8 @@ class Run:
         return animate(self, name, seconds)
 
     def __repr__(self) -> str:
-        lines = [
-            f"<Run of {self.model.name}: {self.steps} steps of h = {self.h:g} to t = {self.t[-1] if len(self.t) else 0:g}, {len(self)} samples>"
-        ]
+        end = self.t[-1] if len(self.t) else 0.0
+        lines = [f"<Run of {self.model.name}: {self.steps} steps of h = {self.h:g} to t = {end:g}, {len(self)} samples>"]
         for own in self.invariants.values():
             lines.append(f"  {own.name}: drift {own.worst:.2e}, {own.verdict}")
         if self.stopped:

@@ -76,7 +76,7 @@ fn of_model(py: Python<'_>, rendered: &str, source: &str) -> PyErr {
     exception(py, "ModelError", rendered.trim_end(), &with)
 }
 
-/// What is wrong with a case, without the name of its text.
+/// A wrong value of a case, without the name of its text.
 fn of_data(py: Python<'_>, text: &str, file: &str) -> PyErr {
     exception(py, "DataError", without_place(text, file), &[])
 }

@@ -4,9 +4,9 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// What `call` gives; `RuntimeError` where it panics.
+/// The result of `call`; `RuntimeError` if it panics.
 pub(crate) fn guarded<T>(call: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
-    // What was half done is only reachable through the object, whose state the message tells the user to drop.
+    // Half-made changes are reachable only through the object, and the message tells the user to start anew.
     catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
         let text = text.or_else(|| panic.downcast_ref::<&str>().copied());

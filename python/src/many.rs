@@ -60,12 +60,12 @@ fn one(
             Err(error) => return Ended::Stopped(running, error.to_string()),
         }
     }
-    // What was computed is kept.
+    // The samples so far are kept.
     running.end_here();
     Ended::Stopped(running, INTERRUPTED.to_owned())
 }
 
-/// Runs cases, each given by what messages call it and by its text, on `workers` threads, by default one for each core. Gives for each
+/// Runs cases, each given by its name in messages and by its text, on `workers` threads, by default one for each core. Gives for each
 /// case its run or None, and why it ended before its end, which is `interrupted` after Ctrl-C. `tell` is called now and then with the number of cases that are done.
 #[pyfunction]
 pub(crate) fn run_many<'py>(

@@ -14,7 +14,7 @@ use clebsch_core::expr::symbol::ascii;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-/// What messages call a case that is made of arguments.
+/// The name in messages of a case made from arguments.
 pub(crate) const ARGUMENTS: &str = "arguments";
 
 /// A model.
@@ -44,7 +44,7 @@ impl Model {
         })
     }
 
-    /// A shipped model, or that of a file.
+    /// A shipped model, or the model of a file.
     #[staticmethod]
     fn named(py: Python<'_>, name: &str) -> PyResult<Self> {
         guarded(|| {
@@ -86,7 +86,7 @@ impl Model {
         guarded(|| Ok(self.inner.cases()))
     }
 
-    /// What messages call a case, and its text.
+    /// The name of a case in messages, and its text.
     fn case_text(&self, py: Python<'_>, name: Option<&str>) -> PyResult<(String, String)> {
         guarded(|| {
             let found = self.inner.case(name);
@@ -152,7 +152,7 @@ impl Model {
         })
     }
 
-    /// Starts a case, given by what messages call it and by its text.
+    /// Starts a case, given by its name in messages and by its text.
     fn start(
         &self,
         py: Python<'_>,

@@ -1,4 +1,4 @@
-//! What a run gives: rows as arrays that take over their memory, which columns make which array, and what was conserved.
+//! The results of a run: rows as arrays that take over their memory, which columns make which array, and what was conserved.
 
 use clebsch::card::{Conserved, Field};
 use clebsch_cli::session::{Columns, Layout, Outcome, Verdict, layout};
@@ -60,7 +60,7 @@ pub(crate) fn arrays<'py>(
     Ok(out)
 }
 
-/// What was conserved, as dictionaries in the order of the card.
+/// The outcomes of the invariants, as dictionaries in the order of the card.
 pub(crate) fn outcomes<'py>(py: Python<'py>, all: &[Outcome]) -> PyResult<Bound<'py, PyList>> {
     let out = PyList::empty(py);
     for outcome in all {

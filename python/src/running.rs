@@ -19,7 +19,7 @@ const AT_A_TIME: Duration = Duration::from_millis(50);
 #[pyclass(frozen, module = "clebsch._clebsch")]
 pub(crate) struct Running {
     inner: Mutex<session::Running>,
-    /// What messages call the case.
+    /// The name of the case in messages.
     file: String,
 }
 
@@ -192,7 +192,7 @@ impl Running {
         Ok(clebsch::record::columns(self.locked()?.card()))
     }
 
-    /// What was conserved.
+    /// The outcomes of the invariants.
     fn outcomes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         guarded(|| outcomes(py, &self.locked()?.outcomes()))
     }
@@ -207,7 +207,7 @@ impl Running {
             .collect())
     }
 
-    /// What the action as stated says of the judged steps: the sentence of the command, the number of steps, and whether they hold.
+    /// The verdict of the action as stated on the judged steps: the sentence of the command, the number of steps, and whether they hold.
     fn stated(&self) -> PyResult<Option<(String, u64, Option<bool>)>> {
         let inner = self.locked()?;
         Ok(inner.stated().map(|verdict| {

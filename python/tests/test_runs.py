@@ -18,10 +18,11 @@ def command(*arguments: str) -> None:
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize(
-    "case",
-    ["heavy-top:general", "kepler", "free-body", "toda-chain:two-solitons", "kirchhoff-rod", "circular-rod", "particle-mesh-1d", "spherical-pendulum"],
-)  # fmt: skip
+CASES = """heavy-top:general kepler free-body toda-chain:two-solitons
+    kirchhoff-rod circular-rod particle-mesh-1d spherical-pendulum""".split()
+
+
+@pytest.mark.parametrize("case", CASES)
 def test_arrays_are_those_of_the_command(case, tmp_path):
     """Names, order, shapes, types and bits are those of trajectory.npz."""
     folder = tmp_path / "out"

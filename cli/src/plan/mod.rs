@@ -336,8 +336,8 @@ fn start(
     put.map_err(|wrong| Failure::Usage(format!("initial.{}: {}", wrong.key, wrong.why)))
 }
 
-/// The case of a file, by the first card whose fields it fits; the message is that of the first. The text of a model that is known to
-/// have no labels is not read again for them.
+/// The case of a file, by the first card whose fields it fits; the message is that of the first. If the model has labels,
+/// `may_have_sites` is true and its text is read again.
 fn read(case: &CaseText, cards: &[Card], may_have_sites: bool) -> Result<Located, Failure> {
     let CaseText { file, text } = case;
     let mut first = None;

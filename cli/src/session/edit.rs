@@ -16,7 +16,7 @@ fn place(text: &str, table: &str, key: &str) -> Option<(Range<usize>, Range<usiz
     Some((key.span(), value.span()))
 }
 
-/// Where the line behind the head of a table begins; none if the text has no such head.
+/// Where the line behind the head of a table begins; none if the text lacks that head.
 fn behind_head(text: &str, table: &str) -> Option<usize> {
     let mut at = 0;
     for line in text.split_inclusive('\n') {
@@ -32,7 +32,7 @@ fn behind_head(text: &str, table: &str) -> Option<usize> {
     None
 }
 
-/// A key as TOML has it: in quotes if it has other letters than those of a bare one.
+/// A key as TOML has it: in quotes unless all its letters may appear in a bare key.
 #[must_use]
 pub fn quoted_key(key: &str) -> String {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';

@@ -1,5 +1,5 @@
-//! Cases that a program runs in place of a command, as the Python package does. The plan, the steps, the names of the arrays and
-//! the verdicts are those of `clebsch run`; samples stay in memory, and whoever calls decides how long to wait.
+//! Cases that a program runs in place of a command, as the Python package does. Plan, steps, names of arrays and verdicts agree with
+//! `clebsch run`. Samples stay in memory, and the caller decides how long to wait.
 
 mod edit;
 mod layout;

@@ -33,7 +33,7 @@ pub struct Model {
 pub struct Planned {
     /// The card of the model, of the size or on the sites of the case.
     pub card: Card,
-    /// What is run.
+    /// The plan of the run.
     pub plan: Plan,
     /// Warnings on the text of the model, rendered with carets.
     pub warnings: String,
@@ -97,7 +97,7 @@ impl Model {
         })
     }
 
-    /// Its name in messages: that of the gallery, a path, or what the text was called.
+    /// Its name in messages: the name in the gallery, a path, or the name given with the text.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.text.name
@@ -239,7 +239,7 @@ impl Model {
         derived.map(|(text, _)| text).map_err(Failure::Usage)
     }
 
-    /// The mistakes of a text, where it is no model.
+    /// The mistakes of a text that is not a model.
     #[must_use]
     pub fn mistakes(text: &str) -> Option<Errors> {
         let model = match pipeline::parse_source(text) {

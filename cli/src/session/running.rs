@@ -66,7 +66,7 @@ impl Observer for Rows {
     }
 }
 
-/// What is known of the stability limit of the step size.
+/// The stability limit of the step size.
 #[derive(Clone, Debug, Default)]
 pub struct StepLimits {
     /// The largest stable step size.
@@ -75,7 +75,7 @@ pub struct StepLimits {
     pub frequency: Option<f64>,
     /// In words, if anything is to be said.
     pub told: Option<String>,
-    /// What is wrong with the step size of the case.
+    /// A warning on the step size of the case.
     pub warning: Option<String>,
 }
 
@@ -132,7 +132,7 @@ impl Running {
         &self.card
     }
 
-    /// What is run.
+    /// The plan of the run.
     #[must_use]
     pub fn plan(&self) -> &Plan {
         &self.plan
@@ -141,7 +141,7 @@ impl Running {
     /// Makes steps for about so long; whether the run is over.
     ///
     /// # Errors
-    /// Why a step was not made, or what is no number after it: the run ends at the node before.
+    /// The step that failed, or the number that is not finite after it. The run ends at the node before.
     pub fn advance(&mut self, time: Duration) -> Result<bool, RunError> {
         let begun = Instant::now();
         let mut most: u64 = 1;
@@ -179,13 +179,13 @@ impl Running {
         self.rows.full.as_ref().map(ToString::to_string)
     }
 
-    /// What was done up to here.
+    /// Steps, node, time and drifts so far.
     #[must_use]
     pub fn summary(&self) -> Summary {
         self.watch.summary()
     }
 
-    /// What was conserved up to here.
+    /// The outcome of every invariant so far.
     #[must_use]
     pub fn outcomes(&self) -> Vec<Outcome> {
         judge(&self.card, &self.plan.case, &self.watch.summary().drifts)
@@ -197,7 +197,7 @@ impl Running {
         lost(&self.outcomes(), self.plan.case.h)
     }
 
-    /// What the action as stated says of the judged steps.
+    /// The verdict of the action as stated on the judged steps.
     #[must_use]
     pub fn stated(&self) -> Option<&Verdict> {
         self.judged.then(|| self.trajectory.verdict())
@@ -209,7 +209,7 @@ impl Running {
         self.trajectory.halvings()
     }
 
-    /// What is wrong with the kinetic energy at the start, if anything.
+    /// A warning on the kinetic energy at the start, if there is one.
     #[must_use]
     pub fn kinetic_warning(&self) -> Option<String> {
         self.trajectory.kinetic_warning().map(|w| w.to_string())
@@ -229,7 +229,7 @@ impl Running {
     /// Makes at most so many steps without sampling, for about so long; how many were made.
     ///
     /// # Errors
-    /// Why a step was not made, and how many were before it.
+    /// The number of steps before the one that failed, and the reason.
     pub fn step(&mut self, steps: u64, time: Duration) -> Result<u64, (u64, StepError)> {
         let begun = Instant::now();
         let mut made = 0;
