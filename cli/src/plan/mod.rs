@@ -167,7 +167,7 @@ impl Plan {
         })
     }
 
-    /// Every how many of so many steps a run is sampled where nothing else is asked for.
+    /// The default of `every` for this number of steps.
     pub(crate) fn default_every(steps: u64) -> u64 {
         steps.div_ceil(SAMPLES).max(1)
     }
