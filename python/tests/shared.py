@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import pathlib
 
 import numpy as np
 
 import clebsch as cl
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+# The script that tests the wheel copies the tests out of the project.
+ROOT = pathlib.Path(os.environ.get("CLEBSCH_ROOT", pathlib.Path(__file__).resolve().parents[2]))
 
 TOP = """
 model Top { param J: Sym<3>; param chi, z: Vec<3>; group R: SO<3> velocity W; advected G: Vec<3> = R^T*z;

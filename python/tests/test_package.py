@@ -93,6 +93,19 @@ def test_the_command_is_carried():
     assert wrong.returncode == 2 and "no model `nothing`" in wrong.stderr
 
 
+@pytest.mark.parametrize("page", ["README.md", "python/README.md"])
+def test_programs_of_the_readme(page, capsys):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    blocks = (ROOT / page).read_text().split("```python\n")[1:]
+    assert blocks
+    for block in blocks:
+        exec(compile(block.split("```")[0], page, "exec"), {})
+    if page == "README.md":
+        shape = capsys.readouterr().out.splitlines()[-1]
+        assert shape.startswith("(1001,) ")
+
+
 def test_rotations():
     import numpy as np
 
