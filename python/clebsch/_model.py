@@ -401,6 +401,13 @@ class Model:
         file, text, options = self._compose(case, values)
         return self._inner.start(file, text, options, sampled)
 
+    def __reduce__(self):
+        if self.cases:
+            from ._gallery import load
+
+            return load, (self._inner.name,)
+        return Model, (self.source, self._inner.name)
+
     # How it is shown.
 
     def __repr__(self) -> str:

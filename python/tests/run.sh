@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the wheel, installs it into an empty environment, and runs the tests of the package there.
-# PROFILE is the profile of Cargo, `quick` by default; PYTHON the interpreter.
+# PROFILE is the profile of Cargo, `quick` by default; PYTHON the interpreter. `.ci/run` also gives CARGO_TOGETHER, see
+# `cargo-together`, and CARGO_CONFIG, a setting of Cargo.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=$(mktemp -d)
@@ -9,8 +10,15 @@ trap 'rm -rf "$folder"' EXIT
 bin=$folder/venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK=1
 "$bin/pip" install --quiet maturin
+if [ -n "${CARGO_TOGETHER:-}" ]; then
+  REAL_CARGO=$(command -v cargo)
+  export CARGO_TOGETHER REAL_CARGO
+  mkdir "$folder/together"
+  ln -s "$PWD/tests/cargo-together" "$folder/together/cargo"
+  PATH=$folder/together:$PATH
+fi
 # `maturin` finds the interpreter of its own environment.
-PATH=$bin:$PATH maturin build --quiet --locked --profile "${PROFILE:-quick}" --out "$folder/wheels"
+PATH=$bin:$PATH maturin build --quiet --locked ${CARGO_CONFIG:+--config "$CARGO_CONFIG"} --profile "${PROFILE:-quick}" --out "$folder/wheels"
 # First without what it does not need.
 "$bin/pip" install --quiet "$folder"/wheels/clebsch-*.whl
 cp -r tests "$folder/tests"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 from shared import OSCILLATOR, ROOT, TOP, top_values
@@ -127,6 +129,11 @@ def test_cases_are_arguments_of_run():
         again = cl.Model(model.source).run(steps=5, **values)
         for key in by_name:
             np.testing.assert_array_equal(by_name[key], again[key])
+
+
+def test_models_are_sent_to_other_processes(top):
+    assert pickle.loads(pickle.dumps(top)).source == top.source
+    assert list(pickle.loads(pickle.dumps(cl.load("kepler"))).cases) == list(cl.load("kepler").cases)
 
 
 def test_placeholder_values():
