@@ -9,7 +9,7 @@ use crate::running::Running;
 use crate::to_python::dictionary;
 use clebsch::card::Conserved;
 use clebsch_cli::gallery::Gallery;
-use clebsch_cli::session::{self, quoted, with_value, without};
+use clebsch_cli::session::{self, Edit, edited, quoted};
 use clebsch_core::expr::symbol::ascii;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -107,48 +107,34 @@ impl Model {
     /// The text of a case from tables of values, each put into `base` if there is one. A value of None takes the key away.
     fn compose(&self, base: Option<&str>, tables: &Bound<'_, PyDict>) -> PyResult<String> {
         guarded(|| {
-            let mut text = match base {
-                Some(base) => base.to_owned(),
-                None => String::new(),
-            };
-            let mut top = String::new();
-            if base.is_none() {
-                top = format!("model = {}\n", quoted(&self.declared));
-            }
+            let mut edits = Vec::new();
             for (table, values) in tables {
                 let table: String = table.extract()?;
-                if values.is_none() {
-                    continue;
-                }
                 let Ok(values) = values.cast::<PyDict>() else {
                     // A key at the top.
-                    let value = literal(&values, &table)?;
-                    match base {
-                        Some(_) => text = with_value(&text, "", &table, &value),
-                        None => top.push_str(&format!("{table} = {value}\n")),
-                    }
+                    let value = Some(literal(&values, &table)?);
+                    edits.push(Edit {
+                        table: String::new(),
+                        key: table,
+                        value,
+                    });
                     continue;
                 };
-                let mut body = format!("[{table}]\n");
                 for (key, value) in values {
                     let key = ascii(&key.extract::<String>()?);
-                    if value.is_none() {
-                        text = without(&text, &table, &key);
-                        continue;
-                    }
-                    let value = literal(&value, &format!("{table}.{key}"))?;
-                    match base {
-                        Some(_) => text = with_value(&text, &table, &key, &value),
-                        None => {
-                            body.push_str(&format!("{} = {value}\n", session::quoted_key(&key)))
-                        }
-                    }
-                }
-                if base.is_none() {
-                    text.push_str(&body);
+                    let value = match value.is_none() {
+                        true => None,
+                        false => Some(literal(&value, &format!("{table}.{key}"))?),
+                    };
+                    edits.push(Edit {
+                        table: table.clone(),
+                        key,
+                        value,
+                    });
                 }
             }
-            Ok(top + &text)
+            let fresh = || format!("model = {}\n", quoted(&self.declared));
+            Ok(edited(&base.map_or_else(fresh, str::to_owned), &edits))
         })
     }
 

@@ -4,10 +4,19 @@
 use std::ops::Range;
 use toml::de::DeTable;
 
-/// The place of a key in a text: of a top-level key if `table` is empty.
-fn place(text: &str, table: &str, key: &str) -> Option<(Range<usize>, Range<usize>)> {
-    let document = DeTable::parse(text).ok()?;
-    let top = document.get_ref();
+/// A value that is put under a key of a table; at the top level if the table is empty.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Edit {
+    /// The table.
+    pub table: String,
+    /// The key.
+    pub key: String,
+    /// The value, written as TOML on one line; none to remove the key.
+    pub value: Option<String>,
+}
+
+/// The places of a key and of its value.
+fn place(top: &DeTable<'_>, table: &str, key: &str) -> Option<(Range<usize>, Range<usize>)> {
     let own = match table {
         "" => top,
         name => top.get(name)?.get_ref().as_table()?,
@@ -48,73 +57,120 @@ pub fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
-/// The text with a value, written as TOML on one line, under a key of a table; at the top level if `table` is empty.
+/// The text with these values, of which none gives the same key twice. A text that is not TOML stays as it is, since its reader
+/// reports the mistake.
 #[must_use]
-pub fn with_value(text: &str, table: &str, key: &str, value: &str) -> String {
-    let mut out = text.to_owned();
-    if let Some((_, span)) = place(text, table, key) {
-        out.replace_range(span, value);
-        return out;
-    }
-    let line = format!("{} = {value}\n", quoted_key(key));
-    if table.is_empty() {
-        return line + text;
-    }
-    match behind_head(text, table) {
-        Some(at) => {
-            // The head may be the last line, without an end.
-            let line = match text.get(..at).is_some_and(|before| before.ends_with('\n')) {
-                true => line,
-                false => format!("\n{line}"),
-            };
-            out.insert_str(at, &line);
-        }
-        None => {
-            if !out.ends_with('\n') {
-                out.push('\n');
+pub fn edited(text: &str, edits: &[Edit]) -> String {
+    let Ok(document) = DeTable::parse(text) else {
+        return text.to_owned();
+    };
+    // Ranges of the text and the text in their place.
+    let mut changes: Vec<(Range<usize>, String)> = Vec::new();
+    let mut tables: Vec<(&str, String)> = Vec::new();
+    for Edit { table, key, value } in edits {
+        match (place(document.get_ref(), table, key), value) {
+            (Some((_, span)), Some(value)) => changes.push((span, value.clone())),
+            (Some((key, span)), None) => changes.push((key.start..span.end, String::new())),
+            (None, None) => {}
+            (None, Some(value)) => {
+                let line = format!("{} = {value}\n", quoted_key(key));
+                match tables.iter_mut().find(|(own, _)| own == table) {
+                    Some((_, lines)) => lines.push_str(&line),
+                    None => tables.push((table, line)),
+                }
             }
-            out.push_str(&format!("[{table}]\n{line}"));
         }
     }
-    out
-}
-
-/// The text without a key of a table.
-#[must_use]
-pub fn without(text: &str, table: &str, key: &str) -> String {
-    let mut out = text.to_owned();
-    if let Some((key, value)) = place(text, table, key) {
-        out.replace_range(key.start..value.end, "");
+    let mut end = String::new();
+    for (table, lines) in tables {
+        match (table, behind_head(text, table)) {
+            ("", _) => changes.push((0..0, lines)),
+            (_, Some(at)) => {
+                // The head may be the last line, without an end.
+                let is_ended = text.get(..at).is_some_and(|before| before.ends_with('\n'));
+                changes.push((
+                    at..at,
+                    if is_ended {
+                        lines
+                    } else {
+                        format!("\n{lines}")
+                    },
+                ));
+            }
+            (_, None) => end.push_str(&format!("[{table}]\n{lines}")),
+        }
     }
-    out
+    changes.sort_by_key(|(range, _)| range.start);
+    let mut out = String::with_capacity(text.len());
+    let mut at = 0;
+    for (range, words) in changes {
+        out.push_str(text.get(at..range.start).unwrap_or_default());
+        out.push_str(&words);
+        at = range.end;
+    }
+    out.push_str(text.get(at..).unwrap_or_default());
+    if !end.is_empty() && !out.is_empty() && !out.ends_with('\n') {
+        out.push('\n');
+    }
+    out + &end
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{with_value, without};
+    use super::{Edit, edited};
 
     const CASE: &str = "h = 0.1 # step\n[parameters]\nk = 2 # stiff\ng = [0,\n 1]\n";
+
+    fn put(edits: &[(&str, &str, Option<&str>)]) -> String {
+        let edits = edits.iter().map(|(table, key, value)| Edit {
+            table: (*table).to_owned(),
+            key: (*key).to_owned(),
+            value: value.map(str::to_owned),
+        });
+        edited(CASE, &edits.collect::<Vec<_>>())
+    }
 
     #[test]
     fn values_are_replaced_added_and_removed() {
         assert_eq!(
-            with_value(CASE, "parameters", "g", "[1, 2]"),
+            put(&[("parameters", "g", Some("[1, 2]"))]),
             CASE.replace("[0,\n 1]", "[1, 2]")
         );
         assert_eq!(
-            with_value(CASE, "parameters", "m", "3"),
-            CASE.replace("k = 2", "m = 3\nk = 2")
+            put(&[
+                ("parameters", "m", Some("3")),
+                ("parameters", "n", Some("4"))
+            ]),
+            CASE.replace("k = 2", "m = 3\nn = 4\nk = 2")
         );
-        assert_eq!(with_value(CASE, "", "h", "0.5"), CASE.replace("0.1", "0.5"));
+        assert_eq!(put(&[("", "h", Some("0.5"))]), CASE.replace("0.1", "0.5"));
         assert_eq!(
-            with_value(CASE, "", "steps", "7"),
+            put(&[("", "steps", Some("7"))]),
             format!("steps = 7\n{CASE}")
         );
         assert_eq!(
-            with_value(CASE, "initial", "R q", "1"),
+            put(&[("initial", "R q", Some("1"))]),
             format!("{CASE}[initial]\n\"R q\" = 1\n")
         );
-        assert_eq!(without(CASE, "parameters", "k"), CASE.replace("k = 2", ""));
-        assert_eq!(without(CASE, "parameters", "x"), CASE);
+        assert_eq!(put(&[("parameters", "k", None)]), CASE.replace("k = 2", ""));
+        assert_eq!(put(&[("parameters", "x", None)]), CASE);
+        assert_eq!(
+            put(&[
+                ("parameters", "g", None),
+                ("", "h", Some("1")),
+                ("ends", "i", Some("2"))
+            ]),
+            "h = 1 # step\n[parameters]\nk = 2 # stiff\n\n[ends]\ni = 2\n"
+        );
+    }
+
+    #[test]
+    fn a_text_that_is_not_toml_stays() {
+        let edit = Edit {
+            table: String::new(),
+            key: "h".to_owned(),
+            value: Some("1".to_owned()),
+        };
+        assert_eq!(edited("h = ", &[edit]), "h = ");
     }
 }

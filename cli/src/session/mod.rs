@@ -9,7 +9,7 @@ mod running;
 
 pub use crate::plan::Plan;
 pub use crate::trajectory::verdict::{Outcome, Verdict};
-pub use edit::{quoted, quoted_key, with_value, without};
+pub use edit::{Edit, edited, quoted, quoted_key};
 pub use layout::{Columns, Layout, layout};
 pub use model::{Model, Planned};
 pub use request::Request;
