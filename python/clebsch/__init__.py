@@ -37,9 +37,10 @@ from ._derivation import Derivation
 from ._ensemble import Ensemble
 from ._errors import ClebschError, DataError, InvariantError, ModelError, StepError
 from ._gallery import load, models
+from ._layout import Sample
 from ._model import Model
 from ._rotations import axis_angle
-from ._run import Invariant, Run, Sample
+from ._run import Invariant, Run
 from ._simulation import Simulation, resume
 
 __all__ = [

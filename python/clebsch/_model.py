@@ -6,8 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from . import _clebsch
+from ._advance import finished
 from ._derivation import Derivation, brief, for_notebook
-from ._run import Run, Sample, finished
+from ._layout import Sample
+from ._run import Run
 
 if TYPE_CHECKING:
     from ._ensemble import Ensemble

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._errors import DataError, InvariantError, StepError
-from ._progress import Progress
+from ._errors import InvariantError
+from ._layout import INVARIANT, Layout, dimensions, known
 
 if TYPE_CHECKING:
     from . import _clebsch
     from ._model import Model
-
-_INVARIANT = "invariant_"
 
 
 class Invariant(NamedTuple):
@@ -47,75 +45,6 @@ class Invariant(NamedTuple):
     last: float
     bound: float | None
     verdict: str
-
-
-class Layout:
-    """Where the arrays of a run are in its rows."""
-
-    def __init__(self, running: _clebsch.Running) -> None:
-        self.arrays = {name: (shape, kind, numbers) for name, shape, kind, numbers in running.arrays()}
-
-    def of_sites(self, name: str) -> bool:
-        """Whether the first index of a value is a site."""
-        shape, kind, numbers = self.arrays[name]
-        return kind == "listed" or (
-            kind == "blocks" and (numbers[3] > 1 or (len(shape) > 0 and numbers[2] < int(np.prod(shape))))
-        )
-
-    def array(self, name: str, rows: NDArray[np.float64]) -> NDArray[Any]:
-        """The array of a name, as a view on the rows where its columns stand at equal distances."""
-        shape, kind, numbers = self.arrays[name]
-        whole = (len(rows), *shape)
-        if kind == "sites":
-            return numbers
-        if kind == "listed":
-            return rows[:, numbers].reshape(whole)
-        start, step, size, count = numbers
-        if count == 1:
-            return rows[:, start : start + size].reshape(whole)
-        along, across = rows.strides
-        view = np.lib.stride_tricks.as_strided(
-            rows[:, start:], shape=(len(rows), count, size), strides=(along, step * across, across)
-        )
-        return view.reshape(whole)
-
-
-class Sample:
-    """The state at one sample, for the functions of `observe`.
-
-    ``s["q"]`` is the value of the quantity `q`, ``s.t`` the time, ``s.node`` the number of the node, ``s.energy`` the energy.
-    ``s.parameters`` has the parameters by name.
-    """
-
-    __slots__ = ("_layout", "_row", "node", "parameters", "t")
-
-    def __init__(self, layout: Layout, node: int, time: float, row: NDArray[np.float64], parameters: Mapping[str, Any]) -> None:
-        self._layout = layout
-        self._row = row.reshape(1, -1)
-        self.node = node
-        self.t = time
-        self.parameters = parameters
-
-    def __getitem__(self, name: str) -> Any:
-        found = self._layout.array(_known(self._layout.arrays, name), self._row)[0]
-        return float(found) if np.ndim(found) == 0 else found
-
-    def keys(self) -> list[str]:
-        """The names of the quantities.
-
-        Returns
-        -------
-        list of str
-        """
-        return [name for name in self._layout.arrays if name not in ("node", "time")]
-
-    @property
-    def energy(self) -> float:
-        """float : The energy, kinetic plus potential."""
-        return self[_INVARIANT + "energy"]
-
-    def __repr__(self) -> str:
-        return f"<Sample at node {self.node}, t = {self.t}: {', '.join(self.keys())}>"
 
 
 class Run:
@@ -174,7 +103,7 @@ class Run:
         return iter(self.keys())
 
     def __contains__(self, name: object) -> bool:
-        return name in self.keys() or f"{_INVARIANT}{name}" in self._layout.arrays
+        return name in self.keys() or f"{INVARIANT}{name}" in self._layout.arrays
 
     def __len__(self) -> int:
         """The number of samples."""
@@ -187,7 +116,7 @@ class Run:
             return self.t
         if name == "node":
             return self.node
-        return self._layout.array(_known(self._layout.arrays, name), self._rows)
+        return self._layout.array(known(self._layout.arrays, name), self._rows)
 
     @property
     def energy(self) -> NDArray[np.float64]:
@@ -244,7 +173,7 @@ class Run:
         """
         found = {}
         for own in self._outcomes():
-            values = self._layout.array(_INVARIANT + own["name"], self._rows)
+            values = self._layout.array(INVARIANT + own["name"], self._rows)
             scales = np.where(own["scales"] > 0, own["scales"], 1.0)
             found[own["name"]] = (values - values[:1]) / (scales if values.ndim > 1 else scales[0])
         return found
@@ -342,7 +271,7 @@ class Run:
                 arrays[name] = ((f"site_{len(values)}",), values)
                 continue
             sited = name in self._layout.arrays and self._layout.of_sites(name)
-            arrays[name] = (("time", *_dimensions(values.shape[1:], sited)), values)
+            arrays[name] = (("time", *dimensions(values.shape[1:], sited)), values)
         coordinates = {"time": self.t, "node": ("time", self.node)}
         attributes = {"model": self.model.name, "h": self.h, "stopped": self.stopped or ""}
         return xr.Dataset(arrays, coords=coordinates, attrs=attributes)
@@ -394,101 +323,3 @@ class Run:
             lines.append(f"  stopped: {self.stopped}")
         lines.extend(f"  warning: {text}" for text in self.warnings)
         return "\n".join(lines)
-
-
-def _known(arrays: Mapping[str, Any], name: str) -> str:
-    """The name of an array, of an invariant also without its prefix."""
-    if name in arrays:
-        return name
-    if f"{_INVARIANT}{name}" in arrays:
-        return _INVARIANT + name
-    import difflib
-
-    near = difflib.get_close_matches(name, arrays, 1)
-    hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(arrays)}"
-    raise KeyError(f"no array {name!r}; {hint}")
-
-
-def _dimensions(shape: tuple[int, ...], sited: bool) -> list[str]:
-    names = []
-    if sited and shape:
-        names.append(f"site_{shape[0]}")
-        shape = shape[1:]
-    if len(shape) == 1:
-        names.append(f"component_{shape[0]}")
-    elif len(shape) == 2:
-        names.extend([f"row_{shape[0]}", f"column_{shape[1]}"])
-    else:
-        names.extend(f"index{at}_{size}" for at, size in enumerate(shape))
-    return names
-
-
-# How long the compiled code keeps control before the bar and the functions of `observe` have their turn.
-_TURN = 0.1
-
-
-def finished(
-    model: Model,
-    running: _clebsch.Running,
-    observe: Mapping[str, Callable[[Sample], Any]] | None,
-    progress: bool,
-) -> Run:
-    """Make all steps; gives the run, also if it is interrupted."""
-    observed: dict[str, list[Any]] = {}
-    watch: Callable[[], None] | None = None
-    if observe:
-        observed, watch = _watched(running, observe)
-    bar: Progress | None = None
-    stopped = None
-    try:
-        over, failed = running.advance(_TURN)
-        if watch is not None:
-            watch()
-        if not over:
-            bar = Progress(running.case()["steps"], "step", progress)
-            while not over:
-                over, failed = running.advance(_TURN)
-                if watch is not None:
-                    watch()
-                bar.tell(running.summary()[0])
-    except KeyboardInterrupt:
-        failed = None
-        running.end_here()
-        stopped = "interrupted"
-        if watch is not None:
-            watch()
-    finally:
-        if bar is not None:
-            bar.close()
-    if failed is not None:
-        node, time, text = failed
-        run = Run(model, running, observed, text)
-        raise StepError(text, node, time, run=run if run.steps > 0 else None)
-    return Run(model, running, observed, stopped)
-
-
-def _watched(
-    running: _clebsch.Running, observe: Mapping[str, Callable[[Sample], Any]]
-) -> tuple[dict[str, list[Any]], Callable[[], None]]:
-    """Lists that grow by what functions give at new samples."""
-    layout = Layout(running)
-    for name, function in observe.items():
-        if name in layout.arrays:
-            raise DataError(f"observe: the run has an array {name!r} already; choose another name", "observe")
-        if not callable(function):
-            raise DataError(f"observe: {name!r} is not a function of a sample", "observe")
-    parameters = running.case()["parameters"]
-    lists: dict[str, list[Any]] = {name: [] for name in observe}
-    seen = 0
-
-    def watch() -> None:
-        nonlocal seen
-        samples = running.summary()[3]
-        while seen < samples:
-            node, time, row = running.sample(seen)
-            sample = Sample(layout, node, time, row, parameters)
-            for name, function in observe.items():
-                lists[name].append(function(sample))
-            seen += 1
-
-    return lists, watch

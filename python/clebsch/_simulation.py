@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._errors import DataError, StepError
-from ._run import _INVARIANT, Layout, _known
+from ._layout import INVARIANT, Layout, known
 
 if TYPE_CHECKING:
     from . import _clebsch
@@ -76,13 +76,13 @@ class Simulation:
     @property
     def state(self) -> dict[str, NDArray[Any]]:
         """dict of str to ndarray : The observables by name, as in a `Run` without the index of the sample. They are copies."""
-        return {name: value for name, value in self._values().items() if not name.startswith(_INVARIANT)}
+        return {name: value for name, value in self._values().items() if not name.startswith(INVARIANT)}
 
     @property
     def invariants(self) -> dict[str, NDArray[np.float64]]:
         """dict of str to ndarray : The values of the invariants by name."""
         values = self._values().items()
-        return {name[len(_INVARIANT) :]: value for name, value in values if name.startswith(_INVARIANT)}
+        return {name[len(INVARIANT) :]: value for name, value in values if name.startswith(INVARIANT)}
 
     @property
     def energy(self) -> float:
@@ -98,7 +98,7 @@ class Simulation:
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         row = self._running.row().reshape(1, -1)
-        return self._layout.array(_known(self._layout.arrays, name), row)[0]
+        return self._layout.array(known(self._layout.arrays, name), row)[0]
 
     def _values(self) -> dict[str, NDArray[Any]]:
         row = self._running.row().reshape(1, -1)
