@@ -30,6 +30,9 @@ enum Ended {
 /// Why a run ended that was interrupted.
 const INTERRUPTED: &str = "interrupted";
 
+/// Bytes of the stack of a thread.
+const STACK: usize = 8 << 20;
+
 /// A run between two looks at whether to stop.
 const AT_A_TIME: Duration = Duration::from_millis(50);
 
@@ -106,7 +109,9 @@ pub(crate) fn run_many<'py>(
         }
     };
     let interrupted = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+        // As much stack as the main thread of most systems has: a case with other sites is derived here.
+        let start = |_| std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
+        let threads: Vec<_> = (0..workers).map_while(|n| start(n).ok()).collect();
         loop {
             py.detach(|| wait(&threads));
             let told = tell.call1((done.load(Ordering::Relaxed),));

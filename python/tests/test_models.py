@@ -36,6 +36,16 @@ def test_a_wrong_equation_is_rejected_with_its_residual():
         cl.Model(TOP.replace("W^T*G", "W*G"))
 
 
+@pytest.mark.parametrize(
+    "text",
+    ["", "model", "\0", "é" * 1000, "(" * 50_000, OSCILLATOR.replace("q^2", "(" * 50_000 + "q"), OSCILLATOR[:40], "x" * 10**6],
+    ids=range(8),
+)
+def test_strange_texts_are_rejected(text):
+    with pytest.raises(cl.ModelError):
+        cl.Model(text)
+
+
 def test_what_a_model_declares(top):
     assert top.name == "Top"
     assert top.parameters == ["J", "chi", "z"]
