@@ -110,7 +110,11 @@ pub(crate) fn run_many<'py>(
     };
     let interrupted = std::thread::scope(|scope| {
         // As much stack as the main thread of most systems has: a case with other sites is derived here.
-        let start = |_| std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
+        let start = |_| {
+            std::thread::Builder::new()
+                .stack_size(STACK)
+                .spawn_scoped(scope, work)
+        };
         let threads: Vec<_> = (0..workers).map_while(|n| start(n).ok()).collect();
         loop {
             py.detach(|| wait(&threads));
