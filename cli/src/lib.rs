@@ -14,6 +14,7 @@ mod overrides;
 mod page;
 mod plan;
 pub mod plots;
+pub mod session;
 mod terminal;
 mod trajectory;
 mod words;
@@ -42,6 +43,16 @@ pub fn run_process() -> ExitCode {
 /// of one's own needs to call.
 #[must_use]
 pub fn run_process_on(gallery: &Gallery) -> ExitCode {
+    ExitCode::from(on_streams_of_process(std::env::args_os(), gallery))
+}
+
+/// Runs `arguments` (the first is the program's name) on the shipped models and the streams of the process, for programs of other
+/// languages; gives the exit code.
+pub fn run_arguments(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    on_streams_of_process(arguments, &Gallery::shipped())
+}
+
+fn on_streams_of_process(arguments: impl IntoIterator<Item = OsString>, gallery: &Gallery) -> u8 {
     #[cfg(feature = "native")]
     clebsch_native::install();
     let mut streams = Streams {
@@ -51,7 +62,7 @@ pub fn run_process_on(gallery: &Gallery) -> ExitCode {
         progress: io::stderr().is_terminal(),
         width: width::of_the_terminal(),
     };
-    ExitCode::from(execute(std::env::args_os(), gallery, &mut streams))
+    execute(arguments, gallery, &mut streams)
 }
 
 /// Runs `arguments` (the first is the program's name) and gives the exit code.

@@ -270,7 +270,7 @@ fn sample(components: usize, argument: usize, domain: bool) -> Vec<String> {
 }
 
 /// Whether a model has functions that its case gives.
-pub(super) fn are_given(model: &Model) -> bool {
+pub(crate) fn are_given(model: &Model) -> bool {
     formula::open(model).is_ok_and(|open| !open.is_empty())
 }
 

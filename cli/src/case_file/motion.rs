@@ -12,6 +12,7 @@ use clebsch_check::{
 use clebsch_core::lattice::Choice;
 use clebsch_core::pipeline;
 use clebsch_core::syntax::ast::Model;
+use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap};
 
 /// Most momenta of rest that a reader is told of.
@@ -453,7 +454,7 @@ pub(crate) fn statement(
     case: &Case,
     state: &[Field],
 ) -> Option<Statement> {
-    let model = pipeline::parse_source(card.source).ok()?;
+    let model = parsed(card.source)?;
     let sizes = card.dimensions.iter();
     let sizes: Vec<_> = sizes.map(|d| (d.name.to_owned(), d.value)).collect();
     let fields = card.parameters.iter().map(|f| (f.name, f.rows, f.cols));
@@ -465,6 +466,27 @@ pub(crate) fn statement(
         (setup.periodic, setup.ends) = (choice.periodic, choice.ends);
     }
     Some((model, sizes, setup))
+}
+
+thread_local! {
+    /// The model that this thread parsed last: the cases of a sweep all state the same one.
+    static PARSED: RefCell<Option<(&'static str, Model)>> = const { RefCell::new(None) };
+}
+
+/// The model of a card's text.
+fn parsed(source: &'static str) -> Option<Model> {
+    let known = PARSED.with_borrow(|last| {
+        let found = last
+            .as_ref()
+            .filter(|(text, _)| std::ptr::eq(*text, source));
+        found.map(|(_, model)| model.clone())
+    });
+    if known.is_some() {
+        return known;
+    }
+    let model = pipeline::parse_source(source).ok()?;
+    PARSED.set(Some((source, model.clone())));
+    Some(model)
 }
 
 /// What evaluates the action of a case.

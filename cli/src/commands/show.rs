@@ -74,7 +74,7 @@ pub(crate) fn case_text(
 }
 
 /// A case of placeholder values for a model's text.
-fn placeholder(text: &ModelText, streams: &mut Streams<'_>) -> Result<String, Failure> {
+pub(crate) fn placeholder(text: &ModelText, streams: &mut Streams<'_>) -> Result<String, Failure> {
     let sample = WhichCase::Named("sample".to_owned());
     if let Some(stated) = Stated::read(&text.text)
         && let Some(choice) = case_file::default_choice(&stated)

@@ -90,7 +90,7 @@ impl Plan {
         let cards = of_size(entry, size)?;
         let (mut case, origin, choice, mut motion) = match &resolved.case {
             WhichCase::Text(text) => {
-                let located = read(text, &cards)?;
+                let located = read(text, &cards, true)?;
                 let origin = Some((located.file, located.lines));
                 (located.case, origin, located.choice, located.motion)
             }
@@ -119,7 +119,7 @@ impl Plan {
         }
         let steps = matches.get_one::<u64>("steps").copied();
         Ok(Self {
-            every: every.unwrap_or_else(|| case.steps.div_ceil(SAMPLES).max(1)),
+            every: every.unwrap_or_else(|| Self::default_every(case.steps)),
             case,
             order,
             arguments: json!({
@@ -147,6 +147,29 @@ impl Plan {
             origin,
             motion,
         })
+    }
+
+    /// The case of a text, without options; `has_sites` says whether the model has labels.
+    ///
+    /// # Errors
+    /// Usage: what is wrong with the case.
+    pub(crate) fn of_text(
+        entry: &Entry,
+        case: &CaseText,
+        has_sites: bool,
+    ) -> Result<Self, Failure> {
+        let located = read(case, &entry.cards(), has_sites)?;
+        Ok(Self {
+            choice: located.choice,
+            origin: Some((located.file, located.lines)),
+            motion: located.motion,
+            ..Self::of(&located.case, 1)
+        })
+    }
+
+    /// The default of `every` for this number of steps.
+    pub(crate) fn default_every(steps: u64) -> u64 {
+        steps.div_ceil(SAMPLES).max(1)
     }
 
     /// The case with another step size, up to the same time unless the number of steps was asked for.
@@ -313,12 +336,14 @@ fn start(
     put.map_err(|wrong| Failure::Usage(format!("initial.{}: {}", wrong.key, wrong.why)))
 }
 
-/// The case of a file, by the first card whose fields it fits; the message is that of the first.
-fn read(case: &CaseText, cards: &[Card]) -> Result<Located, Failure> {
+/// The case of a file, by the first card whose fields it fits; the message is that of the first. If the model has labels,
+/// `may_have_sites` is true and its text is read again.
+fn read(case: &CaseText, cards: &[Card], may_have_sites: bool) -> Result<Located, Failure> {
     let CaseText { file, text } = case;
     let mut first = None;
     for card in cards {
-        let stated = Stated::read(card.source);
+        let stated = may_have_sites.then(|| Stated::read(card.source));
+        let stated = stated.flatten();
         match case_file::read_of(file, text, card, stated.as_ref()) {
             Ok(located) => return Ok(located),
             Err(error) => first = first.or(Some(error)),

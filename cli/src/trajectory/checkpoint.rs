@@ -141,7 +141,7 @@ pub(crate) struct Checkpoint {
 
 impl Checkpoint {
     /// Its bytes, a few at a time: those of a million particles are not held twice.
-    fn put(&self, identity: &Identity, out: impl Write) -> io::Result<()> {
+    pub(crate) fn put(&self, identity: &Identity, out: impl Write) -> io::Result<()> {
         let mut out = Summed {
             out: BufWriter::with_capacity(BUFFER, out),
             sum: crc32fast::Hasher::new(),
@@ -186,7 +186,8 @@ impl Checkpoint {
         Self::of_bytes(&bytes, identity)
     }
 
-    fn of_bytes(bytes: &[u8], identity: &Identity) -> Result<Self, String> {
+    /// The same of bytes.
+    pub(crate) fn of_bytes(bytes: &[u8], identity: &Identity) -> Result<Self, String> {
         let Some(rest) = bytes.strip_prefix(MAGIC.as_bytes()) else {
             return Err("it is no checkpoint".to_owned());
         };

@@ -33,6 +33,23 @@ impl Array {
         &self.name
     }
 
+    /// How many entries it has along each index.
+    #[must_use]
+    pub fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
+    /// The words of a row that it takes, one range after the other; as an error the counts that no row holds.
+    ///
+    /// # Errors
+    /// The counts of an array that takes nothing of the rows.
+    pub fn columns(&self) -> Result<&[Range<usize>], &[u64]> {
+        match &self.entries {
+            Entries::Columns { columns, .. } => Ok(columns),
+            Entries::Numbers(numbers) => Err(numbers),
+        }
+    }
+
     /// Of `samples` times `shape` numbers: words `columns` of every row, one range after the other.
     #[must_use]
     pub fn of_columns(

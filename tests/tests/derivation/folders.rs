@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 /// The folders of the command, each after those that it may import from.
-const ORDER: [&str; 13] = [
+const ORDER: [&str; 14] = [
     "words",
     "terminal",
     "arguments",
@@ -18,6 +18,7 @@ const ORDER: [&str; 13] = [
     "plots",
     "page",
     "commands",
+    "session",
 ];
 
 #[test]

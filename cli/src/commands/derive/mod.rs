@@ -116,7 +116,7 @@ const PAGE: usize = 100;
 /// The derivation of the model text `source` (of the file or model `name`) in the form `format`: text, latex, markdown,
 /// rust or json, or the ending of such a file, with what is cited of it and the proofs asked for; plain text in lines of
 /// at most `width` letters. Beside it the warnings, with line, column and caret.
-fn derived(
+pub(crate) fn derived(
     name: &str,
     source: &str,
     citations: Citations,

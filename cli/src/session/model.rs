@@ -1,0 +1,272 @@
+//! A model of the gallery, of a file or of a text in memory. Takes the case as text; gives the plan of its run.
+
+use super::request::Request;
+use crate::case_file;
+use crate::case_file::stated::Stated;
+use crate::commands::derive::{Proofs, derived};
+use crate::commands::show;
+use crate::models::gallery::{Citations, Entry, Gallery};
+use crate::named::cases::{CaseText, NamedCases, WhichCase};
+use crate::named::model_file;
+use crate::named::resolve::{ModelText, Named, named};
+use crate::plan::Plan;
+use crate::terminal::Streams;
+use crate::terminal::failure::Failure;
+use clebsch::card::Card;
+use clebsch_core::{Errors, lattice, pipeline};
+use clebsch_interpret::Refused;
+use std::borrow::Cow;
+use std::io;
+
+/// A model that a program runs.
+pub struct Model {
+    text: ModelText,
+    /// Its card and cases, where the stepper is compiled.
+    compiled: Option<Entry>,
+    /// Its card, where no case changes it: a model without labels and without functions that a case gives.
+    fixed: Option<Entry>,
+    has_sites: bool,
+    warnings: String,
+}
+
+/// A case that is ready to start.
+pub struct Planned {
+    /// The card of the model, of the size or on the sites of the case.
+    pub card: Card,
+    /// The plan of the run.
+    pub plan: Plan,
+    /// Warnings on the text of the model, rendered with carets.
+    pub warnings: String,
+}
+
+impl Model {
+    /// The model of a text, which messages call `name`.
+    ///
+    /// # Errors
+    /// Usage: the text does not derive, which the message shows with a caret; or the model needs a build.
+    pub fn of_text(name: &str, text: &str) -> Result<Self, Failure> {
+        Self::read(ModelText {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            cases: NamedCases::default(),
+            is_path: false,
+        })
+    }
+
+    /// The model of the gallery that has a name, or of the file that has a path.
+    ///
+    /// # Errors
+    /// Usage: no such model, an unreadable file, or a text that does not derive.
+    pub fn named(gallery: &Gallery, name: &str) -> Result<Self, Failure> {
+        match named(gallery, name, "here a model is named")? {
+            Named::Text(text) if text.is_path => Self::read(text),
+            // Shipped texts derive, and each run derives them for its case.
+            Named::Text(text) => Ok(Self {
+                has_sites: has_sites(&text.text),
+                text,
+                compiled: None,
+                fixed: None,
+                warnings: String::new(),
+            }),
+            Named::Compiled(entry) => Ok(Self {
+                text: ModelText {
+                    name: entry.card.kebab.to_owned(),
+                    text: entry.card.source.to_owned(),
+                    cases: NamedCases::default(),
+                    is_path: false,
+                },
+                has_sites: has_sites(entry.card.source),
+                compiled: Some(entry.clone()),
+                fixed: None,
+                warnings: String::new(),
+            }),
+        }
+    }
+
+    fn read(text: ModelText) -> Result<Self, Failure> {
+        let mut warnings = Vec::new();
+        let entry = model_file::read(&text.name, &text.text, &WhichCase::First, &mut warnings)?;
+        let has_sites = has_sites(&text.text);
+        let is_fixed = !has_sites && !gives_functions(&text.text);
+        Ok(Self {
+            text,
+            compiled: None,
+            fixed: is_fixed.then_some(entry),
+            has_sites,
+            warnings: String::from_utf8_lossy(&warnings).into_owned(),
+        })
+    }
+
+    /// Its name in messages: the name in the gallery, a path, or the name given with the text.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.text.name
+    }
+
+    /// The name that its text declares.
+    #[must_use]
+    pub fn declared(&self) -> Option<String> {
+        crate::models::gallery::declared(&self.text.text)
+    }
+
+    /// Its text.
+    #[must_use]
+    pub fn source(&self) -> &str {
+        &self.text.text
+    }
+
+    /// Warnings on its text, rendered with carets.
+    #[must_use]
+    pub fn warnings(&self) -> &str {
+        &self.warnings
+    }
+
+    /// Whether it has labels, so that its card depends on the number of sites.
+    #[must_use]
+    pub fn has_sites(&self) -> bool {
+        self.has_sites
+    }
+
+    /// The names of its cases, the default one first, each with what it shows.
+    #[must_use]
+    pub fn cases(&self) -> Vec<(String, String)> {
+        match &self.compiled {
+            Some(entry) => {
+                let cases = entry.cases.iter();
+                cases.map(|c| (c.name.clone(), c.doc.clone())).collect()
+            }
+            None => self.text.cases.described(),
+        }
+    }
+
+    /// The name of a case's file in messages, and its text. `sample` has placeholder values; a name that ends in .toml is a path.
+    ///
+    /// # Errors
+    /// Usage: no such case, or an unreadable file.
+    pub fn case(&self, name: Option<&str>) -> Result<(String, String), Failure> {
+        if let Some(entry) = &self.compiled
+            && !name.is_some_and(crate::named::cases::is_file)
+        {
+            let case = crate::models::gallery::case(entry, name)?;
+            let text = case_file::write(&entry.card_of(case), case, entry.card.kebab);
+            return Ok((format!("{}:{}", entry.card.kebab, case.name), text));
+        }
+        match crate::named::resolve::case_of(&self.text, name)? {
+            WhichCase::Text(case) => Ok((case.file, case.text)),
+            _ => {
+                let streams = &mut Streams {
+                    input: &mut io::empty(),
+                    out: &mut io::sink(),
+                    err: &mut io::sink(),
+                    progress: false,
+                    width: None,
+                };
+                let text = show::placeholder(&self.text, streams)?;
+                Ok(("sample".to_owned(), text))
+            }
+        }
+    }
+
+    /// The card of the model; with labels that on the default number of sites.
+    ///
+    /// # Errors
+    /// As [`Model::named`].
+    pub fn card(&self) -> Result<Card, Failure> {
+        let known = self.compiled.as_ref().or(self.fixed.as_ref());
+        match known {
+            Some(entry) => Ok(entry.card),
+            None => {
+                let text = &self.text;
+                let read =
+                    model_file::read(&text.name, &text.text, &WhichCase::First, &mut io::sink());
+                read.map(|entry| entry.card)
+            }
+        }
+    }
+
+    /// The plan of a case, given by the name of its file in messages and by its text.
+    ///
+    /// # Errors
+    /// Usage: what is wrong with the case or the request.
+    pub fn planned(&self, file: &str, text: &str, request: &Request) -> Result<Planned, Failure> {
+        let case = CaseText {
+            file: file.to_owned(),
+            text: text.to_owned(),
+        };
+        let mut warnings = Vec::new();
+        let (entry, case) = match self.compiled.as_ref().or(self.fixed.as_ref()) {
+            Some(entry) => (Cow::Borrowed(entry), case),
+            None => {
+                let which = WhichCase::Text(case.clone());
+                let (name, own) = (&self.text.name, &self.text.text);
+                (
+                    Cow::Owned(model_file::read(name, own, &which, &mut warnings)?),
+                    case,
+                )
+            }
+        };
+        let mut plan = Plan::of_text(&entry, &case, self.has_sites)?;
+        request.applied(&mut plan, entry.card.solvers)?;
+        let card = entry.card_of(&plan.case);
+        Ok(Planned {
+            card,
+            plan,
+            warnings: String::from_utf8_lossy(&warnings).into_owned(),
+        })
+    }
+
+    /// The derivation in a form: `text`, `latex`, `markdown`, `rust` or `json`; with the proof behind it, or as a document that
+    /// compiles by itself.
+    ///
+    /// # Errors
+    /// Usage: the text does not derive.
+    pub fn derivation(
+        &self,
+        format: &str,
+        explain: bool,
+        standalone: bool,
+    ) -> Result<String, Failure> {
+        let citations = self
+            .compiled
+            .as_ref()
+            .map_or(Citations::NONE, |e| e.citations);
+        let proofs = Proofs {
+            explain,
+            standalone,
+            ..Proofs::default()
+        };
+        let derived = derived(self.name(), self.source(), citations, format, proofs, None);
+        derived.map(|(text, _)| text).map_err(Failure::Usage)
+    }
+
+    /// The mistakes of a text that is not a model.
+    #[must_use]
+    pub fn mistakes(text: &str) -> Option<Errors> {
+        let model = match pipeline::parse_source(text) {
+            Ok(model) => model,
+            Err(errors) => return Some(errors),
+        };
+        let refused = match Stated::read(text)
+            .as_ref()
+            .and_then(case_file::default_choice)
+        {
+            Some(choice) => clebsch_interpret::card_on_lattice(text, &choice).err(),
+            None if lattice::has_labels(&model) => {
+                return pipeline::derive_model(&model).err();
+            }
+            None => clebsch_interpret::card_and_warnings(text).err(),
+        };
+        match refused {
+            Some(Refused::Model(errors)) => Some(errors),
+            _ => None,
+        }
+    }
+}
+
+fn has_sites(text: &str) -> bool {
+    pipeline::parse_source(text).is_ok_and(|model| lattice::has_labels(&model))
+}
+
+fn gives_functions(text: &str) -> bool {
+    pipeline::parse_source(text).is_ok_and(|model| case_file::functions::are_given(&model))
+}

@@ -1,0 +1,177 @@
+//! Many cases of one model on all cores. Takes their texts; gives their runs in the same order, whatever the number of threads.
+
+use crate::errors::exception;
+use crate::guarded::guarded;
+use crate::model::Model;
+use crate::options::request;
+use crate::running::Running;
+use clebsch_cli::session::{self, Request};
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use std::num::NonZero;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+/// How a case ended.
+enum Ended {
+    /// All steps are made.
+    Whole(Box<session::Running>),
+    /// A step was not.
+    Stopped(Box<session::Running>, String),
+    /// It did not start.
+    Refused(String),
+    /// It was not begun when the call was interrupted.
+    Left,
+}
+
+/// Why a run ended that was interrupted.
+const INTERRUPTED: &str = "interrupted";
+
+/// Bytes of the stack of a thread.
+const STACK: usize = 8 << 20;
+
+/// A run between two looks at whether to stop.
+const AT_A_TIME: Duration = Duration::from_millis(50);
+
+fn one(
+    model: &session::Model,
+    (file, text): &(String, String),
+    request: &Request,
+    stop: &AtomicBool,
+) -> Ended {
+    let planned = match model.planned(file, text, request) {
+        Ok(planned) => planned,
+        Err(failure) => return Ended::Refused(failure.to_string()),
+    };
+    let mut running = match session::Running::start(planned, request.judged, true) {
+        Ok(running) => Box::new(running),
+        Err(failure) => return Ended::Refused(failure.to_string()),
+    };
+    while !stop.load(Ordering::Relaxed) {
+        match running.advance(AT_A_TIME) {
+            Ok(true) => {
+                return match running.full() {
+                    Some(why) => Ended::Stopped(running, why),
+                    None => Ended::Whole(running),
+                };
+            }
+            Ok(false) => {}
+            Err(error) if running.summary().steps == 0 => return Ended::Refused(error.to_string()),
+            Err(error) => return Ended::Stopped(running, error.to_string()),
+        }
+    }
+    // The samples so far are kept.
+    running.end_here();
+    Ended::Stopped(running, INTERRUPTED.to_owned())
+}
+
+/// Runs cases, each given by its name in messages and by its text, on `workers` threads, by default one for each core. Gives for each
+/// case its run or None, and why it ended before its end, which is `interrupted` after Ctrl-C. `tell` is called now and then with the number of cases that are done.
+#[pyfunction]
+pub(crate) fn run_many<'py>(
+    py: Python<'py>,
+    model: &Bound<'py, Model>,
+    cases: Vec<(String, String)>,
+    options: &Bound<'py, PyDict>,
+    workers: Option<usize>,
+    tell: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyList>> {
+    let request = request(options)?;
+    let model = &model.get().inner;
+    if workers == Some(0) {
+        return Err(exception(
+            py,
+            "DataError",
+            "workers: expected None or at least 1, found 0",
+            &[],
+        ));
+    }
+    let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let workers = workers.unwrap_or(cores).min(cases.len().max(1));
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let stop = AtomicBool::new(false);
+    let ended: Vec<Mutex<Ended>> = cases.iter().map(|_| Mutex::new(Ended::Left)).collect();
+    let work = || {
+        while !stop.load(Ordering::Relaxed) {
+            let at = next.fetch_add(1, Ordering::Relaxed);
+            let (Some(case), Some(place)) = (cases.get(at), ended.get(at)) else {
+                break;
+            };
+            // A defect that one case meets must not end the others.
+            let own = catch_unwind(AssertUnwindSafe(|| one(model, case, &request, &stop)));
+            let own = own
+                .unwrap_or_else(|_| Ended::Refused("clebsch met a defect of its own".to_owned()));
+            *place.lock().unwrap_or_else(PoisonError::into_inner) = own;
+            done.fetch_add(1, Ordering::Relaxed);
+        }
+    };
+    let interrupted = std::thread::scope(|scope| {
+        // As much stack as the main thread of most systems has: a case with other sites is derived here.
+        let start = |_| {
+            std::thread::Builder::new()
+                .stack_size(STACK)
+                .spawn_scoped(scope, work)
+        };
+        let threads: Vec<_> = (0..workers).map_while(|n| start(n).ok()).collect();
+        loop {
+            py.detach(|| wait(&threads));
+            let told = tell.call1((done.load(Ordering::Relaxed),));
+            let signalled = py.check_signals().and(told.map(drop));
+            let over = threads
+                .iter()
+                .all(std::thread::ScopedJoinHandle::is_finished);
+            if over || signalled.is_err() {
+                stop.store(true, Ordering::Relaxed);
+                // The threads are joined at the end of the scope, without the interpreter lock.
+                py.detach(|| {
+                    while !threads
+                        .iter()
+                        .all(std::thread::ScopedJoinHandle::is_finished)
+                    {
+                        std::thread::sleep(Duration::from_millis(1));
+                    }
+                });
+                return signalled;
+            }
+        }
+    });
+    // Ctrl-C ends the cases, and those that were computed are worth keeping.
+    interrupted.or_else(
+        |error| match error.is_instance_of::<PyKeyboardInterrupt>(py) {
+            true => Ok(()),
+            false => Err(error),
+        },
+    )?;
+    guarded(|| {
+        let out = PyList::empty(py);
+        for (place, (file, _)) in ended.into_iter().zip(&cases) {
+            let own = place.into_inner().unwrap_or_else(PoisonError::into_inner);
+            let (running, why) = match own {
+                Ended::Whole(running) => (Some(running), None),
+                Ended::Stopped(running, why) => (Some(running), Some(why)),
+                Ended::Refused(why) => (None, Some(why)),
+                Ended::Left => (None, Some(INTERRUPTED.to_owned())),
+            };
+            let running = running.map(|running| Py::new(py, Running::of(*running, file)));
+            out.append((running.transpose()?, why))?;
+        }
+        Ok(out)
+    })
+}
+
+/// Waits until the threads are done, a tenth of a second at most.
+fn wait(threads: &[std::thread::ScopedJoinHandle<'_, ()>]) {
+    for turn in 0..100 {
+        if threads
+            .iter()
+            .all(std::thread::ScopedJoinHandle::is_finished)
+        {
+            return;
+        }
+        // Short cases are noticed soon.
+        std::thread::sleep(Duration::from_micros(if turn < 10 { 100 } else { 1100 }));
+    }
+}
