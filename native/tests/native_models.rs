@@ -8,9 +8,8 @@ use clebsch::card::Settings;
 use clebsch_models::gallery;
 use side_by_side::compare;
 
-/// How many steps are compared. Chains and fluids run in lanes, of which little is compiled.
+/// How many steps are compared.
 const STEPS: u64 = 200;
-const STEPS_OF_MANY: u64 = 5;
 
 #[test]
 fn steps_agree_to_the_last_bit() {
@@ -21,12 +20,8 @@ fn steps_agree_to_the_last_bit() {
             let built = entry.card_of(case);
             let sizes: Vec<usize> = built.dimensions.iter().map(|d| d.value).collect();
             let read = (card.sized)(&sizes).expect("sizes of the gallery");
-            let steps = match entry.family {
-                clebsch_models::Family::Chain | clebsch_models::Family::Fluid => STEPS_OF_MANY,
-                _ => STEPS,
-            };
             let settings = Settings::step(case.h);
-            let made = compare(&built, &read, case, settings, steps.min(case.steps));
+            let made = compare(&built, &read, case, settings, STEPS.min(case.steps));
             assert!(made > 0, "{} {}", card.name, case.name);
         }
     }

@@ -10,6 +10,7 @@ use crate::words::columns::aligned;
 use crate::words::lines::first_line;
 use crate::words::plain::shown;
 use crate::words::suggestion::slip;
+use crate::words::way::way_of;
 use clap::ArgMatches;
 use clebsch::card::Conserved;
 use clebsch_core::pipeline;
@@ -111,7 +112,7 @@ fn cases(
             (
                 row.name,
                 entry.card.doc.trim().to_owned(),
-                COMPILED,
+                way_of(true),
                 cases,
                 row.json,
             )
@@ -121,7 +122,7 @@ fn cases(
             let family = family.map_or(Family::Particle, |file| file.family);
             let row = text_row(family, &text.name, &text.text, &text.cases);
             let doc = documentation(&text.text);
-            (row.name, doc, INTERPRETED, text.cases.described(), row.json)
+            (row.name, doc, way_of(false), text.cases.described(), row.json)
         }
     };
     let out = &mut *streams.out;
@@ -145,10 +146,6 @@ fn cases(
     )?;
     Ok(())
 }
-
-/// How a model runs.
-const COMPILED: &str = "compiled";
-const INTERPRETED: &str = "interpreted from its text";
 
 fn compiled(entry: &Entry) -> Row {
     Row {
@@ -175,7 +172,7 @@ fn text_row(family: Family, name: &str, text: &str, cases: &NamedCases) -> Row {
             "model": name,
             "name": declared(text),
             "family": family.name(),
-            "runs": INTERPRETED,
+            "runs": way_of(false),
             "doc": doc,
             "cases": described,
         }),
@@ -190,7 +187,7 @@ fn compiled_json(entry: &Entry) -> Value {
         "model": card.kebab,
         "name": card.name,
         "family": family(card).name(),
-        "runs": COMPILED,
+        "runs": way_of(true),
         "doc": card.doc.trim(),
         "solver": card.solver,
         "order": card.order,

@@ -6,4 +6,5 @@ pub(crate) mod number;
 pub(crate) mod plain;
 pub(crate) mod suggestion;
 pub(crate) mod toml_value;
+pub(crate) mod way;
 pub(crate) mod width;

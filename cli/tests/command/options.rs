@@ -204,6 +204,7 @@ fn a_run_prints_as_much_as_it_is_asked_to() {
         plain.out
     );
     assert!(!plain.out.contains("Riccati") && verbose.out.contains("Riccati form"));
+    verbose.prints(["steps: compiled\n"]);
     assert!(
         verbose
             .out

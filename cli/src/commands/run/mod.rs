@@ -22,6 +22,7 @@ use crate::trajectory::stated::JudgedTrajectory;
 use crate::trajectory::step_limit::{self, StepLimit};
 use crate::trajectory::verdict::{Verdict, judge, lost, table};
 use crate::words::plain::shown;
+use crate::words::way::way_of;
 use crate::words::width::paragraph;
 use clap::ArgMatches;
 use clebsch::card::{Card, Trajectory as _};
@@ -129,7 +130,8 @@ pub fn run(
         false if matches.get_flag("verbose") => Told::All,
         false => Told::Result,
     };
-    summary::title(&mut out, width, card, &plan, told)?;
+    let way = way_of(resolved.compiled);
+    summary::title(&mut out, width, card, &plan, (told, way))?;
     let steps = plan.case.steps;
     let watch = Watch::new(&trajectory, steps, plan.every);
     let mut following = Run {

@@ -26,7 +26,7 @@ pub(crate) enum Told {
     All,
 }
 
-/// Prints which case runs, and for [`Told::All`] what was derived for it.
+/// Prints which case runs, and for [`Told::All`] what was derived for it and the `way` in which steps are made.
 ///
 /// # Errors
 /// Those of writing.
@@ -35,7 +35,7 @@ pub(crate) fn title(
     width: Option<usize>,
     card: &Card,
     plan: &Plan,
-    told: Told,
+    (told, way): (Told, &str),
 ) -> Result<(), Failure> {
     if told == Told::Nothing {
         return Ok(());
@@ -56,6 +56,7 @@ pub(crate) fn title(
             false => "not reversible",
         };
         say(&format!("solver: {}; {reversible}", card.solver), 2)?;
+        say(&format!("steps: {way}"), 2)?;
         if order > card.order {
             say(&card.method_of_order(order, plan.compensated), 2)?;
         }
