@@ -45,6 +45,24 @@ clebsch::model! {
 }
 
 clebsch::model! {
+    /// A charge in a field that turns with its place, solved by elimination with pivots, beside a point that Newton's method
+    /// solves for.
+    pub model Beside {
+        param m: Real;
+        param q: Real;
+        param M: Real;
+        param b: Real;
+        param k: Real;
+        field X: Vec<3>;
+        field Y: Vec<2>;
+        let d = next(X) - X;
+        let e = next(Y) - Y;
+        lagrangian = m*dot(d, d)/(2*h) + q*dot(cross(X[2]*E1 + X[3]*E2 + X[1]*E3, X), d) - (h/2)*k*dot(X, X)
+            + M*dot(e, e)/(2*h) + (b/h^3)*dot(e, e)^2 - (h/2)*k*dot(Y, Y) - h*k*X[1]*Y[1];
+    }
+}
+
+clebsch::model! {
     /// A body that hangs on a point that moves: two different groups, solved together.
     pub model Hanging {
         param J: Sym<3>;
@@ -238,6 +256,23 @@ fn energies_that_are_not_quadratic() {
         &Quartic::CARD,
         &case(0.05, &parameters, &[&[1.0, 0.2], &[0.1, 0.9]]),
     );
+}
+
+/// Decisions before Newton's method come out in many ways: a tape that is not followed leaves the search as it is.
+#[test]
+fn decisions_before_the_iteration() {
+    let parameters: [&[f64]; 5] = [&[1.0], &[2.0], &[1.0], &[0.3], &[1.0]];
+    let initial: [&[f64]; 4] = [
+        &[1.0, 0.3, -0.4],
+        &[0.3, 0.5, 0.2],
+        &[1.0, 0.3],
+        &[0.3, 0.5],
+    ];
+    let card = clebsch_interpret::card(Beside::CARD.source).expect("is read");
+    for h in [0.2, 0.3, 0.4, 1.0] {
+        let case = case(h, &parameters, &initial);
+        compare(&Beside::CARD, &card, &case, Settings::step(h), 400);
+    }
 }
 
 #[test]

@@ -122,7 +122,13 @@ fn cases(
             let family = family.map_or(Family::Particle, |file| file.family);
             let row = text_row(family, &text.name, &text.text, &text.cases);
             let doc = documentation(&text.text);
-            (row.name, doc, way_of(false), text.cases.described(), row.json)
+            (
+                row.name,
+                doc,
+                way_of(false),
+                text.cases.described(),
+                row.json,
+            )
         }
     };
     let out = &mut *streams.out;

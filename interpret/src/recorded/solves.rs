@@ -180,6 +180,8 @@ pub struct Between {
     solved: SolvedHere,
     /// What the search had measured before the step.
     before: Option<Held>,
+    /// Whether this step has come to the equations.
+    begun: bool,
     /// The newest solution.
     found: Value<f64>,
 }
@@ -206,6 +208,7 @@ pub fn in_parts(tape: Tape, cuts: Vec<Cut>) -> (Vec<Between>, Tape) {
             machine,
             solved: cut.solved,
             before: None,
+            begun: false,
             found: Value::Unit,
         });
     }
@@ -229,6 +232,7 @@ impl Between {
     /// Computes what the equations need from `numbers`, solves them and appends their solution. `first` is the first count
     /// of the state; the search is among the `places`.
     pub fn solve(&mut self, own: &mut Vec<f64>, first: i64, places: &mut Places<f64>) -> Went {
+        self.begun = false;
         let loaded = own.get(..self.machine.inputs());
         let loaded = loaded.and_then(|own| super::load(self.frame.inputs(), own));
         if loaded.is_none() || !self.machine.run(&mut self.frame) {
@@ -248,6 +252,7 @@ impl Between {
             Some(before) => before.measure_as(held),
             None => self.before = Some(held.clone()),
         }
+        self.begun = true;
         let node = (first + solved.node).unsigned_abs();
         let Ok(found) = held.solve(&solved.with, node, &mut solved.places) else {
             return Went::Unsolved;
@@ -264,11 +269,13 @@ impl Between {
         }
     }
 
-    /// Gives the search back what it had measured before the step.
+    /// Gives the search back what it had measured before the step, if the step has come to the equations.
     pub fn undo(&self, places: &mut Places<f64>) {
-        if let (Some(before), Some(Value::Search(held))) =
-            (&self.before, self.solved.with.search.place_mut(places))
-        {
+        if let (true, Some(before), Some(Value::Search(held))) = (
+            self.begun,
+            &self.before,
+            self.solved.with.search.place_mut(places),
+        ) {
             held.measure_as(before);
         }
     }
