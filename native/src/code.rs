@@ -1,4 +1,4 @@
-//! Compiled code and the memory it stands in.
+//! Compiled code and its memory.
 
 use crate::generate::generate;
 use clebsch_program::{Called, Compiled, Machine};
@@ -85,7 +85,7 @@ impl Native {
         let size = context.compiled_code().map_or(0, |c| c.code_buffer().len());
         module.finalize_definitions().map_err(unsupported)?;
         let code = module.get_finalized_function(name);
-        // SAFETY: the function was declared with this signature and stands in memory that `module` owns.
+        // SAFETY: the function was declared with this signature in memory that `module` owns.
         let function =
             unsafe { std::mem::transmute::<*const u8, unsafe extern "C" fn(*mut f64) -> u8>(code) };
         Ok(Native {

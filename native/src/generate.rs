@@ -14,7 +14,7 @@ use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::JITModule;
 use cranelift_module::Module;
 
-/// Where values stand while the function is written.
+/// The function while it is written, and the values of its registers.
 struct Writer<'a, 'b> {
     machine: &'a Machine,
     builder: FunctionBuilder<'b>,

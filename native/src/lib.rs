@@ -2,7 +2,7 @@
 //!
 //! A tape is straight: operations on numbers, then tests. Cranelift makes one function of it, which computes the same
 //! numbers as [`Machine::run`](clebsch_program::Machine::run), to the last bit: no operations are contracted or
-//! reordered, and sine, exponential and the like are those of the runtime. All `unsafe` code of the project is here.
+//! reordered, and code calls the sine, the exponential and the like of the runtime. All `unsafe` code of the project is here.
 
 #![allow(unsafe_code)]
 

@@ -94,7 +94,7 @@ fn too_few_registers_are_a_failure_and_nothing_is_written() {
     assert!(!native.run(&mut [[1.0]]));
 }
 
-/// What panics.
+/// A function that panics.
 fn panics(_: &[usize], _: &[f64], _: &mut [f64]) {
     panic!("on purpose");
 }

@@ -4,7 +4,7 @@ use crate::machine::Machine;
 use std::fmt::Debug;
 use std::sync::{Arc, OnceLock};
 
-/// What a machine computes, as code of the processor: the same numbers, to the last bit.
+/// Code of the processor for a machine: it computes the same numbers, to the last bit.
 pub trait Compiled: Debug + Send + Sync {
     /// Computes in the registers of a frame of the machine. False if a decision comes out otherwise than recorded: the
     /// outputs then mean nothing.
