@@ -1,8 +1,8 @@
 //! Code of the processor for the tapes of model files.
 //!
-//! A tape is straight: operations on numbers, then tests. Cranelift makes one function of it, which computes the same
-//! numbers as [`Machine::run`](clebsch_program::Machine::run), to the last bit: no operations are contracted or
-//! reordered, and code calls the sine, the exponential and the like of the runtime. All `unsafe` code of the project is here.
+//! A tape is straight: operations on numbers, then tests. Cranelift compiles it to one function. The function computes the
+//! numbers of [`Machine::run`](clebsch_program::Machine::run), to the last bit. Operations are neither contracted nor
+//! reordered. The code calls the runtime for the sine, the exponential and the like. All `unsafe` code of the project is here.
 
 #![allow(unsafe_code)]
 
