@@ -291,31 +291,3 @@ fn kept(mut model: Opened, resize: impl Fn(&[usize]) -> Option<Told> + Sync + 's
     model.card.sized = Box::leak(Box::new(sized));
     place.get_or_init(|| model).card
 }
-
-#[cfg(test)]
-mod tests {
-    use super::card;
-    use clebsch::card::Settings;
-
-    /// More than a table of functions once held, each with its own action.
-    #[test]
-    fn any_number_of_models_opens_and_a_text_is_read_once() {
-        let text = |i: u32| {
-            format!(
-                "model Spring {{ field x: Real; lagrangian = (next(x) - x)^2/(2*h) - h*{i}*x^2/2; }}"
-            )
-        };
-        for i in 1..=70 {
-            let of_text = card(&text(i)).unwrap_or_else(|e| panic!("{e}"));
-            let again = card(&text(i)).unwrap_or_else(|e| panic!("{e}"));
-            assert!(std::ptr::addr_eq(of_text.open, again.open));
-            let opened = (of_text.open)(&[], &[vec![1.0], vec![0.0]], Settings::step(0.1));
-            let mut motion = opened.unwrap_or_else(|e| panic!("{e}"));
-            motion.step().unwrap_or_else(|e| panic!("{e}"));
-            let mut seen = [0.0; 2];
-            motion.observe(&mut seen);
-            let wanted = 1.0 - 0.005 * f64::from(i);
-            assert!((seen[0] - wanted).abs() < 1e-15, "{i}: {seen:?}");
-        }
-    }
-}

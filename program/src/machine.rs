@@ -121,13 +121,10 @@ impl Machine {
         }
     }
 
-    /// Computes on [`WIDTH`] sets of inputs side by side. False if a decision comes out otherwise in any of them.
-    pub fn run_wide(&self, frame: &mut Frame<WIDTH>) -> bool {
-        wide::run(self, frame)
-    }
-
+    /// Computes on `L` sets of inputs side by side. False if a decision comes out otherwise in any of them. The caller
+    /// chooses the registers of the processor for which this function is compiled.
     #[inline(always)]
-    fn computes<const L: usize>(&self, frame: &mut Frame<L>) -> bool {
+    pub fn computes<const L: usize>(&self, frame: &mut Frame<L>) -> bool {
         let r = frame.registers.as_mut_slice();
         for op in &self.instructions {
             match *op {
@@ -164,7 +161,7 @@ impl Machine {
         &'a self,
         frame: &'a Frame<L>,
         lane: usize,
-    ) -> impl Iterator<Item = f64> + 'a {
+    ) -> impl Iterator<Item = f64> + Clone + 'a {
         let of = move |register: &Register| frame.registers[*register as usize][lane];
         self.outputs.iter().map(of)
     }
@@ -228,30 +225,4 @@ fn all<const L: usize>(
 ) -> bool {
     let pairs = r[a as usize].iter().zip(&r[b as usize]);
     pairs.fold(true, |all, (x, y)| all & test(*x, *y))
-}
-
-/// The widest registers of the processor, if they are asked for.
-mod wide {
-    use super::{Frame, Machine, WIDTH};
-
-    #[cfg(feature = "simd")]
-    pub(super) fn run(machine: &Machine, frame: &mut Frame<WIDTH>) -> bool {
-        struct Run<'a>(&'a Machine, &'a mut Frame<WIDTH>);
-
-        impl pulp::WithSimd for Run<'_> {
-            type Output = bool;
-
-            #[inline(always)]
-            fn with_simd<S: pulp::Simd>(self, _: S) -> bool {
-                self.0.computes(self.1)
-            }
-        }
-
-        pulp::Arch::new().dispatch(Run(machine, frame))
-    }
-
-    #[cfg(not(feature = "simd"))]
-    pub(super) fn run(machine: &Machine, frame: &mut Frame<WIDTH>) -> bool {
-        machine.computes(frame)
-    }
 }

@@ -181,6 +181,69 @@ impl Tape {
     }
 }
 
+/// Numbers that a part of a tape computes, and the decisions on which they rely.
+pub type Wanted = (Vec<Scalar>, Vec<Guard>);
+
+impl Tape {
+    /// The part that computes other numbers, by these decisions.
+    #[must_use]
+    pub fn part(&self, outputs: &[Scalar], guards: &[Guard]) -> Tape {
+        Tape {
+            guards: guards.to_vec(),
+            outputs: outputs.to_vec(),
+            ..self.clone()
+        }
+    }
+
+    /// Parts that are computed often with other numbers for the inputs from `late` on. Gives the numbers that they take from
+    /// all other inputs, and a tape for each part: its first inputs are these numbers, the next ones the late inputs.
+    #[must_use]
+    pub fn behind(&self, late: usize, parts: &[Wanted]) -> (Vec<Scalar>, Vec<Tape>) {
+        let mut is_late: Vec<bool> = Vec::with_capacity(self.steps.len());
+        for step in &self.steps {
+            let by_input = matches!(step, Step::Input(place) if *place as usize >= late);
+            let by_use = self.uses(*step).any(|used| is_late[used.step()]);
+            is_late.push(by_input || by_use);
+        }
+        let mut met = vec![false; self.steps.len()];
+        let tests = parts.iter().flat_map(|(_, guards)| guards);
+        let mut next: Vec<Scalar> = tests.flat_map(|g| g.test.uses()).flatten().collect();
+        next.extend(parts.iter().flat_map(|(outputs, _)| outputs));
+        let mut given = Vec::new();
+        while let Some(at) = next.pop() {
+            if std::mem::replace(&mut met[at.step()], true) {
+                continue;
+            }
+            let step = self.steps[at.step()];
+            match (is_late[at.step()], step) {
+                (true, _) => next.extend(self.uses(step)),
+                (false, Step::Double(_)) => {}
+                (false, _) => given.push(at),
+            }
+        }
+        given.sort_unstable();
+        let mut steps = self.steps.clone();
+        let place = |k: usize| u32::try_from(k).unwrap_or(u32::MAX);
+        for step in &mut steps {
+            if let Step::Input(k) = step {
+                *k = place((given.len() + *k as usize).saturating_sub(late));
+            }
+        }
+        for (k, at) in given.iter().enumerate() {
+            steps[at.step()] = Step::Input(place(k));
+        }
+        let tape = |(outputs, guards): &Wanted| Tape {
+            steps: steps.clone(),
+            guards: guards.clone(),
+            calls: self.calls.clone(),
+            functions: self.functions.clone(),
+            outputs: outputs.clone(),
+        };
+        let tapes = parts.iter().map(tape).collect();
+        (given, tapes)
+    }
+}
+
 impl PartialEq for Tape {
     fn eq(&self, other: &Self) -> bool {
         let functions = self.functions.iter().zip(&other.functions);
@@ -194,6 +257,13 @@ impl PartialEq for Tape {
             && self.calls == other.calls
             && self.outputs == other.outputs
     }
+}
+
+/// The decisions of a recording.
+#[derive(Clone, Debug, Default)]
+pub struct Decisions {
+    guards: Vec<Guard>,
+    asked: HashMap<Test, bool>,
 }
 
 /// A tape that is being recorded.
@@ -293,6 +363,21 @@ impl Recording {
             Some(Step::Double(bits)) => Some(f64::from_bits(*bits)),
             _ => None,
         }
+    }
+
+    /// Begins a part aside: the decisions so far are taken out, and given back with [`Recording::end_aside`].
+    #[must_use]
+    pub fn begin_aside(&mut self) -> Decisions {
+        Decisions {
+            guards: std::mem::take(&mut self.guards),
+            asked: std::mem::take(&mut self.asked),
+        }
+    }
+
+    /// Ends a part aside; gives the decisions in it.
+    pub fn end_aside(&mut self, before: Decisions) -> Vec<Guard> {
+        self.asked = before.asked;
+        std::mem::replace(&mut self.guards, before.guards)
     }
 
     /// Notes a decision. A test that was asked before is not noted again.

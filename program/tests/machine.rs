@@ -34,7 +34,7 @@ fn a_machine_gives_the_bits_of_its_tape_alone_and_side_by_side() {
             failed += usize::from(!holds);
             wanted.push(outputs);
         }
-        assert_eq!(machine.run_wide(&mut wide), all_hold);
+        assert_eq!(clebsch_lanes::run(&machine, &mut wide), all_hold);
         for (lane, wanted) in wanted.iter().enumerate() {
             let agree = machine
                 .gives(&wide, lane)
@@ -45,6 +45,53 @@ fn a_machine_gives_the_bits_of_its_tape_alone_and_side_by_side() {
     }
     // Decisions of both kinds are met.
     assert!(held > 1000 && failed > 1000, "{held} held, {failed} failed");
+}
+
+#[test]
+fn a_tape_in_two_parts_gives_the_same_bits() {
+    let mut random = Random(0x5851_f42d_4c95_7f2d);
+    let (mut taken, mut held, mut failed) = (0, 0, 0);
+    for _ in 0..TAPES {
+        let tape = random_tape(&mut random);
+        let late = random.below(INPUTS + 1);
+        let whole = (tape.outputs.clone(), tape.guards.clone());
+        let (given, tapes) = tape.behind(late, &[whole]);
+        taken += given.len();
+        let first = Machine::new(&tape.part(&given, &[]), late);
+        let second = Machine::new(&tapes[0], given.len() + INPUTS - late);
+        let (mut before, mut behind) = (first.frame::<1>(), second.frame::<1>());
+        let earlier: Vec<f64> = (0..late).map(|_| random.number()).collect();
+        for (slot, x) in before.inputs().iter_mut().zip(&earlier) {
+            *slot = [*x];
+        }
+        assert!(
+            first.run(&mut before),
+            "no decision stays with the first part"
+        );
+        for (slot, x) in behind.inputs().iter_mut().zip(first.gives(&before, 0)) {
+            *slot = [x];
+        }
+        // The second part runs again and again with what the first one gave.
+        for _ in 0..8 {
+            let later: Vec<f64> = (late..INPUTS).map(|_| random.number()).collect();
+            for (slot, x) in behind.inputs()[given.len()..].iter_mut().zip(&later) {
+                *slot = [*x];
+            }
+            let inputs = [earlier.clone(), later].concat();
+            let (outputs, holds) = computed(&tape, &inputs);
+            assert_eq!(second.run(&mut behind), holds, "{tape:?}");
+            let found = second.gives(&behind, 0);
+            let agree = found.zip(&outputs).all(|(a, b)| same(a, *b));
+            assert!(agree, "{inputs:?} of {tape:?}");
+            held += usize::from(holds);
+            failed += usize::from(!holds);
+        }
+    }
+    // The first part has work to do, and decisions of both kinds are met.
+    assert!(
+        taken > TAPES as usize && held > 500 && failed > 500,
+        "{taken} {held} {failed}"
+    );
 }
 
 #[test]

@@ -150,7 +150,7 @@ impl SiteTape {
             let count = (to - site).min(WIDTH);
             if count > FEW {
                 self.load(places, lists, [site, count], wide.inputs())?;
-                if self.machine.run_wide(wide) {
+                if clebsch_lanes::run(&self.machine, wide) {
                     let output = |which| self.machine.output(wide, which).as_slice();
                     self.store(lists, [site, count], &output)?;
                     site += count;
