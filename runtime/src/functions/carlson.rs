@@ -93,8 +93,28 @@ fn invariants<T: Real>(b: &SMatrix<T, 3, 3>) -> [T; 3] {
     ]
 }
 
-/// The integral with its derivatives with respect to some of the three invariants.
+/// The integral with its derivatives with respect to some of the three invariants, as one call if the scalar records.
 fn integral<T: Real, const N: usize>(of: [T; 3], by: [usize; N]) -> Jet<T, N> {
+    match T::whole(in_numbers::<N>, &by, &|| of.to_vec(), 1 + N).as_deref() {
+        Some([value, along @ ..]) => Jet {
+            value: *value,
+            along: core::array::from_fn(|i| along[i]),
+        },
+        _ => iterated(of, by),
+    }
+}
+
+/// The same over plain numbers: the value, then the derivatives with respect to the invariants of these numbers.
+fn in_numbers<const N: usize>(by: &[usize], of: &[f64], out: &mut [f64]) {
+    let found = iterated::<f64, N>(
+        core::array::from_fn(|i| of[i]),
+        core::array::from_fn(|i| by[i]),
+    );
+    out[0] = found.value;
+    out[1..].copy_from_slice(&found.along);
+}
+
+fn iterated<T: Real, const N: usize>(of: [T; 3], by: [usize; N]) -> Jet<T, N> {
     let which = |i: usize| by.iter().position(|k| *k == i);
     let mut all: [Jet<T, N>; 3] = core::array::from_fn(|i| Jet::variable(of[i], which(i)));
     for _ in 0..MOST {
