@@ -5,6 +5,7 @@
 mod at_particles;
 mod cards;
 mod code;
+mod composed;
 mod constants;
 mod failure;
 mod functional;

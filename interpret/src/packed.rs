@@ -1,6 +1,6 @@
 //! A state as plain numbers, for compositions, which copy states.
 
-use crate::over::{numbers, over};
+use crate::over::{fill, numbers};
 use crate::value::Value;
 
 /// How many numbers a state may have.
@@ -10,6 +10,7 @@ const MOST: usize = 512;
 #[derive(Clone, Copy, Debug)]
 pub struct Packed {
     numbers: [f64; MOST],
+    count: usize,
     /// The node.
     pub node: u64,
 }
@@ -19,12 +20,29 @@ impl Packed {
     pub fn of(state: &Value<f64>) -> Option<Self> {
         let mut all = Vec::new();
         numbers(state, &mut all)?;
+        Packed::of_numbers(&all, node(state))
+    }
+
+    /// These numbers at a node; nothing where there are too many.
+    pub fn of_numbers(all: &[f64], node: u64) -> Option<Self> {
         let mut packed = Packed {
             numbers: [0.0; MOST],
-            node: node(state),
+            count: all.len(),
+            node,
         };
-        packed.numbers.get_mut(..all.len())?.copy_from_slice(&all);
+        packed.numbers.get_mut(..all.len())?.copy_from_slice(all);
         Some(packed)
+    }
+
+    /// Becomes another state of the same model; false if that has more or fewer numbers.
+    pub fn set(&mut self, all: &[f64], node: u64) -> bool {
+        let own = self.numbers.get_mut(..self.count);
+        let Some(own) = own.filter(|own| own.len() == all.len()) else {
+            return false;
+        };
+        own.copy_from_slice(all);
+        self.node = node;
+        true
     }
 
     /// The same, counted as another node.
@@ -32,12 +50,14 @@ impl Packed {
         Packed { node, ..self }
     }
 
+    /// Its numbers.
+    pub fn numbers(&self) -> &[f64] {
+        self.numbers.get(..self.count).unwrap_or_default()
+    }
+
     /// Puts them into a state of the same model.
     pub fn put(&self, state: &mut Value<f64>) {
-        let mut all = self.numbers.iter().copied();
-        if let Some(own) = over(state, &mut |x| all.next().unwrap_or(x)) {
-            *state = own;
-        }
+        fill(state, &mut self.numbers().iter().copied());
         if let Value::Struct(s) = state {
             for value in &mut s.values {
                 if let Value::Int(n) = value {

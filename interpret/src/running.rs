@@ -1,13 +1,14 @@
 //! Trajectories of models that were read from files: the same calls in the same order as emitted ones.
 
 use crate::code::{Exit, Places, Routine};
+use crate::composed::Model;
 use crate::failure::Failure;
 use crate::opened::{Opened, Read, at};
 use crate::packed::Packed;
 use crate::recorded::{Fixed, Recordable, Recorded, Watched};
 use crate::value::{Frame, Kept, Layout, Struct, Value};
 use clebsch::card::{Card, Field, OpenError, PartSeen, Settings, Trajectory, chosen_solver};
-use clebsch::integrate::{Composition, Offer, Reversible, Stepper, Way, counted};
+use clebsch::integrate::{Composition, Offer, Way, counted};
 use clebsch::kinetic::KineticWarning;
 use clebsch::of_numbers::OfNumbers;
 use clebsch::saved::{Saved, Words};
@@ -80,10 +81,19 @@ impl Opened {
         };
         put(&mut places, at::STATE, state.clone());
         put(&mut places, at::STEP, Value::Real(settings.h));
+        let chosen = chosen_solver(settings, card.solvers).ok().flatten();
+        let fixed = Fixed {
+            parameters: own,
+            solver: chosen.map(Value::Method),
+            step: Value::Real(settings.h),
+        };
         let steps = self
-            .ways(card, &mut places, settings)
+            .ways(card, &mut places, settings, &fixed)
             .map_err(|e| e.beside(kinetic))?;
-        let recorded = self.recorded(own, &steps, settings);
+        // A look at one step needs no tapes.
+        let recordable = self.recordable().filter(|_| !settings.inquiry);
+        let own_step = !matches!(steps, Steps::Composed(_));
+        let recorded = recordable.map(|all| Recorded::new(all, fixed, own_step));
         Ok(Box::new(Running {
             opened: self,
             card,
@@ -94,26 +104,10 @@ impl Opened {
         }))
     }
 
-    /// The tapes of its functions. A look at one step needs none.
-    fn recorded(
-        &'static self,
-        parameters: Value<f64>,
-        steps: &Steps,
-        settings: Settings,
-    ) -> Option<Recorded> {
-        if settings.inquiry {
-            return None;
-        }
+    /// The functions that are recorded as tapes, if there are any.
+    pub fn recordable(&'static self) -> Option<&'static Recordable> {
         let recordable = || Recordable::of(&self.functions, self.places);
-        let recordable = self.recordable.get_or_init(recordable).as_ref()?;
-        let chosen = chosen_solver(settings, self.card.solvers).ok().flatten();
-        let fixed = Fixed {
-            parameters,
-            solver: chosen.map(Value::Method),
-            step: Value::Real(settings.h),
-        };
-        let own_step = !matches!(steps, Steps::Composed(_));
-        Some(Recorded::new(recordable, fixed, own_step))
+        self.recordable.get_or_init(recordable).as_ref()
     }
 
     /// What makes the steps that are asked for.
@@ -122,6 +116,7 @@ impl Opened {
         card: &'static Card,
         places: &mut Places<f64>,
         settings: Settings,
+        fixed: &Fixed,
     ) -> Result<Steps, OpenError> {
         let f = &self.functions;
         if let Some(method) = chosen_solver(settings, card.solvers)?
@@ -155,6 +150,7 @@ impl Opened {
             opened: self,
             model: of(at::MODEL),
             state: of(at::STATE),
+            fixed: fixed.clone(),
         };
         let Some(state) = Packed::of(&model.state) else {
             return Err(OpenError::Order {
@@ -168,7 +164,7 @@ impl Opened {
     }
 
     /// What is chosen about steps where nothing is.
-    fn usual(&self) -> Value<f64> {
+    pub fn usual(&self) -> Value<f64> {
         match self.functions.with_solver {
             Some(_) => Value::None,
             None => Value::Unit,
@@ -177,7 +173,7 @@ impl Opened {
 
     /// The workspace of the state, put where steps expect it; the first step is tried on a copy, unless steps are only
     /// looked at.
-    fn prepare(
+    pub fn prepare(
         &self,
         places: &mut Places<f64>,
         settings: Settings,
@@ -314,6 +310,26 @@ impl Held {
         }
     }
 
+    /// The numbers of the state.
+    fn packed(&mut self) -> Option<Packed> {
+        let recorded = self.recorded.as_ref();
+        let newer = recorded.and_then(Recorded::packed);
+        newer.or_else(|| self.places.get(at::STATE).and_then(Packed::of))
+    }
+
+    /// Puts the numbers of a state there.
+    fn put(&mut self, state: &Packed) {
+        if let Some(recorded) = &mut self.recorded
+            && recorded.put(state, &self.places)
+        {
+            return;
+        }
+        if let Some(here) = self.places.get_mut(at::STATE) {
+            state.put(here);
+        }
+        self.follow();
+    }
+
     /// Runs an observer of the state; its numbers are written to `out`.
     fn watch(&mut self, opened: &Opened, which: Watched, out: &mut [f64]) {
         if let Some(recorded) = &mut self.recorded
@@ -373,21 +389,15 @@ impl Running {
             }
             Steps::Composed(both) => {
                 let (model, composition) = &mut **both;
-                let Some(mut packed) = held.places().get(at::STATE).and_then(Packed::of) else {
+                let Some(mut packed) = held.packed() else {
                     return Ok(());
                 };
-                let put_there = |here: &Packed, held: &mut Held| {
-                    if let Some(state) = held.places.get_mut(at::STATE) {
-                        here.put(state);
-                    }
-                    held.follow();
-                };
                 let made = composition.step_in_parts(model, &mut packed, |share, here| {
-                    put_there(here, held);
+                    held.put(here);
                     seen(share, held);
                 });
                 // Of a step that is refused the state is that before.
-                put_there(&packed, held);
+                held.put(&packed);
                 made?;
             }
         }
@@ -475,74 +485,7 @@ impl Trajectory for Running {
         }
         held.follow();
         if let Steps::Composed(both) = &mut self.steps {
-            for places in both.1.workspaces_mut() {
-                match places.get_mut(at::WORK) {
-                    Some(work) => work.words(words),
-                    None => words.refuse(),
-                }
-            }
+            both.1.workspaces_mut().for_each(|part| part.words(words));
         }
     }
 }
-
-/// A model with its parameters, as compositions take it.
-#[derive(Clone, Debug)]
-struct Model {
-    opened: &'static Opened,
-    model: Value<f64>,
-    /// Any state: what the numbers of one mean.
-    state: Value<f64>,
-}
-
-impl Stepper for Model {
-    type Scalar = f64;
-    type State = Packed;
-    type Workspace = Places<f64>;
-
-    fn workspace(&self, state: &Packed, h: f64) -> Result<Places<f64>, StartError> {
-        let mut places = self.opened.places(self.model.clone());
-        let mut here = self.state.clone();
-        state.put(&mut here);
-        put(&mut places, at::STATE, here);
-        put(&mut places, at::STEP, Value::Real(h));
-        self.opened
-            .prepare(&mut places, Settings::step(h), self.opened.usual())?;
-        Ok(places)
-    }
-
-    fn advance(&self, state: &mut Packed, places: &mut Places<f64>) -> Result<(), StepError> {
-        if let Some(here) = places.get_mut(at::STATE) {
-            state.put(here);
-        }
-        run(&self.opened.functions.step, places).map_err(|e| e.step(state.node))?;
-        if let Some(next) = places.get(at::STATE).and_then(Packed::of) {
-            *state = next;
-        }
-        Ok(())
-    }
-
-    fn attempt(&self, state: &Packed, h: f64) -> Option<Packed> {
-        let Some(attempt) = &self.opened.functions.attempt else {
-            let mut moving = *state;
-            let mut places = self.workspace(state, h).ok()?;
-            self.advance(&mut moving, &mut places).ok()?;
-            return Some(moving);
-        };
-        let mut places = self.opened.places(self.model.clone());
-        let mut here = self.state.clone();
-        state.put(&mut here);
-        put(&mut places, at::STATE, here);
-        put(&mut places, at::STEP, Value::Real(h));
-        run(attempt, &mut places).ok().as_ref().and_then(Packed::of)
-    }
-
-    fn node(state: &Packed) -> u64 {
-        state.node
-    }
-
-    fn at_node(state: Packed, node: u64) -> Packed {
-        state.counted(node)
-    }
-}
-
-impl Reversible for Model {}

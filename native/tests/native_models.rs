@@ -11,6 +11,9 @@ use side_by_side::compare;
 /// How many steps are compared.
 const STEPS: u64 = 200;
 
+/// How many steps of the second order higher than the plain one: of nine parts each.
+const COMPOSED: u64 = 20;
+
 #[test]
 fn steps_agree_to_the_last_bit() {
     assert!(clebsch_native::install_after(2));
@@ -20,9 +23,13 @@ fn steps_agree_to_the_last_bit() {
             let built = entry.card_of(case);
             let sizes: Vec<usize> = built.dimensions.iter().map(|d| d.value).collect();
             let read = (card.sized)(&sizes).expect("sizes of the gallery");
-            let settings = Settings::step(case.h);
-            let made = compare(&built, &read, case, settings, STEPS.min(case.steps));
+            let plain = Settings::step(case.h);
+            let made = compare(&built, &read, case, plain, STEPS.min(case.steps));
             assert!(made > 0, "{} {}", card.name, case.name);
+            if let Some(order) = built.orders.get(2) {
+                let higher = plain.of_order(*order);
+                compare(&built, &read, case, higher, COMPOSED.min(case.steps));
+            }
         }
     }
 }

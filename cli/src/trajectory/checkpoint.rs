@@ -24,7 +24,7 @@ pub(crate) const UNFINISHED: &str = "checkpoint.new";
 const MAGIC: &str = "clebsch checkpoint ";
 
 /// The version that is written, and the only one that is read.
-const VERSION: &str = "2";
+const VERSION: &str = "3";
 
 /// Bytes written at once.
 const BUFFER: usize = 1 << 18;
@@ -277,7 +277,7 @@ impl<'a> Rest<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Checkpoint, Identity, listed, told};
+    use super::{Checkpoint, Identity, VERSION, listed, told};
     use clebsch::card::{Field, Kind};
 
     fn identity(h: &str) -> Identity {
@@ -380,11 +380,13 @@ mod tests {
             "{one} {other}"
         );
         assert_eq!(listed(&[0.5, 1.0]), "[0.5, 1.0]");
-        let later = String::from_utf8_lossy(&bytes[..21]).replace('2', "3");
+        let later = String::from_utf8_lossy(&bytes[..21]).replace(VERSION, "9");
         let why = Checkpoint::of_bytes(later.as_bytes(), &identity("0.1"));
         assert_eq!(
             why,
-            Err("its format has version 3, this program reads version 2".to_owned())
+            Err(format!(
+                "its format has version 9, this program reads version {VERSION}"
+            ))
         );
     }
 }

@@ -6,9 +6,6 @@ use crate::value::Value;
 use clebsch::Real;
 use std::sync::{Arc, OnceLock};
 
-/// Deepest nesting of functions that is followed.
-const DEEPEST: usize = 64;
-
 impl<T: Real> Routine<T> {
     /// The function over another scalar; nothing if it loops or calls what that scalar lacks.
     pub fn over<U: Library>(&self, change: fn(T) -> U) -> Option<Routine<U>> {
@@ -22,18 +19,33 @@ impl<T: Real> Routine<T> {
 impl<T: Real> Code<T> {
     /// As [`Routine::over`].
     pub fn over<U: Library>(&self, change: fn(T) -> U) -> Option<Code<U>> {
-        Change { change, depth: 0 }.code(self)
+        let within = None;
+        Change { change, within }.code(self)
+    }
+}
+
+/// A function of the model, and the functions whose bodies call it.
+#[derive(Clone, Copy)]
+struct Within<'a, T: Real> {
+    function: &'a OnceLock<Routine<T>>,
+    by: Option<&'a Within<'a, T>>,
+}
+
+impl<T: Real> Within<'_, T> {
+    fn has(&self, function: &OnceLock<Routine<T>>) -> bool {
+        std::ptr::eq(self.function, function) || self.by.is_some_and(|by| by.has(function))
     }
 }
 
 /// A change of the scalar.
 #[derive(Clone, Copy)]
-struct Change<T, U> {
+struct Change<'a, T: Real, U> {
     change: fn(T) -> U,
-    depth: usize,
+    /// The function whose body is changed.
+    within: Option<&'a Within<'a, T>>,
 }
 
-impl<T: Real, U: Library> Change<T, U> {
+impl<T: Real, U: Library> Change<'_, T, U> {
     #[inline(never)]
     fn value(self, value: &Value<T>) -> Option<Value<U>> {
         over(value, &mut |x| (self.change)(x))
@@ -107,14 +119,18 @@ impl<T: Real, U: Library> Change<T, U> {
     }
 
     #[inline(never)]
-    fn routine(self, routine: &OnceLock<Routine<T>>) -> Option<Arc<OnceLock<Routine<U>>>> {
-        let deeper = Change {
-            depth: self.depth + 1,
-            ..self
+    fn routine(self, function: &OnceLock<Routine<T>>) -> Option<Arc<OnceLock<Routine<U>>>> {
+        let Routine { places, body } = function.get()?;
+        let places = *places;
+        // Errors look for a step that can be made, by the function that failed. A changed function has no value there.
+        let body = match self.within.is_some_and(|within| within.has(function)) {
+            true => Code::Call(|_, _| None, Vec::new(), Vec::new(), "itself".into()),
+            false => {
+                let by = self.within;
+                let within = Some(&Within { function, by });
+                Change { within, ..self }.code(body)?
+            }
         };
-        let routine = routine.get().filter(|_| deeper.depth < DEEPEST)?;
-        let body = deeper.code(&routine.body)?;
-        let places = routine.places;
         Some(Arc::new(OnceLock::from(Routine { places, body })))
     }
 

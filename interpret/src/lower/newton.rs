@@ -4,9 +4,9 @@
 use super::{Binding, Lower, Shared, refuse};
 use crate::Refused;
 use crate::code::{Code, Routine};
-use crate::newton::{Held, Kind, Settled, Shape, Solve, Sought};
+use crate::newton::{AtTrial, Held, Kind, Settled, Shape, Solve, Sought};
 use crate::program::type_name;
-use crate::recorded::{Function, PlaceFunction};
+use crate::recorded::Function;
 use crate::value::Value;
 use clebsch::solvers::newton::Rounded;
 use quote::ToTokens;
@@ -330,7 +330,10 @@ impl<'a> Lower<'a, '_> {
         // The operations at a trial first complete it.
         let of_trial = |last: Code<f64>| {
             let before = rest_code.iter().chain(&at_trial_code).cloned();
-            PlaceFunction::new(part, Code::Block(before.chain([last]).collect()))
+            AtTrial {
+                place: part,
+                body: Code::Block(before.chain([last]).collect()),
+            }
         };
         let unit = unit.unwrap_or(Code::Constant(Value::Real(1.0)));
         Ok(Solve {

@@ -1,10 +1,12 @@
 //! Newton's method for equations that were read: the solver of the runtime on groups of any kind and size,
 //! with residual and tangent run as operations.
 
+mod kind;
 mod search;
 mod shape;
 mod solve;
 
-pub use search::{Held, Sought, remember};
-pub use shape::{Kind, Shape};
-pub use solve::{Settled, Solve};
+pub use kind::Kind;
+pub use search::{Held, Sought, remember, told};
+pub use shape::Shape;
+pub use solve::{AtTrial, Settled, Solve, matrix, vector};

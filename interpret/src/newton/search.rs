@@ -2,9 +2,10 @@
 
 use super::shape::Shape;
 use super::solve::{self, Solve};
-use crate::code::{Exit, Places};
+use crate::code::Exit;
 use crate::library::NAMES;
-use crate::over::over;
+use crate::over::numbers;
+use crate::recorded::Around;
 use crate::value::{Layout, Struct, Value};
 use clebsch::Real;
 use clebsch::saved::{Words, sites};
@@ -83,12 +84,22 @@ impl Held {
         &mut self,
         equations: &Solve,
         node: u64,
-        places: &mut Places<f64>,
-    ) -> Result<Value<f64>, Exit<f64>> {
+        around: &mut Around,
+    ) -> Result<Solved<Vec<f64>>, Exit<f64>> {
         let charts = [&self.sought.shape, self.sought.all()];
         let mut iteration = self.search.begin(charts, node);
-        let solved = solve::by(&mut iteration, equations, self.sought, places)?;
-        Ok(told(solved))
+        solve::by(&mut iteration, equations, self.sought, around)
+    }
+
+    /// The velocities that it finds.
+    pub fn sought(&self) -> &'static Sought {
+        self.sought
+    }
+
+    /// Remembers the solution of the step that began at `node`.
+    pub fn remember(&mut self, node: u64, solution: &Vec<f64>) {
+        let part = self.sought.shape.part(self.sought.all(), solution);
+        self.search.remember(node, part);
     }
 }
 
@@ -104,12 +115,12 @@ fn layout() -> Arc<Layout> {
     LAYOUT.get_or_init(made).clone()
 }
 
-/// A solution as emitted code has it.
-pub fn told(solved: Solved<Vec<Value<f64>>>) -> Value<f64> {
+/// A solution of all groups as emitted code has it.
+pub fn told(shape: &Shape, solved: &Solved<Vec<f64>>) -> Value<f64> {
     Value::Struct(Struct {
         layout: layout(),
         values: vec![
-            Value::List(solved.element),
+            shape.value(&solved.element),
             Value::Int(i64::try_from(solved.iterations).unwrap_or(i64::MAX)),
             Value::Double(solved.residual),
         ],
@@ -121,12 +132,9 @@ pub fn remember<T: Real>(search: &mut Value<T>, node: &Value<T>, found: &Value<T
     let (Value::Search(held), Value::Struct(found)) = (search, found) else {
         return None;
     };
-    let element = over(found.values.first()?, &mut |x: T| x.value())?;
-    let Value::List(element) = element else {
-        return None;
-    };
-    let node = u64::try_from(node.count()?).ok()?;
-    let element = held.sought.shape.part(&element);
-    held.search.remember(node, element);
+    let mut element = Vec::new();
+    numbers(found.values.first()?, &mut element)?;
+    let element = element.into_iter().map(Real::value).collect();
+    held.remember(u64::try_from(node.count()?).ok()?, &element);
     Some(())
 }

@@ -3,10 +3,10 @@
 
 use super::search::{self, Held, Sought};
 use super::shape::Shape;
-use crate::code::{Code, Exit, Iterate, Places, Routine, unfit};
+use crate::code::{Code, Evaluated, Exit, Iterate, Places, Routine, unfit};
 use crate::failure::Failure;
-use crate::over::over;
-use crate::recorded::{Function, PlaceFunction, RecordedSolve, Traced, run_alone};
+use crate::over::{numbers, over};
+use crate::recorded::{Around, Function, RecordedSolve, Traced, Wanted, run_alone};
 use crate::value::Value;
 use clebsch::Real;
 use clebsch::emitted::{StepCause, StepError};
@@ -14,6 +14,7 @@ use clebsch::linalg::Dense;
 use clebsch::solvers::newton::{
     self, AnyNewton, Chart, Lane, NewtonError, Progress, Rounded, Solved,
 };
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// What is done where a solution is not known to be principal, or none was found.
@@ -28,6 +29,26 @@ pub struct Settled {
     pub configurations: &'static &'static [&'static str],
 }
 
+/// Operations on a trial, given its place, and on other places.
+#[derive(Clone, Debug)]
+pub struct AtTrial {
+    /// The place of the trial.
+    pub place: usize,
+    /// The operations.
+    pub body: Code<f64>,
+}
+
+impl AtTrial {
+    /// The value at a trial.
+    ///
+    /// # Errors
+    /// As the operations have.
+    fn at(&self, trial: Value<f64>, places: &mut Places<f64>) -> Evaluated<f64> {
+        *unfit(places.get_mut(self.place))? = trial;
+        self.body.returned(places)
+    }
+}
+
 /// The equations of a step.
 #[derive(Debug)]
 pub struct Solve {
@@ -40,17 +61,17 @@ pub struct Solve {
     pub completed_at: Option<Routine<Rounded>>,
     /// The parameters, the step, what the residual asks of the node and its momenta.
     pub known: [Code<f64>; 4],
-    /// The whole trial and the residual there. The argument is the trial.
-    pub residual: PlaceFunction,
+    /// The whole trial and the residual there.
+    pub residual: AtTrial,
     /// The residual at rest.
     pub at_rest: Code<f64>,
-    /// The tangent and its factor. The argument is the trial.
-    pub tangent: PlaceFunction,
+    /// The tangent and its factor.
+    pub tangent: AtTrial,
     /// Whether the velocity is moved from the left.
     pub from_left: bool,
-    /// Whether the action is convex. The argument is the trial.
-    pub convex: Option<PlaceFunction>,
-    /// Otherwise.
+    /// Whether the action is convex.
+    pub convex: Option<AtTrial>,
+    /// If the solution may be another root, or there is none.
     pub settled: Settled,
     /// The residual by itself: of parameters, step, what is asked of the node, momenta, trial.
     pub residual_at: Function,
@@ -69,7 +90,9 @@ impl Iterate<f64> for Solve {
             Value::Search(held) => held,
             _ => return unfit(None),
         };
-        let solved = held.solve(self, node as u64, places);
+        let solved = held.solve(self, node as u64, &mut Around::places(places));
+        let shape = held.sought().all();
+        let solved = solved.map(|solved| search::told(shape, &solved));
         *unfit(self.search.place_mut(places))? = Value::Search(held);
         solved
     }
@@ -79,11 +102,11 @@ impl Iterate<f64> for Solve {
     }
 }
 
-/// The velocities of all groups.
-type Element = Vec<Value<f64>>;
+/// The numbers of the velocities of all groups.
+type Element = Vec<f64>;
 
 /// The entries of a vector of so many coordinates.
-fn vector(value: &Value<f64>, size: usize) -> Option<Vec<f64>> {
+pub fn vector<T: Real>(value: &Value<T>, size: usize) -> Option<Vec<T>> {
     if let Value::Real(x) = value {
         return (size == 1).then(|| vec![*x]);
     }
@@ -93,7 +116,7 @@ fn vector(value: &Value<f64>, size: usize) -> Option<Vec<f64>> {
 }
 
 /// The leading rows and columns of a matrix.
-fn matrix<T: Real>(value: &Value<T>, size: usize) -> Option<Dense<T>> {
+pub fn matrix<T: Real>(value: &Value<T>, size: usize) -> Option<Dense<T>> {
     let a = value.dense()?;
     match (
         a.rows == size && a.cols == size,
@@ -110,37 +133,37 @@ pub fn by(
     iteration: &mut AnyNewton<'_, Shape>,
     with: &Solve,
     sought: &'static Sought,
-    places: &mut Places<f64>,
+    around: &mut Around,
 ) -> Result<Solved<Element>, Exit<f64>> {
-    let size = sought.shape.parts().dimension();
     let in_part = with.completed_at.is_some();
     loop {
-        let trial = Value::List(iteration.trial().clone());
-        let (whole, residual) = with.residual(&trial, size, places)?;
+        let trial = iteration.trial().clone();
+        let (whole, residual) = with.residual(&trial, sought, around)?;
         if iteration.wants_scale() {
-            let rounding = with.rounding(&whole, sought, places)?;
+            let rounding = with.rounding(whole.as_ref().unwrap_or(&trial), sought, around)?;
             iteration.set_scale(&rounding);
         }
         let wanted = !in_part || iteration.wants_residual();
         if wanted && iteration.assess(residual) {
-            let (tangent, unit) = with.tangent(&trial, size, places)?;
+            let (tangent, unit) = with.tangent(&trial, sought, around)?;
             iteration.set_tangent_times(tangent, unit);
         }
-        let progress = match (in_part, whole) {
-            (true, Value::List(whole)) => iteration.correct_part(whole, with.from_left),
-            _ => iteration.correct(with.from_left),
+        let progress = match whole {
+            Some(whole) => iteration.correct_part(whole, with.from_left),
+            None => iteration.correct(with.from_left),
         };
         match progress {
             Progress::Continue => {}
-            Progress::Solved(solved) if with.is_convex(&trial, places)? => return Ok(solved),
+            Progress::Solved(solved) if with.is_convex(&trial, sought, around)? => {
+                return Ok(solved);
+            }
             ended => {
-                if let Progress::Solved(solved) = &ended {
-                    let at_rest = with.at_rest.run(places)?;
-                    if with.is_principal(iteration, &solved.element, &at_rest, sought, places)? {
-                        return Ok(solved.clone());
-                    }
+                if let Progress::Solved(solved) = &ended
+                    && with.is_principal(iteration, &solved.element, sought, around)?
+                {
+                    return Ok(solved.clone());
                 }
-                if let Some(solved) = with.settle(iteration, ended, sought, places)? {
+                if let Some(solved) = with.settle(iteration, ended, sought, around)? {
                     return Ok(solved);
                 }
             }
@@ -149,30 +172,44 @@ pub fn by(
 }
 
 impl Solve {
-    /// The whole trial and the residual there.
+    /// The whole trial, if a part of it is searched for, and the residual there.
     fn residual(
         &self,
-        trial: &Value<f64>,
-        size: usize,
-        places: &mut Places<f64>,
-    ) -> Result<(Value<f64>, Vec<f64>), Exit<f64>> {
-        match self.residual.at(trial, places)? {
-            Value::List(mut both) if both.len() == 2 => {
-                let residual = unfit(both.pop().and_then(|x| vector(&x, size)))?;
-                Ok((unfit(both.pop())?, residual))
-            }
-            _ => unfit(None),
+        trial: &Element,
+        sought: &'static Sought,
+        around: &mut Around,
+    ) -> Result<(Option<Element>, Element), Exit<f64>> {
+        let size = sought.shape.parts().dimension();
+        let in_part = self.completed_at.is_some();
+        if let Some(mut residual) = around.by_tape(Wanted::Residual, trial) {
+            let whole = in_part.then(|| residual.split_off(size));
+            return Ok((whole, residual));
         }
+        let places = around.all();
+        let Value::List(mut both) = self.residual.at(sought.shape.value(trial), places)? else {
+            return unfit(None);
+        };
+        let residual = unfit(both.pop().and_then(|x| vector(&x, size)))?;
+        let mut whole = Vec::new();
+        unfit(both.pop().and_then(|x| numbers(&x, &mut whole)))?;
+        Ok((in_part.then_some(whole), residual))
     }
 
     /// The tangent and its factor.
     fn tangent(
         &self,
-        trial: &Value<f64>,
-        size: usize,
-        places: &mut Places<f64>,
+        trial: &Element,
+        sought: &'static Sought,
+        around: &mut Around,
     ) -> Result<(Dense<f64>, f64), Exit<f64>> {
-        match self.tangent.at(trial, places)? {
+        let size = sought.shape.parts().dimension();
+        if let Some(mut data) = around.by_tape(Wanted::Tangent, trial) {
+            let unit = unfit(data.pop())?;
+            let (rows, cols) = (size, size);
+            return Ok((Dense { rows, cols, data }, unit));
+        }
+        let places = around.all();
+        match self.tangent.at(sought.shape.value(trial), places)? {
             Value::List(both) => match both.as_slice() {
                 [tangent, Value::Real(unit)] => Ok((unfit(matrix(tangent, size))?, *unit)),
                 _ => unfit(None),
@@ -181,25 +218,45 @@ impl Solve {
         }
     }
 
+    /// The residual of all equations at rest.
+    fn at_rest(
+        &self,
+        trial: &Element,
+        sought: &'static Sought,
+        around: &mut Around,
+    ) -> Result<Element, Exit<f64>> {
+        if let Some(found) = around.by_tape(Wanted::AtRest, trial) {
+            return Ok(found);
+        }
+        let value = self.at_rest.run(around.all())?;
+        unfit(vector(&value, sought.all().parts().dimension()))
+    }
+
     fn is_principal(
         &self,
         iteration: &mut AnyNewton<'_, Shape>,
         solution: &Element,
-        at_rest: &Value<f64>,
         sought: &'static Sought,
-        places: &mut Places<f64>,
+        around: &mut Around,
     ) -> Result<bool, Exit<f64>> {
         let all = sought.all();
-        let at_rest = unfit(vector(at_rest, all.parts().dimension()))?;
+        let at_rest = self.at_rest(iteration.trial(), sought, around)?;
+        if self.completed_at.is_none() {
+            let around = RefCell::new(around);
+            let residual = |trial: &Element| {
+                let mut around = around.borrow_mut();
+                let by_tape = around.by_tape(Wanted::Alone, trial);
+                by_tape.unwrap_or_else(|| match self.known(&mut around) {
+                    Ok(known) => self.principal(&known, sought, |e| (e.residual)(trial)),
+                    Err(_) => vec![f64::NAN; all.parts().dimension()],
+                })
+            };
+            return Ok(iteration.is_principal(solution, &at_rest, residual));
+        }
         let known = match iteration.asks_equations() {
-            true => self.known(places)?,
+            true => self.known(around)?,
             false => [const { Value::Unit }; 4],
         };
-        if self.completed_at.is_none() {
-            return Ok(self.principal(&known, sought, |equations| {
-                iteration.is_principal(solution, &at_rest, equations.residual)
-            }));
-        }
         let tangent = || {
             self.principal(&known, sought, |equations| {
                 (equations.tangent)(&all.identity())
@@ -208,14 +265,25 @@ impl Solve {
         Ok(iteration.is_part_of_principal(solution, &at_rest, tangent))
     }
 
-    fn is_convex(&self, trial: &Value<f64>, places: &mut Places<f64>) -> Result<bool, Exit<f64>> {
-        match &self.convex {
-            Some(convex) => Ok(matches!(convex.at(trial, places)?, Value::Bool(true))),
-            None => Ok(false),
+    fn is_convex(
+        &self,
+        trial: &Element,
+        sought: &'static Sought,
+        around: &mut Around,
+    ) -> Result<bool, Exit<f64>> {
+        let Some(convex) = &self.convex else {
+            return Ok(false);
+        };
+        // Recorded only where it is.
+        if around.by_tape(Wanted::Convex, trial).is_some() {
+            return Ok(true);
         }
+        let found = convex.at(sought.shape.value(trial), around.all())?;
+        Ok(matches!(found, Value::Bool(true)))
     }
 
-    fn known(&self, places: &mut Places<f64>) -> Result<[Value<f64>; 4], Exit<f64>> {
+    fn known(&self, around: &mut Around) -> Result<[Value<f64>; 4], Exit<f64>> {
+        let places = around.all();
         let [parameters, step, given, momenta] = &self.known;
         Ok([
             parameters.run(places)?,
@@ -228,17 +296,18 @@ impl Solve {
     /// Bounds of the rounding of the residual.
     fn rounding(
         &self,
-        trial: &Value<f64>,
+        trial: &Element,
         sought: &Sought,
-        places: &mut Places<f64>,
+        around: &mut Around,
     ) -> Result<Vec<f64>, Exit<f64>> {
-        let known = self.known(places)?;
+        let known = self.known(around)?;
         let exactly = &mut Rounded::exactly;
         let mut given = Vec::with_capacity(self.rounded_at.places);
         for value in &known {
             given.push(unfit(over(value, exactly))?);
         }
-        let mut trial = unfit(over(trial, &mut Rounded::once))?;
+        let trial = sought.all().value(trial);
+        let mut trial = unfit(over(&trial, &mut Rounded::once))?;
         if let (Some(completed_at), Value::List(list)) = (&self.completed_at, &trial) {
             let rotation = |value: &Value<Rounded>| match value {
                 Value::Motion(g) => Value::Rotation(g.rotation),
@@ -265,14 +334,14 @@ impl Solve {
         iteration: &mut AnyNewton<'_, Shape>,
         ended: Progress<Element>,
         sought: &'static Sought,
-        places: &mut Places<f64>,
+        around: &mut Around,
     ) -> Result<Option<Solved<Element>>, Exit<f64>> {
         let failed = match ended {
             Progress::Continue => return Ok(None),
             Progress::Solved(solved) => Ok(solved),
             Progress::Failed(e) => Err(e),
         };
-        let known = self.known(places)?;
+        let known = self.known(around)?;
         let asked = failed.as_ref().ok().map(|solved| &solved.element);
         let settled = self.principal(&known, sought, |equations| {
             iteration.settle(equations, asked)
@@ -288,7 +357,8 @@ impl Solve {
                     Err(e) => (None, Some(e)),
                 };
                 if let (Some((at, tries, look)), Some(solved)) = (&self.settled.contact, solved) {
-                    *unfit(places.get_mut(*at))? = search::told(solved);
+                    let places = around.all();
+                    *unfit(places.get_mut(*at))? = search::told(sought.all(), &solved);
                     *unfit(places.get_mut(*tries))? = Value::Bool(iteration.tries());
                     if let Value::Failed(e) = look.run(places)? {
                         return Err(Exit::Return(Box::new(Value::Failed(e))));
@@ -297,7 +367,7 @@ impl Solve {
                 iteration.folded(fold, failed)
             }
         };
-        let e = self.refused(e, sought, places)?;
+        let e = self.refused(e, sought, around.all())?;
         Err(Failure::from(StepCause::from(e)).into())
     }
 
@@ -312,14 +382,14 @@ impl Solve {
         let shape = sought.all();
         let size = shape.parts().dimension();
         let residual = |trial: &Element| {
-            let trial = Value::List(trial.clone());
+            let trial = shape.value(trial);
             let all = [parameters, step, given, momenta, &trial];
             let found = self.residual_at.at(&all);
             let found = found.and_then(|v| vector(&v, size));
             found.unwrap_or_else(|| vec![f64::NAN; size])
         };
         let tangent = |trial: &Element| {
-            let trial = Value::List(trial.clone());
+            let trial = shape.value(trial);
             let found = self.tangent_at.at(&[parameters, step, given, &trial]);
             let found = found.and_then(|v| matrix(&v, size));
             found.unwrap_or_else(|| Dense::unknown(size, size))
@@ -343,7 +413,7 @@ impl Solve {
             Value::Real(h) => h,
             _ => return unfit(None),
         };
-        let places = std::cell::RefCell::new(places);
+        let places = RefCell::new(places);
         let other = |h: f64| -> Result<(), StepError> {
             let search = Value::Search(Held::begun(sought, true));
             let untold = |what| Err(StepCause::Unread { what }.at_node(0));

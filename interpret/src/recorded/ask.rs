@@ -35,8 +35,6 @@ pub struct Read {
 pub enum From {
     /// At a path around the loop.
     Around(Code<f64>),
-    /// It is the argument.
-    Argument,
     /// In a list, at a site. Whether it is the only one.
     Of(List, usize, bool),
 }

@@ -4,12 +4,83 @@ use super::Traced;
 use crate::value::Value;
 use clebsch::Real;
 
-/// Puts each count of a value farther by its own distance: the first by 1000, the next by 2000 and so on.
-pub fn shift(value: &mut Value<Traced>, next: &mut i64) {
-    each_count(value, &mut |n| {
-        *next += 1000;
-        *n += *next;
-    });
+/// How the counts of a recording are chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// All equal the first one.
+    Equal,
+    /// The first one goes up by 1000, the next one by 2000 and so on.
+    Apart,
+}
+
+/// The counts that a recording has met, before a step.
+#[derive(Debug)]
+pub struct Chosen {
+    choice: Choice,
+    /// As they were chosen.
+    pub all: Vec<i64>,
+}
+
+impl Chosen {
+    /// None met yet.
+    pub fn by(choice: Choice) -> Self {
+        Chosen {
+            choice,
+            all: Vec::new(),
+        }
+    }
+
+    /// Chooses the counts of a value.
+    pub fn choose(&mut self, value: &mut Value<Traced>) {
+        each_count(value, &mut |n| {
+            *n = match self.choice {
+                Choice::Equal => self.all.first().copied().unwrap_or(*n),
+                Choice::Apart => *n + 1000 * (self.all.len() as i64 + 1),
+            };
+            self.all.push(*n);
+        });
+    }
+}
+
+/// A count after a step: another one before it and a number more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Growth {
+    /// Which one.
+    pub from: usize,
+    /// How much more.
+    pub by: i64,
+}
+
+/// How each count grows, from two recordings: counts before and after. A count grows from itself if it can.
+pub fn growth(one: [&[i64]; 2], other: [&[i64]; 2]) -> Option<Vec<Growth>> {
+    let [before, after] = one;
+    let [others, later] = other;
+    if [before.len(), others.len(), later.len()] != [after.len(); 3] {
+        return None;
+    }
+    let grown = |i: usize| {
+        let from = |j: &usize| after[i] - before[*j] == later[i] - others[*j];
+        let own = std::iter::once(i).chain(0..before.len());
+        own.into_iter().find(from).map(|from| Growth {
+            from,
+            by: after[i] - before[from],
+        })
+    };
+    (0..after.len()).map(grown).collect()
+}
+
+/// The counts after a step that grows them so.
+pub fn grow(counts: &mut Vec<i64>, by: &[Growth]) {
+    let is_own = |(at, growth): (usize, &Growth)| at == growth.from;
+    if by.iter().enumerate().all(is_own) {
+        counts
+            .iter_mut()
+            .zip(by)
+            .for_each(|(n, growth)| *n += growth.by);
+        return;
+    }
+    let of = |growth: &Growth| counts.get(growth.from).copied().unwrap_or(0) + growth.by;
+    *counts = by.iter().map(of).collect();
 }
 
 /// Meets every count of a value.

@@ -50,9 +50,14 @@ impl Function {
         self.tapes.compute(computes, || self.recorded(given))
     }
 
-    fn recorded(&self, given: &[&Value<f64>]) -> Option<Tape> {
+    /// The function over the scalar that records, if it can be recorded.
+    pub fn traced(&self) -> Option<&Routine<Traced>> {
         let traced = || self.plain.over(Traced::constant);
-        let traced = self.traced.get_or_init(traced).as_ref()?;
+        self.traced.get_or_init(traced).as_ref()
+    }
+
+    fn recorded(&self, given: &[&Value<f64>]) -> Option<Tape> {
+        let traced = self.traced()?;
         let mut gives = None;
         let (tape, inputs) = record(|| {
             let inputs = given.iter().map(|value| over(value, &mut Traced::input));

@@ -6,18 +6,18 @@
 
 mod ask;
 mod counts;
+mod equations;
 mod form;
 mod function;
 mod kept;
-mod places;
 mod sites;
 mod solves;
 mod traced;
 mod trajectory;
 mod ways;
 
+pub use equations::{Around, Wanted};
 pub use function::{Function, run as run_alone};
-pub use places::PlaceFunction;
 pub use sites::{Lists, SiteFunction};
 pub use solves::RecordedSolve;
 pub use traced::Traced;

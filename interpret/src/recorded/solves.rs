@@ -1,20 +1,23 @@
 //! Equations that a step solves on its way, as parts of a recording. A tape ends where Newton's method begins; the next one
 //! takes the solution as inputs.
 
-use super::traced::{Traced, cut, model, with_newest_cut};
+use super::equations::{Around, Equations, Part, Recorded, Wanted};
+use super::form::value_of;
+use super::function::run as run_alone;
+use super::load;
+use super::traced::{Traced, aside, cut, model, steps, with_newest_cut};
 use crate::code::{Code, Exit, Iterate, Places, unfit};
-use crate::newton::{Held, Solve, remember as remembered};
+use crate::newton::{AtTrial, Held, Solve, Sought, matrix, told as found, vector};
 use crate::opened::at;
-use crate::over::{fill, numbers, over};
-use crate::value::Value;
-use clebsch_program::{Frame, Guard, Machine, Scalar, Tape};
+use crate::over::{numbers, over};
+use crate::value::{Struct, Value};
+use clebsch::solvers::newton::{Chart, Solved};
+use clebsch_program::{Frame, Machine, Scalar, Tape};
 use std::sync::Arc;
 
 /// Where a recording ends for a while.
 #[derive(Clone, Debug)]
 pub struct Cut {
-    /// What the part before computes for the equations.
-    pub outputs: Vec<Scalar>,
     /// How many decisions were noted before.
     pub guards: usize,
     /// How many inputs there were before.
@@ -26,22 +29,24 @@ pub struct Cut {
 impl Cut {
     /// Whether two recordings have the same cut. Counts enter neither.
     pub fn agrees(&self, other: &Cut) -> bool {
-        self.outputs == other.outputs
-            && self.guards == other.guards
+        let (own, others) = (&self.solved, &other.solved);
+        let same = match (&own.equations, &others.equations) {
+            (Some(a), Some(b)) => a.agrees(b),
+            _ => false,
+        };
+        same && self.guards == other.guards
             && self.inputs == other.inputs
-            && self.solved.node == other.solved.node
-            && self.solved.remembers == other.solved.remembers
+            && own.node == others.node
+            && own.remembers == others.remembers
     }
 }
 
-/// Equations among the places of a step.
+/// Equations that a step solves.
 #[derive(Clone, Debug)]
 pub struct SolvedHere {
     with: Arc<Solve>,
-    /// The places as they were, for all that is not computed.
-    places: Places<f64>,
-    /// The places whose numbers are computed.
-    computed: Vec<usize>,
+    /// How they are evaluated.
+    equations: Option<Recorded>,
     /// How far the node is from the first count of the state.
     node: i64,
     /// The numbers of the solution.
@@ -56,12 +61,29 @@ pub struct RecordedSolve {
     with: Arc<Solve>,
     search: Code<Traced>,
     node: Code<Traced>,
+    /// The functions of a trial, if they can be recorded.
+    residual: Option<Code<Traced>>,
+    tangent: Option<Code<Traced>>,
+    at_rest: Option<Code<Traced>>,
+    convex: Option<Code<Traced>>,
+    /// The arguments of the residual by itself before the trial.
+    known: Option<Vec<Code<Traced>>>,
 }
 
 impl RecordedSolve {
     /// The same equations; nothing if the search or the node is not found by places alone.
     pub fn of(with: Arc<Solve>) -> Option<Self> {
+        let at_trial = |what: &AtTrial| what.body.over(Traced::constant);
         Some(RecordedSolve {
+            residual: at_trial(&with.residual),
+            tangent: at_trial(&with.tangent),
+            at_rest: with.at_rest.over(Traced::constant),
+            convex: with.convex.as_ref().and_then(at_trial),
+            known: with
+                .known
+                .iter()
+                .map(|code| code.over(Traced::constant))
+                .collect(),
             search: with.search.over(Traced::constant)?,
             node: with.node.over(Traced::constant)?,
             with,
@@ -91,7 +113,7 @@ impl Iterate<Traced> for RecordedSolve {
             return unfit(None);
         };
         let mut held = held.clone();
-        let (mut own, mut outputs, mut computed) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut own, mut around, mut computed) = (Vec::new(), Vec::new(), Vec::new());
         for (at, value) in places.iter().enumerate() {
             // What the equations could not use is not among the places.
             let seen = over(value, &mut Traced::seen).unwrap_or(Value::Unit);
@@ -101,44 +123,154 @@ impl Iterate<Traced> for RecordedSolve {
                 && all.iter().any(|x| x.at().is_some())
             {
                 computed.push(at);
-                outputs.append(&mut all);
+                around.append(&mut all);
             }
             own.push(seen);
         }
         *unfit(own.get_mut(at::MODEL))? = unfit(model())?;
-        let solved = held.solve(&self.with, node.unsigned_abs(), &mut own.clone());
-        let Ok(Value::Struct(mut solved)) = solved else {
-            return unfit(None);
-        };
-        let element = unfit(solved.values.first().cloned())?;
-        // Nothing is computed from how the solution was found.
-        solved
-            .values
-            .iter_mut()
-            .skip(1)
-            .for_each(|x| *x = Value::Unit);
-        cut(
-            &outputs,
-            SolvedHere {
-                with: self.with.clone(),
+        let mut seen = own.clone();
+        let solved = held.solve(
+            &self.with,
+            node.unsigned_abs(),
+            &mut Around::places(&mut seen),
+        );
+        let solved = unfit(solved.ok())?;
+        cut(SolvedHere {
+            with: self.with.clone(),
+            equations: None,
+            node: node - first,
+            solution: Vec::new(),
+            remembers: false,
+        });
+        let sought = held.sought();
+        let values = sought.all().value(&solved.element);
+        let element = unfit(over(&values, &mut Traced::input))?;
+        let mut inputs = Vec::new();
+        unfit(numbers(&element, &mut inputs))?;
+        let (parts, of_trial) = unfit(self.parts(&element, &inputs, sought, places))?;
+        let around = steps(&around);
+        let solution = steps(&inputs);
+        let noted = with_newest_cut(|cut| {
+            cut.solved.solution = solution;
+            cut.solved.equations = Some(Recorded {
+                parts,
+                inputs: cut.inputs,
+                of_trial,
                 places: own,
                 computed,
-                node: node - first,
-                solution: Vec::new(),
-                remembers: false,
-            },
-        );
-        let element = unfit(over(&element, &mut Traced::input))?;
-        let mut all = Vec::new();
-        unfit(numbers(&element, &mut all))?;
-        let steps: Option<Vec<Scalar>> = all.iter().map(|x| x.at()).collect();
-        let steps = unfit(steps)?;
-        unfit(with_newest_cut(|cut| cut.solved.solution = steps))?;
-        let mut solved = unfit(over(&Value::Struct(solved), &mut Traced::constant))?;
-        if let Value::Struct(s) = &mut solved {
-            *unfit(s.values.first_mut())? = element;
+                around,
+            });
+        });
+        unfit(noted)?;
+        // Nothing is computed from how the solution was found.
+        let told = found(sought.all(), &solved);
+        let Value::Struct(Struct { layout, .. }) = told else {
+            return unfit(None);
+        };
+        Ok(Value::Struct(Struct {
+            layout,
+            values: vec![element, Value::Unit, Value::Unit],
+        }))
+    }
+}
+
+/// The parts of a recording that evaluate equations, and which numbers of a solution a trial has.
+type Parts = ([Option<Part>; 5], Vec<usize>);
+
+impl RecordedSolve {
+    /// Records what Newton's method evaluates at a trial, with the inputs of the solution as the trial.
+    fn parts(
+        &self,
+        element: &Value<Traced>,
+        inputs: &[Traced],
+        sought: &Sought,
+        places: &Places<Traced>,
+    ) -> Option<Parts> {
+        let Value::List(all) = element else {
+            return None;
+        };
+        let trial = Value::List(sought.shape.part_of(all));
+        let mut own = Vec::new();
+        numbers(&trial, &mut own)?;
+        let place = |x: &Traced| inputs.iter().position(|input| input.at() == x.at());
+        let of_trial: Option<Vec<usize>> = own.iter().map(place).collect();
+        let sizes = [&sought.shape, sought.all()].map(|shape| shape.parts().dimension());
+        let in_part = self.with.completed_at.is_some();
+        let wanted = |wanted: Wanted| {
+            if wanted == Wanted::Alone {
+                let is_asked = !in_part && sought.shape.parts().open.contains(&true);
+                return is_asked
+                    .then(|| self.alone(&trial, sizes, places))
+                    .flatten();
+            }
+            let (body, trial_at) = match wanted {
+                Wanted::Residual => (self.residual.as_ref()?, Some(self.with.residual.place)),
+                Wanted::Tangent => (self.tangent.as_ref()?, Some(self.with.tangent.place)),
+                Wanted::AtRest => (self.at_rest.as_ref()?, None),
+                Wanted::Convex => {
+                    let convex = self.with.convex.as_ref()?;
+                    (self.convex.as_ref()?, Some(convex.place))
+                }
+                Wanted::Alone => return None,
+            };
+            let (numbers, guards) = aside(|| {
+                let mut places = places.clone();
+                if let Some(at) = trial_at {
+                    *places.get_mut(at)? = trial.clone();
+                }
+                told(wanted, value_of(body, &mut places)?, sizes, in_part)
+            })?;
+            Some(Part::new(&numbers, guards))
+        };
+        Some((Wanted::ALL.map(wanted), of_trial?))
+    }
+
+    /// The residual by itself.
+    fn alone(
+        &self,
+        trial: &Value<Traced>,
+        [_, all]: [usize; 2],
+        places: &Places<Traced>,
+    ) -> Option<Part> {
+        let residual = self.with.residual_at.traced()?;
+        let (numbers, guards) = aside(|| {
+            let mut places = places.clone();
+            let known = self.known.as_ref()?.iter();
+            let known = known.map(|code| code.run(&mut places).ok());
+            let mut given: Vec<Value<Traced>> = known.collect::<Option<_>>()?;
+            given.push(trial.clone());
+            vector(&run_alone(residual, given)?, all)
+        })?;
+        Some(Part::new(&numbers, guards))
+    }
+}
+
+/// The numbers of what is wanted, of so many equations that are searched for, and so many in all.
+fn told(
+    wanted: Wanted,
+    value: Value<Traced>,
+    [size, all]: [usize; 2],
+    in_part: bool,
+) -> Option<Vec<Traced>> {
+    match (wanted, value) {
+        (Wanted::Residual, Value::List(mut both)) => {
+            let mut residual = vector(&both.pop()?, size)?;
+            if in_part {
+                numbers(&both.pop()?, &mut residual)?;
+            }
+            Some(residual)
         }
-        Ok(solved)
+        (Wanted::Tangent, Value::List(both)) => match both.as_slice() {
+            [tangent, Value::Real(unit)] => {
+                let mut data = matrix(tangent, size)?.data;
+                data.push(*unit);
+                Some(data)
+            }
+            _ => None,
+        },
+        (Wanted::AtRest, value) => vector(&value, all),
+        (Wanted::Convex, Value::Bool(true)) => Some(Vec::new()),
+        _ => None,
     }
 }
 
@@ -177,44 +309,48 @@ pub fn remember(
 pub struct Between {
     machine: Machine,
     frame: Frame<1>,
-    solved: SolvedHere,
+    equations: Equations,
+    with: Arc<Solve>,
+    node: i64,
+    remembers: bool,
     /// What the search had measured before the step.
     before: Option<Held>,
     /// Whether this step has come to the equations.
     begun: bool,
     /// The newest solution.
-    found: Value<f64>,
-}
-
-/// The part of a tape that computes other outputs, by the decisions of `guards`.
-fn part(tape: &Tape, outputs: &[Scalar], guards: &[Guard]) -> Tape {
-    Tape {
-        guards: guards.to_vec(),
-        outputs: outputs.to_vec(),
-        ..tape.clone()
-    }
+    found: Vec<f64>,
 }
 
 /// The tapes before each cut, and the tape of the last part.
-pub fn in_parts(tape: Tape, cuts: Vec<Cut>) -> (Vec<Between>, Tape) {
+pub fn in_parts(tape: Tape, cuts: Vec<Cut>) -> Option<(Vec<Between>, Tape)> {
     let mut decided = 0;
     let mut all = Vec::new();
     for cut in cuts {
+        let SolvedHere {
+            with,
+            equations,
+            node,
+            solution,
+            remembers,
+        } = cut.solved;
         let guards = tape.guards.get(decided..cut.guards).unwrap_or_default();
-        let machine = Machine::new(&part(&tape, &cut.outputs, guards), cut.inputs);
+        let (equations, given) = equations?.equations(&tape, solution.len());
+        let machine = Machine::new(&tape.part(&given, guards), cut.inputs);
         decided = cut.guards;
         all.push(Between {
             frame: machine.frame(),
             machine,
-            solved: cut.solved,
+            equations,
+            with,
+            node,
+            remembers,
             before: None,
             begun: false,
-            found: Value::Unit,
+            found: Vec::new(),
         });
     }
-    let guards = tape.guards.get(decided..).unwrap_or_default();
-    let last = part(&tape, &tape.outputs, guards);
-    (all, last)
+    let guards = tape.guards.get(decided..).unwrap_or_default().to_vec();
+    Some((all, Tape { guards, ..tape }))
 }
 
 /// How a step by tapes went.
@@ -233,19 +369,17 @@ impl Between {
     /// of the state; the search is among the `places`.
     pub fn solve(&mut self, own: &mut Vec<f64>, first: i64, places: &mut Places<f64>) -> Went {
         self.begun = false;
-        let loaded = own.get(..self.machine.inputs());
-        let loaded = loaded.and_then(|own| super::load(self.frame.inputs(), own));
-        if loaded.is_none() || !self.machine.run(&mut self.frame) {
+        let given = own.get(..self.machine.inputs()).unwrap_or_default();
+        let loaded = load(self.frame.inputs(), given);
+        if given.len() < self.machine.inputs()
+            || loaded.is_none()
+            || !self.machine.run(&mut self.frame)
+        {
             return Went::Elsewhere;
         }
-        let solved = &mut self.solved;
-        let mut given = self.machine.gives(&self.frame, 0);
-        for at in &solved.computed {
-            if let Some(value) = solved.places.get_mut(*at) {
-                fill(value, &mut given);
-            }
-        }
-        let Some(Value::Search(held)) = solved.with.search.place_mut(places) else {
+        self.equations
+            .begin(given, self.machine.gives(&self.frame, 0));
+        let Some(Value::Search(held)) = self.with.search.place_mut(places) else {
             return Went::Unsolved;
         };
         match &mut self.before {
@@ -253,40 +387,31 @@ impl Between {
             None => self.before = Some(held.clone()),
         }
         self.begun = true;
-        let node = (first + solved.node).unsigned_abs();
-        let Ok(found) = held.solve(&solved.with, node, &mut solved.places) else {
+        let node = (first + self.node).unsigned_abs();
+        let around = &mut Around::Tapes(&mut self.equations);
+        let Ok(Solved { element, .. }) = held.solve(&self.with, node, around) else {
             return Went::Unsolved;
         };
-        let element = match &found {
-            Value::Struct(found) => found.values.first(),
-            _ => None,
-        };
-        let noted = element.and_then(|x| numbers(x, own));
-        self.found = found;
-        match noted {
-            Some(()) => Went::On,
-            None => Went::Unsolved,
-        }
+        own.extend_from_slice(&element);
+        self.found = element;
+        Went::On
     }
 
     /// Gives the search back what it had measured before the step, if the step has come to the equations.
     pub fn undo(&self, places: &mut Places<f64>) {
-        if let (true, Some(before), Some(Value::Search(held))) = (
-            self.begun,
-            &self.before,
-            self.solved.with.search.place_mut(places),
-        ) {
+        if let (true, Some(before), Some(Value::Search(held))) =
+            (self.begun, &self.before, self.with.search.place_mut(places))
+        {
             held.measure_as(before);
         }
     }
 
     /// The step from the node `first` is made: the search remembers its solution.
     pub fn remember(&self, first: i64, places: &mut Places<f64>) {
-        let node = Value::Int(first + self.solved.node);
-        if self.solved.remembers
-            && let Some(search) = self.solved.with.search.place_mut(places)
+        if self.remembers
+            && let Some(Value::Search(held)) = self.with.search.place_mut(places)
         {
-            let _ = remembered(search, &node, &self.found);
+            held.remember((first + self.node).unsigned_abs(), &self.found);
         }
     }
 }

@@ -6,7 +6,7 @@
 use super::solves::{Cut, SolvedHere};
 use crate::value::Value;
 use clebsch::Real;
-use clebsch_program::{Function, Recording, Scalar, Step, Tape, Test};
+use clebsch_program::{Function, Guard, Recording, Scalar, Step, Tape, Test};
 use num_traits::{One, Zero};
 use std::cell::RefCell;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -33,7 +33,7 @@ thread_local! {
 }
 
 /// Most steps of a tape: what takes more is not recorded.
-const MOST: usize = 1 << 16;
+const MOST: usize = 1 << 17;
 
 /// Records what `body` does; it gives the numbers that the tape is to compute. Nothing if that cannot be told from
 /// tests of numbers alone.
@@ -65,18 +65,40 @@ pub fn model() -> Option<Value<f64>> {
     noted(|here| here.model.clone()).flatten()
 }
 
-/// Ends a part of the recording, which computes `outputs`; the next part takes as inputs what is solved for.
-pub fn cut(outputs: &[Traced], solved: SolvedHere) {
+/// Ends a part of the recording; the next part takes as inputs what is solved for.
+pub fn cut(solved: SolvedHere) {
     noted(|here| {
-        let steps = outputs.iter().map(|x| x.step_in(&mut here.recording));
-        let outputs = steps.collect();
         here.cuts.push(Cut {
-            outputs,
             guards: here.recording.guards(),
             inputs: here.inputs as usize,
             solved,
         });
     });
+}
+
+/// Records a computation aside from the step. Returns its value with its own decisions; the step does not rely on these.
+/// `None` if a decision uses more than tests of numbers.
+pub fn aside<R>(body: impl FnOnce() -> Option<R>) -> Option<(R, Vec<Guard>)> {
+    let before = noted(|here| {
+        let spoiled = std::mem::replace(&mut here.spoiled, false);
+        (here.recording.begin_aside(), spoiled)
+    });
+    let value = body();
+    let (decisions, spoiled) = before?;
+    let (guards, spoilt) = noted(|here| {
+        let spoilt = std::mem::replace(&mut here.spoiled, spoiled);
+        (here.recording.end_aside(decisions), spoilt)
+    })?;
+    value.filter(|_| !spoilt).map(|value| (value, guards))
+}
+
+/// The steps that compute numbers.
+pub fn steps(numbers: &[Traced]) -> Vec<Scalar> {
+    let made = noted(|here| {
+        let steps = numbers.iter().map(|x| x.step_in(&mut here.recording));
+        steps.collect()
+    });
+    made.unwrap_or_default()
 }
 
 /// Does something with the newest cut.

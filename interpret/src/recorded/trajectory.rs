@@ -1,6 +1,6 @@
 //! The functions of a trajectory as tapes: its step, and what a run evaluates at nodes.
 
-use super::counts::{counts, each_count, shift, uncounted};
+use super::counts::{Choice, Chosen, counts, each_count, grow, growth, uncounted};
 use super::form::value_of;
 use super::solves::{Cut, in_parts};
 use super::traced::{Traced, record, record_with_solves};
@@ -8,6 +8,7 @@ use super::ways::{Node, Way, Ways};
 use crate::code::{Places, Routine};
 use crate::opened::{Functions, at};
 use crate::over::{alike, fill, numbers, over};
+use crate::packed::Packed;
 use crate::value::Value;
 use clebsch_program::{Machine, Tape};
 
@@ -67,7 +68,7 @@ impl Recordable {
 }
 
 /// The values that stay the same while a trajectory runs.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Fixed {
     /// The parameters as given.
     pub parameters: Value<f64>,
@@ -75,6 +76,16 @@ pub struct Fixed {
     pub solver: Option<Value<f64>>,
     /// The step size.
     pub step: Value<f64>,
+}
+
+impl Fixed {
+    /// The same, for steps of `h`.
+    pub fn with_step(&self, h: f64) -> Self {
+        Fixed {
+            step: Value::Real(h),
+            ..self.clone()
+        }
+    }
 }
 
 fn constant(value: &Value<f64>) -> Option<Value<Traced>> {
@@ -88,9 +99,20 @@ pub struct Recorded {
     fixed: Fixed,
     step: Ways,
     watched: [Ways; 3],
+    /// The numbers of the state, then those of the workspace.
     numbers: Vec<f64>,
+    /// How many are the state's.
+    of_state: usize,
     counts: Vec<i64>,
     newest: Newest,
+}
+
+/// A copy has no tapes yet.
+impl Clone for Recorded {
+    fn clone(&self) -> Self {
+        let own_step = !self.step.are_none();
+        Recorded::new(self.functions, self.fixed.clone(), own_step)
+    }
 }
 
 /// Where the newest state and workspace are.
@@ -113,6 +135,7 @@ impl Recorded {
             step: Ways::new(own_step && functions.step.is_some()),
             watched: functions.watched.each_ref().map(|f| Ways::new(f.is_some())),
             numbers: Vec::new(),
+            of_state: 0,
             counts: Vec::new(),
             newest: Newest::Places,
         }
@@ -131,15 +154,18 @@ impl Recorded {
         self.newest = Newest::Both;
         self.numbers.clear();
         self.counts.clear();
-        for value in [at::STATE, at::WORK]
-            .iter()
-            .filter_map(|at| places.get(*at))
-        {
+        for at in [at::STATE, at::WORK] {
+            let Some(value) = places.get(at) else {
+                continue;
+            };
             let before = self.numbers.len();
             if numbers(value, &mut self.numbers).is_none() {
                 self.numbers.truncate(before);
             }
             counts(value, &mut self.counts);
+            if at == at::STATE {
+                self.of_state = self.numbers.len();
+            }
         }
     }
 
@@ -176,11 +202,48 @@ impl Recorded {
         {
             *slot = x;
         }
-        for (n, growth) in self.counts.iter_mut().zip(&way.growth) {
-            *n += growth;
-        }
+        grow(&mut self.counts, &way.growth);
         self.newest = Newest::Numbers;
         true
+    }
+
+    /// Makes a step from this state; false if the function itself has to, from the places.
+    pub fn step_from(&mut self, state: &mut Packed, places: &mut Places<f64>) -> bool {
+        if self.step.are_none() || !self.put(state, places) || !self.step(places) {
+            return false;
+        }
+        self.newest()
+            .is_some_and(|(all, node)| state.set(all, node))
+    }
+
+    /// Puts a state into the numbers; false if it has others than the state there.
+    pub fn put(&mut self, state: &Packed, places: &Places<f64>) -> bool {
+        self.read(places);
+        let given = state.numbers();
+        let own = self.numbers.get_mut(..self.of_state);
+        let own = own.filter(|own| own.len() == given.len());
+        let (Some(own), Some(node)) = (own, self.counts.first_mut()) else {
+            return false;
+        };
+        own.copy_from_slice(given);
+        *node = state.node.cast_signed();
+        self.newest = Newest::Numbers;
+        true
+    }
+
+    /// The numbers of the state and its node, if they are here.
+    fn newest(&self) -> Option<(&[f64], u64)> {
+        if self.newest == Newest::Places {
+            return None;
+        }
+        let node = u64::try_from(*self.counts.first()?).ok()?;
+        Some((self.numbers.get(..self.of_state)?, node))
+    }
+
+    /// The state, if the numbers have it.
+    pub fn packed(&self) -> Option<Packed> {
+        let (all, node) = self.newest()?;
+        Packed::of_numbers(all, node)
     }
 
     /// The node, if the numbers are newer than the places: the only count of a state.
@@ -246,18 +309,19 @@ fn recordable(value: &Value<f64>) -> bool {
     numbers(value, &mut Vec::new()).is_some()
 }
 
-/// A tape with so many inputs and the cuts on its way, and the growth of counts.
-type Once = ((Tape, usize, Vec<Cut>), Vec<i64>);
+/// A recording: a tape with so many inputs and the cuts on its way; the counts before and after.
+type Once = ((Tape, usize, Vec<Cut>), [Vec<i64>; 2]);
 
 /// Records twice, with different counts: if these enter a number or a decision, recording gives up.
-fn twice(once: impl Fn(bool) -> Option<Once>) -> Option<Way> {
-    let ((tape, inputs, cuts), growth) = once(false)?;
-    let ((other, _, others), grown) = once(true)?;
+fn twice(once: impl Fn(Choice) -> Option<Once>) -> Option<Way> {
+    let ((tape, inputs, cuts), [before, after]) = once(Choice::Equal)?;
+    let ((other, _, others), [earlier, later]) = once(Choice::Apart)?;
     let agree = cuts.len() == others.len() && cuts.iter().zip(&others).all(|(a, b)| a.agrees(b));
-    if !agree || tape != other || growth != grown {
+    if !agree || tape != other {
         return None;
     }
-    let (between, last) = in_parts(tape, cuts);
+    let growth = growth([&before, &after], [&earlier, &later])?;
+    let (between, last) = in_parts(tape, cuts)?;
     let machine = Machine::new(&last, inputs);
     let frame = machine.frame();
     Some(Way {
@@ -269,33 +333,24 @@ fn twice(once: impl Fn(bool) -> Option<Once>) -> Option<Way> {
     })
 }
 
-/// The numbers of a value as inputs; its counts shifted, if wanted, and noted.
-fn input(
-    value: &Value<f64>,
-    shifted: bool,
-    next: &mut i64,
-    noted: &mut Vec<i64>,
-) -> Option<Value<Traced>> {
+/// The numbers of a value as inputs, its counts as they are chosen.
+fn input(value: &Value<f64>, counts: &mut Chosen) -> Option<Value<Traced>> {
     numbers(value, &mut Vec::new())?;
     let mut value = over(value, &mut Traced::input)?;
-    if shifted {
-        shift(&mut value, next);
-    }
-    counts(&value, noted);
+    counts.choose(&mut value);
     Some(value)
 }
 
 fn recorded_step(all: &Recordable, fixed: &Fixed, from: &Places<f64>) -> Option<Way> {
     let routine = all.step.as_ref()?;
-    twice(|shifted| {
+    twice(|choice| {
         let mut places = all.places(fixed)?;
-        let mut growth = Vec::new();
+        let (mut before, mut after) = (Chosen::by(choice), Vec::new());
         let model = from.get(at::MODEL).cloned();
         let recorded = record_with_solves(model, || {
-            let (mut before, mut after, mut next) = (Vec::new(), Vec::new(), 0);
             let mut whole = Vec::new();
             for at in [at::STATE, at::WORK] {
-                let value = input(from.get(at)?, shifted, &mut next, &mut before)?;
+                let value = input(from.get(at)?, &mut before)?;
                 whole.push(value.clone());
                 *places.get_mut(at)? = value;
             }
@@ -308,10 +363,9 @@ fn recorded_step(all: &Recordable, fixed: &Fixed, from: &Places<f64>) -> Option<
                 numbers(value, &mut outputs)?;
                 counts(value, &mut after);
             }
-            growth = after.iter().zip(&before).map(|(a, b)| a - b).collect();
             Some(outputs)
         })?;
-        Some((recorded, growth))
+        Some((recorded, [before.all, after]))
     })
 }
 
@@ -322,14 +376,14 @@ fn recorded_watch(
     from: &Places<f64>,
 ) -> Option<Way> {
     let routine = all.watched.get(which as usize)?.as_ref()?;
-    twice(|shifted| {
+    twice(|choice| {
         let mut places = all.places(fixed)?;
         let recorded = record(|| {
-            let (mut next, mut noted) = (0, Vec::new());
-            let state = input(from.get(at::STATE)?, shifted, &mut next, &mut noted)?;
+            let mut chosen = Chosen::by(choice);
+            let state = input(from.get(at::STATE)?, &mut chosen)?;
             *places.get_mut(at::STATE)? = state;
             // A function that reads the memory of a solver is not recorded.
-            if let Some(work) = input(from.get(at::WORK)?, shifted, &mut next, &mut noted) {
+            if let Some(work) = input(from.get(at::WORK)?, &mut chosen) {
                 *places.get_mut(at::WORK)? = work;
             }
             *places.get_mut(at::OUT)? = Value::List(Vec::new());
@@ -344,6 +398,6 @@ fn recorded_watch(
             numbers.collect()
         })?;
         let (tape, inputs) = recorded;
-        Some(((tape, inputs, Vec::new()), Vec::new()))
+        Some(((tape, inputs, Vec::new()), [Vec::new(), Vec::new()]))
     })
 }

@@ -1,5 +1,6 @@
 //! The tapes of one function of a trajectory, one for each way in which its decisions came out.
 
+use super::counts::Growth;
 use super::kept::MOST;
 use super::load;
 use super::solves::{Between, Went};
@@ -15,8 +16,8 @@ pub struct Way {
     pub machine: Machine,
     /// Its registers.
     pub frame: Frame<1>,
-    /// By how much each count grows.
-    pub growth: Vec<i64>,
+    /// How each count grows.
+    pub growth: Vec<Growth>,
     /// The numbers it starts from, and solutions behind them.
     pub numbers: Vec<f64>,
 }

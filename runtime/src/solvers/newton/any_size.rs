@@ -358,7 +358,7 @@ impl<C: Chart> AnyNewton<'_, C> {
                     return Ok(Settled::Unpolished);
                 }
                 self.attempt = LAST_ATTEMPT;
-                self.begin_at(self.chart.part(&root));
+                self.begin_at(self.chart.part(self.whole, &root));
                 self.anchor = Some(Anchor { root, reach });
                 Ok(Settled::Again)
             }

@@ -15,8 +15,8 @@ pub trait Chart {
     /// Its coordinates.
     fn parts(&self) -> &Parts;
 
-    /// The part of an element that is searched for, where the rest follows from it.
-    fn part(&self, whole: &Self::Element) -> Self::Element;
+    /// The part of an element of another chart that is searched for, if the rest follows from it.
+    fn part(&self, of: &Self, whole: &Self::Element) -> Self::Element;
 
     /// What a coordinate stands for.
     fn coordinate(&self, index: usize) -> Coordinate;

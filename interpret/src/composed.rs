@@ -1,0 +1,111 @@
+//! Steps of higher order: a model from a file as a composition takes it.
+
+use crate::code::Places;
+use crate::opened::{Opened, at};
+use crate::packed::Packed;
+use crate::recorded::{Fixed, Recorded};
+use crate::running::{put, run};
+use crate::value::Value;
+use clebsch::card::Settings;
+use clebsch::integrate::{Reversible, Stepper};
+use clebsch::saved::{Saved, Words};
+use clebsch::{StartError, StepError};
+
+/// A model with its parameters.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub opened: &'static Opened,
+    pub model: Value<f64>,
+    /// Any state: what the numbers of one mean.
+    pub state: Value<f64>,
+    /// The parameters as given, and the step of the whole composition.
+    pub fixed: Fixed,
+}
+
+/// The workspace of one step of a composition: places of its own, and tapes of its own step size.
+#[derive(Clone, Debug)]
+pub struct Part {
+    places: Places<f64>,
+    recorded: Option<Recorded>,
+}
+
+impl Part {
+    /// Reads or writes what the solver of this step remembers.
+    pub fn words(&mut self, words: &mut Words) {
+        if let Some(recorded) = &mut self.recorded {
+            recorded.write(&mut self.places);
+            recorded.follow();
+        }
+        match self.places.get_mut(at::WORK) {
+            Some(work) => work.words(words),
+            None => words.refuse(),
+        }
+    }
+}
+
+impl Model {
+    /// Places with a state, for steps of `h`.
+    fn places(&self, state: &Packed, h: f64) -> Places<f64> {
+        let mut places = self.opened.places(self.model.clone());
+        let mut here = self.state.clone();
+        state.put(&mut here);
+        put(&mut places, at::STATE, here);
+        put(&mut places, at::STEP, Value::Real(h));
+        places
+    }
+}
+
+impl Stepper for Model {
+    type Scalar = f64;
+    type State = Packed;
+    type Workspace = Part;
+
+    fn workspace(&self, state: &Packed, h: f64) -> Result<Part, StartError> {
+        let mut places = self.places(state, h);
+        self.opened
+            .prepare(&mut places, Settings::step(h), self.opened.usual())?;
+        let recordable = self.opened.recordable();
+        let recorded = recordable.map(|all| Recorded::new(all, self.fixed.with_step(h), true));
+        Ok(Part { places, recorded })
+    }
+
+    fn advance(&self, state: &mut Packed, part: &mut Part) -> Result<(), StepError> {
+        let Part { places, recorded } = part;
+        if let Some(recorded) = recorded {
+            if recorded.step_from(state, places) {
+                return Ok(());
+            }
+            recorded.write(places);
+            recorded.follow();
+        }
+        if let Some(here) = places.get_mut(at::STATE) {
+            state.put(here);
+        }
+        run(&self.opened.functions.step, places).map_err(|e| e.step(state.node))?;
+        if let Some(next) = places.get(at::STATE).and_then(Packed::of) {
+            *state = next;
+        }
+        Ok(())
+    }
+
+    fn attempt(&self, state: &Packed, h: f64) -> Option<Packed> {
+        let Some(attempt) = &self.opened.functions.attempt else {
+            let mut moving = *state;
+            let mut part = self.workspace(state, h).ok()?;
+            self.advance(&mut moving, &mut part).ok()?;
+            return Some(moving);
+        };
+        let made = run(attempt, &mut self.places(state, h));
+        made.ok().as_ref().and_then(Packed::of)
+    }
+
+    fn node(state: &Packed) -> u64 {
+        state.node
+    }
+
+    fn at_node(state: Packed, node: u64) -> Packed {
+        state.counted(node)
+    }
+}
+
+impl Reversible for Model {}

@@ -1,0 +1,352 @@
+//! The groups of velocities, with elements as lists of numbers: the runtime's own groups if these are types, matrices in
+//! plain loops if their sizes are known when a model is read.
+
+use crate::library::groups::{composed_kept, inverse_kept};
+use crate::value::{Kept, Value};
+use clebsch::groups::{Coordinate, Part};
+use clebsch::linalg::Dense;
+use clebsch::{Group, OfScalars, PlaneMotion, RigidMotion, Rotation, UnitQuaternion};
+
+/// A group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Rotations of space.
+    Rotation,
+    /// Unit quaternions.
+    Quaternion,
+    /// Rigid motions of space.
+    Motion,
+    /// Those of the plane.
+    Plane,
+    /// Invertible maps of so many dimensions.
+    Linear(usize),
+    /// Rotations of so many dimensions.
+    Orthogonal(usize),
+    /// Fields of so many rows and columns.
+    Field(usize, usize),
+}
+
+/// An expression with the group of a kind as a type, or another one for matrices of any size.
+macro_rules! of_type {
+    ($kind:expr, $G:ident => $body:expr, $matrix:ident => $other:expr) => {{
+        macro_rules! with {
+            ($g:ty) => {{
+                type $G = $g;
+                $body
+            }};
+        }
+        match $kind {
+            Kind::Rotation => with!(Rotation<f64>),
+            Kind::Quaternion => with!(UnitQuaternion<f64>),
+            Kind::Motion => with!(RigidMotion<f64>),
+            Kind::Plane => with!(PlaneMotion<f64>),
+            Kind::Linear(n) => {
+                let $matrix = Matrix(Kept::Linear, n, n);
+                $other
+            }
+            Kind::Orthogonal(n) => {
+                let $matrix = Matrix(Kept::Orthogonal, n, n);
+                $other
+            }
+            Kind::Field(rows, cols) => {
+                let $matrix = Matrix(Kept::Field, rows, cols);
+                $other
+            }
+        }
+    }};
+}
+
+/// An element from its numbers.
+pub fn read<G>(numbers: &[f64]) -> G
+where
+    G: Group<f64> + OfScalars<Scalar = f64, Over<f64> = G>,
+{
+    let mut all = numbers.iter().copied();
+    G::identity().over(&mut |x| all.next().unwrap_or(x))
+}
+
+/// Appends the numbers of an element.
+pub fn write<G: OfScalars<Scalar = f64>>(element: &G, out: &mut Vec<f64>) {
+    element.over(&mut |x| {
+        out.push(x);
+        x
+    });
+}
+
+impl Kind {
+    /// How many coordinates it has.
+    pub fn dimension(self) -> usize {
+        of_type!(self, G => <G as Group<f64>>::DIMENSION, matrix => matrix.dimension())
+    }
+
+    /// How many numbers an element has.
+    pub fn count(self) -> usize {
+        match self {
+            Kind::Linear(n) | Kind::Orthogonal(n) => n * n,
+            Kind::Field(rows, cols) => rows * cols,
+            _ => {
+                let mut all = Vec::new();
+                self.identity(&mut all);
+                all.len()
+            }
+        }
+    }
+
+    /// How many parts its coordinates have.
+    pub fn parts(self) -> usize {
+        of_type!(self, G => <G as Group<f64>>::PARTS, _matrix => 1)
+    }
+
+    /// The meaning of a coordinate.
+    pub fn coordinate(self, index: usize) -> Coordinate {
+        match self {
+            Kind::Linear(n) => Coordinate::of(Part::entry(index, n)),
+            Kind::Orthogonal(n) => Coordinate::of(Part::of_pair(index, n)),
+            Kind::Field(_, cols) => Coordinate::of(Part::entry(index, cols)),
+            _ => of_type!(
+                self,
+                G => <G as Group<f64>>::coordinate(index),
+                _matrix => Coordinate::of(Part::axis(index))
+            ),
+        }
+    }
+
+    /// The part of a coordinate.
+    pub fn part_of(self, index: usize) -> usize {
+        of_type!(self, G => <G as Group<f64>>::part_of(index), _matrix => 0)
+    }
+
+    /// Whether a part is one of a group that is not a sum.
+    pub fn is_pure(self, part: usize) -> bool {
+        of_type!(
+            self,
+            G => <G as Group<f64>>::is_pure(part),
+            matrix => matrix.0 != Kept::Field
+        )
+    }
+
+    /// Whether its elements lack a scale.
+    pub fn is_open(self) -> bool {
+        matches!(self, Kind::Linear(_) | Kind::Field(..))
+    }
+
+    /// An element as a value.
+    pub fn value(self, numbers: &[f64]) -> Value<f64> {
+        match self {
+            Kind::Rotation => Value::Rotation(read(numbers)),
+            Kind::Quaternion => Value::Quaternion(read(numbers)),
+            Kind::Motion => Value::Motion(Box::new(read(numbers))),
+            Kind::Plane => Value::Plane(Box::new(read(numbers))),
+            Kind::Linear(n) => Matrix(Kept::Linear, n, n).value(numbers),
+            Kind::Orthogonal(n) => Matrix(Kept::Orthogonal, n, n).value(numbers),
+            Kind::Field(rows, cols) => Matrix(Kept::Field, rows, cols).value(numbers),
+        }
+    }
+
+    /// Appends the neutral element.
+    pub fn identity(self, out: &mut Vec<f64>) {
+        of_type!(
+            self,
+            G => write(&<G as Group<f64>>::identity(), out),
+            matrix => out.extend(matrix.identity().data)
+        );
+    }
+
+    /// Appends the element moved by coordinates from the right.
+    pub fn retract(self, at: &[f64], xi: &[f64], out: &mut Vec<f64>) {
+        of_type!(
+            self,
+            G => write(&Group::retract(&read::<G>(at), xi), out),
+            matrix => out.extend(matrix.retract(&matrix.read(at), xi).data)
+        );
+    }
+
+    /// Appends the element moved by coordinates from the left.
+    pub fn retract_from_left(self, at: &[f64], xi: &[f64], out: &mut Vec<f64>) {
+        of_type!(
+            self,
+            G => write(&Group::retract_from_left(&read::<G>(at), xi), out),
+            matrix => {
+                let moved = matrix.retract(&matrix.identity(), xi);
+                out.extend(composed_kept(matrix.0, &moved, &matrix.read(at)).data);
+            }
+        );
+    }
+
+    /// Appends `from^-1 . to`.
+    pub fn between(self, from: &[f64], to: &[f64], out: &mut Vec<f64>) {
+        of_type!(
+            self,
+            G => write(&read::<G>(from).inverse().compose(&read::<G>(to)), out),
+            matrix => {
+                let back = inverse_kept(matrix.0, &matrix.read(from));
+                out.extend(composed_kept(matrix.0, &back, &matrix.read(to)).data);
+            }
+        );
+    }
+
+    /// The length of each part: see [`Group::extents`].
+    pub fn extents(self, of: &[f64], out: &mut [f64]) {
+        of_type!(
+            self,
+            G => Group::extents(&read::<G>(of), out),
+            matrix => if let Some(first) = out.first_mut() {
+                *first = matrix.extent(&matrix.read(of));
+            }
+        );
+    }
+
+    /// The squares of lengths of an element and of its distance from coordinates: see [`Group::compared`].
+    pub fn compared(self, of: &[f64], xi: &[f64], out: &mut [[f64; 2]]) {
+        of_type!(
+            self,
+            G => Group::compared(&read::<G>(of), xi, out),
+            matrix => if let Some(first) = out.first_mut() {
+                *first = matrix.compared(&matrix.read(of), xi);
+            }
+        );
+    }
+
+    /// Whether an element is within a reach: see [`Group::is_within`].
+    pub fn is_within(self, of: &[f64], reach: &[f64]) -> bool {
+        of_type!(
+            self,
+            G => Group::is_within(&read::<G>(of), reach),
+            matrix => matrix.is_within(&matrix.read(of), reach.first().copied().unwrap_or(0.0))
+        )
+    }
+
+    /// Appends the element that past ones with these weights foresee: see [`Group::combined`].
+    pub fn combined<'a>(
+        self,
+        weights: &[f64],
+        past: &dyn Fn(usize) -> &'a [f64],
+        out: &mut Vec<f64>,
+    ) {
+        of_type!(
+            self,
+            G => write(&<G as Group<f64>>::combined(weights, |i| read(past(i))), out),
+            matrix => match matrix.0 {
+                Kept::Orthogonal => out.extend(past(0)),
+                _ => {
+                    let mut sum = Dense::zeros(matrix.1, matrix.2);
+                    for (i, weight) in weights.iter().enumerate() {
+                        sum = sum.plus(&matrix.read(past(i)).scaled(*weight));
+                    }
+                    out.extend(sum.data);
+                }
+            }
+        );
+    }
+}
+
+/// Matrices with what they are kept as, their rows and their columns.
+#[derive(Clone, Copy)]
+struct Matrix(Kept, usize, usize);
+
+impl Matrix {
+    fn dimension(self) -> usize {
+        let Matrix(kept, rows, cols) = self;
+        match kept {
+            Kept::Orthogonal => rows * rows.saturating_sub(1) / 2,
+            _ => rows * cols,
+        }
+    }
+
+    fn read(self, numbers: &[f64]) -> Dense<f64> {
+        Dense {
+            rows: self.1,
+            cols: self.2,
+            data: numbers.to_vec(),
+        }
+    }
+
+    fn value(self, numbers: &[f64]) -> Value<f64> {
+        Value::Element(self.0, self.read(numbers))
+    }
+
+    fn identity(self) -> Dense<f64> {
+        match self.0 {
+            Kept::Field => Dense::zeros(self.1, self.2),
+            _ => Dense::identity(self.1, self.2),
+        }
+    }
+
+    fn coordinates(self, xi: &[f64]) -> Dense<f64> {
+        let x = |i: usize, j: usize| xi.get(self.2 * i + j).copied().unwrap_or(0.0);
+        Dense::from_fn(self.1, self.2, x)
+    }
+
+    fn retract(self, a: &Dense<f64>, xi: &[f64]) -> Dense<f64> {
+        match self.0 {
+            Kept::Linear => a.plus(&a.times(&self.coordinates(xi))),
+            Kept::Field => a.plus(&self.coordinates(xi)),
+            Kept::Orthogonal => {
+                let half = Dense::skew_from(a.rows, xi).scaled(0.5);
+                let one = Dense::identity(a.rows, a.rows);
+                match one.minus(&half).solved(&one) {
+                    Some(inverse) => a
+                        .times(&inverse.plus(&inverse).minus(&one))
+                        .orthonormalised(),
+                    None => Dense::unknown(a.rows, a.cols),
+                }
+            }
+        }
+    }
+
+    fn extent(self, a: &Dense<f64>) -> f64 {
+        match self.0 {
+            Kept::Linear => a.minus_one().squares().sqrt(),
+            Kept::Field => a.squares().sqrt(),
+            Kept::Orthogonal => {
+                let eighth = a.minus_one().squares() * 0.125;
+                let square = eighth * 4.0 / (1.0 - eighth);
+                if eighth < 1.0 {
+                    square.sqrt()
+                } else {
+                    f64::INFINITY
+                }
+            }
+        }
+    }
+
+    fn compared(self, a: &Dense<f64>, xi: &[f64]) -> [f64; 2] {
+        let of = |own: &Dense<f64>| {
+            let mut both = [0.0; 2];
+            for i in 0..own.rows {
+                for j in 0..own.cols {
+                    let x = own.at(i, j);
+                    let off = x - xi.get(own.cols * i + j).copied().unwrap_or(0.0);
+                    both[0] += x * x;
+                    both[1] += off * off;
+                }
+            }
+            both
+        };
+        match self.0 {
+            Kept::Linear => of(&a.minus_one()),
+            Kept::Field => of(a),
+            Kept::Orthogonal => {
+                let half = Dense::skew_from(a.rows, xi).scaled(0.5);
+                let off = a.minus(&a.times(&half)).minus(&half).minus_one();
+                let eighth = a.minus_one().squares() * 0.125;
+                let near = 1.0 - eighth;
+                match near > 0.0 {
+                    true => [eighth * 4.0 / near, off.squares() * 0.5 / near],
+                    false => [f64::INFINITY; 2],
+                }
+            }
+        }
+    }
+
+    fn is_within(self, a: &Dense<f64>, reach: f64) -> bool {
+        match self.0 {
+            Kept::Linear => a.minus_one().squares() - reach * reach <= 0.0,
+            Kept::Field => a.squares() - reach * reach <= 0.0,
+            Kept::Orthogonal => {
+                let eighth = a.minus_one().squares() * 0.125;
+                eighth * 4.0 - (1.0 - eighth) * (reach * reach) <= 0.0
+            }
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! The equations of a step as tapes: the functions that Newton's method evaluates at a trial, on the numbers of the step
+//! and of the trial.
+
+use super::load;
+use super::traced::Traced;
+use crate::code::Places;
+use crate::over::fill;
+use clebsch_program::{Frame, Guard, Machine, Scalar, Tape};
+
+/// The functions that Newton's method evaluates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// The residual at a trial, then the whole trial if a part of it is searched for.
+    Residual,
+    /// The tangent row after row, then its factor.
+    Tangent,
+    /// The residual of all equations at rest.
+    AtRest,
+    /// No numbers: the action is convex as long as the decisions stay.
+    Convex,
+    /// The residual by itself, which tests of a solution evaluate far from it.
+    Alone,
+}
+
+impl Wanted {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Residual,
+        Self::Tangent,
+        Self::AtRest,
+        Self::Convex,
+        Self::Alone,
+    ];
+}
+
+/// A part of a recording that computes one function, aside from the step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// The numbers that it computes.
+    pub outputs: Vec<Scalar>,
+    /// How it decided.
+    pub guards: Vec<Guard>,
+}
+
+impl Part {
+    /// The part that computes these numbers.
+    pub fn new(outputs: &[Traced], guards: Vec<Guard>) -> Self {
+        Part {
+            outputs: super::traced::steps(outputs),
+            guards,
+        }
+    }
+}
+
+/// A tape with its registers.
+#[derive(Debug)]
+struct Ready {
+    machine: Machine,
+    frame: Frame<1>,
+}
+
+impl Ready {
+    fn new(tape: &Tape, inputs: usize) -> Self {
+        let machine = Machine::new(tape, inputs);
+        let frame = machine.frame();
+        Ready { machine, frame }
+    }
+}
+
+/// The equations at a node.
+#[derive(Debug)]
+pub struct Equations {
+    parts: [Option<Ready>; 5],
+    /// How many numbers of the step they take.
+    given: usize,
+    /// Which numbers of the solution a trial has.
+    of_trial: Vec<usize>,
+    /// Computes the values of the places around from the numbers of the step, if a function has no tape.
+    around: Ready,
+    computed: Vec<usize>,
+    places: Places<f64>,
+    own: Vec<f64>,
+    /// Whether the places have the values of this node.
+    filled: bool,
+}
+
+/// The equations within a recording.
+#[derive(Clone, Debug)]
+pub struct Recorded {
+    /// The functions, in the order of [`Wanted::ALL`].
+    pub parts: [Option<Part>; 5],
+    /// How many inputs the step had before.
+    pub inputs: usize,
+    /// Which numbers of the solution a trial has.
+    pub of_trial: Vec<usize>,
+    /// The places, for all that is not computed.
+    pub places: Places<f64>,
+    /// The places whose numbers are computed.
+    pub computed: Vec<usize>,
+    /// These numbers.
+    pub around: Vec<Scalar>,
+}
+
+impl Recorded {
+    /// Whether two recordings are one. Counts enter neither.
+    pub fn agrees(&self, other: &Recorded) -> bool {
+        self.parts == other.parts
+            && self.inputs == other.inputs
+            && self.of_trial == other.of_trial
+            && self.around == other.around
+    }
+
+    /// The equations, and what the step has to compute for them.
+    pub fn equations(self, tape: &Tape, solution: usize) -> (Equations, Vec<Scalar>) {
+        let wanted = |part: &Part| (part.outputs.clone(), part.guards.clone());
+        let parts: Vec<_> = self.parts.iter().flatten().map(wanted).collect();
+        let (given, tapes) = tape.behind(self.inputs, &parts);
+        let inputs = given.len() + solution;
+        let mut tapes = tapes.iter().map(|tape| Ready::new(tape, inputs));
+        let parts = self.parts.each_ref().map(|part| match part {
+            Some(_) => tapes.next(),
+            None => None,
+        });
+        let around = tape.part(&self.around, &[]);
+        let equations = Equations {
+            parts,
+            given: given.len(),
+            of_trial: self.of_trial,
+            around: Ready::new(&around, self.inputs),
+            computed: self.computed,
+            places: self.places,
+            own: Vec::new(),
+            filled: false,
+        };
+        (equations, given)
+    }
+}
+
+impl Equations {
+    /// Takes the numbers of a step, and what it computed for the equations.
+    pub fn begin(&mut self, own: &[f64], given: impl Iterator<Item = f64> + Clone) {
+        self.own.clear();
+        self.own.extend_from_slice(own);
+        self.filled = false;
+        for part in self.parts.iter_mut().flatten() {
+            for (slot, x) in part.frame.inputs().iter_mut().zip(given.clone()) {
+                *slot = [x];
+            }
+        }
+    }
+
+    fn at(&mut self, wanted: Wanted, trial: &[f64]) -> Option<Vec<f64>> {
+        let part = self.parts.get_mut(wanted as usize)?.as_mut()?;
+        let inputs = part.frame.inputs().get_mut(self.given..)?;
+        for (at, x) in self.of_trial.iter().zip(trial) {
+            *inputs.get_mut(*at)? = [*x];
+        }
+        let Ready { machine, frame } = part;
+        machine
+            .run(frame)
+            .then(|| machine.gives(frame, 0).collect())
+    }
+
+    fn places(&mut self) -> &mut Places<f64> {
+        if !self.filled {
+            self.filled = true;
+            let Ready { machine, frame } = &mut self.around;
+            let own = self.own.get(..machine.inputs()).unwrap_or_default();
+            if load(frame.inputs(), own).is_some() && machine.run(frame) {
+                let mut given = machine.gives(frame, 0);
+                for at in &self.computed {
+                    if let Some(value) = self.places.get_mut(*at) {
+                        fill(value, &mut given);
+                    }
+                }
+            }
+        }
+        &mut self.places
+    }
+}
+
+/// The values around the equations of a step: tapes if the step is recorded, otherwise places.
+pub enum Around<'a> {
+    /// Values at places.
+    Places(&'a mut Places<f64>),
+    /// Tapes.
+    Tapes(&'a mut Equations),
+}
+
+impl<'a> Around<'a> {
+    /// These places.
+    pub fn places(places: &'a mut Places<f64>) -> Self {
+        Around::Places(places)
+    }
+
+    /// A function at a trial, if a tape computes it there.
+    pub fn by_tape(&mut self, wanted: Wanted, trial: &[f64]) -> Option<Vec<f64>> {
+        match self {
+            Around::Places(_) => None,
+            Around::Tapes(equations) => equations.at(wanted, trial),
+        }
+    }
+
+    /// The places with all values.
+    pub fn all(&mut self) -> &mut Places<f64> {
+        match self {
+            Around::Places(places) => places,
+            Around::Tapes(equations) => equations.places(),
+        }
+    }
+}
