@@ -1,5 +1,5 @@
-//! One error for programs: every typed error of this crate, so that `?` works in a function that builds a model,
-//! starts it, steps it and runs it. Takes any of them; gives their messages unchanged.
+//! One error type for programs: `?` works in a function that builds, starts, steps and runs a model.
+//! Takes any typed error of this crate; gives its message unchanged.
 
 use crate::card::OpenError;
 use crate::integrate::{EnsembleError, NotFinite, RunError};
@@ -36,9 +36,9 @@ pub enum Error {
     Step(StepError),
     /// A run stopped before its end.
     Run(RunError),
-    /// A line of sites is not built, started or stepped.
+    /// A chain of sites cannot be built, started or stepped.
     Line(LineError),
-    /// A functional of all particles has no value or no derivative.
+    /// A functional of all particles, or its derivative, is undefined.
     Mesh(MeshError),
     /// A trajectory cannot be opened from numbers.
     Open(OpenError),
@@ -50,19 +50,19 @@ pub enum Error {
     Snapshot(SnapshotError),
     /// Newton's method finds no principal root.
     Newton(NewtonError),
-    /// The Moser-Veselov equation has no principal solution.
+    /// The step is too long for the Moser-Veselov equation to have a principal solution.
     MoserVeselov(MoserVeselovError),
-    /// A matrix is no Poinsot matrix of a body.
+    /// A matrix is not the Poinsot matrix of a body.
     Poinsot(PoinsotError),
-    /// A matrix is no rotation.
+    /// A matrix is not a rotation.
     Rotation(NotARotation),
-    /// A matrix is no rigid motion.
+    /// A matrix is not a rigid motion.
     RigidMotion(NotARigidMotion),
-    /// A matrix has no inverse.
+    /// A matrix is not invertible.
     Invertible(NotInvertible),
 }
 
-/// The variants, once each: how an error becomes [`Error`], and what its message and source are.
+/// Implements `From`, `Display` and `source` for every variant of [`Error`].
 macro_rules! collected {
     ($($variant:ident: $kind:ty,)*) => {
         $(impl From<$kind> for Error {
@@ -81,7 +81,7 @@ macro_rules! collected {
         }
 
         impl std::error::Error for Error {
-            /// That of the error within, whose own message is the one shown.
+            /// The source of the inner error; `Display` already shows the message of the inner error itself.
             fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
                 match self {
                     $(Self::$variant(error) => std::error::Error::source(error),)*

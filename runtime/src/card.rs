@@ -1,5 +1,5 @@
-//! A model as data: what a command line, a test or a binding needs to know of it.
-//! Emitted code gives one [`Card`] per model; it is read by whatever lists, starts and observes.
+//! A model as data, for command lines, tests and language bindings.
+//! Emitted code provides one [`Card`] per model. Read it to list, start and observe models.
 
 use crate::integrate::{CompositionOrder, Halvings};
 use crate::kinetic::KineticWarning;
@@ -8,7 +8,7 @@ use crate::solvers::Method;
 use crate::{ParameterError, StartError, StepCause, StepError};
 use core::fmt;
 
-/// What sort of quantity a field is; it fixes how the numbers are read and checked.
+/// The type of a quantity. It determines how clebsch reads and checks the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// One number.
@@ -46,7 +46,7 @@ impl Kind {
         self.spelt(name, name, size, doc)
     }
 
-    /// The same whose name in ASCII is another.
+    /// A quantity of this kind whose ASCII name differs from its name.
     #[must_use]
     pub const fn spelt(
         self,
@@ -77,14 +77,14 @@ pub struct Field {
     pub rows: usize,
     /// Number of columns; 1 for scalars and vectors.
     pub cols: usize,
-    /// What sort of quantity it is.
+    /// The type of the quantity.
     pub kind: Kind,
-    /// What it means, in a few words.
+    /// A short description.
     pub doc: &'static str,
 }
 
 impl Field {
-    /// The same with its name in ASCII.
+    /// The same field with this ASCII name.
     #[must_use]
     pub const fn spelt(self, ascii: &'static str) -> Self {
         Self { ascii, ..self }
@@ -111,7 +111,7 @@ pub enum Conserved {
 pub struct Invariant {
     /// The name in ASCII, such as `energy`.
     pub name: &'static str,
-    /// What is computed, such as `½ μ_k·ζ, where μ_k = I ζ`.
+    /// The formula, such as `½ μ_k·ζ, where μ_k = I ζ`.
     pub formula: &'static str,
     /// Number of components.
     pub rows: usize,
@@ -120,7 +120,7 @@ pub struct Invariant {
 }
 
 impl Invariant {
-    /// What oscillates without drift, with this many components.
+    /// An invariant of `rows` components that oscillates without drift.
     #[must_use]
     pub const fn bounded(name: &'static str, formula: &'static str, rows: usize) -> Self {
         Self {
@@ -131,7 +131,7 @@ impl Invariant {
         }
     }
 
-    /// What is kept to rounding, with this many components.
+    /// An invariant of `rows` components that is conserved to rounding.
     #[must_use]
     pub const fn exact(name: &'static str, formula: &'static str, rows: usize) -> Self {
         Self {
@@ -143,7 +143,7 @@ impl Invariant {
     }
 }
 
-/// A named size of a model's matrices, such as `n`, and the one a card is for.
+/// A named size of a model's matrices, such as `n`, with its value in a card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dimension {
     /// The name as the model writes it.
@@ -161,22 +161,22 @@ pub struct Dimension {
 pub struct Settings {
     /// The step size, in the unit of time of the model.
     pub h: f64,
-    /// The order of a step, one of [`Card::orders`]; that of the plain step where none is given.
+    /// The order of a step, one of [`Card::orders`]. `None` selects the order of the plain step.
     pub order: Option<u32>,
-    /// The solver of the implicit step, one of [`Card::solvers`]; the model's own where none is given.
+    /// The solver of the implicit step, one of [`Card::solvers`]. `None` selects the model's default.
     pub solver: Option<Method>,
-    /// Whether steps with modified moments are made symplectic with the attitude by a constant turn
-    /// about the momentum; only for the orders of [`Settings::COMPENSATED`].
+    /// Whether a constant turn about the momentum makes steps with modified moments symplectic with
+    /// the attitude. Available for the orders of [`Settings::COMPENSATED`].
     pub compensated: bool,
-    /// Whether single steps are only looked at, and none is gone on from. Of models that are read, the momenta at the start
-    /// are then projected on held constraints, which refuse more than rounding across them otherwise; and the first step is
-    /// not tried before it is made.
+    /// Whether you only inspect single steps and never continue a run. If so, a model that is read from its text
+    /// projects the initial momenta on its constraints, and does not try the first step in advance. Otherwise it
+    /// rejects initial momenta that are not tangent to its constraints up to rounding.
     pub inquiry: bool,
 }
 
 impl Settings {
-    /// The orders of steps with modified moments that can be compensated: of order two nothing is
-    /// missing, of order ten nothing that is known.
+    /// The orders of steps with modified moments that can be compensated. Steps of order two need no
+    /// compensation; the series of the compensation ends before order ten.
     pub const COMPENSATED: [u32; 3] = [4, 6, 8];
 
     /// Plain steps of `h`.
@@ -191,7 +191,7 @@ impl Settings {
         }
     }
 
-    /// The same steps, only to look at them: see [`Settings::inquiry`].
+    /// The same steps, for inspection only: see [`Settings::inquiry`].
     #[must_use]
     pub fn to_inquire(self) -> Self {
         Self {
@@ -210,10 +210,10 @@ impl Settings {
     }
 }
 
-/// The solver asked for, if one of those offered.
+/// The requested solver, if the model offers it.
 ///
 /// # Errors
-/// [`OpenError::Solver`] for any other.
+/// [`OpenError::Solver`] if the model does not offer it.
 pub fn chosen_solver(
     settings: Settings,
     offered: &'static [&'static str],
@@ -235,8 +235,8 @@ pub type Open = &'static (
                  + Sync
          );
 
-/// Gives the card of a model at other sizes, one for each dimension; none where the model does not
-/// admit them.
+/// Gives the card of a model at other sizes, one for each dimension. `None` if the model does not
+/// admit these sizes.
 pub type Resize = &'static (dyn Fn(&[usize]) -> Option<Card> + Sync);
 
 /// Everything there is to know about a model without knowing its type.
@@ -246,19 +246,19 @@ pub struct Card {
     pub name: &'static str,
     /// The name for command lines, such as `heavy-top`.
     pub kebab: &'static str,
-    /// What the model is.
+    /// A description of the model.
     pub doc: &'static str,
     /// The model's text as written.
     pub source: &'static str,
     /// A hash of the text and the generator, so that results can be traced to it.
     pub fingerprint: u64,
-    /// What was derived, a few lines.
+    /// A summary of the derivation, in a few lines.
     pub summary: &'static str,
     /// How the implicit step is solved.
     pub solver: &'static str,
     /// Order of accuracy in the step size.
     pub order: u32,
-    /// The orders that can be asked for, the plain step's first.
+    /// The orders that you can request, the order of the plain step first.
     pub orders: &'static [u32],
     /// Whether orders above the plain one come from modified moments; else from composition.
     pub preprocessed: bool,
@@ -272,13 +272,13 @@ pub struct Card {
     pub observables: &'static [Field],
     /// The invariants, in the order [`Trajectory::invariants`] gives them.
     pub invariants: &'static [Invariant],
-    /// The discrete energy of an edge, by what stands at its two ends: how the action of the step
-    /// falls when the step grows. The model's `discrete_energy` gives its value.
+    /// The discrete energy of an edge, computed from the states at its two ends: minus the derivative
+    /// of the action by the step size. The model's `discrete_energy` gives its value.
     pub discrete_energy: Invariant,
     /// Starts a trajectory.
     pub open: Open,
-    /// Names of the solvers among which [`Settings::solver`] chooses, the model's own first; none
-    /// where there is no choice.
+    /// Names of the solvers that [`Settings::solver`] can select, the model's default first. Empty if
+    /// the model offers a single solver.
     pub solvers: &'static [&'static str],
     /// The named sizes of the model, with their values in this card; none for most models.
     pub dimensions: &'static [Dimension],
@@ -319,8 +319,8 @@ impl Card {
         }
     }
 
-    /// Of a model of one size whose steps are symmetric, of order two and of those that are composed of them, and leave
-    /// no choice of a solver: how it is opened. The rest is for the model to say.
+    /// A template for the card of a model without named sizes: symmetric steps of order two, compositions of order
+    /// 4, 6 and 8, and a single solver. The model sets the remaining fields.
     #[must_use]
     pub const fn plain(open: Open, sized: Resize) -> Card {
         Card {
@@ -360,8 +360,8 @@ impl Card {
     }
 }
 
-/// What [`Trajectory::step_in_parts`] calls for each part of a step: with the part's length as a share of the whole step,
-/// and with all observables before and after it.
+/// The callback of [`Trajectory::step_in_parts`]. It receives the length of a part as a share of the whole step, and
+/// all observables before and after the part.
 pub type PartSeen<'a> = dyn FnMut(f64, &[f64], &[f64]) + 'a;
 
 /// A running trajectory whose model type is hidden.
@@ -380,11 +380,12 @@ pub trait Trajectory: Send {
     /// [`StepError`]; the state is then unchanged.
     fn step(&mut self) -> Result<(), StepError>;
 
-    /// Advances by one step as [`step`](Self::step) does, and shows each of the model's own steps that it is made of: its length as a share
-    /// of the whole one, and all observables before and after it. One of modified moments, or made by halves, shows nothing.
+    /// Advances by one step as [`step`](Self::step) does, and calls `seen` for each of the model's own steps within it.
+    /// `seen` receives the length as a share of the whole step, and all observables before and after. A step with
+    /// modified moments, or one that is halved, does not call `seen`.
     ///
     /// # Errors
-    /// [`StepError`]; the state is then unchanged. Steps before the one that failed have been shown.
+    /// [`StepError`]; the state is then unchanged. `seen` was already called for the parts before the one that failed.
     fn step_in_parts(&mut self, seen: &mut PartSeen<'_>) -> Result<(), StepError> {
         let none = vec![0.0; self.card().observable_count()];
         let [mut before, mut after] = [none.clone(), none];
@@ -395,16 +396,16 @@ pub trait Trajectory: Send {
         Ok(())
     }
 
-    /// The model's description; it tells how long the slices below must be.
+    /// The model's description; it determines how long the slices below must be.
     fn card(&self) -> &'static Card;
 
-    /// What is wrong with the kinetic energy where the trajectory started, if anything: a warning,
-    /// the trajectory runs all the same. Where its first step is refused, [`OpenError::Kinetic`] says so.
+    /// A warning if the kinetic energy is not positive definite at the initial state. The trajectory
+    /// runs all the same. If its first step fails, [`OpenError::Kinetic`] carries the warning.
     fn kinetic_warning(&self) -> Option<KineticWarning> {
         None
     }
 
-    /// How many steps were made by parts; none where a refused step ends a run, see
+    /// How many steps were halved. `None` if a failed step ends a run, see
     /// [`Halved`](crate::integrate::Halved).
     fn halvings(&self) -> Option<Halvings> {
         None
@@ -416,37 +417,37 @@ pub trait Trajectory: Send {
     /// Writes all components of all invariants.
     fn invariants(&self, out: &mut [f64]);
 
-    /// Writes one size per component of the invariants: the sum of the absolute values of the terms it
-    /// is made of at this node, or a bound of it; not negative. The largest along a run is the natural
-    /// scale of the component, see [`Drift`](crate::integrate::Drift).
+    /// Writes one size per component of the invariants: the sum of the absolute values of its terms at
+    /// this node, or an upper bound of that sum. The maximum over a run is the natural scale of the
+    /// component, see [`Drift`](crate::integrate::Drift).
     fn scales(&self, out: &mut [f64]);
 
-    /// Meets everything that changes from step to step: the state, and what steps remember.
-    /// Put into a trajectory that was opened anew from the same data, it goes on to the last bit as the one
-    /// it was taken from. A trajectory of your own refuses unless it says otherwise.
+    /// Reads or writes everything that changes from step to step: the state, and the memory of the solver.
+    /// If you restore it into a trajectory opened from the same data, the run continues bit for bit.
+    /// The default implementation refuses to save.
     fn words(&mut self, words: &mut Words) {
         words.refuse();
     }
 }
 
-/// Why [`Card::open`] refuses.
+/// Why [`Card::open`] fails.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum OpenError {
     /// A parameter is unusable.
     Parameter(ParameterError),
-    /// An initial value is unusable, or the first step is refused.
+    /// An initial value is unusable, or the first step fails.
     Start(StartError),
-    /// The first step is refused, and the kinetic energy is not positive definite, which may be why.
+    /// The first step fails, perhaps because the kinetic energy is not positive definite.
     Kinetic {
-        /// Why the step is refused.
+        /// Why the step fails.
         refused: StepCause,
-        /// What is wrong with the kinetic energy.
+        /// The warning about the kinetic energy.
         warning: KineticWarning,
     },
-    /// The model does not offer the solver that was named.
+    /// The model does not offer the requested solver.
     Solver {
-        /// Those it offers.
+        /// The solvers that the model offers.
         offered: &'static [&'static str],
     },
     /// Too few or too many numbers.
@@ -458,11 +459,11 @@ pub enum OpenError {
         /// How many were given.
         found: usize,
     },
-    /// The model has no steps of this order.
+    /// The model does not offer steps of this order.
     Order {
-        /// What was asked for.
+        /// The requested order.
         asked: u32,
-        /// What there is.
+        /// The orders that the model offers.
         offered: &'static [u32],
     },
     /// Steps of this kind are not compensated.
@@ -472,15 +473,15 @@ pub enum OpenError {
         /// Whether the model's orders above the plain one come from modified moments.
         preprocessed: bool,
     },
-    /// Steps cannot be made by parts: a run would not go on from what it observes.
+    /// Steps cannot be halved: the observables do not determine all initial values.
     Unseen {
-        /// The initial value that is no observable.
+        /// The initial value that is not among the observables.
         field: &'static str,
     },
 }
 
 impl OpenError {
-    /// The same error; where the first step is refused, with what is wrong with the kinetic energy.
+    /// The same error; if the first step failed, with the warning about the kinetic energy.
     #[must_use]
     pub fn beside(self, warning: Option<KineticWarning>) -> Self {
         match (self, warning) {

@@ -1,5 +1,5 @@
-//! What a step must not leave: the domain of a function that the model uses, the invertible maps.
-//! Takes values at both ends of a step; gives an error that says what was met, and when.
+//! Checks that a step stays in the domain of every function of the model, and keeps linear maps invertible.
+//! Takes values at both ends of a step; gives an error that says which domain was left, and when.
 
 mod segment;
 
@@ -11,15 +11,15 @@ use crate::solvers::largest_step::search_of;
 use core::fmt;
 use nalgebra::SMatrix;
 
-/// The smallest over the largest singular value below which a map counts as singular: beyond it an
-/// inverse has no more than four right digits.
+/// The smallest over the largest singular value below which a map counts as singular: its inverse
+/// would have at most four correct digits.
 pub const LEAST_RATIO: f64 = 1e-12;
 
-/// A velocity this near to the identity, by the sum of squares of its difference, has no eigenvalue
-/// that is zero or negative; one is where one could be.
+/// If the squared entries of `V - 1` add up to less than this, every real eigenvalue of the velocity
+/// `V` is positive. An eigenvalue of zero needs a sum of at least one.
 const NEAR: f64 = 0.98;
 
-/// What a step met.
+/// Why a step left the domain of its model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Met {
     /// A linear map loses its inverse: the straight line from one node to the next meets `det = 0`.
@@ -45,10 +45,10 @@ pub enum Met {
     },
 }
 
-/// A step that left what its model is defined on.
+/// A step that left the domain of its model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// What was met.
+    /// Why the step left the domain.
     pub met: Met,
     /// When, as a share of the step from 0 to 1: where the straight line between the nodes meets
     /// `det = 0`, or the argument interpolated between them its bound. None where the velocity
@@ -63,12 +63,12 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Whether an argument left its domain between finite values: what is not finite after such a step has
-    /// that reason. A step beyond the range of numbers meets anything.
+    /// Whether an argument left its domain between finite values. If so, that explains numbers that are not
+    /// finite after the step. If the step overflows instead, its contact means nothing.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         match self.met {
-            // Of an end beyond the range of numbers no share of the way is known, or it is below that range.
+            // If the end of the step overflows, the share is `None`, not finite or zero.
             Met::Singular { .. } => self.share.is_some_and(|s| s.is_finite() && s > 0.0),
             Met::NearlySingular { .. } => false,
             Met::Outside { before, after, .. } => before.is_finite() && after.is_finite(),
@@ -91,7 +91,7 @@ impl Contact {
         self.share.map(|s| s * self.h)
     }
 
-    /// A shorter step from the same state that was tried and works, where one was.
+    /// A shorter step from the same state that was tried and works, if one was found.
     #[must_use]
     pub fn works(&self) -> Option<f64> {
         (self.halvings > 0).then(|| self.h * 0.5_f64.powi(i32::from(self.halvings)))
@@ -198,7 +198,7 @@ pub fn invertible<T: Real, const N: usize>(
     let exponent = i32::try_from(N).unwrap_or(i32::MAX);
     let least = T::from_f64(LEAST_RATIO * LEAST_RATIO) * size.powi(exponent);
     let margin = det * det - least;
-    // |Q'^-1 (Q' - Q)| below one: the velocity has no eigenvalue that is not positive. The cofactors
+    // If |Q'^-1 (Q' - Q)| is below one, every real eigenvalue of the velocity is positive. The cofactors
     // of Q' together are at most N^(1/2) (|Q'|^2 / (N - 1))^((N - 1)/2).
     let (moved, others) = (squares(&(end - before.matrix())), (N - 1) as f64);
     let cofactors = (size * T::from_f64(1.0 / others)).powi(exponent - 1) * T::from_f64(N as f64);
@@ -302,7 +302,7 @@ fn closely<T: Real, R: Fn() -> f64>(
     Ok(())
 }
 
-/// What has a domain.
+/// A function with a restricted domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Function {
@@ -339,7 +339,7 @@ pub struct Call {
     pub argument: &'static str,
 }
 
-/// What a function asks of its argument.
+/// The condition on the argument of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Domain {
@@ -365,7 +365,7 @@ impl Domain {
         }
     }
 
-    /// What must be, in words.
+    /// The condition in words.
     #[must_use]
     pub fn needs(self) -> &'static str {
         match self {

@@ -67,12 +67,13 @@ pub fn sum_of_sizes<T: Real>((kinetic, potential): (T, T)) -> T {
     kinetic.abs() + potential.abs()
 }
 
-/// Of the kinetic energy that impulses which cancel at a node would give, so much is the rounding of an energy at most: it changes a
-/// velocity by its own part of them, and what they are derived from in proportion to them.
+/// If impulses cancel at a node, the rounding of an energy is at most this share of the kinetic energy that momenta
+/// of the size of these impulses would have.
 const CANCELLED: f64 = 1e-12;
 
-/// The size of a kinetic and a potential energy, beside those of momenta not less than the impulses of the node: of a body at
-/// equilibrium its energies may be rounding, which is no scale.
+/// The size of a kinetic and a potential energy. `enlarged` is the kinetic energy of momenta that are at least as large
+/// as the impulses of the node. A share of it bounds the size from below: the kinetic energy of a body at equilibrium
+/// may be rounding alone.
 #[inline]
 #[must_use]
 pub fn size_of_energy<T: Real>((kinetic, potential): (T, T), (enlarged, _): (T, T)) -> T {
@@ -339,9 +340,9 @@ pub fn same<V: Compared>(a: &V, b: &V) -> bool {
     a.same(b)
 }
 
-/// What a state keeps beside elements and momenta: numbers, vectors and matrices.
+/// A quantity of a state other than an element or a momentum: a number, a vector or a matrix.
 pub trait Compared {
-    /// Whether every entry equals that of the other.
+    /// Whether both are equal, entry by entry.
     fn same(&self, other: &Self) -> bool;
 }
 

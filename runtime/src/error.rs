@@ -1,4 +1,4 @@
-//! What can go wrong: with parameters, at the start of a trajectory, during a step.
+//! Errors of parameters, of the start of a trajectory, and of its steps.
 //! Takes the numbers of the failure; gives messages that say what to change.
 
 use crate::domain::{Contact, Domain, Function};
@@ -18,14 +18,14 @@ use core::fmt;
 pub struct ParameterError {
     /// The name of the quantity as the model writes it.
     pub field: &'static str,
-    /// What is wrong, with numbers.
+    /// The problem, with numbers.
     pub problem: Problem,
-    /// What to do about it.
+    /// The suggested fix.
     pub remedy: &'static str,
 }
 
-/// What is wrong with a parameter. Positions, rows and columns count from 0 here, and from 1 in the
-/// message, as in files and plots.
+/// The problem with a parameter or an initial value. Positions, rows and columns count from 0 here, and
+/// from 1 in the message, as in files and plots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Problem {
@@ -86,9 +86,9 @@ pub enum Problem {
     },
     /// The matrix must be an element of a group and is not.
     NotInGroup {
-        /// What its elements are.
+        /// A description of the elements of the group.
         elements: &'static str,
-        /// Largest difference to the element that is nearest.
+        /// The largest difference to an entry of the nearest element.
         deviation: f64,
     },
     /// The matrix must be invertible and is not, to working precision.
@@ -108,7 +108,7 @@ pub enum Problem {
         /// The assumption as the model writes it.
         text: &'static str,
     },
-    /// The configuration at the start is off a held constraint.
+    /// The initial configuration violates a constraint.
     OffConstraint {
         /// The constraint as the model writes it.
         equation: &'static str,
@@ -117,40 +117,41 @@ pub enum Problem {
         /// The size of its terms.
         scale: f64,
     },
-    /// The momentum at the start moves the configuration off a held constraint.
+    /// The initial momentum is not tangent to a constraint.
     AcrossConstraint {
         /// The constraint as the model writes it.
         equation: &'static str,
-        /// The multiplier of the gradient of left side minus right side that is taken from the momentum.
+        /// The multiplier of the gradient of the left side minus the right side; the projection subtracts that
+        /// multiple.
         impulse: f64,
-        /// The size of what all constraints take from the momentum.
+        /// The size of the part that the projection on all constraints removes from the momentum.
         taken: f64,
         /// The size of the momentum.
         whole: f64,
     },
-    /// No velocity answers to an impulse: a mass is zero, or the mass matrix is singular.
+    /// An impulse does not determine a velocity: a mass is zero, or the mass matrix is singular.
     NoInertia,
-    /// Constraints are not independent where the motion starts.
+    /// The constraints are not independent at the initial configuration.
     DependentConstraints {
         /// One of them.
         equation: &'static str,
     },
-    /// Unit quaternions around a ring come back with the opposite sign, and a term of neighbours sees it.
+    /// Unit quaternions around a ring come back with the opposite sign, which changes a coupling term of neighbours.
     SignAroundRing,
-    /// A function of parameters is not defined there.
+    /// A function of parameters is undefined at their values.
     OutsideDomain {
         /// The function.
         function: Function,
-        /// What its argument must be.
+        /// The condition on its argument.
         domain: Domain,
         /// The argument.
         value: f64,
     },
-    /// The matrix is no Poinsot matrix of a body.
+    /// The matrix is not the Poinsot matrix of a body.
     Poinsot(PoinsotError),
-    /// The matrix is no left factor of a Moser-Veselov equation.
+    /// The matrix is not a left factor of a Moser-Veselov equation.
     LeftFactor(LeftFactorError),
-    /// The matrix is no rotation.
+    /// The matrix is not a rotation.
     Rotation(NotARotation),
 }
 
@@ -272,7 +273,7 @@ impl fmt::Display for ParameterError {
 impl std::error::Error for ParameterError {}
 
 impl PoinsotError {
-    /// The same error, said of the parameter `field`.
+    /// The same error as a [`ParameterError`] of the parameter `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         let remedy = match self {
@@ -298,7 +299,7 @@ impl PoinsotError {
 }
 
 impl NotARotation {
-    /// The same error, said of the initial value `field`.
+    /// The same error as a [`ParameterError`] of the initial value `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         ParameterError {
@@ -310,7 +311,7 @@ impl NotARotation {
 }
 
 impl NotARigidMotion {
-    /// The same error, said of the initial value `field`.
+    /// The same error as a [`ParameterError`] of the initial value `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         match self {
@@ -328,7 +329,7 @@ impl NotARigidMotion {
 }
 
 impl NotInvertible {
-    /// The same error, said of the initial value `field`.
+    /// The same error as a [`ParameterError`] of the initial value `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         ParameterError {
@@ -345,7 +346,7 @@ impl NotInvertible {
 pub enum StartError {
     /// An initial value, or the step size, is unusable.
     Initial(ParameterError),
-    /// The data are fine, but the solver refuses the first step.
+    /// The data are valid, but the first step fails.
     Refused(StepCause),
 }
 
@@ -408,30 +409,30 @@ pub struct StepError {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum StepCause {
-    /// The Moser-Veselov equation has no principal solution: the step is too long.
+    /// The step is too long for the Moser-Veselov equation to have a principal solution.
     MoserVeselov(MoserVeselovError),
-    /// The equation in unit quaternions has no principal solution: the step is too long.
+    /// The step is too long for the equation in unit quaternions to have a principal solution.
     Quaternions(QuaternionError),
-    /// The solver of a left factor refuses: mostly the step is too long.
+    /// The solver of a left factor fails, usually because the step is too long.
     LeftFactor(Unsolved),
-    /// The left factor made of the state is none.
+    /// The matrix computed from the state is not a left factor.
     Factor(LeftFactorError),
     /// The linear equation of the step does not determine the velocity.
     Singular(SingularFactor),
     /// The Newton iteration failed.
     Newton(NewtonError),
-    /// Along a line, no velocity follows from rest.
+    /// The step of a chain does not have a solution connected to h = 0.
     NoRoot(NoRoot),
-    /// Along a line, no reactions hold the constraints.
+    /// The step of a chain does not have constraint forces that enforce its constraints.
     NoReaction(NoReaction),
-    /// The step leaves what the model is defined on.
+    /// The step leaves the domain of the model.
     Contact(Contact),
     /// A quantity became NaN or infinite.
     NotFinite {
         /// Its name.
         what: &'static str,
     },
-    /// A step along a line of sites is refused at one of them.
+    /// The step of a chain fails at one of its sites.
     AtSite {
         /// Where.
         at: Place,
@@ -440,7 +441,7 @@ pub enum StepCause {
         /// A shorter step that was tried and works, where one was found.
         works: Option<f64>,
     },
-    /// A functional of all sites has no value where the step needs it, or no derivative.
+    /// A functional of all sites, or its derivative, is undefined where the step needs it.
     Functional {
         /// Its values, as the model names them.
         quantity: &'static str,
@@ -449,9 +450,9 @@ pub enum StepCause {
         /// A shorter step that was tried and works, where one was found.
         works: Option<f64>,
     },
-    /// A model that is read from its text needs an operation that only a built one has.
+    /// A model that is read from its text needs an operation that only a compiled model has.
     Unread {
-        /// What was met.
+        /// The operation.
         what: &'static str,
     },
 }
@@ -563,8 +564,7 @@ impl std::error::Error for StepCause {
 }
 
 impl StepError {
-    /// The time of contact from node 0, in equal steps, where the motion left what its model is
-    /// defined on.
+    /// The time of contact from node 0, in equal steps, if the motion left the domain of its model.
     #[must_use]
     pub fn contact_time(&self) -> Option<f64> {
         match &self.cause {

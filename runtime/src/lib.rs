@@ -1,11 +1,18 @@
-//! Runtime of discrete Clebsch variational integrators: what emitted steppers call, and what a
-//! user needs to run them.
+//! Runtime of discrete Clebsch variational integrators: the functions that emitted steppers call,
+//! and the types you need to run them.
 //!
-//! Write a model with [`model!`], in the [`language`] described there: the macro derives the discrete
-//! Euler-Lagrange equations and emits a stepper. This crate supplies the scalars it runs on ([`scalar`]), the
-//! groups ([`groups`]), the solvers of implicit steps ([`solvers`]), the loop with observers ([`integrate`]),
-//! loops over lines of sites ([`mod@line`]), meshes and grids of particles ([`mesh`]) and a description of every
-//! model as data ([`card`]). [`prelude`] has what most programs need, [`Error`] collects all errors.
+//! Write a model with [`model!`]; the module [`language`] describes its syntax. The macro derives the
+//! discrete Euler-Lagrange equations and emits a stepper. This crate supplies
+//!
+//! - [`scalar`]: the scalars that a stepper computes with;
+//! - [`groups`]: the configuration groups and their momenta;
+//! - [`solvers`]: the solvers of implicit steps;
+//! - [`integrate`]: the integration loop with observers, and ensembles;
+//! - [`mod@line`]: loops over the sites of a chain;
+//! - [`mesh`]: meshes and grids of particles;
+//! - [`card`]: the description of every model as data.
+//!
+//! [`prelude`] imports the names that most programs need. [`Error`] collects all errors.
 //!
 //! Conventions everywhere: a rotation `R` maps body to space; `hat(v) w = v x w`; `J` is the
 //! Poinsot (second-moment) matrix and `I = tr(J) 1 - J` the moment of inertia; node `k` carries

@@ -1,6 +1,6 @@
 //! Values from lists of numbers: how the fields of a card become the parameters and the initial data of a
 //! model. Takes the numbers of one field, row by row; gives its value, or says which field they are not.
-//! And back: the numbers of what a model shows.
+//! And back: the numbers of observables and invariants.
 
 use crate::StartError;
 use crate::card::{Field, OpenError};
@@ -90,7 +90,7 @@ impl OfNumbers for f64 {
     }
 }
 
-/// What a model without parameters has of them.
+/// The field of the parameters of a model without parameters.
 impl OfNumbers for PhantomData<f64> {
     fn of_numbers(_: &'static str, _: &[f64]) -> Result<Self, OpenError> {
         Ok(PhantomData)

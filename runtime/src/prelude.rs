@@ -1,4 +1,4 @@
-//! What nearly every program that states or runs a model needs: `use clebsch::prelude::*;`.
+//! The names that nearly every program with a model needs: `use clebsch::prelude::*;`.
 //! Takes nothing; gives the macro, the groups and momenta, the loop, the errors, and the matrices of nalgebra.
 
 pub use crate::card::Card;

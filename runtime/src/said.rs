@@ -1,4 +1,4 @@
-//! Numbers as messages say them: short, and such that what is offered can be typed in again.
+//! Numbers in messages: short, and such that you can type a suggested number as it is.
 //! Takes a number; gives its text.
 
 use crate::solvers::largest_step::SHORTEST_SHARE;
@@ -72,8 +72,8 @@ impl fmt::Display for Times {
     }
 }
 
-/// What to do about a step of `h` when `largest`, of the same sign, is the largest that could be
-/// made from the same state: 0 when none was found.
+/// The suggestion for a step of `h` that is too long. `largest`, of the same sign, is the largest
+/// possible step from the same state; 0 if none was found.
 pub(crate) fn instead(f: &mut fmt::Formatter<'_>, h: f64, largest: f64) -> fmt::Result {
     if !h.is_finite() {
         return write!(f, "; the step size is {h}: give a finite one");
@@ -92,8 +92,8 @@ pub(crate) fn instead(f: &mut fmt::Formatter<'_>, h: f64, largest: f64) -> fmt::
     write!(f, "; reduce the step size from {h} to at most {largest}")
 }
 
-/// What to do about a step that is too long; `steps` are it and the largest that could be made,
-/// where they are known.
+/// The suggestion for a step that is too long; `steps` are its size and the largest possible one,
+/// if they are known.
 pub(crate) fn shorter(f: &mut fmt::Formatter<'_>, steps: Option<(f64, f64)>) -> fmt::Result {
     match steps {
         Some((h, largest)) => instead(f, h, largest),
@@ -122,8 +122,8 @@ pub(crate) fn in_lane(f: &mut fmt::Formatter<'_>, lane: impl Into<u32>) -> fmt::
     }
 }
 
-/// That a component of the momentum, from 0 here, is no number, and what to do about it; `steps` as in
-/// [`shorter`].
+/// The message for a component of the momentum (from 0 here) that is NaN or infinite, with a suggestion;
+/// `steps` as in [`shorter`].
 pub(crate) fn not_finite(
     f: &mut fmt::Formatter<'_>,
     component: usize,

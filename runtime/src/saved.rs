@@ -1,6 +1,6 @@
-//! What moves, as words of 64 bits: how a running trajectory is written down and made again to the last bit.
-//! Takes any value that changes from step to step; each type names its own parts once, in one order, which serves
-//! both directions, so that nothing can be written and not be read.
+//! Saves a running trajectory as words of 64 bits and restores it bit for bit.
+//! Takes any value that changes from step to step. Each type lists its parts once, in one order for both directions,
+//! so that every saved part is also restored.
 
 use crate::linalg::Dense;
 use nalgebra::SMatrix;
@@ -8,7 +8,7 @@ use nalgebra::SMatrix;
 /// No list of numbers is longer: the square of the largest number of coordinates is far smaller.
 const LONGEST: usize = 1 << 24;
 
-/// The words of a value: gathered from it, or put back into another one of the same kind.
+/// The words of a value: read from it, or written to another value of the same kind.
 #[derive(Clone, Debug)]
 pub struct Words {
     list: Vec<u64>,
@@ -18,7 +18,7 @@ pub struct Words {
 }
 
 impl Words {
-    /// For a value that is to be written down.
+    /// An empty list, to save a value.
     #[must_use]
     pub fn gathered() -> Self {
         Self {
@@ -28,7 +28,7 @@ impl Words {
         }
     }
 
-    /// Those written down earlier, to be put back.
+    /// A list that was saved earlier, to restore a value.
     #[must_use]
     pub fn given(list: Vec<u64>) -> Self {
         Self {
@@ -38,13 +38,13 @@ impl Words {
         }
     }
 
-    /// Whether they are put back.
+    /// Whether these words restore a value.
     #[must_use]
     pub fn are_given(&self) -> bool {
         self.next.is_some()
     }
 
-    /// One word: noted, or replaced by the one that was.
+    /// Saves one word, or replaces it by the saved one.
     pub fn word(&mut self, word: &mut u64) {
         match &mut self.next {
             None => self.list.push(*word),
@@ -58,15 +58,14 @@ impl Words {
         }
     }
 
-    /// A word that must be the same in the value that is written down and the one it is put back into: a length,
-    /// the kind of what follows.
+    /// A word that must agree between the saved value and the restored one: a length, or a kind.
     pub fn same(&mut self, word: u64) {
         let mut known = word;
         self.word(&mut known);
         self.fits &= known == word;
     }
 
-    /// How many parts follow, at most `most` of them; that number when they are put back.
+    /// Saves the number of parts that follow, at most `most`; returns the saved number on restoring.
     pub fn count(&mut self, count: usize, most: usize) -> usize {
         let mut word = count as u64;
         self.word(&mut word);
@@ -79,32 +78,32 @@ impl Words {
         }
     }
 
-    /// This value cannot be written down, or does not take what was.
+    /// Reports that this value cannot be saved, or does not accept the saved words.
     pub fn refuse(&mut self) {
         self.fits = false;
     }
 
-    /// The words gathered; none when something could not be written down.
+    /// The saved words; `None` if a part could not be saved.
     #[must_use]
     pub fn into_list(self) -> Option<Vec<u64>> {
         self.fits.then_some(self.list)
     }
 
-    /// Whether every word was put back, and each in its place.
+    /// Whether every word was restored.
     #[must_use]
     pub fn all_put(&self) -> bool {
         self.fits && self.next == Some(self.list.len())
     }
 }
 
-/// A value whose parts can be written down and put back, those that never change along a trajectory excepted:
-/// they are those of the trajectory, started anew from the same data, into which the others are put.
+/// A value that can be saved and restored. Parts that never change along a trajectory are not saved: you restore
+/// into a trajectory that was started from the same data, which already has them.
 pub trait Saved {
-    /// Meets all parts that change, always in the same order.
+    /// Saves or restores all parts that change, always in the same order.
     fn words(&mut self, words: &mut Words);
 }
 
-/// What a search keeps of a node whose tangent asks for nothing of it.
+/// The memory of a search whose tangent does not use the node.
 impl Saved for () {
     fn words(&mut self, _: &mut Words) {}
 }
@@ -189,7 +188,7 @@ impl Saved for Dense<f64> {
     }
 }
 
-/// What was given with the trajectory does not change.
+/// Constant data of a trajectory: not saved.
 macro_rules! given {
     ($($Type:ty),*) => {
         $(impl Saved for $Type {

@@ -1,4 +1,4 @@
-//! A state, a workspace or a whole trajectory kept outside the program that runs it, to go on later to the last bit.
+//! Saves a state, a workspace or a whole trajectory outside the program, to resume it later bit for bit.
 //! Takes a value that is [`Saved`]; gives words with a checksum, as bytes or, with the feature `serde`, as text.
 //!
 //! The bytes: `clebsch`, a version, the number of words, the words, a checksum of all before; numbers little-endian.
@@ -10,13 +10,15 @@ use core::fmt;
 /// How the bytes begin; the last one is the version.
 const HEADER: [u8; 8] = *b"clebsch\x01";
 
-/// What moves along a trajectory, written down.
+/// The saved state of a trajectory.
 ///
-/// Kept are the parts that change from step to step. What was given with the model (parameters, the step, the way a
-/// trajectory is stepped) is not, so a snapshot goes into a value started anew from the same data; it then steps as
-/// the one it was taken from, bit for bit. Keep the workspace as well as the state where steps remember earlier ones; along a
-/// line the workspace is made again from the state, which goes on to rounding. A trajectory known by its card does not take the snapshot
-/// of another model; a state or a workspace takes any of as many words.
+/// A snapshot contains the parts that change from step to step. It does not contain the parameters, the step size and
+/// the settings, so restore it into a value that was started from the same data. The value then continues bit for bit
+/// as the original. If steps depend on earlier ones, save the workspace as well as the state. The workspace of a chain
+/// is computed anew from the state, and such a run continues up to rounding.
+///
+/// A trajectory opened from a card rejects the snapshot of another model. A state or a workspace accepts any snapshot
+/// with the same number of words.
 ///
 /// ```
 /// use clebsch::Snapshot;
@@ -34,18 +36,18 @@ pub struct Snapshot {
     words: Vec<u64>,
 }
 
-/// Why a snapshot cannot be taken, read or put back.
+/// Why a snapshot cannot be taken, read or restored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SnapshotError {
-    /// The trajectory has parts that cannot be written down.
+    /// The trajectory has parts that cannot be saved.
     NotSaved,
     /// It was taken from a value of another kind or another size.
     Unlike {
         /// How many words it holds.
         words: usize,
     },
-    /// It is not one, or is of a version that this program does not know.
+    /// The bytes are not a snapshot, or have a version that this program does not know.
     Foreign,
     /// It was changed or cut after it was written.
     Damaged,
@@ -75,7 +77,7 @@ impl fmt::Display for SnapshotError {
 impl std::error::Error for SnapshotError {}
 
 impl Snapshot {
-    /// Takes one.
+    /// Takes a snapshot of a value.
     ///
     /// # Errors
     /// [`SnapshotError::NotSaved`].
@@ -83,10 +85,10 @@ impl Snapshot {
         Self::gathered(|words| value.clone().words(words))
     }
 
-    /// Takes one of a trajectory whose model is known by its card only.
+    /// Takes a snapshot of a trajectory opened from a card.
     ///
     /// # Errors
-    /// [`SnapshotError::NotSaved`] of one that does not say what changes.
+    /// [`SnapshotError::NotSaved`] if the trajectory does not implement [`Trajectory::words`].
     pub fn of_trajectory(running: &mut dyn Trajectory) -> Result<Self, SnapshotError> {
         Self::gathered(|words| {
             words.same(running.card().fingerprint);
@@ -101,7 +103,7 @@ impl Snapshot {
         Ok(Self { words })
     }
 
-    /// Puts it into a value started from the same data.
+    /// Restores the snapshot into a value started from the same data.
     ///
     /// # Errors
     /// [`SnapshotError::Unlike`]; the value is then unchanged.
@@ -112,10 +114,10 @@ impl Snapshot {
         Ok(())
     }
 
-    /// Puts it into a trajectory opened from the same data.
+    /// Restores the snapshot into a trajectory opened from the same data.
     ///
     /// # Errors
-    /// [`SnapshotError::Unlike`]; open the trajectory anew then, it may have taken a part.
+    /// [`SnapshotError::Unlike`]; then open the trajectory anew, since a part of it may have changed.
     pub fn put_into_trajectory(&self, running: &mut dyn Trajectory) -> Result<(), SnapshotError> {
         self.given(|words| {
             words.same(running.card().fingerprint);
@@ -144,7 +146,7 @@ impl Snapshot {
         bytes
     }
 
-    /// That of [`Self::to_bytes`].
+    /// Reads the bytes of [`Self::to_bytes`].
     ///
     /// # Errors
     /// [`SnapshotError::Foreign`], [`SnapshotError::Damaged`].

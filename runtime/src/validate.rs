@@ -240,7 +240,7 @@ pub fn unit_quaternion<T: Real>(
 /// The matrix is a homogeneous one `[R x; 0 1]` with a rotation `R`, up to rounding.
 ///
 /// # Errors
-/// Carries the deviation of the last row or of `R^T R` from those of the identity.
+/// Carries the deviation of the last row from `(0, ..., 0, 1)`, or of `R^T R` from the identity.
 pub fn rigid_motion<T: Real, const N: usize, const B: usize>(
     field: &'static str,
     matrix: &SMatrix<T, N, N>,
@@ -368,7 +368,7 @@ pub fn assumption(holds: bool, text: &'static str) -> Result<(), ParameterError>
     })
 }
 
-/// A function of parameters, whose argument has this value.
+/// A function whose argument, evaluated from the parameters, has this value.
 ///
 /// # Errors
 /// Names the argument when it is outside the function's domain.
@@ -392,7 +392,7 @@ pub fn inside<T: Real>(
     })
 }
 
-/// A function of what stands at the node where a trajectory starts, whose argument has this value.
+/// A function whose argument, evaluated at the initial node, has this value.
 ///
 /// # Errors
 /// Names the argument when it is outside the function's domain: no step helps there.

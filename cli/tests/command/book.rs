@@ -138,6 +138,8 @@ fn every_chapter_is_followed() {
         "chains",
         "fluids",
         "long-runs",
+        // Its code runs in `python/tests/test_book.py`.
+        "python",
         "programs",
     ];
     assert_eq!(chapters, followed);

@@ -64,7 +64,7 @@ fn symmetric<const N: usize>(a: &SMatrix<f64, N, N>, k: usize) -> f64 {
             continue;
         }
         let taken = |i: usize| rows >> i & 1 == 1;
-        // The other rows are those of the identity.
+        // The remaining rows come from the identity.
         let minor = SMatrix::<f64, N, N>::from_fn(|i, j| match (taken(i) && taken(j), i == j) {
             (true, _) => a[(i, j)],
             (false, true) => 1.0,
@@ -83,7 +83,7 @@ fn symmetric_of(a: &Dense<f64>, k: usize) -> f64 {
             continue;
         }
         let taken = |i: usize| rows >> i & 1 == 1;
-        // The other rows are those of the identity.
+        // The remaining rows come from the identity.
         let minor = Dense::from_fn(n, n, |i, j| match (taken(i) && taken(j), i == j) {
             (true, _) => a.at(i, j),
             (false, true) => 1.0,
@@ -167,7 +167,7 @@ mod tests {
             contact(&SMatrix::<f64, 5, 5>::from_diagonal_element(7.0)),
             None
         );
-        // A large turn that is no half turn has no real eigenvalue in its plane.
+        // A large turn other than a half turn does not have real eigenvalues in its plane.
         for angle in [0.5, 2.0, 3.1, 3.13] {
             let (s, c) = f64::sin_cos(angle);
             assert_eq!(contact(&Matrix2::new(c, -s, s, c)), None, "{angle}");

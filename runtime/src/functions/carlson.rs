@@ -1,8 +1,8 @@
 //! Carlson's symmetric elliptic integral of a positive definite matrix,
 //! R_F(B) = ½ ∫ det(B + s)^{-1/2} ds from 0 to infinity, and its gradient: the potential of a homogeneous
 //! ellipsoid whose shape is B.
-//! Takes B of three rows; gives a number, or the symmetric matrix of derivatives. Both are made of the principal
-//! invariants of B alone, so that equal axes are no special case. Theorem of duplication and series: DLMF
+//! Takes B of three rows; gives a number, or the symmetric matrix of derivatives. Both depend on the principal
+//! invariants of B alone, so that equal axes need no special case. Theorem of duplication and series: DLMF
 //! 19.26.18 and 19.36.1.
 
 use super::jet::Jet;
@@ -119,7 +119,7 @@ fn iterated<T: Real, const N: usize>(of: [T; 3], by: [usize; N]) -> Jet<T, N> {
     let mut all: [Jet<T, N>; 3] = core::array::from_fn(|i| Jet::variable(of[i], which(i)));
     for _ in 0..MOST {
         let [mean, second, third] = deviations(all);
-        // Not what is no number.
+        // False for NaN.
         let near = |x: T| x.greatest().max(-x.least()) <= NEAR;
         if near(second.value) && near(third.value) {
             return series(mean, second, third);
@@ -205,7 +205,7 @@ fn plain_trace([first, second, root]: [f64; 3]) -> f64 {
         let l = 0.5 * (u * u - first);
         let step = (l * l - second - 2.0 * root * u) / (2.0 * (u * l - root));
         u -= step;
-        // What is no number falls no further either.
+        // False for NaN too, which ends the iteration.
         let falls = step > 4.0 * f64::EPSILON * u;
         if !falls {
             break;

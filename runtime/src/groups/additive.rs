@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn values_are_extrapolated_entry_by_entry() {
-        // Of a parabola three values give the next.
+        // Three values of a parabola determine the next one.
         let at = |t: f64| Additive::new(Vector2::new(1.0 + t, t * t - 3.0));
         let made = Additive::combined(&[3.0, -3.0, 1.0], |i| at(5.0 - i as f64));
         assert_eq!(made.matrix(), at(6.0).matrix());

@@ -1,5 +1,5 @@
-//! What one coordinate of a Lie algebra stands for, and with it one component of a momentum.
-//! Takes its place among the coordinates; gives words for errors.
+//! The meaning of one coordinate of a Lie algebra, and of the corresponding component of a momentum.
+//! Takes its index; gives words for errors.
 
 use core::fmt;
 
@@ -84,13 +84,13 @@ impl Part {
 }
 
 impl Coordinate {
-    /// That of a group that is no product.
+    /// The coordinate of a single group.
     #[must_use]
     pub fn of(part: Part) -> Self {
         Self { factor: 0, part }
     }
 
-    /// The same, of a later factor of a product.
+    /// The same coordinate in factor `factor` of a product.
     #[must_use]
     pub fn in_factor(self, factor: usize) -> Self {
         Self {

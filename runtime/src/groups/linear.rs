@@ -1,5 +1,5 @@
 //! Invertible linear maps of n-dimensional space, GL(n).
-//! Takes matrices with an inverse; gives group elements that carry it along.
+//! Takes invertible matrices; gives group elements.
 
 use super::{Coadjoint, Coordinate, Group, Part, squares};
 use crate::Real;
@@ -11,9 +11,9 @@ use nalgebra::SMatrix;
 
 /// An invertible matrix, by convention from reference to space: `x = Q X`.
 ///
-/// The Lie algebra is all matrices and the retraction is affine in them. Where the equation of a step
-/// is linear in its velocity, as for a kinetic energy with a constant inertia in the reference, Newton's
-/// method with this retraction has it after one correction.
+/// The Lie algebra consists of all matrices, and the retraction is affine in them. If the equation of
+/// a step is linear in its velocity, Newton's method with this retraction solves it by one correction.
+/// This is the case for a kinetic energy with a constant inertia in the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linear<const N: usize, T = f64> {
     matrix: SMatrix<T, N, N>,
@@ -21,7 +21,7 @@ pub struct Linear<const N: usize, T = f64> {
 
 of_scalars!(Linear<N> { matrix });
 
-/// A matrix that is no element of GL(n).
+/// A matrix that is not an element of GL(n).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NotInvertible {
@@ -55,12 +55,12 @@ impl<const N: usize, T: Real> Linear<N, T> {
     /// The map of a matrix.
     ///
     /// # Errors
-    /// [`NotInvertible`] when it has no inverse or is not finite.
+    /// [`NotInvertible`] if it is singular or not finite.
     pub fn from_matrix(a: &SMatrix<T, N, N>) -> Result<Self, NotInvertible> {
         invertible_map(&Dense::of(a)).map(|()| Self { matrix: *a })
     }
 
-    /// The map that a step has found; what makes of it a singular one is refused after the step.
+    /// The map at the end of a step. A check after the step rejects a singular one.
     #[inline]
     pub(crate) fn stepped(matrix: SMatrix<T, N, N>) -> Self {
         Self { matrix }
@@ -78,8 +78,8 @@ impl<const N: usize, T: Real> Linear<N, T> {
         Self::stepped(self.matrix + change)
     }
 
-    /// The inverse map; all NaN where a step has made the matrix singular, so that what uses it is
-    /// refused.
+    /// The inverse map. If a step has made the matrix singular, its entries are NaN, and the step that
+    /// uses them fails.
     #[inline]
     pub fn inverse(&self) -> Self {
         Self {

@@ -92,14 +92,14 @@ pub trait Group<T>: Copy {
     }
 
     /// An element near the combination of `element(0)`, `element(1)`, ... with weights that add up to
-    /// one, entry by entry: where velocities vary smoothly along a trajectory, their extrapolation.
-    /// A group that has no such thing at little cost gives the first element.
+    /// one, entry by entry. It extrapolates velocities that vary smoothly along a trajectory. If a
+    /// group cannot compute it cheaply, it returns the first element.
     #[inline(always)]
     fn combined(_weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
         element(0)
     }
 
-    /// What the coordinate with this index stands for, in words of errors.
+    /// The meaning of the coordinate with this index, for error messages.
     fn coordinate(index: usize) -> Coordinate {
         Coordinate::of(Part::axis(index))
     }
@@ -124,8 +124,8 @@ pub trait Group<T>: Copy {
         true
     }
 
-    /// Whether the coordinates of a part lack a scale of their own, as those of fields and linear maps: equations may vary
-    /// over any length of them.
+    /// Whether the coordinates of a part lack a natural scale, as for fields and linear maps: the equations may then
+    /// vary over any length.
     #[must_use]
     fn is_open(_part: usize) -> bool {
         false
@@ -137,8 +137,8 @@ pub trait Group<T>: Copy {
     fn extents(&self, out: &mut [f64]);
 
     /// The squares of the lengths of the coordinates `x` of the element seen from the neutral one,
-    /// `identity().retract(x)`, and of their distances from `xi`, part by part, in every lane; infinite or NaN where there
-    /// are no coordinates. Coordinates of `xi` that are missing count as zero.
+    /// `identity().retract(x)`, and of their distances from `xi`, part by part, in every lane. They are infinite or NaN
+    /// if such coordinates do not exist. Missing coordinates of `xi` count as zero.
     fn compared(&self, xi: &[T], out: &mut [[T; 2]]);
 
     /// Whether these bounds do not exceed `reach`.

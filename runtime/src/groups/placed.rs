@@ -1,29 +1,28 @@
-//! Elements that have a place which steps add to: fields and rigid motions. Places and momenta are
-//! kept in two numbers, so that steps of any size add up without loss.
-//! Takes an element, its velocity in the body frame and what rounding has left; gives the same after the edge.
+//! Elements with a position that steps add to: fields and rigid motions. Positions and momenta are
+//! stored as two numbers, so that steps of any size add up without loss.
+//! Takes an element, its velocity in the body frame and the rest left by rounding; gives element and rest after the
+//! edge.
 
 use super::{Coadjoint, Group};
 use crate::Real;
 use nalgebra::SMatrix;
 
-/// A group whose elements have a place: the value of a field, the translation of a rigid motion.
+/// A group whose elements have a position: the value of a field, the translation of a rigid motion.
 ///
-/// The place of an element is its stored one plus a rest, which is below the rounding of the stored
-/// one. Without it the places of a motion in small steps gather their rounding in one direction, and
-/// with them everything conserved that is a moment about a fixed point.
+/// The exact position of an element is the stored one plus a rest, which is below the rounding of the
+/// stored one. Without the rest, rounding errors of a motion in small steps accumulate in one
+/// direction, and so do the errors of every conserved moment about a fixed point.
 pub trait Placed<T>: Group<T> {
-    /// The way from one place to another, in the axes of space.
+    /// The displacement from one position to another, in the axes of space.
     type Way: Copy;
 
-    /// The way along the edge of this velocity (body frame).
+    /// The displacement along the edge of this velocity (body frame).
     fn way(&self, velocity: &Self) -> Self::Way;
 
-    /// The element at the end of the edge, `self . velocity`, and the rest of its place, given the
-    /// rest of the place of this one.
+    /// The element at the end of the edge, `self . velocity`, and its rest; `rest` belongs to `self`.
     fn moved(&self, velocity: &Self, rest: &Self::Way) -> (Self, Self::Way);
 
-    /// The velocity (body frame) from this element to the `next` one, given the rests of the places of
-    /// both.
+    /// The velocity (body frame) from this element to the `next` one, given the rests of both.
     fn velocity_between(&self, rest: &Self::Way, next: &Self, next_rest: &Self::Way) -> Self;
 }
 
@@ -37,7 +36,7 @@ pub trait AboutBody<T>: Placed<T> + Coadjoint<T> {
     /// A covector in the axes of space, about the body's origin, in the body frame.
     fn covector_turned_back(&self, turned: &Self::Covector) -> Self::Covector;
 
-    /// What a covector in the axes of space about the body's origin gains when the origin goes along
+    /// The change of a covector in the axes of space about the body's origin, if the origin moves along
     /// the edge of this velocity: `(-way × l, 0)`.
     fn gained_along(&self, velocity: &Self, turned: &Self::Covector) -> Self::Covector;
 }

@@ -1,5 +1,5 @@
 //! Direct products of groups, for coupled bodies: arrays of one group, tuples of several.
-//! Takes arrays or tuples of elements; the algebra coordinates are those of the factors, one after another.
+//! Takes arrays or tuples of elements; the algebra coordinates of the factors follow one another.
 
 use super::{Coordinate, Group, Part};
 use crate::scalar::largest;
@@ -46,7 +46,7 @@ impl<T, G: Group<T>, const COUNT: usize> Group<T> for [G; COUNT] {
 
     #[inline(always)]
     fn combined(weights: &[f64], element: impl Fn(usize) -> Self) -> Self {
-        // What makes an array from a function is not inlined where the function is long.
+        // `array::from_fn` is not inlined if the function is long.
         let mut all = [G::identity(); COUNT];
         for (k, x) in all.iter_mut().enumerate() {
             *x = G::combined(weights, |i| element(i)[k]);

@@ -11,8 +11,8 @@ use nalgebra::{Matrix2, Matrix3, SVector, Vector2};
 
 /// A rigid motion of the plane, by convention from the body: `p_plane = R p_body + x`.
 ///
-/// The coordinates of its Lie algebra are `(ω, v)`, an angular and two linear ones, and stand for the
-/// matrix `[ω i, v; 0 0]` with the quarter turn `i`.
+/// The coordinates of its Lie algebra are `(ω, v)`, one angular and two linear. They denote the matrix
+/// `[ω i, v; 0 0]` with the quarter turn `i`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneMotion<T = f64> {
     /// `R`, body -> plane.
@@ -54,7 +54,7 @@ impl<T: Real> PlaneMotion<T> {
     /// The motion of a homogeneous matrix `[R x; 0 1]`.
     ///
     /// # Errors
-    /// [`NotARigidMotion`] when the block is no rotation to 1e-9, or the last row is not exactly
+    /// [`NotARigidMotion`] if the block is not a rotation to 1e-9, or the last row is not exactly
     /// `(0, 0, 1)`.
     pub fn from_matrix(a: &Matrix3<T>) -> Result<Self, NotARigidMotion> {
         let translation = Vector2::new(a.m13, a.m23);

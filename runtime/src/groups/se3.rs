@@ -13,8 +13,8 @@ use nalgebra::{Matrix4, SVector, Vector3};
 
 /// A rigid motion, by convention from body to space: `p_space = R p_body + x`.
 ///
-/// The coordinates of its Lie algebra are `(ω, v)`, three angular and three linear ones, and stand
-/// for the matrix `[hat(ω) v; 0 0]`.
+/// The coordinates of its Lie algebra are `(ω, v)`, three angular and three linear. They denote the
+/// matrix `[hat(ω) v; 0 0]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidMotion<T = f64> {
     /// `R`, body -> space.
@@ -28,13 +28,13 @@ of_scalars!(RigidMotion {
     translation
 });
 
-/// A matrix that is no rigid motion, with the number that shows it.
+/// A matrix that is not a rigid motion, with the number that shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NotARigidMotion {
     /// Its upper left block.
     Rotation(NotARotation),
-    /// Its last row is not that of the identity, or its last column is not finite.
+    /// Its last row is not `(0, ..., 0, 1)`, or its last column is not finite.
     LastRow {
         /// By how much an entry differs at most.
         defect: f64,
@@ -69,7 +69,7 @@ impl<T: Real> RigidMotion<T> {
     /// The motion of a homogeneous matrix `[R x; 0 1]`.
     ///
     /// # Errors
-    /// [`NotARigidMotion`] when the block is no rotation to 1e-9, or the last row is not exactly
+    /// [`NotARigidMotion`] if the block is not a rotation to 1e-9, or the last row is not exactly
     /// `(0, 0, 0, 1)`.
     pub fn from_matrix(a: &Matrix4<T>) -> Result<Self, NotARigidMotion> {
         let translation = Vector3::new(a.m14, a.m24, a.m34);

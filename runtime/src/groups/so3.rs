@@ -271,7 +271,7 @@ impl<T: Real> Rotation<T> {
             let half = square.sqrt();
             (half.cos(), half.sin() / half)
         } else {
-            // Lanes of which some stand still: lift those off zero by less than rounding.
+            // If some lanes are at rest, lift these off zero by less than rounding.
             let lift = T::from_f64(T::EPSILON * T::EPSILON);
             let half = (square + lift).sqrt();
             (half.cos(), half.sin() / half)
@@ -356,7 +356,7 @@ impl<T: Real> Mul for Rotation<T> {
     }
 }
 
-/// What `product` makes of a unit quaternion and `1 + xi/2`, made unit.
+/// `product(1 + xi/2)`, normalised; `product` multiplies by a unit quaternion.
 #[inline(always)]
 fn turned_by<T: Real>(xi: &[T], product: impl Fn([T; 4]) -> [T; 4]) -> Rotation<T> {
     let half = T::from_f64(0.5);

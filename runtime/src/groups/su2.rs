@@ -12,8 +12,8 @@ use nalgebra::{Matrix4, Vector3};
 /// A unit quaternion `(w, x, y, z)`, from body to space: it turns a body vector `v`, read as a
 /// quaternion, into `q v q*`. Unlike a [`Rotation`] it is not the same element as its opposite.
 ///
-/// The coordinates of its Lie algebra are those of the angular velocity: `ξ` stands for half the
-/// quaternion without real part (thesis section 2.5, the Cayley-Klein form).
+/// The coordinates `ξ` of its Lie algebra are an angular velocity, and denote the quaternion `ξ/2` without
+/// real part (thesis section 2.5, the Cayley-Klein form).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnitQuaternion<T = f64>(Rotation<T>);
 
@@ -109,7 +109,7 @@ impl<T: Real> Group<T> for UnitQuaternion<T> {
 
     super::own_operations!();
 
-    /// `self . (1 + ξ/2)/|1 + ξ/2|`, the Cayley map: it covers that of the rotations.
+    /// `self . (1 + ξ/2)/|1 + ξ/2|`, the Cayley map: it covers the Cayley map of the rotations.
     #[inline]
     fn retract(&self, xi: &[T]) -> Self {
         Self(self.0.retract(xi))
@@ -157,7 +157,7 @@ impl<T: Real> Group<T> for UnitQuaternion<T> {
 impl<T: Real> Coadjoint<T> for UnitQuaternion<T> {
     type Covector = Vector3<T>;
 
-    /// `q mu q*`: for one spatial momentum the fibres of `q -> q* m q` are those of Hopf.
+    /// `q mu q*`. For a fixed spatial momentum `m`, the fibres of `q -> q* m q` form the Hopf fibration.
     #[inline]
     fn covector_to_space(&self, body: &Vector3<T>) -> Vector3<T> {
         self.0.rotate(body)

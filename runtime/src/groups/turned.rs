@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn a_rotation_on_its_way_is_the_product() {
         let r = Rotation::exp(&Vector3::new(0.4, -1.1, 0.7));
-        // Of any length: here that of (1, 2, -3, 5)/4.
+        // A quaternion of any length, here (1, 2, -3, 5)/4.
         let omega = [0.25, 0.5, -0.75, 1.25];
         let square = omega.iter().map(|x| x * x).sum::<f64>();
         let unit = omega.map(|x| x / square.sqrt());

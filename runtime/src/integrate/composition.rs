@@ -115,7 +115,7 @@ impl<S: Reversible> Composition<S> {
     /// Prepares steps of `h` in all from `state`. Nothing is allocated later.
     ///
     /// # Errors
-    /// When one of the steps it is made of could not be made from `state`.
+    /// If one of its stages fails from `state`.
     pub fn start(
         model: &S,
         state: &S::State,
@@ -143,7 +143,7 @@ impl<S: Reversible> Composition<S> {
 }
 
 impl<S: Stepper> Composition<S> {
-    /// The workspaces of the steps it is made of, in their order.
+    /// The workspaces of the stages, in their order.
     pub fn workspaces_mut(&mut self) -> impl Iterator<Item = &mut S::Workspace> {
         self.stages.iter_mut().map(|stage| &mut stage.workspace)
     }
@@ -158,7 +158,7 @@ impl<S: Stepper> Composition<S> {
         self.step_in_parts(model, state, |_, _| {})
     }
 
-    /// The same; `seen` is shown the factor of each of its steps, and the state after it.
+    /// One composed step that calls `seen` after each stage, with its factor and the state.
     ///
     /// # Errors
     /// As [`Composition::step`].
@@ -184,8 +184,8 @@ impl<S: Stepper> Composition<S> {
     }
 }
 
-/// The largest part of the step `h` that can be made from this state, by bisection: a shorter step
-/// passes through other states, so that what the refused factor could do does not tell it.
+/// The largest share of the step `h` that can be made from this state, by bisection. A shorter step
+/// passes through other states, so the limit of the failed stage does not determine it.
 #[cold]
 #[inline(never)]
 fn feasible<S: Stepper>(
@@ -229,8 +229,8 @@ fn composed<S: Copy, T: Copy>(
     Some(0.0)
 }
 
-/// The cause said of the composed step instead of the factor that failed, with the part of the step
-/// that can be made.
+/// The cause with the numbers of the composed step instead of the failed stage, and the share of the
+/// step that can be made.
 fn in_all<T: Real>(cause: StepCause, h: T, share: f64) -> StepCause {
     let in_lane = |lane: usize| {
         let h = h.lane(lane);

@@ -1,5 +1,5 @@
-//! One trajectory of any model, its type hidden: what lists of numbers start, and what a card names.
-//! Takes what an emitted model says of itself; gives what the command line and the tests run.
+//! One trajectory of any model, with its type hidden: starts from lists of numbers in the order of a card.
+//! Takes the [`Described`] implementation of an emitted model; gives a trajectory for the command line and the tests.
 
 use super::{Model, Steps, counted};
 use crate::StepError;
@@ -22,7 +22,7 @@ pub trait Described: Model<Scalar = f64, State: Saved, Workspace: Saved> + Sized
         initial: &[Vec<f64>],
     ) -> Result<(Self, Self::Initial), OpenError>;
 
-    /// What makes the steps that are asked for, and the model by whose solver.
+    /// The model with the requested solver, and its steps of the requested order.
     ///
     /// # Errors
     /// For an order or a solver that is not offered, and a first step that cannot be made.
@@ -32,7 +32,7 @@ pub trait Described: Model<Scalar = f64, State: Saved, Workspace: Saved> + Sized
         settings: Settings,
     ) -> Result<(Self, Steps<Self>), OpenError>;
 
-    /// What is wrong with the kinetic energy at a state, if anything.
+    /// A warning if the kinetic energy is not positive definite at a state.
     fn judged(&self, _state: &Self::State) -> Option<KineticWarning> {
         None
     }
@@ -90,7 +90,7 @@ pub fn open<M: Described>(
     }))
 }
 
-/// The card of a model that has no named sizes: [`Card::sized`] of the model `M`.
+/// [`Card::sized`] of a model `M` without named sizes.
 pub fn only_size<M: Described>(sizes: &[usize]) -> Option<Card> {
     sizes.is_empty().then(|| *M::card())
 }

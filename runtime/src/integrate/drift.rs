@@ -8,36 +8,37 @@ use nalgebra::SMatrix;
 
 /// The drift of one component of one invariant since the run began.
 ///
-/// **Natural scale**, for every invariant, exact or bounded: the sum of the absolute values of the
-/// terms that its value is made of, the largest over all nodes of the run. Rounding is that of the
-/// terms, not of their sum: an angular momentum `R m + x × p` about a fixed origin is known to the
-/// rounding of `|m| + |x| |p|`, which grows with the way the body goes while the sum stays; a body
-/// released from rest has neither momentum nor kinetic energy at node 0. Terms of a product are
-/// bounded by the product of the lengths of its factors; those of the energy are the kinetic and the
-/// potential energy.
+/// The **natural scale** of an invariant, exact or bounded, is the sum of the absolute values of its
+/// terms, maximised over the nodes of the run. Rounding errors are proportional to the terms and not
+/// to their sum. For example, an angular momentum `R m + x × p` about a fixed origin has the rounding
+/// of `|m| + |x| |p|`. This size grows with the distance of the body while the sum is constant. The
+/// maximum is needed since a body released from rest has zero momentum and kinetic energy at node 0.
+/// A product counts as the product of the lengths of its factors. The terms of the energy are the
+/// kinetic and the potential energy.
 ///
-/// A momentum that is much less than the impulse that forces give it in a step counts as that: at equilibrium impulses cancel to
-/// their rounding. A body that stays at rest without forces has no momentum to compare with, one without weight no potential: an
-/// invariant whose natural scale is zero (or below the smallest normal number, where quotients have
-/// no digits) at every node is measured by its change itself, in its own unit.
-/// [`Drift::is_absolute`] says so.
+/// If a momentum is much smaller than the impulse that forces give it in a step, the impulse is its
+/// size: at equilibrium, impulses cancel up to rounding.
+///
+/// If the natural scale is zero at every node, the drift is the change itself, in the unit of the
+/// invariant. This is the case for the momentum of a body that stays at rest without forces. A scale
+/// below the smallest normal number counts as zero. [`Drift::is_absolute`] reports this case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
-    /// `max |I_k - I_0| / scale` over every step, or `max |I_k - I_0|` where the scale is zero; NaN
+    /// `max |I_k - I_0| / scale` over the checked nodes, or `max |I_k - I_0|` if the scale is zero; NaN
     /// once a value or a scale was NaN.
     pub worst: f64,
-    /// `(I_k - I_0) / scale` at the last step, with its sign, or `I_k - I_0` where the scale is zero.
+    /// `(I_k - I_0) / scale` at the last checked node, with its sign, or `I_k - I_0` if the scale is zero.
     pub last: f64,
     /// The natural scale of the component, in its own unit.
     pub scale: f64,
-    /// The first node looked at where `|I_k - I_0|` was larger than the scale at the start and than a tenth of the scale
-    /// there: the value has nothing to do with that at the start any more. None if the scale at the start is zero.
+    /// The first checked node where `|I_k - I_0|` exceeds both the scale at the start and a tenth of the scale at the
+    /// node: from there on the value is unrelated to its start. `None` also if the scale at the start is zero.
     pub lost: Option<u64>,
 }
 
 impl Drift {
-    /// The drift that a deviation `I_k - I_0` makes, with its sign: divided by the natural scale, or
-    /// as it is where the scale is zero. NaN if either number is.
+    /// The drift of a deviation `I_k - I_0`, with its sign: divided by the natural scale, or unchanged
+    /// if the scale is zero. NaN if either number is NaN.
     #[inline]
     #[must_use]
     pub fn of(deviation: f64, scale: f64) -> f64 {
@@ -48,19 +49,19 @@ impl Drift {
         }
     }
 
-    /// Whether the drift is the change itself, the natural scale being zero.
+    /// Whether the drift is the change itself, because the natural scale is zero.
     #[must_use]
     pub fn is_absolute(&self) -> bool {
         self.scale.abs() < f64::MIN_POSITIVE
     }
 }
 
-/// A momentum of less than one part in so many of an impulse is its rounding, which adds up like a random walk: that of 1e12
-/// steps is less. Larger ones are measured by themselves, also where strong impulses nearly cancel.
+/// A momentum below `1 / SHARE` of an impulse counts as rounding of the impulse. Rounding adds up like a random walk,
+/// and after 1e12 steps is still smaller. A larger momentum is its own scale, even if strong impulses nearly cancel.
 const SHARE: f64 = 1e9;
 
-/// A momentum as scales take it, in `count` rows from a first one: where these are much less than the impulse that they get at
-/// a node, of this size, all of their entries are made as large. What is left of impulses that cancel is rounding.
+/// A momentum for use in scales. If all entries in `count` rows from row `from` are much smaller than the impulse at a
+/// node, each of them is replaced by the size of the impulse: the remainder of impulses that cancel is rounding.
 #[doc(hidden)]
 #[must_use]
 pub fn not_less<T: Real, const R: usize, const C: usize>(
@@ -76,8 +77,8 @@ pub fn not_less<T: Real, const R: usize, const C: usize>(
     taken
 }
 
-/// 1 in the lanes where all of these entries are much less than the impulse, else 0. A body at rest keeps its entries, and so does one whose impulse
-/// is not finite.
+/// 1 in the lanes where all of these entries are much smaller than the impulse, else 0. Also 0 if all entries are zero
+/// or the impulse is not finite.
 #[doc(hidden)]
 pub fn fills<T: Real>(entries: impl Iterator<Item = T>, impulse: T) -> T {
     let one = T::one();
@@ -93,11 +94,11 @@ pub fn filled<T: Real>(entry: T, fills: T, impulse: T) -> T {
     fills.where_positive(impulse) + (T::one() - fills).where_positive(entry)
 }
 
-/// A rate at which a constraint would be left by less than this part of its terms in a step is measured by that: a bound of
-/// 1e-12 then lies at a few roundings of what is held, which a place cannot be nearer to.
+/// The scale of a constraint rate is at least this share of the terms of the constraint per step. A drift of 1e-12 is
+/// then a few roundings of the constraint, the accuracy of a position.
 const PART: f64 = 1e-3;
 
-/// Where the rate of change of a held constraint stands among the components of invariants, and the constraint itself.
+/// The positions of a constraint rate and of the constraint itself among the components of invariants.
 #[derive(Clone, Debug)]
 pub(super) struct HeldRate {
     rate: usize,
@@ -106,7 +107,7 @@ pub(super) struct HeldRate {
 }
 
 impl HeldRate {
-    /// Those of a model.
+    /// The constraint rates of a model.
     pub(super) fn all(card: &Card) -> Vec<HeldRate> {
         let mut starts = Vec::new();
         let mut at = 0;
@@ -129,7 +130,7 @@ impl HeldRate {
         starts.iter().filter_map(of).collect()
     }
 
-    /// The scales of the rate, not less than the part of what is held, where the step is `h`.
+    /// Raises the scales of the rate to the share [`PART`] of the constraint's scale per step `h`.
     pub(super) fn not_less(&self, scales: &mut [f64], h: f64) {
         for i in 0..self.count {
             let held = scales.get(self.held + i).copied();
@@ -140,7 +141,7 @@ impl HeldRate {
     }
 }
 
-/// What was seen of one component so far: its scale is known when the run is over.
+/// The deviations of one component so far. Its scale is known at the end of the run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Deviation {
     /// The value at the start.
@@ -151,14 +152,14 @@ pub(super) struct Deviation {
     last: f64,
     /// The largest sum of the absolute values of the terms.
     scale: f64,
-    /// That at the start.
+    /// The sum at the start.
     first: f64,
     /// The first node at which the deviation was larger than the scale at the start and than a part of the terms there.
     lost: Option<u64>,
 }
 
-/// A deviation of less than this part of the terms is not one of a value that is lost: the start may be near equilibrium,
-/// where the terms are small.
+/// If a deviation is below this share of the terms, the value does not count as lost: the start may be near
+/// equilibrium, where the terms are small.
 const LOST: f64 = 0.1;
 
 impl Saved for Deviation {

@@ -3,9 +3,13 @@
 //! Takes the names of a model's types and fields; gives `prepared`, `step` and `refused` around its functions `edge`
 //! and `arrived`.
 
-/// `pub step`, or `step_untested`, which leaves what is not finite to the test that follows; the fields of the element,
-/// of its momentum and of what else is kept; those of which the `factor` is made, if it is not the model's; how the step
-/// is solved in words, and the function that tests a start, if there is one; the types.
+/// Its arguments, in order:
+///
+/// - `pub step`, or `step_untested`, which leaves numbers that are not finite to a later test;
+/// - the fields of the element, of its momentum and of the other quantities of a state;
+/// - the fields from which the `factor` is computed, if each trajectory has its own;
+/// - how the step is solved, in words, and the function that tests a start, if there is one;
+/// - the types.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! forced_step {
@@ -13,7 +17,7 @@ macro_rules! forced_step {
         $visible:vis $step:ident { $element:ident, $momentum:ident $(, $kept:ident)* } $of:tt [$($factor:ident)?]
         [$solved:literal $($tests:ident)?] [$($size:ident)*] $state:ident $node:ident $work:ident $T:ident
     ) => {
-        /// What steps of `h` from `state` begin with.
+        /// The initial workspace for steps of `h` from `state`.
         fn prepared(
             &self,
             state: &$state<$($size,)* $T>,
@@ -60,7 +64,7 @@ macro_rules! forced_step {
             };
             let arrival = self.arrived(state, edge, h, turned);
             $crate::forced_step! { @finite $step arrival state $node }
-            // What is kept beside the element and its momentum does not change.
+            // The other quantities of a state do not change.
             (state.$element, work.here.$element) = (arrival.attitude, arrival.attitude);
             (state.$momentum, work.here.$momentum) = (arrival.momentum, arrival.momentum);
             state.$node += 1;

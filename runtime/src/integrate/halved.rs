@@ -1,24 +1,24 @@
-//! A trajectory that makes by two, four, eight steps of a part of its length what cannot be made by one. Takes a card and the
-//! data of a run; gives a trajectory, and how many of its steps were made so. Such a run is no longer symplectic.
+//! A trajectory that retries a failed step as 2, 4, 8, ... substeps. Takes a card and the data of a run; gives a
+//! trajectory, and the number of steps that were subdivided. A run with substeps is not symplectic.
 
 use crate::card::{Card, OpenError, PartSeen, Settings, Trajectory};
 use crate::kinetic::KineticWarning;
 use crate::saved::{Saved, Words};
 use crate::{StartError, StepCause, StepError};
 
-/// Most halvings of one step.
+/// The maximum number of halvings of one step.
 const DEEPEST: u32 = 16;
 
-/// Steps that were made by parts.
+/// The steps that were subdivided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Halvings {
-    /// How many steps.
+    /// The number of subdivided steps.
     pub steps: u64,
-    /// The most parts that one of them took.
+    /// The largest number of substeps of one step.
     pub parts: u64,
 }
 
-/// A trajectory whose refused steps are made by parts.
+/// A trajectory that retries failed steps as substeps.
 pub struct Halved {
     card: Card,
     parameters: Vec<Vec<f64>>,
@@ -32,13 +32,13 @@ pub struct Halved {
 }
 
 impl Halved {
-    /// The most steps that one step is tried by.
+    /// The maximum number of substeps of one step.
     pub const MOST_PARTS: u64 = 1 << DEEPEST;
 
-    /// Starts a trajectory as [`Card::open`] does; where its first step is refused with a step of a part of the length.
+    /// Starts a trajectory as [`Card::open`] does. If the first step fails, it starts with substeps.
     ///
     /// # Errors
-    /// As [`Card::open`]; also where an initial value is none of the observables, from which a run goes on by parts.
+    /// As [`Card::open`]; also if an initial value is not among the observables, since substeps start from these.
     pub fn open(
         card: &Card,
         parameters: &[Vec<f64>],
@@ -67,7 +67,7 @@ impl Halved {
                     });
                 }
                 Err(error) if cause(&error).is_none() => return Err(error),
-                // The step that was asked for is the one to be told of.
+                // The error reports the full step, not a substep.
                 Err(error) => refused = refused.or(Some(error)),
             }
         }
@@ -89,7 +89,7 @@ impl Halved {
         values.collect()
     }
 
-    /// The trajectory one whole step further, by steps halved so often; or why not.
+    /// The trajectory one whole step further, by `2^depth` substeps, or the cause of the failure.
     fn by_parts(&self, from: &[Vec<f64>], depth: u32) -> Result<Box<dyn Trajectory>, StepCause> {
         let started = opened(&self.card, &self.parameters, from, self.settings, depth);
         let mut inner = started
@@ -112,7 +112,7 @@ fn opened(
     (card.open)(parameters, initial, Settings { h, ..settings })
 }
 
-/// Why a first step is refused.
+/// Why a first step fails; `None` for other errors.
 fn cause(error: &OpenError) -> Option<StepCause> {
     match error {
         OpenError::Start(StartError::Refused(refused)) | OpenError::Kinetic { refused, .. } => {
@@ -161,7 +161,7 @@ impl Trajectory for Halved {
             }
         }
         let from = self.here();
-        // After parts the whole step is tried first.
+        // After a subdivided step the whole step is tried first.
         let least = u32::from(self.depth == 0);
         for depth in least..=DEEPEST {
             match self.by_parts(&from, depth) {

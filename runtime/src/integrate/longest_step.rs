@@ -1,5 +1,5 @@
-//! The longest step with which small motions about the start stay small: 2/ω, ω the frequency of the fastest one.
-//! Takes a model's card with its data; asks single steps from rest for forces and for the inverse of the mass.
+//! The stability limit of the step size: 2/ω, with ω the frequency of the fastest small motion about the initial state.
+//! Takes a model's card with its data; makes single steps from rest to get forces and the inverse of the mass.
 
 mod extremes;
 mod moves;
@@ -16,49 +16,52 @@ use core::cell::Cell;
 use core::fmt;
 use probe::Probe;
 
-/// Steps of the inquiry in parts of the run's own: with ω h at most about 2, ω² h² of them is 4e-6 at most.
+/// Steps of the probe as a share of the run's step. If ω h is at most about 2, ω² h² of a probe step is at most 4e-6.
 const SHORT: f64 = 1e-3;
 
-/// A limit that is a smaller part of the run's step than this is asked for once more by shorter steps.
+/// If the limit is below this share of the run's step, the probe is repeated with shorter steps.
 const FAR: f64 = 0.1;
 
-/// By which parts of the step.
+/// The shares of the step for these repetitions.
 const SHORTER: [f64; 5] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10];
 
-/// Where nothing is seen to swing, by which multiples of the step: it may be far below all times of the motion.
+/// If nothing oscillates, the probe is repeated with these multiples of the step, which may be far below all times of
+/// the motion.
 const LONGER: [f64; 4] = [1e3, 1e6, 1e9, 1e12];
 
-/// A growth that no step confirms is none where its square is a smaller part than this of that of the fastest motion.
+/// A growth rate that a trial step does not confirm is ignored if its square is below this share of ω² of the fastest
+/// motion.
 const SLIGHT: f64 = 1e-3;
 
-/// Growth in a step of which is warned: that of a body on its head takes many steps.
+/// The growth rate times the step size above which clebsch warns. The fall of an inverted body takes many steps and
+/// stays below it.
 const GROWTH: f64 = 0.3;
 
 /// Waves that turn by more than about 135 degrees from site to site alternate; of two neighbours alone that move against one another this
 /// is 1.5.
 const ALTERNATING: f64 = 1.7;
 
-/// Of fewer configurations nothing is said of waves.
+/// The smallest number of configurations for a warning about waves.
 const WAVES: usize = 4;
 
-/// What small motions about the start, at rest, ask of a step.
+/// The stability limit and the growth rate of small motions about the initial configuration, at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LongestStep {
-    /// 2/ω, with ω the frequency of the fastest small motion; infinite where there is none that swings.
+    /// 2/ω, with ω the frequency of the fastest small motion; infinite if none oscillates.
     pub step: f64,
-    /// The rate at which the fastest growing one grows, in the inverse unit of time; 0 where none does.
+    /// The rate of the fastest growing small motion, in the inverse unit of time; 0 if none grows.
     pub growth: f64,
-    /// How many configurations were disturbed, each at every site.
+    /// The number of disturbed configurations, each site counted.
     pub configurations: usize,
-    /// By how much neighbours move against one another in the motion that grows fastest: 0 where they move alike, 2 where they
-    /// alternate; 0 where none grows.
+    /// How much neighbours move against each other in the motion that grows fastest: 0 if they move alike, 2 if they
+    /// alternate; 0 if none grows.
     pub alternating: f64,
 }
 
-/// How much is done to find the longest step.
+/// The effort to find the stability limit.
 #[derive(Clone, Copy)]
 pub struct Effort<'a> {
-    /// Whether the inquiry is given up, which is asked before each of its steps.
+    /// Returns whether to give up the search. It is called before each probe step.
     pub ended: &'a dyn Fn() -> bool,
     /// Whether limits thousands of times above the step are of interest.
     pub far: bool,
@@ -73,18 +76,18 @@ impl fmt::Debug for Effort<'_> {
 }
 
 impl Effort<'_> {
-    /// All that can be done.
+    /// A search that is never given up, also for limits far above the step.
     pub const UNBOUNDED: Self = Self {
         ended: &|| false,
         far: true,
     };
 }
 
-/// Why the longest step is not known, although the fastest motion may be.
+/// Why the stability limit is unknown. The time of the fastest motion may still be known.
 #[derive(Clone, Copy, Debug)]
 struct Missed {
     why: Unknown,
-    /// The time in which the fastest motion swings or grows; NaN where it is not known.
+    /// The time in which the fastest motion oscillates or grows; NaN if it is unknown.
     fastest: f64,
 }
 
@@ -98,10 +101,11 @@ impl From<Unknown> for Missed {
 }
 
 impl LongestStep {
-    /// Of a model in these data, each field one vector, row-major; `h` is a step of about the size that is asked of.
+    /// The limit for a model with these data, each field one vector, row-major. `h` is the approximate step size of the
+    /// run.
     ///
-    /// Where constraints are held small motions are those along them, resisted by their reactions at the start too; momenta
-    /// are projected by the model itself ([`crate::card::Settings::inquiry`]).
+    /// If the model has constraints, its small motions are tangent to them, and the constraint forces at the start
+    /// count as stiffness. The model projects the momenta itself ([`crate::card::Settings::inquiry`]).
     ///
     /// # Errors
     /// [`Unknown`] with the reason.
@@ -114,10 +118,10 @@ impl LongestStep {
         Self::by(Effort::UNBOUNDED, card, parameters, initial, h)
     }
 
-    /// The same with an effort that may be bounded.
+    /// As [`LongestStep::of`], with a bounded effort.
     ///
     /// # Errors
-    /// As [`LongestStep::of`]; [`Unknown::Unfinished`] where the inquiry was given up.
+    /// As [`LongestStep::of`]; [`Unknown::Unfinished`] if the search was given up.
     pub fn by(
         effort: Effort<'_>,
         card: &Card,
@@ -134,7 +138,8 @@ impl LongestStep {
             ended: &ended,
             ..effort
         };
-        // Which step could be made in place of one that is refused is of no use here, and takes a hundred trials.
+        // Turns off the search for a shorter step after a failed one: it takes a hundred trials, and is not needed
+        // here.
         let found = search_of(|| Self::sought(effort, [parameters, initial], card, h));
         match cut.get() {
             true => Err(Unknown::Unfinished),
@@ -155,7 +160,7 @@ impl LongestStep {
         let found = asked(1.0);
         let has_an_end = match &found {
             Ok(found) => found.step > FAR * h.abs(),
-            // Shorter steps are asked for limits below this one alone.
+            // Shorter probe steps serve only for smaller limits.
             Err(missed) => missed.fastest >= h.abs() || missed.why == Unknown::Kind,
         };
         if has_an_end {
@@ -167,12 +172,12 @@ impl LongestStep {
                 return Err(Unknown::Still);
             }
             let longer = LONGER.into_iter().map(asked);
-            // Where a step is refused, longer ones are too.
+            // If a step fails, longer steps fail too.
             let longer = longer.take_while(|found| found.as_ref().map_or_else(is_still, |_| true));
             let mut longer = longer.flatten().filter(|found| found.step > h.abs());
             return longer.next().ok_or(Unknown::Still);
         }
-        // Of a step that is hundreds of times too long even a small part is no short one.
+        // If the step is hundreds of times too long, even a small share of it is too long for the probe.
         let shorter = SHORTER.into_iter().filter_map(|part| asked(part).ok());
         let mut shorter = shorter.filter(|found| found.step < h.abs());
         shorter
@@ -180,11 +185,11 @@ impl LongestStep {
             .map_or(found.map_err(|missed| missed.why), Ok)
     }
 
-    /// The same, asked by steps that are short beside `h`.
+    /// The limit, from probe steps that are short compared with `h`.
     fn asked(probe: &Probe<'_>, h: f64) -> Result<Self, Missed> {
         let [least, largest] = probe.extremes()?;
-        // What does not swing within a hundred thousand steps of this size is the rounding of forces that are none, as
-        // what is rounding beside the other.
+        // If a rate is below 2e-5 / h, or its square below 1e-6 of the other square, it is the rounding of forces that
+        // vanish.
         let rounding = (2.0e-5 / h).powi(2);
         let seen = |x: f64, beside: f64| x.abs() > rounding && x.abs() > 1e-6 * beside.abs();
         let swings = largest.square > 0.0 && seen(largest.square, least.square);
@@ -204,8 +209,8 @@ impl LongestStep {
             why,
             fastest: step.min(1.0 / growth),
         };
-        // A step of the model must move what it is told of as steps of this kind do. Where constraints turn in a step that
-        // resolves what grows, only the other is known.
+        // A trial step must move each motion as a Störmer-Verlet step does. If the model has constraints, they turn
+        // within a step that resolves slow growth, so the trial step is then not longer than the limit.
         let resolving = match probe.is_held() {
             true => step.min(1.0 / growth),
             false => 1.0 / growth,
@@ -215,7 +220,7 @@ impl LongestStep {
             true => probe.is_left(&largest, step).ok_or(missed(Unknown::Far))?,
             false => true,
         };
-        // What grows hardly beside the fastest may be the turn of forces with the frames that they are seen from.
+        // Growth that is slow compared with ω may come from forces that turn with their frames.
         let slight = swings && least.square.abs() < SLIGHT * largest.square;
         let moved = swung && (!grows || growing || slight || probe.is_held() && swings);
         let growth = match growing {
@@ -237,26 +242,26 @@ impl LongestStep {
         }
     }
 
-    /// ω of the fastest small motion, in radians by the unit of time; 0 where there is none that swings.
+    /// ω of the fastest small motion, in radians per unit of time; 0 if none oscillates.
     #[must_use]
     pub fn frequency(&self) -> f64 {
         2.0 / self.step
     }
 
-    /// The longest step over which the fastest growing motion grows by a third; infinite where none does.
+    /// The step size over which the fastest growing motion grows by a third; infinite if none grows.
     #[must_use]
     pub fn resolving(&self) -> f64 {
         GROWTH / self.growth
     }
 
-    /// Whether what grows fastest alternates between neighbours: the shorter a wave the faster it grows, as where a sign makes the
-    /// equations elliptic along the label.
+    /// Whether the fastest growing motion alternates between neighbours. If so, shorter waves grow faster, as when a
+    /// wrong sign makes the equations elliptic along the label.
     #[must_use]
     pub fn is_elliptic(&self) -> bool {
         self.configurations >= WAVES && self.growth > 0.0 && self.alternating > ALTERNATING
     }
 
-    /// What is wrong with steps of `h`, if anything: they are too long, or a motion grows as they go on.
+    /// A warning if steps of `h` exceed the stability limit, or do not resolve a growing motion.
     #[must_use]
     pub fn warning(&self, h: f64) -> Option<String> {
         let h = h.abs();

@@ -5,8 +5,8 @@ use super::Stepper;
 use crate::{OfScalars, ParameterError, Real, StartError, validate};
 use core::fmt::Debug;
 
-/// What every emitted model is, whatever its scalar: generic code builds it from data, and goes over
-/// from one scalar to another.
+/// An emitted model, generic over its scalar. Generic code builds it from data and changes its
+/// scalar.
 pub trait Model:
     Stepper<State: OfScalars<Scalar = <Self as Stepper>::Scalar>> + Clone + Debug + Send
 {
@@ -14,7 +14,8 @@ pub trait Model:
     type Parameters: OfScalars<Scalar = Self::Scalar>;
     /// The initial data, as given.
     type Initial: OfScalars<Scalar = Self::Scalar>;
-    /// What may be chosen about the steps; the order of a free body, nothing for most models.
+    /// The option of the steps: an order for a free body, a solver for a forced one, `()` for most
+    /// models.
     type Choice: Copy + Debug + Default + Send + Sync;
 
     /// Whether an ensemble steps its bodies side by side in lanes: explicit steps and those with a
@@ -45,10 +46,10 @@ pub trait Model:
     /// Names the value that is not admissible.
     fn begin(&self, initial: Self::Initial) -> Result<Self::State, StartError>;
 
-    /// What steps of `h` from `state` begin with. No step is tried: see [`Model::prepare`].
+    /// The initial workspace for steps of `h` from `state`. It tries no step: see [`Model::prepare`].
     ///
     /// # Errors
-    /// Where the model is not defined at the state, or a factor of its equations cannot be made.
+    /// If the model is undefined at the state, or a factor of its equations cannot be computed.
     fn prepared(
         &self,
         state: &Self::State,
@@ -90,8 +91,8 @@ pub trait Model:
         Ok((state, self.prepare(&state, h, choice)?))
     }
 
-    /// The workspace of steps of an order above two, made symplectic with the attitude where that is known
-    /// to be missing; the same one for most models.
+    /// The workspace with compensated steps, see [`Settings::COMPENSATED`](crate::card::Settings::COMPENSATED).
+    /// Most models return it unchanged.
     #[must_use]
     fn compensated(work: Self::Workspace) -> Self::Workspace {
         work

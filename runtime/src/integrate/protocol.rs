@@ -5,8 +5,9 @@
 
 /// The protocol of a model: its types with all their fields, const parameters in brackets, and
 ///
-/// - `forced` (`forced_untested` where the model tests its steps itself), `free`, `tried` (it has a short way to try
-///   a step) or `explicit`, with the fields of the element, of its momentum and of what else is kept;
+/// - the form of its steps: `forced` (`forced_untested` if the model tests its steps itself), `free`, `tried` (it has a
+///   shorter function to try a step) or `explicit`;
+/// - the fields of the element, of its momentum and of the other quantities of a state;
 /// - what may be chosen about its steps: `order`, `solver`, `nothing`;
 /// - how orders above its own are reached: `modified` moments, compositions of `symmetric` steps, or `none`;
 /// - whether its kinetic energy is `judged` at the start, in how many coordinates, or `unjudged`;
@@ -402,8 +403,7 @@ macro_rules! stepper_part {
 
     (@warning judged { $coordinates:expr } [$($size:ident)*] $model:ident $state:ident) => {
         impl<$(const $size: usize),*> $model<$($size,)* f64> {
-            /// What is wrong with the kinetic energy at a state, if anything: its Hessian should be positive
-            /// definite.
+            /// A warning if the Hessian of the kinetic energy is not positive definite at a state.
             #[cold]
             pub fn kinetic_warning(
                 &self,

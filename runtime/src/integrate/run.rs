@@ -1,31 +1,31 @@
-//! The loop itself.
+//! The integration loop.
 //! Takes a trajectory, a number of steps and an observer; gives a [`Summary`], and the error of the
-//! step that failed or of the number that is none.
+//! step that failed or of the number that is not finite.
 
 use super::drift::{Deviation, HeldRate};
 use super::{Drift, NotFinite, RunError, Watched};
 use crate::card::Trajectory;
 use crate::saved::{Saved, Words};
 
-/// What watches a run.
+/// Receives the samples and the progress of a run.
 pub trait Observer {
     /// One sample: node, time, all observables, all invariants, in the order of the model's card.
     fn sample(&mut self, node: u64, time: f64, observables: &[f64], invariants: &[f64]);
 
-    /// `done` of `total` steps are made; called now and then, at least 200 times in a long run.
+    /// Reports that `done` of `total` steps are made. A long run calls it at least 200 times.
     fn progress(&mut self, done: u64, total: u64) {
         let _ = (done, total);
     }
 }
 
-/// At most so many nodes of a run are looked at if none but the last is sampled: looking at one takes as long as twenty
-/// explicit steps of a rigid body.
+/// If a run samples only its start and end, it checks at most this many nodes: a check takes as long as twenty explicit
+/// steps of a rigid body.
 pub const LOOKS: u64 = 10_000;
 
-/// What a run did.
+/// The result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Number of steps made, up to the last node at which what is watched was finite.
+    /// Number of steps made, up to the last node at which all checked numbers were finite.
     pub steps: u64,
     /// The node reached.
     pub node: u64,
@@ -43,7 +43,7 @@ pub struct Summary {
 /// the loop only.
 ///
 /// # Errors
-/// As [`run_until_stopped`], of which this is the form for runs that are worth nothing unless whole.
+/// As [`run_until_stopped`]; use that function if you need the results of an incomplete run.
 pub fn run(
     trajectory: &mut dyn Trajectory,
     steps: u64,
@@ -56,13 +56,13 @@ pub fn run(
     }
 }
 
-/// As [`run`], with what was done up to where the run stopped, and why it did, if it did:
+/// As [`run`], but returns the summary also if the run stops early, together with the error:
 ///
-/// - the first [`StepError`](crate::StepError). The trajectory then stands at the node before it,
-///   which is the last sample;
-/// - the first number that is NaN or infinite: of an invariant or its natural scale at a node that is looked at, of an
-///   observable at a node that is sampled. The trajectory stands there; summary and samples are those
-///   of the nodes up to the one looked at before.
+/// - the first [`StepError`](crate::StepError). The trajectory is then at the node before the failed
+///   step, which is the last sample;
+/// - the first number that is NaN or infinite: of an invariant or its natural scale at a checked node, or of an
+///   observable at a sampled node. The trajectory remains at that node. The summary and the samples end at the
+///   node checked before it.
 pub fn run_until_stopped(
     trajectory: &mut dyn Trajectory,
     steps: u64,
@@ -89,25 +89,25 @@ pub fn run_until_stopped(
     (watch.summary(), stopped)
 }
 
-/// A run up to a node: the numbers there, and what was seen before. It is advanced as far as one likes at a
-/// time, and can be written down and made again together with its trajectory: how often makes no difference.
+/// A run up to a node: the numbers there, and the drifts so far. You can advance it by any number of steps at a
+/// time, and save and restore it together with its trajectory, without a change of the results.
 #[derive(Clone, Debug)]
 pub struct Watch {
     total: u64,
     every: u64,
-    /// Whether the start was looked at.
+    /// Whether the start was checked.
     begun: bool,
-    /// The node looked at last, and what was seen up to there.
+    /// The node checked last.
     looked: Place,
     observables: Vec<f64>,
     invariants: Vec<f64>,
     scales: Vec<f64>,
-    /// Where among them the rates of held constraints stand.
+    /// The positions of the constraint rates among the invariants.
     rates: Vec<HeldRate>,
     seen: Vec<Deviation>,
     /// The node sampled last.
     sampled: u64,
-    /// The drifts are taken from `seen` at the end.
+    /// Without drifts: these come from `seen` at the end.
     summary: Summary,
 }
 
@@ -149,8 +149,7 @@ impl Watch {
         }
     }
 
-    /// Makes at most `most` of the steps that are left. Before the first of all it looks at the start and
-    /// samples it.
+    /// Makes at most `most` of the remaining steps. The first call also checks and samples the start.
     ///
     /// # Errors
     /// As [`run_until_stopped`] says; [`Watch::stop`] then takes the last sample.
@@ -191,7 +190,8 @@ impl Watch {
         Ok(())
     }
 
-    /// Looks at the node at hand and adds it to what was seen; goes back to the node before if a number is not finite.
+    /// Checks the current node and records its deviations. If a number is not finite, the summary returns to the node
+    /// checked before.
     fn look_on(&mut self, trajectory: &dyn Trajectory, sampled: bool) -> Result<(), NotFinite> {
         if let Err(found) = self.look(trajectory, sampled) {
             let Place { steps, node, time } = self.looked;
@@ -220,8 +220,8 @@ impl Watch {
         self.begun && self.summary.steps >= self.total
     }
 
-    /// Samples the node at which a run ends before its end, unless it was sampled or is none: `error` is
-    /// what [`Watch::advance`] gave.
+    /// Samples the node at which a run stops early, unless it was sampled or its numbers are not finite. `error` is
+    /// the error of [`Watch::advance`].
     pub fn stop(
         &mut self,
         trajectory: &dyn Trajectory,
@@ -233,7 +233,7 @@ impl Watch {
         }
     }
 
-    /// Samples the node at hand, unless it was sampled: the last one of a run that is not continued.
+    /// Samples the current node, unless it was sampled. Call it if you end a run early.
     pub fn sample_here(&mut self, trajectory: &dyn Trajectory, observer: &mut dyn Observer) {
         if !self.begun || self.sampled == self.summary.node {
             return;
@@ -243,7 +243,7 @@ impl Watch {
         }
     }
 
-    /// What was done up to here.
+    /// The summary of the steps made so far.
     #[must_use]
     pub fn summary(&self) -> Summary {
         Summary {
@@ -252,7 +252,7 @@ impl Watch {
         }
     }
 
-    /// The numbers at the node, if all are finite; the observables where it is to be sampled.
+    /// Reads the numbers at the node and checks that all are finite; the observables only if the node is sampled.
     #[inline]
     fn look(&mut self, trajectory: &dyn Trajectory, sampled: bool) -> Result<(), NotFinite> {
         trajectory.invariants(&mut self.invariants);
@@ -274,7 +274,7 @@ impl Watch {
         Ok(())
     }
 
-    /// An invariant that is NaN because its terms are larger than any number: then no function left its domain.
+    /// Reports an invariant that is NaN as infinite if its terms overflow: then no function left its domain.
     #[cold]
     fn told_of_overflow(&mut self, trajectory: &dyn Trajectory, found: NotFinite) -> NotFinite {
         trajectory.scales(&mut self.scales);
@@ -294,7 +294,7 @@ impl Watch {
         }
     }
 
-    /// Shows the node to the observer.
+    /// Passes the node to the observer.
     fn sample(&mut self, observer: &mut dyn Observer) {
         let Summary { node, time, .. } = self.summary;
         observer.sample(node, time, &self.observables, &self.invariants);
@@ -303,7 +303,7 @@ impl Watch {
     }
 }
 
-/// What was seen, for a run of the same trajectory with the same numbers of steps.
+/// Restores into a run of the same trajectory with the same numbers of steps.
 impl Saved for Watch {
     fn words(&mut self, words: &mut Words) {
         let Self {
@@ -311,7 +311,7 @@ impl Saved for Watch {
             every,
             begun,
             looked,
-            // Those of the node at hand, and written before they are read.
+            // The numbers at the current node: written before they are read.
             observables: _,
             invariants: _,
             scales: _,
@@ -344,8 +344,7 @@ impl Saved for Watch {
     }
 }
 
-/// Numbers larger than this have squares that are nearly as large as any number, and a product of two numbers that is kept in two
-/// parts is NaN there.
+/// Squares of larger numbers are near overflow, and a product that is stored in two parts is NaN there.
 const SQUARED: f64 = 1e150;
 
 /// Refuses numbers that are NaN or infinite.
@@ -378,7 +377,7 @@ fn the_one(trajectory: &dyn Trajectory, watched: Watched, values: &[f64]) -> Not
         time: trajectory.time(),
         since: trajectory.node(),
         watched,
-        // More numbers than the card names have no name.
+        // The name if the card lists fewer numbers than this.
         name: "?",
         index: Some(place),
         columns: 1,

@@ -1,4 +1,4 @@
-//! What a model shows of itself, entry by entry of the lists in its call of `stepper!`.
+//! The observables and invariants of a model, entry by entry of the lists in its call of `stepper!`.
 //! Takes the place to write to, the model, a state, the step and the workspace; writes the numbers of one entry and
 //! gives the place behind them.
 

@@ -6,7 +6,7 @@ use crate::scalar::InLanes;
 use crate::solvers::moser_veselov::Edge;
 use crate::{Real, Rotation, SpatialMomentum, StepError};
 
-/// What a forced step changes: the body where the step begins, and the edge that leaves from there.
+/// The quantities that a forced step changes: the body at a node, and the edge that begins there.
 #[derive(Clone, Copy, Debug)]
 pub struct Moving<T = f64> {
     /// The attitude.
@@ -24,7 +24,7 @@ impl<T: Real> Moving<T> {
         (self.attitude.in_lane(lane), self.edge.in_lane(lane))
     }
 
-    /// Puts one body into its lane; says whether its momentum is finite.
+    /// Writes one body to its lane; returns whether its momentum is finite.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, one: Moving<T::One>) -> bool {
         let [[x, y, z]] = one.momentum.0.data.0;
@@ -37,15 +37,15 @@ impl<T: Real> Moving<T> {
 
 /// A model whose step can be made lane by lane without a branch, where it is an easy one.
 pub trait SideBySide: Stepper {
-    /// What a step would begin with; nothing where the workspace is not that of the state, or asks
-    /// for another solver.
+    /// The body and edge from which the next step begins. `None` if the workspace belongs to another
+    /// state, or requests another solver.
     fn moving(
         &self,
         state: &Self::State,
         workspace: &Self::Workspace,
     ) -> Option<Moving<Self::Scalar>>;
 
-    /// Leaves it in state and workspace, `steps` nodes further.
+    /// Writes `moving` back to the state and the workspace, `steps` nodes later.
     fn arrive(
         state: &mut Self::State,
         workspace: &mut Self::Workspace,
@@ -56,7 +56,7 @@ pub trait SideBySide: Stepper {
     /// Whether the body is given in principal axes.
     fn is_diagonal(&self, workspace: &Self::Workspace) -> bool;
 
-    /// One step of every lane; whether all were easy. Otherwise what it leaves is of no meaning.
+    /// One step of every lane; returns whether all were easy. If not, `to` is meaningless.
     fn step_lanes<const DIAGONAL: bool>(
         &self,
         state: &Self::State,

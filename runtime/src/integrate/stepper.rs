@@ -1,5 +1,5 @@
-//! What every emitted model is, seen from the outside: something that steps.
-//! Takes a state and a workspace made for it; compositions and ensembles are written on this.
+//! The trait of every emitted model: it advances a state by one step.
+//! Takes a state and a workspace made for it; compositions and ensembles use only this trait.
 
 use crate::{Real, StartError, StepError};
 
@@ -7,9 +7,9 @@ use crate::{Real, StartError, StepError};
 pub trait Stepper {
     /// The numbers it computes with.
     type Scalar: Real;
-    /// What moves, at one node. Saved and compared by the user.
+    /// The configurations and momenta at one node. You can save and compare states.
     type State: Copy + core::fmt::Debug;
-    /// The step size, what is kept between steps, and what the first guess needs.
+    /// The step size, the data kept between steps, and the data of the first guess.
     type Workspace: Clone + core::fmt::Debug + Send;
 
     /// A workspace for steps of `h`, of either sign, from `state`.
@@ -32,9 +32,9 @@ pub trait Stepper {
         workspace: &mut Self::Workspace,
     ) -> Result<(), StepError>;
 
-    /// The state after one step of `h` in a workspace of its own, or none: for searches that try
-    /// many steps, to which the reason of a refusal is nothing. That the step can be made is not
-    /// proved: what is offered in the end is made once more as any other.
+    /// The state after one step of `h` in a new workspace, or `None` if the step fails. Searches that
+    /// try many steps use it, since they do not need the cause of a failure. A model may skip the
+    /// proof of the step here, so a search confirms its result by an ordinary step.
     #[must_use]
     fn attempt(&self, state: &Self::State, h: Self::Scalar) -> Option<Self::State> {
         let mut moving = *state;
@@ -43,11 +43,11 @@ pub trait Stepper {
         Some(moving)
     }
 
-    /// `count` steps, in place, with the same result as one by one, but for rounding where the
-    /// model has a shorter way. How many are asked for at once makes no difference at all.
+    /// `count` steps, in place. The result is the same as of `count` single steps, up to rounding if
+    /// the model has a faster loop. It does not depend on how you split `count` into calls.
     ///
     /// # Errors
-    /// When one of them cannot be solved; the state is then somewhere between.
+    /// If one of them fails. The state is then at one of the nodes of the loop.
     #[inline(always)]
     fn advance_many(
         &self,

@@ -7,7 +7,7 @@ use crate::card::{OpenError, Settings};
 use crate::saved::{Saved, Words};
 use crate::solvers::moser_veselov::Order;
 
-/// What makes the steps of one trajectory.
+/// The steps of one trajectory, with their workspaces.
 #[derive(Clone, Debug)]
 pub enum Steps<S: Stepper> {
     /// One step of the model each.
@@ -44,7 +44,8 @@ impl<S: Stepper<Scalar = f64>> Steps<S> {
         }
     }
 
-    /// The same; `seen` is shown each of the model's own steps that it is made of, as a share of the whole one, and the state after it.
+    /// One step, in place, that calls `seen` after each of the model's own steps within it. `seen` receives the share
+    /// of the whole step, and the state. Steps with modified moments do not call `seen`.
     ///
     /// # Errors
     /// As [`Steps::step`].

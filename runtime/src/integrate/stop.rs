@@ -1,11 +1,11 @@
-//! Why a run stops before its end: a step that was not made, or a number that is none.
-//! Takes the node and what was found there; gives errors that name it and the way out.
+//! Why a run stops before its end: a failed step, or a number that is NaN or infinite.
+//! Takes the node and the number found there; gives errors that name both and suggest a fix.
 
 use crate::solvers::newton::NewtonFailure;
 use crate::{StepCause, StepError};
 use core::fmt;
 
-/// What of a trajectory is watched.
+/// The kinds of numbers that a run checks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Watched {
@@ -24,9 +24,9 @@ pub struct NotFinite {
     pub node: u64,
     /// The time there.
     pub time: f64,
-    /// The last node before it at which the numbers were finite, of those that were looked at; the node itself if it is the first.
+    /// The last node before it at which a check found finite numbers; the node itself if it is the first.
     pub since: u64,
-    /// What it is a number of.
+    /// Whether it belongs to an invariant, a scale or an observable.
     pub watched: Watched,
     /// The name of the invariant or observable, as the card has it.
     pub name: &'static str,
@@ -86,14 +86,14 @@ impl std::error::Error for NotFinite {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RunError {
-    /// A step was not made.
+    /// A step failed.
     Step(StepError),
-    /// A step was made, and what is watched is no number after it.
+    /// A step succeeded, but a checked number is NaN or infinite after it.
     NotFinite(NotFinite),
 }
 
 impl RunError {
-    /// The node at which the trajectory stands.
+    /// The node of the trajectory when the run stopped.
     #[must_use]
     pub fn node(&self) -> u64 {
         match self {

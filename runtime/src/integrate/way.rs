@@ -1,6 +1,6 @@
-//! How the steps of a trajectory are made, decided from the settings and what a model offers; the same for
-//! models that are built and those that are read.
-//! Takes the settings; gives the way, or the error that says what is offered.
+//! Selects how a trajectory makes its steps, from the settings and the orders that a model offers. Compiled models
+//! and models read from their text use the same selection.
+//! Takes the settings; gives the way, or an error that lists the orders on offer.
 
 use super::CompositionOrder;
 use crate::card::{Card, OpenError, Settings};
@@ -19,7 +19,7 @@ pub enum Offer {
 }
 
 impl Offer {
-    /// That of a model with this card.
+    /// The offer of a model with this card.
     #[must_use]
     pub fn of(card: &Card) -> Self {
         match (card.preprocessed, card.orders.len() > 1) {
@@ -42,7 +42,7 @@ pub enum Way {
 }
 
 impl Way {
-    /// The one that the settings ask for, of a model with these orders.
+    /// The way that the settings request, for a model with these orders.
     ///
     /// # Errors
     /// [`OpenError`] for an order that is not offered, a compensation where there is none, or a step that is
@@ -86,7 +86,7 @@ impl Way {
     }
 }
 
-/// The order of modified moments that is asked for.
+/// The requested order of modified moments.
 fn modified(settings: Settings, orders: &'static [u32]) -> Result<Order, OpenError> {
     let asked = settings.order.unwrap_or(2);
     let order = Order::of_number(asked).ok_or(OpenError::Order {

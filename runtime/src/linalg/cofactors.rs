@@ -114,7 +114,7 @@ mod tests {
         assert!(off.norm() < 1e-15);
         let off = adjugate(&three) * three - Matrix3::identity() * determinant(&three);
         assert!(off.norm() < 1e-15);
-        // Of rank two it is that of the kernel, of rank one nothing.
+        // For rank two the adjugate maps to the kernel, for rank one it vanishes.
         let flat = Matrix3::new(1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 0.0, 1.0, 1.0);
         let own = adjugate(&flat);
         assert!(own.norm() > 1.0 && (flat * own).norm() == 0.0);

@@ -131,7 +131,7 @@ impl<T: Real> Dense<T> {
         })
     }
 
-    /// Where an entry stands.
+    /// The storage of an entry.
     #[inline]
     fn place(&mut self, i: usize, j: usize) -> Option<&mut T> {
         match i < self.rows && j < self.cols {
@@ -425,9 +425,9 @@ fn eliminated(sizes: &[usize], inputs: &[f64], outputs: &mut [f64]) {
     }
 }
 
-/// What groups of matrices need.
+/// Operations for matrix groups.
 impl<T: Real> Dense<T> {
-    /// The product as that of group elements: summed from zero, entry by entry.
+    /// The product in the order of group elements: summed from zero, entry by entry.
     pub fn product(&self, other: &Self) -> Self {
         let mut c = Self::zeros(self.rows, other.cols);
         for j in 0..other.cols {

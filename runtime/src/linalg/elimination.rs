@@ -63,8 +63,8 @@ pub fn solve_leading<T: Real, const N: usize>(
     solved.map(|(x, _)| SVector::from_fn(|i, _| if i < size { x[i] } else { T::zero() }))
 }
 
-/// The inverse of the leading block of `size` rows and columns; the rest is that of the identity
-/// eliminated along.
+/// The inverse of the leading block of `size` rows and columns. The rest comes from the identity, which is
+/// eliminated together with the block.
 #[inline]
 pub fn inverse_leading<T: Real, const N: usize>(
     a: &SMatrix<T, N, N>,

@@ -63,7 +63,7 @@ impl<T: Real, const D: usize> Factors<T, D> {
         }
     }
 
-    /// The solution of `A x = b`; `None` where there is no usable pivot.
+    /// The solution of `A x = b`; `None` without a usable pivot.
     #[inline(always)]
     #[must_use]
     pub fn solve(&self, b: &SVector<T, D>) -> Option<SVector<T, D>> {
@@ -253,7 +253,7 @@ impl DenseFactors {
         }
     }
 
-    /// The solution of `A x = b`; `None` where there is no usable pivot.
+    /// The solution of `A x = b`; `None` without a usable pivot.
     #[must_use]
     pub fn solve(&self, b: &[f64]) -> Option<Vec<f64>> {
         fn substituted<const D: usize>(columns: &Dense<f64>, b: &[f64]) -> Vec<f64> {

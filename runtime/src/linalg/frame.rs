@@ -14,8 +14,8 @@ fn positive<T: Real>(x: T) -> T {
 }
 
 /// The frame `U` of a symmetric `A`: `U^T A U` is diagonal to rounding, lane by lane, by cyclic
-/// Jacobi rotations. Only the upper triangle counts. Derivative parts are not those of the
-/// eigenvectors: what is computed in the frame must not depend on which frame it is.
+/// Jacobi rotations. Only the upper triangle counts. The derivative parts are not the derivatives of
+/// the eigenvectors, so a result computed in the frame must not depend on the choice of frame.
 pub fn principal_frame<T: Real, const N: usize>(a: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     let one = T::one();
     let half = T::from_f64(0.5);

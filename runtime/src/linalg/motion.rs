@@ -65,7 +65,7 @@ pub fn motion_translation<M: Homogeneous>(a: &M) -> M::Column {
 
 /// Coordinates of a Lie algebra of rigid motions, an angular and a linear part.
 pub trait Coordinates {
-    /// The homogeneous matrix they stand for.
+    /// The homogeneous matrix with these coordinates.
     type Matrix;
 
     /// `[hat(ω) v; 0 0]`.
@@ -99,8 +99,8 @@ impl<T: Real> Coordinates for SVector<T, 3> {
     }
 }
 
-/// The element `[hat(ω) v; 0 0]` of the Lie algebra with coordinates `(ω, v)`; in the plane `ω` times
-/// the quarter turn stands for `hat(ω)`.
+/// The element `[hat(ω) v; 0 0]` of the Lie algebra with coordinates `(ω, v)`; in the plane, `hat(ω)` is
+/// `ω` times the quarter turn.
 #[inline]
 #[must_use]
 pub fn twist<C: Coordinates>(x: &C) -> C::Matrix {

@@ -4,9 +4,9 @@
 use crate::Real;
 use nalgebra::SMatrix;
 
-/// Coefficients of `det(ν + M + λ S)` in which `M` occurs: entry `(j - 1, i)` is that of degree `j`
-/// in `M`, of `ν^i` and of `λ^(N - j - i)`; entries with `j + i > N` are zero. By the recursion of
-/// Faddeev and Le Verrier, whose rounding grows with the size: meant for a few rows.
+/// Coefficients of `det(ν + M + λ S)` in which `M` occurs: entry `(j - 1, i)` is the coefficient of
+/// `ν^i λ^(N - j - i)` of degree `j` in `M`; entries with `j + i > N` are zero. By the recursion of
+/// Faddeev and Le Verrier, whose rounding grows with the size: use it for a few rows.
 #[must_use]
 pub fn pencil_coefficients<T: Real, const N: usize>(
     m: &SMatrix<T, N, N>,
@@ -39,8 +39,8 @@ pub fn pencil_coefficients<T: Real, const N: usize>(
     out
 }
 
-/// Which entries of [`pencil_coefficients`] are not zero for a skew `M` and a symmetric `S`: those
-/// of even degree in `M`, as (row, column).
+/// The nonzero entries of [`pencil_coefficients`] for a skew `M` and a symmetric `S`, as (row, column): the entries
+/// of even degree in `M`.
 pub fn even_degrees(n: usize) -> impl Iterator<Item = (usize, usize)> {
     (2..=n)
         .step_by(2)

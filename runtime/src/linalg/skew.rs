@@ -43,7 +43,7 @@ pub fn hat<T: Real>(v: &Vector3<T>) -> Matrix3<T> {
     matrix
 }
 
-/// The axial vector of the skew part: `vee(hat(v)) = v`, and of any `a` that of `(a - a^T)/2`.
+/// The axial vector of the skew part `(a - a^T)/2`: `vee(hat(v)) = v`.
 #[inline]
 pub fn vee<T: Real>(a: &Matrix3<T>) -> Vector3<T> {
     let half = T::from_f64(0.5);

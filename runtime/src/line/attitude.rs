@@ -33,7 +33,7 @@ impl<T: Real> Attitude<T> {
         }
     }
 
-    /// The attitude that the rotation of a vector ([`turn_of`](super::turn_of)) turns this one to, seen from the body.
+    /// This attitude times the rotation of a vector ([`turn_of`](super::turn_of)) on the body side.
     #[inline(always)]
     #[must_use]
     pub fn moved(&self, v: &Vector3<T>) -> Self {
@@ -69,7 +69,7 @@ impl<T: Real> Attitude<T> {
     }
 }
 
-/// The quaternion from one to another, `q* p`: the frame of the second seen from that of the first.
+/// The quaternion from one to another, `q* p`: the second frame seen from the first.
 #[inline(always)]
 pub fn between<T: Real>(from: &UnitQuaternion<T>, to: &UnitQuaternion<T>) -> UnitQuaternion<T> {
     from.to(to)

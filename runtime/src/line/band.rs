@@ -1,5 +1,5 @@
-//! Velocities of all sites at once, where momenta hold velocities of neighbours: Newton's method from rest
-//! with block-tridiagonal derivatives. Takes the momenta of sites and of terms of neighbours, with their
+//! Velocities of all sites together, if momenta depend on velocities of neighbours: Newton's method from rest
+//! with block-tridiagonal derivatives. Takes the momenta of sites and of coupling terms, with their
 //! derivatives; gives the velocities, or the site at which they cannot be followed.
 
 use super::blocks::{Blocks, Fixed, Read, Size};
@@ -134,7 +134,7 @@ impl<T: Real, F: FnMut(&mut Sums<'_, T>), S: Size> Momenta<T> for Line<'_, T, F,
 }
 
 impl<T: Real, F, S: Size> Line<'_, T, F, S> {
-    /// Changes of rotations as those of their vectors.
+    /// Converts changes of rotations to changes of their vectors.
     #[inline(always)]
     fn turned(&self, x: &mut [T]) {
         let n = self.n.rows();
@@ -147,13 +147,13 @@ impl<T: Real, F, S: Size> Line<'_, T, F, S> {
     }
 }
 
-/// What is kept from step to step: room for the equations of a line of sites, of any number of components each.
+/// The workspace for the equations of a chain whose sites have any number of components. It persists between steps.
 #[derive(Clone, Debug)]
 pub struct AnyBand<T> {
     sites: usize,
     /// Whether derivatives are the same at all places and velocities: they are factored once.
     constant: bool,
-    /// Which components of a site are those of the vector of a rotation.
+    /// Which components of a site belong to the vector of a rotation.
     turns: Vec<bool>,
     factored: bool,
     blocks: Blocks<T>,
@@ -169,8 +169,8 @@ pub struct AnyBand<T> {
 }
 
 impl<T: Real> AnyBand<T> {
-    /// Room for so many sites with `n` components each, of a ring or of an open line; `constant` where derivatives are
-    /// the same at all places and velocities, for one model and step.
+    /// Room for `sites` sites with `n` components each, of a ring or an open chain. Set `constant` if the derivatives
+    /// do not depend on positions and velocities, for one model and step.
     #[must_use]
     pub fn new(n: usize, sites: usize, ring: bool, constant: bool) -> Self {
         let list = || vec![T::zero(); n * sites];
@@ -191,14 +191,14 @@ impl<T: Real> AnyBand<T> {
         }
     }
 
-    /// The same with velocities of rotations: which components of a site are those of the vector of one.
+    /// The same with velocities of rotations: `turns` marks the components of a site that belong to the vector of one.
     #[must_use]
     pub fn with_turns(self, turns: &[bool]) -> Self {
         let turns = turns.to_vec();
         Self { turns, ..self }
     }
 
-    /// Which components of a site are those of the vector of a rotation.
+    /// Which components of a site belong to the vector of a rotation.
     fn rotating<const N: usize>(&self) -> [bool; N] {
         core::array::from_fn(|k| self.turns.get(k).is_some_and(|turns| *turns))
     }
@@ -218,19 +218,20 @@ impl<T: Real> AnyBand<T> {
         &self.velocity
     }
 
-    /// Half the sum of the velocities found last times the momenta aimed at, less those at rest: the kinetic energy of
-    /// momenta that are linear in velocities.
+    /// Half the scalar product of the last velocities with the target momenta minus the momenta at rest. If momenta are
+    /// linear in velocities, this is the kinetic energy.
     pub fn half_product(&self) -> T {
         let all = self.velocity.iter().zip(&self.known).zip(&self.momenta);
         let sum = all.fold(T::zero(), |sum, ((v, p), rest)| sum + *v * (*p - *rest));
         sum * T::from_f64(0.5)
     }
 
-    /// The velocities of sites with `n` components whose momenta are known, those outside `moving` zero: `all` puts the
-    /// momenta of sites and adds those of terms of neighbours, with their derivatives, by rotations `Ω` along `Ω hat(η)`.
+    /// The velocities of sites with `n` components whose momenta are known; sites outside `moving` have velocity zero.
+    /// `all` sets the momenta of sites and adds the momenta of coupling terms, with their derivatives. The derivative
+    /// by a rotation `Ω` is taken along `Ω hat(η)`.
     ///
     /// # Errors
-    /// [`NoRoot`] where none follow from rest, and the site where that shows most.
+    /// [`NoRoot`] if the solution is not connected to rest, with the site of the largest correction.
     pub fn solve(
         &mut self,
         n: usize,
@@ -297,7 +298,7 @@ impl<T: Real> AnyBand<T> {
         }
     }
 
-    /// The site of the largest correction, or of the first that is no number.
+    /// The site of the largest correction, or of the first that is NaN.
     #[cold]
     fn worst(&self, n: usize) -> usize {
         let sizes = self.correction.iter().zip(&self.scales);
@@ -347,15 +348,15 @@ pub struct Band<T, const N: usize, const R: usize> {
     velocities: Vec<Velocity<T, N, R>>,
 }
 
-/// What sites and terms of neighbours add.
+/// Momenta and derivatives, to which sites and coupling terms add.
 #[derive(Debug)]
 pub struct Rows<'a, 'b, T, const N: usize, const R: usize> {
     sums: &'a mut Sums<'b, T>,
     velocities: &'a [Velocity<T, N, R>],
 }
 
-/// Momenta of the sites of a term, and those of their derivatives that are not zero: of the site of the first index by the
-/// velocity of that of the second.
+/// Momenta of the sites of a term, and their nonzero derivatives: of the momentum at the first index by the velocity at
+/// the second.
 pub type Added<T, const N: usize, const K: usize, const M: usize> =
     ([SVector<T, N>; K], [(usize, usize, SMatrix<T, N, N>); M]);
 
@@ -443,7 +444,7 @@ impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
         }
     }
 
-    /// The same with velocities of rotations: which components of a site are those of the vector of one.
+    /// The same with velocities of rotations: `turns` marks the components of a site that belong to the vector of one.
     #[must_use]
     pub fn with_turns(self, turns: [bool; N]) -> Self {
         let Self { all, velocities } = self;
@@ -451,12 +452,12 @@ impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
         Self { all, velocities }
     }
 
-    /// The velocities of sites whose momenta are `known`, those outside `moving` zero: `momenta` gives those of one site at
-    /// its velocity, `whole` the same with their derivative, by rotations `Ω` along `Ω hat(η)`; `between` adds those of
-    /// terms of neighbours.
+    /// The velocities of sites whose momenta are `known`; sites outside `moving` have velocity zero. `momenta` gives
+    /// the momenta of one site at its velocity, `whole` gives them with their derivative. The derivative by a rotation
+    /// `Ω` is taken along `Ω hat(η)`. `between` adds the momenta of coupling terms.
     ///
     /// # Errors
-    /// [`NoRoot`] where none follow from rest, and the site where that shows most.
+    /// [`NoRoot`] if the solution is not connected to rest, with the site of the largest correction.
     pub fn solve_along(
         &mut self,
         moving: [usize; 2],
@@ -500,8 +501,9 @@ impl<T: Real, const N: usize, const R: usize> Band<T, N, R> {
         Ok(())
     }
 
-    /// The kinetic energy of momenta that are linear in the velocities of sites and of their neighbours: `known`, `own`
-    /// and `between` as of [`Band::solve_along`], momenta where nothing moves. Not a number where there are no such velocities.
+    /// The kinetic energy of momenta that are linear in the velocities of sites and of their neighbours. `known` and
+    /// `between` are as for [`Band::solve_along`]; `own` gives the momenta at rest with their derivative. NaN if the
+    /// velocities cannot be found.
     pub fn kinetic(
         [sites, first, last]: [usize; 3],
         ring: bool,

@@ -2,8 +2,8 @@
 //! Takes blocks, site by site; gives factors and solutions, in a number of operations that grows with the
 //! number of sites.
 //!
-//! A ring is solved by bordering: its last site is taken out, the others are an open line, what they do to
-//! the last one is one block. Pivots are chosen within blocks.
+//! A ring is solved by bordering: its last site is eliminated last, and the others form an open chain. Their
+//! effect on the last site is one block. Pivots are chosen within blocks.
 
 mod lists;
 mod small;
@@ -123,7 +123,7 @@ pub(super) struct Blocks<T> {
     after: Vec<T>,
     inverted: Vec<bool>,
     pivots: Vec<usize>,
-    /// Of a ring: what the last site does to each other one.
+    /// For a ring, the effect of the last site on each other site.
     border: Vec<T>,
     scratch: Vec<T>,
     /// The site whose block had no pivot.
@@ -133,7 +133,7 @@ pub(super) struct Blocks<T> {
 impl<T: Real> Blocks<T> {
     /// All zeros.
     pub fn new(n: usize, sites: usize, ring: bool) -> Self {
-        // The neighbours of two sites are each other on either side; that of one is itself.
+        // In a ring of two sites both neighbours are the other site; in a ring of one, the site itself.
         let closed = ring && sites > 2;
         let list = || vec![T::zero(); n * n * sites];
         Self {
@@ -279,8 +279,8 @@ impl<T: Real> Blocks<T> {
         self.sites - usize::from(self.closed)
     }
 
-    /// Factors, in the place of the matrix, and `x = A^-1 x`; where a block has no pivot, or none above `floor` times its own
-    /// columns, the site.
+    /// Factors the matrix in place, and computes `x = A^-1 x`. Fails with the site of the first block without a pivot
+    /// above `floor` times its own columns.
     #[inline(always)]
     pub fn factor_and_solve(
         &mut self,

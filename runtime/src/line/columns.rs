@@ -72,7 +72,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
         self.len
     }
 
-    /// Whether there is no site.
+    /// Whether the list is empty.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -80,7 +80,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
     /// The value at a site.
     ///
     /// # Panics
-    /// Where there is no such site.
+    /// If `site` is out of range.
     #[inline(always)]
     pub fn at(&self, site: usize) -> V {
         assert!(site < self.len, "site {site} of {}", self.len);
@@ -94,7 +94,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize> Columns<V, T, N> {
     /// Puts another value at a site.
     ///
     /// # Panics
-    /// Where there is no such site.
+    /// If `site` is out of range.
     #[inline(always)]
     pub fn set(&mut self, site: usize, value: V) {
         assert!(site < self.len, "site {site} of {}", self.len);
@@ -293,7 +293,7 @@ macro_rules! numbered {
     };
 }
 
-/// The matrix whose numbers stand, column after column, from some place on.
+/// The matrix with the numbers from index `at` on, column after column.
 #[doc(hidden)]
 #[inline(always)]
 pub fn array_from<T: Real, const R: usize, const C: usize>(

@@ -1,4 +1,4 @@
-//! What can go wrong along a line: data of a wrong length, a value at one site, a step at one site.
+//! Errors of chains: data of a wrong length, a value at one site, a step at one site.
 //! Takes the failure and its site; gives messages that name both.
 
 use crate::mesh::MeshError;
@@ -29,7 +29,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why a line is not built, started or stepped.
+/// Why a chain cannot be built, started or stepped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LineError {
@@ -59,10 +59,10 @@ pub enum LineError {
     Site {
         /// Where.
         at: Place,
-        /// What is wrong.
+        /// The error of the value.
         error: ParameterError,
     },
-    /// A functional of all sites has no value where it is needed, or no derivative; the state is as it was before.
+    /// A functional of all sites, or its derivative, is undefined where it is needed; the state is unchanged.
     Functional {
         /// The node in time.
         node: u64,
@@ -73,7 +73,7 @@ pub enum LineError {
         /// A shorter step from the same state that was tried and works, where one was found.
         works: Option<f64>,
     },
-    /// A step was not made; the state is as it was before.
+    /// A step failed; the state is unchanged.
     Step {
         /// The node in time from which it would have started.
         node: u64,

@@ -1,6 +1,6 @@
-//! Loops over sites that compute several of them together, on the widest instruction set that there is where the feature `simd`
-//! is on. What a site is given is what the loop over single sites gives it, to the last bit: that loop also fills the sites
-//! that are left over, and those of which one is not an easy one.
+//! Loops over sites that compute several of them together, with the feature `simd` on the widest instruction set. The
+//! results are the same, bit for bit, as of the loop over single sites. That loop also fills the remaining sites, and
+//! every group of sites in which one is not easy.
 
 use super::part::{InColumns, LANES};
 use super::sweep::{Threads, Two, try_fill_part, try_in_parts, update_part};
@@ -14,20 +14,20 @@ pub trait Stage: Sync {
     /// The value of a site.
     type One;
 
-    /// Those of [`LANES`] sites from one of the part on, and whether all were found; of no meaning otherwise. To be marked
-    /// `#[inline(always)]`, as all that it calls.
+    /// Computes the values of [`LANES`] sites from `first` on; returns whether all were found. If not, `out` is
+    /// meaningless. Mark it and everything it calls `#[inline(always)]`.
     fn lanes<P: InColumns<One = Self::One>>(&self, first: usize, out: &mut P::Lanes) -> bool;
 }
 
-/// How the values of several sites, and what is kept for the next step, are computed together from what has been kept.
+/// How the values of several sites are computed together from stored values, which are updated for the next step.
 pub trait Change: Sync {
     /// The value of a site.
     type One;
-    /// What is kept of it.
+    /// The stored value of a site.
     type Kept;
 
-    /// Those of [`LANES`] sites from one of the part on, and whether what is kept is finite; of no meaning otherwise. To be marked
-    /// `#[inline(always)]`, as all that it calls.
+    /// Computes the values of [`LANES`] sites from `first` on; returns whether the stored values are finite. If not,
+    /// both are meaningless. Mark it and everything it calls `#[inline(always)]`.
     fn lanes<P: InColumns<One = Self::One>, K: InColumns<One = Self::Kept>>(
         &self,
         first: usize,
@@ -36,7 +36,7 @@ pub trait Change: Sync {
     ) -> bool;
 }
 
-/// What may be finite or not.
+/// A value that may be finite or not.
 pub trait Finite {
     /// Whether all its numbers are.
     fn is_finite(&self) -> bool;
@@ -66,7 +66,7 @@ pub fn fill_in_lanes<P: InColumns>(
 /// The same where a site may fail: the first one that does, and why. Others may be filled or not.
 ///
 /// # Errors
-/// That of the site with the smallest number.
+/// The error of the site with the smallest number.
 #[inline]
 pub fn try_fill_in_lanes<P: InColumns, E: Send>(
     threads: Threads,
@@ -127,11 +127,10 @@ fn singly<P: InColumns, E>(
     try_fill_part(first, out, sites, value)
 }
 
-/// `(value, kept[i]) = change(i, kept[i])`, the value put into `out[i]`, for every site, several of them together. Says which
-/// site is the first whose change is none; what is kept then is of no meaning.
+/// `(out[i], kept[i]) = change(i, kept[i])` for every site, several of them together.
 ///
 /// # Errors
-/// The number of that site.
+/// The first site for which `change` returns `None`; the stored values are then meaningless.
 #[inline]
 pub fn update_in_lanes<P: InColumns, K: InColumns>(
     threads: Threads,
@@ -377,7 +376,7 @@ mod tests {
         let h = 0.1;
         for j in [Matrix3::from_diagonal(&Vector3::new(0.5, 0.5, 1.5)), full] {
             let body = Poinsot::new(j).expect("a body");
-            // Of moments of inertia about 1, momenta up to 10 are turned; close to it the solve is a long one.
+            // With moments of inertia about 1, momenta up to 10 have a solution; near 10 it takes many iterations.
             for (count, hard) in [(40, 0.0), (40, 3.0), (40, 9.0), (5000, 9.0), (40, 40.0)] {
                 let momentum = |i: usize| {
                     let size = if i % 17 == 9 { hard } else { 0.5 };

@@ -1,12 +1,12 @@
-//! The impulses with which constraints are held along a line: those for which what is held vanishes at the end of a step,
-//! followed from none by Newton's method with block-tridiagonal derivatives, and those that a momentum is projected with,
-//! from one such system. Takes what is held and its derivatives, site by site; gives impulses, or the site at which they
-//! cannot be found.
+//! The impulses of the constraints of a chain. One search finds the impulses that make the constraints vanish at the
+//! end of a step, by Newton's method from zero with block-tridiagonal derivatives. The projection of a momentum solves
+//! one such system. Takes the constraints and their derivatives, site by site; gives impulses, or the site at which the
+//! search fails.
 //!
-//! The search asks for its values rather than calling for them: places are found between its steps, by what a model knows.
-//! Impulses `y` are followed along `c(y) = (1 - τ) c(0)` in stages, mostly one, by Newton's method: a stage is taken where
-//! its second correction is at most a quarter of the first (Deuflhard, Newton Methods for Nonlinear Problems, 2011,
-//! sections 2.1 and 5.1). That is a test at points, not a proof.
+//! The model drives the search: between its calls it computes the positions for the current impulses. Impulses `y` are
+//! followed along `c(y) = (1 - τ) c(0)` in stages, mostly one, by Newton's method. A stage is accepted if its second
+//! correction is at most a quarter of the first (Deuflhard, Newton Methods for Nonlinear Problems, 2011, sections 2.1
+//! and 5.1). That is a test at points, not a proof.
 
 // Several lists run along one index.
 #![allow(clippy::needless_range_loop)]
@@ -31,20 +31,21 @@ const LAST: f64 = 1e-8;
 /// The part of a stage that is tried where corrections do not fall.
 const WORSE: f64 = 0.2;
 
-/// What is held vanishes where it is so many roundings of its terms.
+/// A constraint vanishes if it is at most this many roundings of its terms.
 const ROUNDINGS: f64 = 32.0;
 
-/// Rotations and places are made with roundings of their own: where corrections no longer fall, so many are none.
+/// Rotations and positions have rounding of their own. If corrections no longer decrease, this many roundings count as
+/// zero.
 const STALLED: f64 = 4096.0;
 
-/// A pivot that is so small beside the derivatives of its constraint is what rounding leaves of none.
+/// A pivot below this share of the derivatives of its constraint is rounding of zero.
 const FLOOR: f64 = 64.0 * f64::EPSILON;
 
-/// No reactions hold the constraints of a line.
+/// The search for the constraint forces of a chain failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoReaction {
-    /// The part of the way from no reactions to the constraints up to which they were found; 1 where they were, and the
-    /// momentum there cannot be projected.
+    /// The share of the way from zero constraint forces to the constraints up to which they were found. It is 1 if they
+    /// were found, but the momentum there cannot be projected.
     pub share: f64,
 }
 
@@ -95,14 +96,14 @@ pub struct Multipliers<T> {
     ring: bool,
     /// Whether impulses belong to no site.
     of_sums: bool,
-    /// Of each component at how many sites it is held.
+    /// The number of constrained sites of each component.
     counts: Vec<usize>,
     blocks: Blocks<T>,
     impulses: Vec<T>,
     /// Where a stage began.
     from: Vec<T>,
     correction: Vec<T>,
-    /// What is held where there are no impulses.
+    /// The constraints at zero impulses.
     whole: Vec<T>,
     scales: Vec<f64>,
     phase: Phase,
@@ -111,9 +112,9 @@ pub struct Multipliers<T> {
     before: f64,
     passes: usize,
     further: u32,
-    /// The largest of what is held, in roundings of its terms.
+    /// The largest constraint, in roundings of its terms.
     roundings: f64,
-    /// Whether that was corrected by derivatives that were known.
+    /// Whether the last constraints were corrected by known derivatives.
     corrected: bool,
 }
 
@@ -158,7 +159,7 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// Room for constraints on sums over all sites: `n` impulses, found together as those of one site.
+    /// Room for constraints on sums over all sites: `n` impulses, found together as for a single site.
     #[must_use]
     pub fn of_sums(n: usize) -> Self {
         Self {
@@ -201,8 +202,8 @@ impl<T: Real> Multipliers<T> {
         !matches!(self.phase, Phase::Found | Phase::Lost)
     }
 
-    /// Takes what is held at these places, with the sizes of its terms beside it; whether derivatives are wanted. Where those
-    /// known do for the last correction, impulses are corrected by them.
+    /// Takes the constraints at the current positions, with the sizes of their terms; returns whether it needs
+    /// derivatives. If the known derivatives suffice for the last correction, it corrects the impulses by them.
     #[inline]
     pub fn wants_derivatives<const N: usize>(
         &mut self,
@@ -262,7 +263,7 @@ impl<T: Real> Multipliers<T> {
                 let r = aim - own[k];
                 self.correction[at] = r;
                 let size = r.magnitude() / (T::EPSILON * own[n + k].magnitude());
-                // What is no number stays the worst; zero of terms of no size is none.
+                // NaN remains the worst, except zero over zero.
                 if size > worst || size.is_nan() && r.magnitude() != 0.0 {
                     worst = if size.is_nan() { f64::INFINITY } else { size };
                 }
@@ -291,13 +292,13 @@ impl<T: Real> Multipliers<T> {
         true
     }
 
-    /// Whether impulses were corrected when what is held was taken last.
+    /// Whether the last call with constraints corrected the impulses.
     #[must_use]
     pub fn is_corrected(&self) -> bool {
         self.corrected
     }
 
-    /// What is left of the constraints at the end of the stage.
+    /// The share of the initial constraints that remains at the end of the stage.
     #[inline(always)]
     fn left(&self) -> f64 {
         match self.length >= 1.0 - self.share {
@@ -306,8 +307,8 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// Corrects the impulses by the derivatives of what is held: of each site by those of the one before, of itself, and of
-    /// the one after, side by side.
+    /// Corrects the impulses by the derivatives of the constraints: of each site by the impulses of the previous site,
+    /// of itself, and of the next site, side by side.
     #[inline]
     pub fn correct<const N: usize, const W: usize>(
         &mut self,
@@ -401,7 +402,7 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// Another stage from where this one began.
+    /// Restarts the stage with a shorter length.
     #[cold]
     fn shorter(&mut self, part: f64) {
         self.length = self.length.min(1.0 - self.share) * part;
@@ -412,7 +413,7 @@ impl<T: Real> Multipliers<T> {
         };
     }
 
-    /// Puts the derivatives of all sites into blocks; what is not held at a site stays without an impulse.
+    /// Loads the derivatives of all sites into blocks. Components without a constraint at a site get a zero impulse.
     #[inline(always)]
     fn load<'a>(&mut self, n: usize, rows: impl Fn(usize) -> &'a [T])
     where
@@ -433,7 +434,7 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// Of a ring whose sites have their neighbours on either side.
+    /// The same for a ring of one or two sites, whose neighbours on both sides are the same.
     fn add_rows<'a>(&mut self, n: usize, rows: impl Fn(usize) -> &'a [T])
     where
         T: 'a,
@@ -466,7 +467,7 @@ impl<T: Real> Multipliers<T> {
         most
     }
 
-    /// A site, or that of all where impulses belong to sums.
+    /// The site, or [`Place::ALL`] if the impulses belong to sums.
     fn place(&self, site: usize) -> usize {
         match self.of_sums {
             true => Place::ALL,
@@ -477,7 +478,7 @@ impl<T: Real> Multipliers<T> {
     /// Whether impulses were found.
     ///
     /// # Errors
-    /// [`NoReaction`], and the site where that shows most.
+    /// [`NoReaction`], and the site of the largest correction.
     pub fn root_found(&self) -> Result<(), (usize, NoReaction)> {
         match self.phase {
             Phase::Found => Ok(()),
@@ -485,10 +486,11 @@ impl<T: Real> Multipliers<T> {
         }
     }
 
-    /// The impulses that take rates of change away: with derivatives as [`Multipliers::correct`] takes them.
+    /// The impulses that cancel the rates of change of the constraints, with derivatives as for
+    /// [`Multipliers::correct`].
     ///
     /// # Errors
-    /// [`NoReaction`] where constraints are not independent, and the site.
+    /// [`NoReaction`] if the constraints are not independent, and the site.
     #[inline]
     pub fn projected<const N: usize, const W: usize>(
         &mut self,
@@ -570,7 +572,7 @@ impl<T: Real> Multipliers<T> {
         &self.impulses
     }
 
-    /// The site of the largest impulse or correction, or of the first that is no number, or where the blocks have no pivot.
+    /// The site whose block lacks a pivot, else the site of the largest correction, or of the first that is NaN.
     #[cold]
     fn worst(&self) -> usize {
         if let Some(site) = self.blocks.without_pivot() {

@@ -2,11 +2,11 @@
 //! rest. Takes the momentum of the edge, and `P` with its derivative; gives the velocity, or how far it
 //! could be followed.
 //!
-//! The curve `P(v) = (1 - τ) P(0) + τ m` begins at rest and ends at the principal root. It is followed in
-//! stages, mostly one, by Newton's method: a stage is taken where its first two corrections by one tangent
-//! fall by a factor of four, which bounds how the tangent changes along it (Deuflhard, Newton Methods for
-//! Nonlinear Problems, 2011, sections 2.1 and 5.1). That is a test at points, not a proof. The same two say what is
-//! left after another correction.
+//! The curve `P(v) = (1 - τ) P(0) + τ m` begins at rest and ends at the principal root. Newton's method follows it
+//! in stages, mostly one. A stage is accepted if its first two corrections by one tangent decrease by a factor of
+//! four. This bounds the change of the tangent along the stage (Deuflhard, Newton Methods for Nonlinear Problems,
+//! 2011, sections 2.1 and 5.1). It is a test at points, not a proof. The same two corrections estimate the error
+//! after another correction.
 
 // Several lists run along one index.
 #![allow(clippy::needless_range_loop)]
@@ -19,8 +19,8 @@ use crate::solvers::newton::principal::FALLS;
 use core::fmt;
 use nalgebra::{SMatrix, SVector, Vector3};
 
-/// Shortest stage, as a part of the way: of a momentum like `m v + b v^3` the first one is about `m^(3/2)/(b^(1/2) p)`, which
-/// has no bound.
+/// Shortest stage, as a share of the way. For a momentum like `m v + b v^3` the first stage is about
+/// `m^(3/2)/(b^(1/2) p)`, which may be arbitrarily short.
 const SHORTEST: f64 = 1e-100;
 
 /// Most stages on the way.
@@ -32,7 +32,7 @@ const MOST_CORRECTIONS: usize = 20;
 /// A correction so small, of the velocity, leaves rounding when the next would be its square.
 const LAST: f64 = 1e-8;
 
-/// What is left of a velocity is nothing: so many of its roundings, by an estimate from corrections.
+/// The error of a velocity counts as zero if its estimate from the corrections is at most this many roundings.
 const NOTHING: f64 = 1.0 / 16.0;
 
 /// The part of a stage that is tried where corrections do not fall.
@@ -44,10 +44,10 @@ const NEAR: f64 = 1e-3;
 /// Residuals of so many roundings of both sides are none.
 const ROUNDINGS: f64 = 32.0;
 
-/// No velocity that follows from rest has this momentum.
+/// A momentum without a velocity that is connected to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoRoot {
-    /// The part of the way from rest up to which velocities were found.
+    /// The share of the way from rest up to which velocities were found.
     pub share: f64,
 }
 
@@ -66,8 +66,8 @@ impl fmt::Display for NoRoot {
 
 impl std::error::Error for NoRoot {}
 
-/// Momenta as functions of velocities, with a derivative that is factored where it is wanted: that by the vector `v` of a
-/// rotation `Ω` is given along `Ω hat(η)`.
+/// Momenta as functions of velocities, with a derivative that is factored on demand. The derivative by the vector `v`
+/// of a rotation `Ω` is taken along `Ω hat(η)`.
 pub(super) trait Momenta<T: Real> {
     /// The momenta of velocities, and the derivative there.
     fn at(&mut self, velocity: &[T], momenta: &mut [T]);
@@ -77,8 +77,8 @@ pub(super) trait Momenta<T: Real> {
     fn scales(&self, scales: &mut [f64]);
     /// Whether a component of a velocity is of the vector of a rotation, which is rounded as numbers of the size of 1.
     fn turns(&self, component: usize) -> bool;
-    /// Factors the derivative, which was taken at these velocities, and gives the change of velocities by which momenta
-    /// change by `x`; false where it is singular or not finite.
+    /// Factors the derivative, which was taken at these velocities, and replaces the change `x` of momenta by the
+    /// change of velocities. False if the derivative is singular or not finite.
     fn factor_and_solve(&mut self, velocity: &[T], x: &mut [T]) -> bool;
     /// The same by the derivative that was factored last.
     fn solve(&mut self, x: &mut [T]);
@@ -94,7 +94,7 @@ pub(super) fn begins(turns: &[bool]) -> impl Iterator<Item = usize> {
     })
 }
 
-/// The change of rotations `Ω hat(η)` as that of their vector, at that at which the derivative was taken.
+/// Converts a change `Ω hat(η)` of rotations to the change of their vector, at the vector of the derivative.
 #[inline(always)]
 pub(super) fn of_vector<T: Real>(velocity: &[T], change: &mut [T]) {
     if let (&[x, y, z], [a, b, c]) = (velocity, change) {
@@ -111,11 +111,11 @@ pub(super) struct Lists<'a, T> {
     pub from: &'a mut [T],
     /// The momenta of the trial.
     pub momenta: &'a mut [T],
-    /// What is aimed at, less the momenta at rest.
+    /// The target momenta minus the momenta at rest.
     pub whole: &'a mut [T],
     /// A correction.
     pub correction: &'a mut [T],
-    /// Of velocities.
+    /// The scales of the velocities.
     pub scales: &'a mut [f64],
 }
 
@@ -151,7 +151,7 @@ fn largest<T: Real>(x: &[T], scales: &[f64]) -> f64 {
     }
 }
 
-/// What is aimed at in a component at the end of a stage: `known - (1 - end) whole`, near rest from there.
+/// The target of a component at the end of a stage: `known - (1 - end) whole`, computed from rest if `end < 1/2`.
 #[inline(always)]
 fn aim<T: Real>(known: &[T], end: f64, lists: &Lists<'_, T>, i: usize) -> T {
     let (left, gone) = (T::from_f64(1.0 - end), T::from_f64(end));
@@ -162,7 +162,7 @@ fn aim<T: Real>(known: &[T], end: f64, lists: &Lists<'_, T>, i: usize) -> T {
     }
 }
 
-/// `correction = momenta aimed at, less those there`, and whether every component of that is rounding of its own terms.
+/// `correction = target momenta - momenta`, and whether every component of it is rounding of its own terms.
 #[inline(always)]
 fn residual<T: Real>(known: &[T], end: f64, lists: &mut Lists<'_, T>) -> bool {
     let mut rounded = true;
@@ -176,9 +176,9 @@ fn residual<T: Real>(known: &[T], end: f64, lists: &mut Lists<'_, T>) -> bool {
     rounded
 }
 
-/// Whether what is left of the momenta is rounding of the largest component, in units of scales: what a term of one is
-/// rounded to moves the velocity, and by it the others, as near rest in a vector potential that is large along one
-/// direction. Asked only where corrections no longer fall.
+/// Whether the residual is rounding of the largest component, in units of scales. Rounding of one component changes the
+/// velocity and thereby the other components, as near rest in a vector potential that is large along one direction.
+/// Used only if corrections no longer decrease.
 #[cold]
 fn rounded_together<T: Real>(known: &[T], end: f64, lists: &Lists<'_, T>) -> bool {
     let (mut most, mut reached) = (0.0_f64, 0.0_f64);
@@ -249,8 +249,8 @@ pub(super) fn follow<T: Real>(
     Err(NoRoot { share })
 }
 
-/// A correction that is rounding of rotations, in units of scales: momenta are differences of turned vectors, which hardly
-/// turn where a step is short.
+/// The size of corrections that are rounding of rotations, in units of scales: in a short step, momenta are small
+/// differences of turned vectors.
 #[inline(always)]
 fn of_turns<T: Real>(equations: &impl Momenta<T>, scales: &[f64]) -> f64 {
     let mut most = 0.0_f64;
@@ -262,8 +262,8 @@ fn of_turns<T: Real>(equations: &impl Momenta<T>, scales: &[f64]) -> f64 {
     ROUNDINGS * T::EPSILON * most
 }
 
-/// Goes to the end of a stage, of which the first correction is known: by what part of it another one should be shorter, if
-/// it is too long. Each derivative serves for two corrections.
+/// Completes a stage whose first correction is known. If the stage is too long, returns the factor for a shorter one.
+/// Each derivative serves for two corrections.
 #[inline(always)]
 fn stage<T: Real>(
     known: &[T],
@@ -285,8 +285,8 @@ fn stage<T: Real>(
         return Some((0.8 * FALLS * first / second).clamp(0.1, 0.8));
     }
     corrected(lists.velocity, lists.correction);
-    // What is left after a correction `d` by a derivative that was taken before it is `bend d^2`, and `2 bend d e` after
-    // another one, `e`, by the same.
+    // The error after a correction `d` by the derivative before it is `bend d^2`. After another correction `e` by the
+    // same derivative it is `2 bend d e`.
     let mut bend = second / (first * first);
     let nothing = |left: f64, size: f64| left <= NOTHING * T::EPSILON * size;
     let size = largest(lists.velocity, lists.scales);
@@ -350,7 +350,8 @@ fn stage<T: Real>(
     None
 }
 
-/// A correction by the derivative that was factored last: whether what it takes away is rounding, and its size.
+/// A correction by the derivative that was factored last: whether the residual is rounding, and the size of the
+/// correction.
 #[inline(always)]
 fn again<T: Real>(
     known: &[T],
@@ -372,7 +373,7 @@ struct Site<'a, T, F> {
     tangent: &'a mut [T],
     factors: &'a mut [T],
     pivots: &'a mut [usize],
-    /// Where the derivative was taken that is factored.
+    /// The velocity at which the factored derivative was taken.
     factored: &'a mut [T],
 }
 
@@ -416,7 +417,7 @@ impl<T: Real, F: FnMut(&[T], &mut [T], Option<&mut [T]>)> Momenta<T> for Site<'_
     }
 }
 
-/// Of a diagonal block: velocities times these are all of one unit, the root of an action.
+/// The scales of a diagonal block. Velocities times their scales have a common unit, the root of an action.
 #[inline(always)]
 pub(super) fn scales_of<T: Real>(n: usize, tangent: &[T], scales: &mut [f64]) {
     for k in 0..n {
@@ -427,11 +428,12 @@ pub(super) fn scales_of<T: Real>(n: usize, tangent: &[T], scales: &mut [f64]) {
     }
 }
 
-/// The velocity of a site whose momentum is `known`; `turns` says which components are those of the vector `v` of a rotation
-/// `Ω`, `momentum` gives that at a velocity, `whole` the same with its derivative, that by `v` along `Ω hat(η)`.
+/// The velocity of a site whose momentum is `known`. `turns` marks the components of the vector `v` of a rotation `Ω`.
+/// `momentum` gives the momentum at a velocity, `whole` gives it with its derivative. The derivative by `v` is taken
+/// along `Ω hat(η)`.
 ///
 /// # Errors
-/// [`NoRoot`] where no velocity follows from rest.
+/// [`NoRoot`] if the solution is not connected to rest.
 #[inline]
 pub fn root<T: Real, const N: usize>(
     known: &SVector<T, N>,
@@ -550,8 +552,8 @@ mod tests {
         }
     }
 
-    /// Where a vector potential is large along one direction, momenta of particles that hardly move are rounding of it,
-    /// and what of it enters the other components is no rounding of their own: one in a thousand of these was refused.
+    /// If a vector potential is large along one direction, the momenta of slow particles are rounding of it. The share
+    /// of this rounding in the other components exceeds their own rounding: one in a thousand of these cases failed.
     #[test]
     fn near_rest_in_a_large_vector_potential_velocities_are_found() {
         let mut state = 1_u64;

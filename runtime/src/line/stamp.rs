@@ -3,25 +3,25 @@
 
 use core::sync::atomic::{AtomicU64, Ordering};
 
-/// A number that stands for a state: that of a trajectory and how it got here. Two states of equal stamps
-/// are equal; it reaches no output.
+/// A number that identifies a state by its trajectory and its steps so far. Two states with equal stamps
+/// are equal. Stamps never reach an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamp(u64);
 
 static NEXT: AtomicU64 = AtomicU64::new(1);
 
 impl Stamp {
-    /// One that no other state has.
+    /// A stamp that differs from all others.
     pub fn fresh() -> Self {
         Self(mixed(NEXT.fetch_add(1, Ordering::Relaxed)))
     }
 
-    /// That of no state.
+    /// The stamp that belongs to no state.
     pub fn none() -> Self {
         Self(0)
     }
 
-    /// That of the state after a step of `h` by the model of this stamp.
+    /// The stamp of the state after a step of `h` by the model with the stamp `model`.
     #[inline]
     #[must_use]
     pub fn after(self, model: Stamp, h: f64) -> Self {

@@ -1,5 +1,5 @@
-//! What loops over sites read of a list around several sites that they compute together: each number of all these sites side by
-//! side, as many of them as the compiler is told, so that no index is tested.
+//! Views of a list around several sites that a loop computes together. Each view has a static length, so that the
+//! compiler removes the tests of indices.
 
 use super::columns::{Columns, Numbered, of_length};
 use super::part::LANES;
@@ -8,7 +8,7 @@ use num_traits::Zero;
 
 /// A list of which `M` sites can be read together.
 pub trait Windowed<const M: usize> {
-    /// Those sites.
+    /// The view of these sites.
     type Window<'a>
     where
         Self: 'a;
@@ -33,8 +33,8 @@ impl<V: Numbered<N>, const N: usize, const M: usize> Window<'_, V, N, M> {
         self.ahead::<0>(site)
     }
 
-    /// The value `ON` sites on. The index is tested as that of the loop is: a test of its own may keep half of the sites from
-    /// being computed together.
+    /// The value `ON` sites further. The test of the index is the same as in the loop: another test may halve the
+    /// number of sites that are computed together.
     #[inline(always)]
     pub fn ahead<const ON: usize>(&self, site: usize) -> V {
         // A loop: `map` of an array is not always inlined.
@@ -63,7 +63,7 @@ impl<V: Numbered<N, Number = T>, T: Real, const N: usize, const M: usize> Window
     }
 }
 
-/// Sites of a list of values that stand one after the other.
+/// Sites of a list that stores value after value.
 pub struct Stretch<'a, V, const M: usize> {
     list: &'a [V; M],
     first: usize,
@@ -83,7 +83,7 @@ impl<V: Copy, const M: usize> Stretch<'_, V, M> {
     }
 }
 
-/// Of a window the part that lies `ON` sites on from those computed together.
+/// The part of a window that begins `ON` sites further.
 #[inline(always)]
 fn lanes<T, const ON: usize, const M: usize>(window: &[T; M]) -> &[T; LANES] {
     of_length(&window[ON..ON + LANES])

@@ -1,19 +1,19 @@
-//! Where particles live: a box, each direction of which closes on itself or ends in walls.
-//! Positions are kept as they are; what is computed from them wraps.
+//! The domain of particles: a box, each direction of which is periodic or ends in walls.
+//! Positions are stored unwrapped; computations from them wrap.
 
 use crate::Real;
 
-/// What stands at the ends of a direction.
+/// The boundary condition of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wall {
-    /// Nothing: the direction closes on itself.
+    /// The direction is periodic.
     Periodic,
     /// A wall at either end, which reflects.
     Solid,
 }
 
 impl Wall {
-    /// How many nodes so many cells have along a direction that ends so: one more between walls, as many around.
+    /// The number of nodes of `cells` cells along a direction: `cells + 1` between walls, `cells` if periodic.
     #[must_use]
     pub fn nodes(self, cells: usize) -> usize {
         match self {
@@ -28,7 +28,7 @@ impl Wall {
 pub struct Domain<const D: usize> {
     /// Length along each direction.
     pub lengths: [f64; D],
-    /// What stands at the ends of each direction.
+    /// The boundary condition of each direction.
     pub walls: [Wall; D],
 }
 
@@ -45,7 +45,7 @@ impl<const D: usize> Domain<D> {
         Self { lengths, walls }
     }
 
-    /// Whether a place is between all walls; directions without walls have no outside.
+    /// Whether a position is between all walls. Periodic directions are not checked.
     #[inline]
     pub fn is_inside<T: Real>(&self, place: &[T; D]) -> bool {
         let each = place.iter().zip(&self.lengths).zip(&self.walls);

@@ -1,9 +1,9 @@
-//! What can go wrong while functionals of all sites are computed. Takes the numbers of the failure and its sites,
-//! counted from 0; gives messages that name them.
+//! Errors in the computation of functionals of all sites. Takes the numbers of the failure and its sites, counted
+//! from 0; gives messages that name them.
 
 use core::fmt;
 
-/// Why a functional has no value, or no derivative.
+/// Why a functional or its derivative cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
@@ -31,13 +31,13 @@ pub enum MeshError {
         /// They.
         sites: [usize; 3],
     },
-    /// An iteration did not arrive.
+    /// An iteration did not converge.
     NotConverged {
         /// Steps taken.
         iterations: usize,
-        /// What was left, relative to the right side.
+        /// The residual, relative to the right side.
         residual: f64,
-        /// What was asked for.
+        /// The tolerance for the residual.
         tolerance: f64,
     },
     /// There are not as many values as sites.

@@ -1,23 +1,23 @@
-//! What a function of all sites is to a stepper: its values at sites, and its derivative, transposed and
-//! applied to a seed. Takes a field of particles or the values of another functional.
+//! Functions of all sites, as steppers use them: the values at sites, and the transposed derivative applied
+//! to a seed. Takes a field of particles or the values of another functional.
 
 use super::{Domain, MeshError};
 use crate::line::Threads;
 use crate::{ParameterError, Real};
 
-/// What a functional is made for.
+/// The domain, the grid and the number of particles of a functional.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting<const D: usize> {
-    /// Where particles live.
+    /// The domain of the particles.
     pub domain: Domain<D>,
-    /// Cells of the grid along each direction; none where the model has no grid.
+    /// Cells of the grid along each direction; `None` for a model without a grid.
     pub grid: Option<[usize; D]>,
     /// How many particles there are.
     pub particles: usize,
 }
 
 impl<const D: usize> Setting<D> {
-    /// Lengths of a cell of the grid along each direction; without a grid those of a box that particles have on average.
+    /// Lengths of a cell of the grid along each direction; without a grid, of the average box per particle.
     pub fn cell(&self) -> [f64; D] {
         let lengths = self.domain.lengths;
         match self.grid {
@@ -29,7 +29,7 @@ impl<const D: usize> Setting<D> {
         }
     }
 
-    /// How many nodes the grid has: one more than cells between walls, as many around.
+    /// The number of nodes of the grid: per direction, one more than cells between walls, as many as cells if periodic.
     pub fn nodes(&self) -> usize {
         let grid = self.grid.unwrap_or([0; D]);
         let along = grid.iter().zip(&self.domain.walls);
@@ -38,7 +38,7 @@ impl<const D: usize> Setting<D> {
 }
 
 /// A function of the values of one argument at all of its sites, with values at sites of its own: an area of each
-/// cell of a mesh, a depth on a grid. What it depends on beside that argument is constant in time.
+/// cell of a mesh, a depth on a grid. Its other arguments are constant in time.
 ///
 /// Dot products and sums run in an order that is fixed by the numbers of sites: no result depends on the number of
 /// threads.
@@ -56,7 +56,7 @@ pub trait Functional<T: Real, const D: usize>: Clone + Send + Sync + Sized {
     /// Names what it cannot work with.
     fn new(setting: &Setting<D>, data: Self::Data<'_>) -> Result<Self, ParameterError>;
 
-    /// How many sites its values stand at.
+    /// The number of sites of its values.
     fn sites(&self) -> usize;
 
     /// Its values, one for each of its sites.

@@ -1,5 +1,5 @@
-//! Which lengths a depth is smoothed over: from none to a hundred domains. Beyond it only the mean is left, and
-//! the rounding of the square of the length by that of a cell would change the mass.
+//! The admissible smoothing lengths of a depth: from zero to a hundred domains. A longer one leaves only the mean,
+//! and rounding of its square, compared with the square of a cell, would change the mass.
 
 use super::Domain;
 use crate::scalar::largest;

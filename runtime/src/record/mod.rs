@@ -1,4 +1,4 @@
-//! What was seen of a run, and files of it: tables in memory, CSV, files for ParaView, and with the feature `npz` archives
+//! The samples of a run in memory and in files: tables, CSV, files for ParaView, and with the feature `npz` archives
 //! for numpy.
 //! Takes the samples of the integration loop; gives tables with one row per sample.
 
@@ -25,7 +25,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// The rows; none when a row has no numbers.
+    /// The rows; empty if the width is zero.
     pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
         self.numbers.chunks_exact(self.width.max(1))
     }

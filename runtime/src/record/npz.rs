@@ -50,7 +50,7 @@ impl Array {
         }
     }
 
-    /// Of `samples` times `shape` numbers: words `columns` of every row, one range after the other.
+    /// An array of `samples` times `shape` numbers: words `columns` of every row, one range after the other.
     #[must_use]
     pub fn of_columns(
         name: &str,
@@ -71,7 +71,7 @@ impl Array {
         }
     }
 
-    /// Of the nodes: the first word of every row, a count.
+    /// The array of the nodes: the first word of every row, a count.
     #[must_use]
     pub fn of_nodes(name: &str, samples: u64) -> Self {
         let mut array = Self::of_columns(name, samples, &[], std::iter::once(0..1).collect());
@@ -81,7 +81,7 @@ impl Array {
         array
     }
 
-    /// Of counts that no row holds.
+    /// An array of given counts, independent of the rows.
     #[must_use]
     pub fn of_numbers(name: &str, numbers: Vec<u64>) -> Self {
         Self {
@@ -211,10 +211,10 @@ impl Member {
     }
 }
 
-/// Writes `arrays` of `rows` as the members of an npz, from where `file` stands.
+/// Writes `arrays` of `rows` as the members of an npz, from the current position of `file`.
 ///
 /// # Errors
-/// Those of `file` and of the rows, and `InvalidInput` beyond the 4 GiB of a classic zip, and where an array was made for
+/// The errors of `file` and of the rows. `InvalidInput` beyond the 4 GiB of a classic zip, or if an array was made for
 /// another number of samples or for longer rows.
 pub fn write(file: &mut (impl Write + Seek), rows: &dyn Rows, arrays: &[Array]) -> io::Result<()> {
     let too_large = |_| io::Error::new(io::ErrorKind::InvalidInput, "more than 4 GiB");

@@ -7,8 +7,8 @@ use num_traits::{One, Zero};
 
 /// The unevaluated sum of two doubles (arithmetic of Dekker, 1971, and Knuth).
 ///
-/// The relative error of one operation is at most about 2^-104. The exponent range is that of
-/// `f64`, products of numbers beyond 1e300 overflow to NaN.
+/// The relative error of one operation is at most about 2^-104. The exponent range is the same as for
+/// `f64`; products of numbers beyond 1e300 overflow to NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DoubleDouble {
     high: f64,
@@ -75,7 +75,7 @@ impl DoubleDouble {
         self.high
     }
 
-    /// What is left after the leading double.
+    /// The remainder after the leading double.
     #[inline]
     pub fn low(self) -> f64 {
         self.low

@@ -221,7 +221,8 @@ impl<const N: usize> Real for Dual<N> {
     fn sqrt(self) -> Self {
         let root = self.real.sqrt();
         if root == 0.0 {
-            // The length of what is zero and stays so has no change; anything else has no derivative.
+            // If the argument is zero with derivative zero, so is the derivative of the root; else it is infinite or
+            // NaN.
             let dual = self.dual.map(|d| if d == 0.0 { 0.0 } else { d / root });
             return Self { real: root, dual };
         }

@@ -9,7 +9,7 @@ use num_traits::{One, Zero};
 /// `N` numbers advanced together; lane `i` is the `i`-th member of the ensemble.
 ///
 /// Every operation rounds each lane as `f64` does. `N` of 4 or 8 fills the vector registers of
-/// current processors; the alignment of 64 bytes lets a lane group be loaded in one instruction.
+/// current processors. Since the alignment is 64 bytes, one instruction loads a lane group.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct Lanes<const N: usize>(pub [f64; N]);

@@ -25,10 +25,10 @@ use num_traits::{One, Zero};
 
 /// A real number as the solvers and the emitted steppers see it.
 ///
-/// One value may stand for several numbers: the lanes of an ensemble, or a value with its
-/// derivatives. Hence there is no order on `Real`: a test of sign names the reduction it means
-/// ([`least`](Real::least), [`greatest`](Real::greatest)), a test of convergence uses
-/// [`magnitude`](Real::magnitude), which sees every lane and every derivative part.
+/// One value may represent several numbers: the lanes of an ensemble, or a value with its
+/// derivatives. Hence `Real` is not ordered. To test a sign, name the reduction you need
+/// ([`least`](Real::least), [`greatest`](Real::greatest)). To test convergence, use
+/// [`magnitude`](Real::magnitude), which includes every lane and every derivative part.
 ///
 /// Operators act lane by lane; on dual numbers they follow the rules of differentiation.
 /// No function panics; outside their domain they give NaN, as `f64` does.
@@ -51,7 +51,7 @@ pub trait Real:
     + Zero
     + One
 {
-    /// What stands in one lane: `f64` for several lanes, the type itself for those without.
+    /// The type of one lane: `f64` for types with several lanes, the type itself for types without.
     type One: Real<One = Self::One>;
 
     /// Unit roundoff: the largest relative error of one rounded operation is about this.
@@ -63,7 +63,7 @@ pub trait Real:
     /// each of which makes one more order of derivatives exact.
     const ORDER: u32;
 
-    /// How many independent numbers stand side by side (1 unless the type has lanes).
+    /// The number of lanes (1 unless the type has lanes).
     const LANES: usize = 1;
 
     /// The constant `x`, in every lane, without derivatives.
@@ -78,16 +78,16 @@ pub trait Real:
     /// The leading real part (lane 0 of several lanes), rounded to `f64`.
     fn value(self) -> f64;
 
-    /// The real part of one lane, rounded to `f64`; NaN when there is no such lane.
+    /// The real part of one lane, rounded to `f64`; NaN if `index` is not a lane.
     #[inline]
     fn lane(self, index: usize) -> f64 {
         if index == 0 { self.value() } else { f64::NAN }
     }
 
-    /// What stands in a lane; that of the first when there is no such lane.
+    /// The value of a lane; the first lane if `lane` is out of range.
     fn one_of(&self, lane: usize) -> Self::One;
 
-    /// Puts it there; nothing happens when there is no such lane.
+    /// Sets the value of a lane; ignored if `lane` is out of range.
     fn set_lane(&mut self, lane: usize, one: Self::One);
 
     /// The largest absolute value over all lanes and all derivative parts; NaN if any is NaN.
@@ -153,7 +153,7 @@ pub trait Real:
     fn sign(self) -> Self {
         let one = Self::one();
         let sign = self.where_positive(one) - (-self).where_positive(one);
-        // Adds nothing to a number, and NaN to what is none.
+        // Adds zero to a finite number, and NaN otherwise.
         sign + Self::from_f64(0.0) * self
     }
 
@@ -215,8 +215,8 @@ pub trait Real:
         scale
     }
 
-    /// The outputs of a function that this scalar takes as a whole: of whole numbers that say how large it is, and the inputs.
-    /// Nothing for scalars that compute it step by step.
+    /// The outputs of a function that this scalar records as a single operation. Its arguments are whole numbers that
+    /// give its size, and the inputs. `None` for scalars that compute it step by step.
     #[doc(hidden)]
     fn whole(
         _function: fn(&[usize], &[f64], &mut [f64]),

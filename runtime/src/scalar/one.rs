@@ -1,4 +1,4 @@
-//! One lane of what is made of scalars, read where it lies.
+//! One lane of a value that consists of scalars, read in place.
 //! Takes a value over lanes and the number of a lane; gives the value over plain numbers.
 //!
 //! Loops over the lanes that do the arithmetic of plain numbers are what compilers vectorise best:
@@ -8,13 +8,13 @@ use super::Real;
 use nalgebra::{ArrayStorage, SMatrix};
 use num_traits::Zero;
 
-/// What is made of scalars and can be read lane by lane. As [`lane`](super::lane) gives, but in a
-/// loop of steps: nothing is copied that is not used.
+/// A value that consists of scalars and can be read lane by lane. The result is the same as of
+/// [`lane`](super::lane), but only the used parts are copied, for loops of steps.
 pub trait InLanes: Copy {
-    /// The same over the scalar of one lane.
+    /// The same type over the scalar of one lane.
     type One: Copy;
 
-    /// What stands in a lane; that of the first when there is no such lane.
+    /// The value of a lane; the first lane if `lane` is out of range.
     fn in_lane(&self, lane: usize) -> Self::One;
 }
 
@@ -80,7 +80,7 @@ macro_rules! in_lanes {
 }
 pub(crate) use in_lanes;
 
-/// Puts what stands in one lane into an array of scalars.
+/// Sets one lane of an array of scalars.
 #[inline(always)]
 pub(crate) fn set_all<T: Real, const K: usize>(all: &mut [T; K], lane: usize, ones: [T::One; K]) {
     for (x, one) in all.iter_mut().zip(ones) {

@@ -10,7 +10,7 @@ use nalgebra::SMatrix;
 ///
 /// The emitted parameters, initial data and states implement it, field by field.
 pub trait OfScalars: Copy + core::fmt::Debug + Send + Sync {
-    /// The scalars it is made of.
+    /// The type of its scalars.
     type Scalar: Real;
 
     /// The same type over another scalar.
@@ -90,7 +90,7 @@ where
     })
 }
 
-/// One of the bodies side by side; all NaN when there is no such lane.
+/// The body in one lane; all NaN if `index` is not a lane.
 pub fn lane<X, const N: usize>(wide: &X::Over<Lanes<N>>, index: usize) -> X
 where
     X: OfScalars<Scalar = f64>,

@@ -1,4 +1,4 @@
-//! The largest step that can be made instead of one that was refused.
+//! The largest step that succeeds instead of one that failed.
 //! Takes a way to try steps; gives the step, by halving and bisection.
 
 use core::cell::Cell;
@@ -10,7 +10,7 @@ const HALVINGS: u32 = 8;
 const LEAPS: u32 = 31;
 const LEAP: f64 = 1.0 / 4096.0;
 
-/// What part of the step is tried last: `2^-380`.
+/// The smallest share of the step that is tried: `2^-380`.
 pub(crate) const SHORTEST_SHARE: f64 = f64::from_bits((1023 - 380) << 52);
 
 /// Halvings that must all do: a solution of another kind is sometimes met far beyond the bound.
@@ -44,18 +44,17 @@ const RETURNS: usize = 8;
 /// The largest step not beyond `h` whose ratio is at most 1, by bisection.
 ///
 /// `solvable` gives the bound ratio at a trial step, or `None` where it cannot be evaluated.
-/// For torques that depend on the step there is no closed form. The result is a hair (1e-12)
-/// inside the bound, so that the solver accepts it, and shorter steps are tried too, so that it is
-/// none that happens to be solved beyond others that are not; it is 0 when no step above
-/// `h / 2^380` will do. It is 0 as well inside a trial of another search, which asks whether a step
-/// can be made, not which could be made instead.
+/// Torques that depend on the step require a search. The result is slightly (1e-12) inside the
+/// bound, so that the solver accepts it. Shorter steps are tried too, so that the result is not an
+/// isolated success beyond steps that fail. It is 0 if no step above `h / 2^380` succeeds. It is
+/// also 0 within a trial of another search, which only needs to know whether the trial succeeds.
 #[must_use]
 pub fn largest_step(h: f64, solvable: impl Fn(f64) -> Option<f64>) -> f64 {
     search(h, TO_ROUNDING, &solvable)
 }
 
-/// The largest share of a step that a search over cheap trials finds, less a millionth, and that a
-/// dear one confirms. Where it confirms none of that size, all trials are dear.
+/// A share of a step that a `dear` trial confirms: the largest share found with `cheap` trials, less a
+/// millionth or more. If no share down to 0.6 of it is confirmed, the search uses `dear` trials only.
 pub(crate) fn confirmed_step(
     cheap: &dyn Fn(f64) -> Option<f64>,
     dear: &dyn Fn(f64) -> Option<f64>,
@@ -71,7 +70,7 @@ pub(crate) fn confirmed_step(
     }
 }
 
-/// Whatever is tried in it looks for no other step. None inside another search.
+/// Runs a trial in which failed steps do not start a search. `None` within another search.
 pub(crate) fn search_of<R>(trial: impl FnOnce() -> R) -> Option<R> {
     let _search = Search::begin()?;
     Some(trial())

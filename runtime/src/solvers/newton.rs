@@ -50,11 +50,11 @@ const STAGNATED_ROUNDINGS: f64 = 64.0;
 /// A bound of the rounding of an equation is taken to be this many roundings of its terms.
 const BOUND_ROUNDINGS: f64 = 8.0;
 
-/// After so many steps the size of the terms is asked for again: it varies little along a
+/// The sizes of the terms are computed anew after this many steps: they vary little along a
 /// trajectory.
 const OLDEST_SCALE: u32 = 256;
 
-/// After so many iterations as well: the terms may have grown.
+/// They are also computed anew after this many iterations, since the terms may have grown.
 const LATE: usize = 8;
 
 /// A factored tangent serves further corrections while each leaves less than this of the residual;
@@ -89,12 +89,11 @@ const LEAST_SHARE: f64 = 1e-30;
 /// How many solutions the next guess is made from.
 const REMEMBERED: usize = 6;
 
-/// The search for one velocity after the other along a trajectory: it remembers the last solutions,
-/// in which the next one is foreseen to sixth order in the step.
+/// The search for the velocities along a trajectory. It remembers the last solutions and predicts the
+/// next one from them, to sixth order in the step.
 ///
-/// What it remembers decides how many iterations a step takes, and rounding; not which equations
-/// are solved. Where other unknowns are solved for beforehand, `W` is the group of all of them and `E`
-/// their number.
+/// Its memory affects the number of iterations and the rounding of a step, not the equations. If some
+/// unknowns are solved for beforehand, `W` is the group of all unknowns and `E` their number.
 #[derive(Clone, Copy, Debug)]
 pub struct Search<T, G, const D: usize, W = G, const E: usize = D> {
     /// A ring, twice in a row, the newest at `newest`.
@@ -107,14 +106,14 @@ pub struct Search<T, G, const D: usize, W = G, const E: usize = D> {
     weights: SVector<T, D>,
     /// One over the length of the part of the velocity that each coordinate belongs to.
     lengths: SVector<T, D>,
-    /// How many steps ago both were asked for.
+    /// The number of steps since both were computed.
     weighed: u32,
     /// The unit of length of each part, and the rounding error of its length.
     units: [f64; D],
     noise: [f64; D],
     /// Whether a part lacks a scale of its own.
     open: bool,
-    /// Whether these were found since the sizes of terms were asked for.
+    /// Whether these were computed since the sizes of the terms.
     measured: bool,
     /// Whether no step follows.
     tries: bool,
@@ -143,7 +142,7 @@ impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Search<T, G, D, W,
 where
     G: Group<T> + Found<W>,
 {
-    /// Nothing known: the first guess is the neutral element.
+    /// A search without a past: the first guess is the neutral element.
     #[must_use]
     pub fn from_rest() -> Self {
         Self {
@@ -171,7 +170,7 @@ where
         }
     }
 
-    /// The same for a step that is only tried: what refuses it looks for no other.
+    /// The same for a trial step: if it fails, clebsch does not search for a shorter one.
     #[cold]
     #[must_use]
     pub fn to_try() -> Self {
@@ -195,7 +194,7 @@ where
         }
     }
 
-    /// Whether no step follows: what refuses one then looks for no other.
+    /// Whether this is a trial step: if it fails, clebsch does not search for a shorter one.
     #[must_use]
     pub fn tries(&self) -> bool {
         self.tries
@@ -273,7 +272,7 @@ where
     /// The polynomial through the last solutions, one step further.
     #[inline(always)]
     fn foreseen(&self) -> G {
-        // Each solution stands twice, so that the last ones are always side by side.
+        // Each solution is stored twice, so that the last solutions are contiguous.
         let past = |i: usize| self.past[self.newest + i];
         match self.known {
             0 | 1 => past(0),
@@ -319,17 +318,22 @@ where
 /// ```
 ///
 /// The tangent is the derivative of the residual with respect to the coordinates of
-/// [`Group::retract`] at 0, or of [`Group::retract_from_left`]. It is factored once and kept while the corrections shrink fast. Each
-/// equation is judged by the size of its own terms, its scale. A solution is accepted when every
-/// residual is below `16 EPSILON scale` and one more correction is made, or is sure to fall below a
-/// quarter of that with the next one, or has stopped falling below `64 EPSILON scale`; and when besides
-/// the last correction is rounding of the velocity, whatever the scales: see `corrections`. The size of the
-/// residual is that of its real parts, in every lane: from a real solution one more step makes the
-/// first derivatives exact whatever they were, so that step follows for dual numbers, with a
-/// tangent of its own.
+/// [`Group::retract`] at 0, or of [`Group::retract_from_left`]. It is factored once and kept while the
+/// corrections decrease fast.
 ///
-/// Of the `D` components the first [`Group::DIMENSION`] are looked at, so that one `D` can serve
-/// several sizes of a group.
+/// Each equation is judged by the size of its own terms, its scale. A solution is accepted if the last
+/// correction is rounding of the velocity, for any scales (see `corrections`), and if one of these
+/// conditions holds for all residuals:
+///
+/// - they are below `16 EPSILON scale`, and one more correction is made;
+/// - the next correction is certain to bring them below `4 EPSILON scale`;
+/// - they are below `64 EPSILON scale` and no longer decrease.
+///
+/// Residuals are measured by their real parts, in every lane. From a real solution, one more step makes
+/// the first derivatives exact. Dual numbers therefore get such a step, with a tangent of its own.
+///
+/// Only the first [`Group::DIMENSION`] of the `D` components count, so that one `D` can serve several
+/// sizes of a group.
 #[derive(Debug)]
 pub struct Newton<'a, T, G, const D: usize, W = G, const E: usize = D> {
     search: &'a mut Search<T, G, D, W, E>,
@@ -345,7 +349,7 @@ pub struct Newton<'a, T, G, const D: usize, W = G, const E: usize = D> {
     found: Option<usize>,
 }
 
-/// What became of a correction.
+/// The result of a correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Progress<G> {
     /// There is another trial.
@@ -372,8 +376,8 @@ where
         self.search.tries()
     }
 
-    /// Whether the sizes of the terms are not known, or too old. At a start they are asked for at
-    /// every trial: at rest, the first one, the bounds of terms with a kink there are void.
+    /// Whether the sizes of the terms are unknown or too old. At a start every trial needs them: at
+    /// rest, the first trial, the bounds of terms with a kink there are invalid.
     #[inline(always)]
     pub fn wants_scale(&self) -> bool {
         self.search.weighed >= OLDEST_SCALE || self.attempt > 0
@@ -436,7 +440,7 @@ where
         if self.iteration > 0 {
             return self.size > WORTH_KEEPING * self.previous && !self.polished();
         }
-        // What is foreseen to rounding needs no more than the tangent of a step before.
+        // If the prediction is exact to rounding, the tangent of an earlier step suffices.
         !(self.size <= CONVERGED_ROUNDINGS * T::EPSILON && self.search.age < OLDEST_TANGENT)
     }
 
@@ -542,7 +546,7 @@ fn largest<T: Real, const D: usize>(v: &SVector<T, D>) -> f64 {
     let (mut sum, mut largest) = (T::zero(), 0.0);
     for x in v.iter() {
         sum += *x;
-        // Of one lane that is one number.
+        // Equal for types with a single lane.
         let (above, below) = (x.greatest().abs(), x.least().abs());
         let size = if above > below { above } else { below };
         largest = if size > largest { size } else { largest };

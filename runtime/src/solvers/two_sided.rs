@@ -1,6 +1,6 @@
-//! The linear equation of a step, `L (Ω - Id) R = M` on GL(n), `L ΔQ R Q^T = M` where the factors do not
-//! change, and `L ΔX R = P` of a field: small linear systems, one after the other, never one in all entries. Takes the factors and the known side; gives
-//! the velocity.
+//! The linear equation of a step: `L (Ω - Id) R = M` on GL(n), `L ΔQ R Q^T = M` with constant factors, and
+//! `L ΔX R = P` for a field. It is solved by small systems for `L` and `R` instead of one in all entries. Takes the
+//! factors and the known side; gives the velocity.
 
 use crate::Real;
 use crate::groups::{Additive, Linear};
@@ -8,7 +8,7 @@ use crate::linalg::small_solve;
 use core::fmt;
 use nalgebra::SMatrix;
 
-/// A factor of the equation has no inverse: no velocity solves it, or many do.
+/// A factor of the equation is singular: the velocity does not exist or is not unique.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SingularFactor {
     /// The factor, as the model writes it.
@@ -29,7 +29,7 @@ impl fmt::Display for SingularFactor {
 
 impl std::error::Error for SingularFactor {}
 
-/// The solution of `left (Ω - Id) right = known`; `names` are those of the factors.
+/// The solution of `left (Ω - Id) right = known`; `names` are the names of the factors.
 ///
 /// # Errors
 /// [`SingularFactor`] where elimination finds no pivot.
@@ -44,11 +44,11 @@ pub fn two_sided<T: Real, const N: usize>(
     Ok(Linear::stepped(SMatrix::identity() + change.matrix()))
 }
 
-/// The solution `ΔQ` of `left ΔQ right Q^T = known`, given the inverses of both factors, with entries that
-/// are not finite where there is none; `names` are those of the factors.
+/// The solution `ΔQ` of `left ΔQ right Q^T = known`, given the inverses of both factors. The entries of an
+/// inverse are not finite if the factor is singular. `names` are the names of the factors.
 ///
 /// # Errors
-/// [`SingularFactor`] where a factor has no inverse.
+/// [`SingularFactor`] if a factor is singular.
 #[inline]
 pub fn displaced<T: Real, const N: usize>(
     element: &Linear<N, T>,
@@ -83,11 +83,11 @@ pub fn two_sided_increment<T: Real, const R: usize, const C: usize>(
     Ok(Additive::new(whole.transpose()))
 }
 
-/// The solution of `left ΔX right = known`, given the inverses of both factors, with entries that are not finite
-/// where there is none; `names` are those of the factors.
+/// The solution of `left ΔX right = known`, given the inverses of both factors. The entries of an inverse are not
+/// finite if the factor is singular. `names` are the names of the factors.
 ///
 /// # Errors
-/// [`SingularFactor`] where a factor has no inverse.
+/// [`SingularFactor`] if a factor is singular.
 #[inline]
 pub fn increment_between<T: Real, const R: usize, const C: usize>(
     left_inverse: &SMatrix<T, R, R>,
@@ -102,7 +102,7 @@ pub fn increment_between<T: Real, const R: usize, const C: usize>(
 /// The solution of `left ΔX = known`, given the inverse of the factor, as for [`increment_between`].
 ///
 /// # Errors
-/// [`SingularFactor`] where the factor has no inverse.
+/// [`SingularFactor`] if the factor is singular.
 #[inline]
 pub fn increment_behind<T: Real, const R: usize, const C: usize>(
     left_inverse: &SMatrix<T, R, R>,
@@ -118,7 +118,7 @@ pub fn increment_behind<T: Real, const R: usize, const C: usize>(
 /// The solution of `ΔX right = known`, given the inverse of the factor, as for [`increment_between`].
 ///
 /// # Errors
-/// [`SingularFactor`] where the factor has no inverse.
+/// [`SingularFactor`] if the factor is singular.
 #[inline]
 pub fn increment_before<T: Real, const R: usize, const C: usize>(
     known: &SMatrix<T, R, C>,
@@ -176,7 +176,7 @@ pub fn divided<T: Real, const R: usize, const C: usize>(
     }
 }
 
-/// The same, and whether there is one: there is no branch, a loop over many sites vectorises.
+/// The same without a branch, so that a loop over many sites vectorises; also whether the solution is finite.
 #[inline(always)]
 pub fn divided_at_once<T: Real, const R: usize, const C: usize>(
     known: &SMatrix<T, R, C>,

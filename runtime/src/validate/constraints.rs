@@ -1,5 +1,5 @@
-//! Initial data of models with held constraints: the configuration must be on them, and its momentum
-//! must not move it off.
+//! Checks of the initial data of models with constraints: the configuration must satisfy them, and its
+//! momentum must be tangent to them.
 //! Takes the constraint as the model writes it, with numbers; gives nothing, or an error with them.
 
 use crate::{ParameterError, Problem, Real};
@@ -10,10 +10,10 @@ const OFF: f64 = 1e-9;
 /// Constraint forces take what is not tangent: data typed with eight digits are tangent.
 const ACROSS: f64 = 1e-7;
 
-/// The configuration at the start is on a constraint.
+/// The initial configuration satisfies a constraint.
 ///
 /// # Errors
-/// When the left side less the right one, `value`, is no rounding of terms of size `scale`.
+/// If `value`, the left side minus the right side, is more than rounding of terms of size `scale`.
 pub fn on_constraint<T: Real>(
     field: &'static str,
     equation: &'static str,
@@ -35,11 +35,11 @@ pub fn on_constraint<T: Real>(
     })
 }
 
-/// The momentum at the start leaves a constraint as it is. `impulse` is what the projection found for its
-/// multiplier, `taken` what the projection took from the momentum, of size `whole`.
+/// The initial momentum is tangent to a constraint. `impulse` is the multiplier that the projection found,
+/// `taken` the size of the part that it removes from a momentum of size `whole`.
 ///
 /// # Errors
-/// When more than rounding is taken; when the impulse is not determined.
+/// If the projection removes more than rounding, or does not determine the multiplier.
 pub fn along_constraint<T: Real>(
     field: &'static str,
     equation: &'static str,
@@ -56,7 +56,7 @@ pub fn along_constraint<T: Real>(
         });
     }
     let (taken, whole) = (taken.magnitude(), whole.magnitude());
-    // A constraint without impulse takes nothing: another one is refused.
+    // A constraint with the multiplier zero removes nothing: the error belongs to another constraint.
     if taken <= ACROSS * whole || impulse.magnitude() == 0.0 {
         return Ok(());
     }
@@ -73,10 +73,10 @@ pub fn along_constraint<T: Real>(
     })
 }
 
-/// What a constraint holds answers to impulses at the start by velocities of size `answer` for each unit of them.
+/// A unit impulse at the start gives the constrained quantity a velocity of size `answer`.
 ///
 /// # Errors
-/// When that is not finite.
+/// If `answer` is not finite.
 pub fn has_inertia<T: Real>(field: &'static str, answer: T) -> Result<(), ParameterError> {
     if answer.is_finite() {
         return Ok(());

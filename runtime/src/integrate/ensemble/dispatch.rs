@@ -1,26 +1,26 @@
 //! The instruction set that the steps of an ensemble run on, chosen at run time.
-//! Takes the work; gives what it gives.
+//! Takes the work; gives its output.
 
 /// The instruction set of an ensemble's steps. The results are the same on all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InstructionSet {
-    /// The best one that the processor has: AVX-512, AVX2 or that of the build.
+    /// The best instruction set of the processor: AVX-512, AVX2 or the one of the build.
     #[default]
     Best,
-    /// AVX2 where the processor has it, else that of the build.
+    /// AVX2 if the processor supports it, else the instruction set of the build.
     Avx2,
-    /// What the program was built for.
+    /// The instruction set that the program was built for.
     Build,
 }
 
-/// What is to be compiled for each instruction set. A trait, since a closure cannot be told to be
-/// inlined, and what is called and not inlined is compiled for the build's own.
+/// Work that is compiled for each instruction set. It is a trait since a closure cannot be marked
+/// for inlining, and a call that is not inlined runs on the instruction set of the build.
 pub trait Work {
-    /// What it gives.
+    /// The result of the work.
     type Output;
 
-    /// Does it. To be marked `#[inline(always)]`, as the functions of its inner loops.
+    /// Does the work. Mark it `#[inline(always)]`, and the functions of its inner loops too.
     fn done(self) -> Self::Output;
 }
 
@@ -41,7 +41,7 @@ impl InstructionSet {
         }
     }
 
-    /// Does the work, on what the program was built for.
+    /// Does the work on the instruction set of the build.
     #[cfg(not(feature = "simd"))]
     pub fn run<W: Work>(self, work: W) -> W::Output {
         work.done()

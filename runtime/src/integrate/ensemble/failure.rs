@@ -11,8 +11,8 @@ use core::fmt;
 pub struct EnsembleError<E> {
     /// The index of the body, in the order the bodies were given; the first, if several fail.
     pub body: usize,
-    /// How many bodies from this one on may be meant: 1, unless each of them would do alone, and
-    /// only side by side they would not.
+    /// The number of bodies, starting at `body`, that may be the cause. It is 1 unless every body of a
+    /// group succeeds alone and they fail only side by side.
     pub among: usize,
     /// How many bodies have failed.
     pub failed: usize,

@@ -13,12 +13,12 @@ pub(super) type Wide<M, const N: usize> = <M as Model>::Over<Lanes<N>>;
 /// Parameters and state of one body.
 pub(super) type Body<M> = (<M as Model>::Parameters, <M as Stepper>::State);
 
-/// What makes the steps of every body.
+/// The settings of the steps, the same for every body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Steps<C> {
     /// The step size.
     pub(super) h: f64,
-    /// What was chosen about them.
+    /// The option of the steps.
     pub(super) choice: C,
 }
 
@@ -29,7 +29,7 @@ pub(super) struct Group<M: Model<Scalar = f64>, const N: usize> {
     moving: Together<M, N>,
 }
 
-/// What moves, and what is kept between its steps.
+/// The states of the bodies, with their workspaces.
 #[derive(Clone, Debug)]
 enum Together<M: Model<Scalar = f64>, const N: usize> {
     /// In the lanes.

@@ -1,10 +1,9 @@
 //! Many independent bodies of one model, with different parameters and states.
 //! Takes parameters and initial data of each; advances all of them, in cache and on all cores.
 //!
-//! Bodies stand side by side in the lanes of vector registers, `N` in a group. A group makes all
-//! its steps before the next one is touched, so that a large ensemble costs per step what a small
-//! one does. Groups do not speak to each other: the result is the same bits whatever the number of
-//! threads and the size of their tasks.
+//! A group holds `N` bodies in the lanes of vector registers. It makes all its steps before the
+//! next group begins, so the cost per step does not grow with the size of the ensemble. Groups are
+//! independent: the result is the same, bit for bit, for any number of threads and size of tasks.
 
 mod dispatch;
 mod failure;
@@ -24,12 +23,13 @@ const BLOCK: usize = 4;
 
 /// An ensemble of bodies, `N` of them side by side.
 ///
-/// A number of bodies that is no multiple of `N` is made up by repeating the last one in the lanes
-/// left over; nothing else sees them.
+/// If the number of bodies is not a multiple of `N`, copies of the last body fill the remaining
+/// lanes; you never see them.
 ///
-/// With the feature `simd` the steps are compiled for several instruction sets, of which the best
-/// one the processor has is taken at run time; without, for that of the build. The results are the
-/// same bits: every lane rounds as plain numbers do, and products and sums are never fused.
+/// With the feature `simd` the steps are compiled for several instruction sets, and clebsch selects
+/// the best one of the processor at run time. Without it they are compiled for the instruction set
+/// of the build. The results are the same, bit for bit: every lane rounds as plain numbers do, and
+/// products and sums are never fused.
 ///
 /// Steps are, bit for bit, those that [`Stepper::advance_many`] makes of each body alone. Bodies
 /// whose steps need iterations ([`Model::SIDE_BY_SIDE`]) are stepped one by one: in lanes all would
@@ -95,7 +95,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Ensemble<M, N> {
         Self::start_with(bodies, h, M::Choice::default())
     }
 
-    /// As [`Ensemble::start`], with what the model lets choose: the order of a free body.
+    /// As [`Ensemble::start`], with the option of the model's steps: for a free body, its order.
     ///
     /// # Errors
     /// As [`Ensemble::start`].
@@ -262,7 +262,7 @@ impl<M: Model<Scalar = f64>, const N: usize> Work for Advance<'_, M, N> {
     }
 }
 
-/// What is done with every group.
+/// The task of every group.
 #[derive(Clone, Copy)]
 struct Task<C> {
     count: u64,
@@ -272,7 +272,7 @@ struct Task<C> {
 }
 
 impl<C: Copy> Task<C> {
-    /// The steps of the group with this place.
+    /// Advances the group at this index.
     fn advance<M: Model<Scalar = f64, Choice = C>, const N: usize>(
         &self,
         at: usize,

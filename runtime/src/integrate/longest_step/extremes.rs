@@ -6,18 +6,19 @@ use super::unknown::Unknown;
 use crate::scalar::largest;
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// Most vectors of the Krylov space: with half of them the fastest of a hundred motions that lie close is found to a fiftieth.
+/// The maximum dimension of the Krylov space. Half of it finds the fastest of a hundred close frequencies to a
+/// fiftieth.
 const VECTORS: usize = 60;
 
-/// The same of more freedoms than these, of which each vector takes steps of long lines.
+/// The maximum dimension for more than `MANY` freedoms, where each vector takes steps of a long chain.
 const VECTORS_OF_MANY: usize = 30;
 const MANY: usize = 1000;
 
-/// A coupling that is a smaller part than this of the largest square ends the space; the same where constraints are held.
+/// The Krylov space ends if the coupling is below this share of the largest square, without and with constraints.
 const WEAK: f64 = 1e-6;
 const WEAK_HELD: f64 = 1e-4;
 
-/// A small motion: its ω², and what moves with the kinetic energy one half.
+/// A small motion: its ω², and its velocity and momentum, scaled to a kinetic energy of one half.
 pub(super) struct Motion {
     pub(super) square: f64,
     pub(super) velocity: Vec<f64>,
@@ -52,7 +53,7 @@ impl Probe<'_> {
                     p.iter_mut().zip(q).for_each(|(p, q)| *p -= part * q);
                 }
             }
-            // What is left of an exhausted space may be across the constraints alone.
+            // The remainder of an exhausted space may be normal to the constraints.
             let Some(along) = self.along(p) else {
                 break;
             };
@@ -61,8 +62,9 @@ impl Probe<'_> {
             };
             p = along;
             let square = dot(&v, &p);
-            // The space is exhausted: what is left of it is the rounding of the inquiry, where constraints are held what disturbances of
-            // this size bend. What couples so weakly changes the squares that are looked for by 1e-8 of the largest.
+            // The space is exhausted: its remainder is rounding or, with constraints, their curvature over a
+            // disturbance of this size. Such a weak coupling changes the extreme squares by at most 1e-8 of the
+            // largest.
             let weak = if self.is_held() { WEAK_HELD } else { WEAK };
             let least = weak * largest(alphas.iter().copied());
             if square.is_nan() || square <= 0.0 || (!alphas.is_empty() && square.sqrt() <= least) {
@@ -75,7 +77,7 @@ impl Probe<'_> {
             let [force, moved] = self.stiffness(&v, own).ok_or_else(nothing)?;
             p = force;
             led.push(moved);
-            // Nothing resists: no step is too long for that.
+            // Without stiffness every step size is stable.
             if velocities.is_empty() && p.iter().all(|x| *x == 0.0) {
                 return Err(Unknown::Still);
             }
@@ -86,14 +88,15 @@ impl Probe<'_> {
         if alphas.is_empty() {
             return Err(nothing());
         }
-        // At the same momenta a disturbed state moves where terms are linear in velocities, and twice the energy of that, which
-        // depends on how they are written, is no stiffness: as far as the space holds it.
+        // If the Lagrangian has terms linear in velocities, a disturbed state moves at the same momenta. Twice the
+        // energy of this motion depends on how the terms are written, so it is subtracted from the stiffness within the
+        // space.
         let shares = led
             .iter()
             .map(|w| momenta.iter().map(|q| dot(q, w)).collect());
         let shares: Vec<Vec<f64>> = shares.collect();
-        // Where the start is no equilibrium, forces turn with the frames that they are seen from: of what resists only the
-        // symmetric part has an energy.
+        // If the start is not an equilibrium, forces turn with their frames: only the symmetric part of the stiffness
+        // has an energy.
         let part =
             |i: usize, j: usize| dot(&velocities[i], &forces[j]) - dot(&shares[i], &shares[j]);
         let at = |i: usize, j: usize| 0.5 * (part(i, j) + part(j, i));

@@ -1,4 +1,4 @@
-//! What moves of a model: configurations with their momenta, disturbed and compared.
+//! The configurations of a model with their momenta: disturbs and compares them.
 //! Takes initial values and observations in the order of a card; gives small changes of configurations as lists.
 
 use crate::Rotation;
@@ -106,7 +106,7 @@ impl Moves {
     }
 }
 
-/// Rows and columns of what stands below the diagonal of a matrix.
+/// Rows and columns of the entries below the diagonal of a matrix.
 fn below_diagonal(n: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..n).flat_map(|i| (0..i).map(move |j| (i, j)))
 }
@@ -118,7 +118,7 @@ fn is_momentum(field: &Field) -> bool {
     )
 }
 
-/// Which initial value is the momentum of a configuration: that with its name, or the only one.
+/// Which initial value is the momentum of a configuration: the one with its name, or the only one.
 fn momentum_of(card: &Card, place: &Field) -> Option<usize> {
     let behind = format!("momentum_{}", place.ascii);
     let mut all = card
@@ -144,8 +144,8 @@ fn columns(card: &Card, wanted: &Field) -> Option<Range<usize>> {
     None
 }
 
-/// Of an angle and of a linear map one; of places, which are fields and those of rigid motions, how far they lie apart at all sites,
-/// if they do not their size, at most one.
+/// The unit of disturbances of each freedom: one for angles and linear maps. The unit for fields and translations is
+/// the largest distance between their values at all sites or, if that is zero, the largest value, at most one.
 pub(super) fn units(moves: &[Moves], initial: &[Vec<f64>]) -> Vec<f64> {
     let places = moves.iter().filter_map(|m| {
         let value = initial.get(m.initial)?;
@@ -171,7 +171,7 @@ pub(super) fn units(moves: &[Moves], initial: &[Vec<f64>]) -> Vec<f64> {
     each.collect()
 }
 
-/// The numbers of angles among those of a rigid motion's velocity: of the plane, of space.
+/// The number of angles among the components of a rigid motion's velocity, in the plane or in space.
 fn angles(count: usize) -> usize {
     match count {
         3 => 1,
@@ -188,8 +188,8 @@ fn rigid(value: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
     (attitude, place)
 }
 
-/// The small turn by an angle of the plane, by those about the axes of space, or by those of every plane of two axes; to first order
-/// where it is not asked for a rotation.
+/// The small turn by an angle in the plane, by three angles about the axes of space, or by an angle for each plane of
+/// two axes. If `is_whole` is false, it is the skew matrix of the turn, its first-order term.
 fn turn_by(angles: &[f64], is_whole: bool) -> DMatrix<f64> {
     match *angles {
         [angle] if is_whole => {

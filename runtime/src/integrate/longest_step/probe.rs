@@ -1,6 +1,6 @@
-//! What a model says of small motions about its start, at rest, asked by single steps: forces of disturbances, velocities
-//! of momenta, momenta along held constraints.
-//! Takes a card with its data; gives linear answers in lists over all freedoms.
+//! Linearises a model about its initial state at rest by finite differences of single steps: the forces of
+//! disturbances, the velocities of momenta, and the projection of momenta on the constraints. Takes a card with its
+//! data; gives lists over all freedoms.
 
 use super::extremes::{Motion, dot, numbers};
 use super::moves::{self, Moves};
@@ -18,18 +18,18 @@ const PART: f64 = 1e-5;
 /// of neighbours, which is about that part of what is disturbed.
 const PART_HELD: f64 = 1e-6;
 
-/// What a projection takes from momenta at random where anything is held is more than this part of them.
+/// The model has constraints if the projection removes more than this share of random momenta.
 const TAKEN: f64 = 1e-9;
 
 /// How many sizes of a momentum are tried for one that moves by the wanted part, and by what one is less that is refused.
 const SCALES: usize = 12;
 const SLOWER: f64 = 1e-4;
 
-/// A momentum that goes less than this part of what is in proportion to a smaller one is too large to be linear, as of a
-/// particle that is no faster than light.
+/// If a momentum moves less than this share of the way that a smaller one predicts, it is too large to be linear. An
+/// example is a relativistic particle.
 const STRAIGHT: f64 = 0.5;
 
-/// What such a momentum is made smaller by, and how far it must go in the end, in parts of disturbances.
+/// The factor that reduces such a momentum, and the least way that it must move in the end, in parts of disturbances.
 const SMALLER: f64 = 1e-2;
 const SEEN: f64 = 1e-6;
 
@@ -47,18 +47,18 @@ pub(super) struct Probe<'a> {
     parameters: &'a [Vec<f64>],
     /// At rest.
     initial: Vec<Vec<f64>>,
-    /// The momenta that it has there.
+    /// The momenta of the start at rest.
     resting: Vec<f64>,
     pub(super) moves: Vec<Moves>,
-    /// The step of the inquiry.
+    /// The probe step.
     h: f64,
     /// The unit of disturbances of each freedom.
     pub(super) units: Vec<f64>,
-    /// What is observed after a step from rest.
+    /// The observables after a step from rest.
     rest: Vec<f64>,
     /// Where forces are compared, at rest: the start, of held models where a step from it ends, as disturbed ones do.
     base: Vec<Vec<f64>>,
-    /// What is observed after a step from there.
+    /// The observables after a step from the base.
     pushed: Vec<f64>,
     /// Disturbances in parts of what is disturbed.
     part: f64,
@@ -66,9 +66,9 @@ pub(super) struct Probe<'a> {
     held: bool,
     /// The velocities with which the base leaves, where disturbed states leave with others.
     drift: Option<Vec<f64>>,
-    /// Whether the model refused a state that it was asked of.
+    /// Whether the model failed to step from one of the states.
     refused: Cell<bool>,
-    /// Whether the inquiry is given up.
+    /// Returns whether to give up the search.
     ended: &'a dyn Fn() -> bool,
 }
 
@@ -153,7 +153,7 @@ impl<'a> Probe<'a> {
         self.drift.as_deref()
     }
 
-    /// The step of the inquiry.
+    /// The probe step.
     pub(super) fn step(&self) -> f64 {
         self.h
     }
@@ -163,7 +163,7 @@ impl<'a> Probe<'a> {
         self.held
     }
 
-    /// Why nothing is known where answers end: a refused state, or what was asked.
+    /// The reason if an answer is missing: a failed step, or else the given one.
     pub(super) fn why(&self, otherwise: Unknown) -> Unknown {
         match self.refused.get() {
             true => Unknown::Refused,
@@ -176,7 +176,7 @@ impl<'a> Probe<'a> {
         (self.card.open)(self.parameters, initial, Settings::step(h).to_inquire())
     }
 
-    /// What is observed of a trajectory after so many steps.
+    /// The observables of a trajectory after `steps` steps.
     pub(super) fn observed(&self, initial: &[Vec<f64>], h: f64, steps: usize) -> Option<Vec<f64>> {
         if (self.ended)() {
             return None;
@@ -190,14 +190,14 @@ impl<'a> Probe<'a> {
         out.iter().all(|x| x.is_finite()).then_some(out)
     }
 
-    /// What is observed after one step of `h`.
+    /// The observables after one step of `h`.
     fn after(&self, initial: &[Vec<f64>], h: f64) -> Option<Vec<f64>> {
         let found = self.observed(initial, h, 1);
         self.refused.set(self.refused.get() || found.is_none());
         found
     }
 
-    /// What is observed of momenta, in the order of freedoms.
+    /// The observed momenta, in the order of freedoms.
     fn momenta<'o>(&'o self, observed: &'o [f64]) -> impl Iterator<Item = f64> + 'o {
         self.moves.iter().flat_map(|body| body.momenta(observed))
     }
@@ -216,7 +216,7 @@ impl<'a> Probe<'a> {
         Some(())
     }
 
-    /// Adds these momenta to those of a state.
+    /// Adds momenta to a state.
     pub(super) fn push(&self, state: &mut [Vec<f64>], added: &[f64]) -> Option<()> {
         let own = self.given(state);
         self.give(state, own.iter().zip(added).map(|(own, p)| own + p))
@@ -230,7 +230,7 @@ impl<'a> Probe<'a> {
         Some(moved)
     }
 
-    /// A state at rest in the configurations that are observed.
+    /// A state at rest in the observed configurations.
     fn at_rest(&self, observed: &[f64]) -> Option<Vec<Vec<f64>>> {
         let mut state = self.initial.clone();
         for body in &self.moves {
@@ -240,15 +240,15 @@ impl<'a> Probe<'a> {
         self.settled(state)
     }
 
-    /// A state with its momenta as the constraints leave them: without any they may be those of a velocity off the constraints,
-    /// where terms of the Lagrangian are linear in velocities.
+    /// A state with its momenta projected on the constraints. If the Lagrangian has terms linear in velocities, zero
+    /// momenta may belong to a velocity that is not tangent to the constraints.
     fn settled(&self, mut state: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
         let along = self.observed(&state, self.h, 0)?;
         self.give(&mut state, self.momenta(&along))?;
         Some(state)
     }
 
-    /// Momenta less what would move the start off its constraints; the same where none are held.
+    /// Momenta projected on the constraints at the start; unchanged without constraints.
     fn projected(&self, p: &[f64]) -> Option<Vec<f64>> {
         // A state that is at rest but for these is refused for their size alone: of a mass that is small beside one.
         let mut scale = 1.0 / largest(p.iter().copied());
@@ -265,7 +265,7 @@ impl<'a> Probe<'a> {
         None
     }
 
-    /// The same, which changes nothing where none are held.
+    /// Momenta projected on the constraints; returned as they are without constraints.
     pub(super) fn along(&self, p: Vec<f64>) -> Option<Vec<f64>> {
         match self.held {
             true => self.projected(&p),
@@ -273,8 +273,8 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// Of momenta after a step from rest, disturbed by the velocity `v` with momentum `p`, what the disturbance adds: minus
-    /// the stiffness times `v`, and the step. With the velocities that it gives, at the same momenta, and that are part of
+    /// The stiffness times `v`, for a disturbance along the velocity `v` with momentum `p`: the force at the base minus
+    /// the force at the disturbed state. Also the velocity that the disturbance gives at the same momenta, a part of
     /// this stiffness.
     pub(super) fn stiffness(&self, v: &[f64], p: &[f64]) -> Option<[Vec<f64>; 2]> {
         let scale = self.part / self.size(v);
@@ -286,7 +286,7 @@ impl<'a> Probe<'a> {
         Some([change, self.led(&disturbed, scale)?])
     }
 
-    /// What has acted in a step from a state to what is observed.
+    /// The mean forces in a step from a state to the observed momenta.
     fn forces<'o>(
         &'o self,
         state: &'o [Vec<f64>],
@@ -297,9 +297,9 @@ impl<'a> Probe<'a> {
         acted.map(|(after, before)| (after - before) / self.h)
     }
 
-    /// The velocity of a momentum `p`: by how much a step with it goes farther than one from rest.
+    /// The velocity of a momentum `p`: the displacement of a step with it, compared with a step from rest.
     pub(super) fn velocity(&self, p: &[f64]) -> Option<Vec<f64>> {
-        // How far it goes is known once it has gone.
+        // The displacement is known only after the step.
         let mut scale = self.part / largest(p.iter().copied());
         if !scale.is_finite() {
             return None;
@@ -308,7 +308,7 @@ impl<'a> Probe<'a> {
         // The scale before, with the way that it went, and whether scales are made smaller until ways are in proportion.
         let (mut before, mut bends) = (None, false);
         for _ in 0..SCALES {
-            // What is too fast for the model may be refused: of a mass that is small beside one.
+            // A step may fail because the velocity is too large for the model, as with a small mass.
             let thrown = self.thrown(p, scale)?;
             let Some(after) = self.observed(&thrown, self.h, 1) else {
                 refused = true;
@@ -328,7 +328,7 @@ impl<'a> Probe<'a> {
                 return (most > SEEN * self.part).then(found);
             }
             bends |= bent;
-            // What goes no farther than rounding says nothing of proportion.
+            // A displacement at rounding level does not show whether the response is linear.
             before = (most > SEEN * self.part).then_some(now);
             scale *= if bends {
                 SMALLER
@@ -346,7 +346,8 @@ impl<'a> Probe<'a> {
     /// at the nodes do: one with it in the middle leaves `(4 - h² ω²)/(4 + h² ω²)`. A part of a step where one cannot be made; `None`
     /// where that cannot either.
     pub(super) fn is_left(&self, motion: &Motion, h: f64) -> Option<bool> {
-        // Of a quarter of a step the two differ by 0.03 of the square, of half a step by a tenth, of a whole one by a quarter.
+        // The two schemes differ by a quarter of h² ω² for the whole step, by a tenth for half of it, by 0.03 for a
+        // quarter.
         [(h, 0.1), (0.5 * h, 0.05), (0.25 * h, 0.015)]
             .into_iter()
             .find_map(|(h, near)| Some((self.left(motion, h)?, near)))
@@ -356,7 +357,7 @@ impl<'a> Probe<'a> {
             })
     }
 
-    /// The part of a motion that a step leaves, and the step; `None` where it cannot be made.
+    /// The step, and the share of a motion that the step leaves; `None` if the step fails.
     fn left(&self, motion: &Motion, h: f64) -> Option<(f64, f64)> {
         let scale = self.part / self.size(&motion.velocity);
         let moved = self.disturbed(&motion.velocity, &motion.momentum, scale)?;
@@ -366,8 +367,8 @@ impl<'a> Probe<'a> {
         Some((h, dot(&motion.momentum, &change) / scale - h * led))
     }
 
-    /// A state with the momentum that the forces of its node at the start take away in the first half of a step: a start that is no
-    /// equilibrium stays where it is, so that a long step tells of disturbances alone.
+    /// A state with the momentum that cancels the forces at the start over the first half of a step. A start that is
+    /// not an equilibrium then stays in place, so that a long step shows only the disturbance.
     fn braced(&self, mut state: Vec<Vec<f64>>, h: f64) -> Option<Vec<Vec<f64>>> {
         let forces = self.forces(&self.base, &self.pushed);
         let against: Vec<f64> = forces.map(|f| -0.5 * h * f).collect();
@@ -375,7 +376,7 @@ impl<'a> Probe<'a> {
         Some(state)
     }
 
-    /// By how much neighbours move against one another in a motion.
+    /// How much neighbours move against each other in a motion.
     pub(super) fn shortness(&self, motion: &Motion) -> f64 {
         let names = self.moves.iter();
         let names: Vec<&str> = names
@@ -390,7 +391,7 @@ impl<'a> Probe<'a> {
         largest(change.iter().zip(&self.units).map(|(x, unit)| x / unit))
     }
 
-    /// From the configurations of one observation to those of another.
+    /// The change of all configurations between two observations.
     pub(super) fn change(&self, from: &[f64], to: &[f64]) -> Vec<f64> {
         let each = self.moves.iter().flat_map(|body| {
             let place = body.place.clone();

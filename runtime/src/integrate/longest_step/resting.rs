@@ -1,14 +1,14 @@
-//! Where terms of the Lagrangian are linear in velocities, as those of magnetic fields and of rotating frames: momenta of a
-//! held start at rest, which are not zero, and what a disturbance moves with the same momenta. Takes states; gives
+//! Probes of Lagrangians with terms linear in velocities, as of magnetic fields and rotating frames. At rest the
+//! momenta of a constrained start are then not zero, and a disturbance moves at the same momenta. Takes states; gives
 //! momenta and velocities.
 
 use super::extremes::{dot, numbers};
 use super::probe::Probe;
 
-/// Velocities are known from this many steps of the inquiry.
+/// Velocities are measured over this many probe steps.
 const LONG: f64 = 100.0;
 
-/// What moves by less than this part of its unit in a step of the inquiry is at rest.
+/// A state is at rest if it moves by less than this share of its unit in a probe step.
 const STILL: f64 = 1e-9;
 
 /// By which part of the velocities of zero momenta it may still move, and how many directions are tried.
@@ -41,7 +41,8 @@ impl Probe<'_> {
         (moved > LED * self.part()).then_some(from)
     }
 
-    /// What a state disturbed by the part `scale` of a motion has more of velocity than the base at the same momenta, in that part.
+    /// The velocity of a state disturbed by `scale` times a motion, minus the velocity of the base at the same momenta,
+    /// divided by `scale`.
     pub(super) fn led(&self, disturbed: &[Vec<f64>], scale: f64) -> Option<Vec<f64>> {
         let Some(from) = self.drift() else {
             return Some(vec![0.0; self.count()]);
@@ -50,7 +51,7 @@ impl Probe<'_> {
         Some(led.iter().map(|w| w / scale).collect())
     }
 
-    /// By how much faster than with these velocities a state leaves.
+    /// The velocities of a state minus the velocities `from`.
     fn faster(&self, state: &[Vec<f64>], from: &[f64]) -> Option<Vec<f64>> {
         let to = self.leaving(state)?;
         Some(to.iter().zip(from).map(|(to, from)| to - from).collect())

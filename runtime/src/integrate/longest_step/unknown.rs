@@ -1,26 +1,26 @@
-//! Why the longest step of small motions is not known of a model.
+//! Why the stability limit of a model is unknown.
 
 use core::fmt;
 
-/// Why it is not known.
+/// Why the stability limit is unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
-    /// A configuration has no momentum of its own.
+    /// The initial values do not contain a momentum for each configuration.
     Kind,
-    /// No step can be taken from the start at rest: it is refused, or its constraints are not independent.
+    /// The first step from the start at rest fails, or its constraints are not independent.
     Start,
-    /// A state near the start is refused.
+    /// A step from a state near the start fails.
     Refused,
-    /// A velocity, along the constraints where any are held, has no positive kinetic energy.
+    /// The kinetic energy is not positive for a velocity that the constraints allow.
     Kinetic,
-    /// Nothing resists a disturbance.
+    /// The stiffness is zero.
     Still,
-    /// Steps of about 2/ω cannot be taken from the start at rest.
+    /// Steps of about 2/ω from the start at rest fail.
     Far,
     /// A step does not move the fastest motion as steps with the potential at the nodes do: with a potential in the
     /// middle of steps, with strong terms linear in velocities, at a kink, all steps may be stable.
     OtherSteps,
-    /// The inquiry was given up before its end.
+    /// The search was given up before its end.
     Unfinished,
 }
 

@@ -1,11 +1,11 @@
 //! How short the waves of a small motion are along a line of sites.
-//! Takes velocities of all freedoms, with who stands beside whom by the names of a card; gives a number.
+//! Takes the velocities of all freedoms, and the neighbours by the names of a card; gives a number.
 
 use super::moves::Moves;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// The freedoms of each configuration and of the one that stands next to it: `q_4` beside `q_3`.
+/// The freedoms of each configuration and of its next neighbour, such as `q_3` and `q_4`.
 pub(super) fn neighbours(moves: &[Moves], names: &[&str]) -> Vec<[Range<usize>; 2]> {
     let mut from = 0;
     let mut own = Vec::new();
@@ -31,8 +31,8 @@ fn site(name: &str) -> Option<(&str, usize)> {
     Some((stem, number.parse().ok()?))
 }
 
-/// By how much neighbours move against one another, in parts of what they move: 0 where they move alike, 2 where they alternate,
-/// `1 - cos(k)` of a wave that turns by `k` from site to site. 0 where nobody stands beside another.
+/// How much neighbours move against each other, relative to their motion: 0 if they move alike, 2 if they alternate,
+/// `1 - cos(k)` for a wave that turns by `k` from site to site. 0 without neighbours.
 pub(super) fn shortness(velocity: &[f64], units: &[f64], pairs: &[[Range<usize>; 2]]) -> f64 {
     let (mut apart, mut all) = (0.0, 0.0);
     for [here, there] in pairs {

@@ -46,7 +46,7 @@ fn systems<const N: usize>() {
     assert_eq!(da.determinant(), linalg::determinant(&a));
     assert_eq!(da.inverse(), of(linalg::inverse(&a)));
     assert_eq!(da.small_inverse(), of(linalg::small_inverse(&a)));
-    // Of other sizes it is no number, which equals nothing.
+    // For other sizes it is NaN, which equals nothing.
     let (adjugate, own) = (da.adjugate(), Dense::of(&linalg::adjugate(&a)));
     let same = adjugate == own;
     assert_eq!(same, N == 2 || N == 3);
@@ -91,8 +91,8 @@ fn large_systems_are_solved() {
     assert!(Dense::<f64>::zeros(n, n).solved(&b).is_none());
 }
 
-/// Two bodies on a hinge, their turns, places and five reactions: the velocities are as exact where masses are 1e-12 as
-/// where they are 1, and those of static sizes to the last bit.
+/// Two bodies on a hinge: their turns, positions and five constraint forces. The velocities are as exact for masses of
+/// 1e-12 as for masses of 1, and equal bit for bit to the ones of static sizes.
 #[test]
 fn held_systems_do_not_depend_on_the_unit_of_mass() {
     let (p, q) = ([0.5, 0.2, 0.0], [-0.5, 0.2, 0.0]);

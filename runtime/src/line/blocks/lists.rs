@@ -24,7 +24,7 @@ impl<T: Real> Blocks<T> {
         floor <= 0.0 || pivots::are_above(n, &self.own[here], &self.scratch, floor)
     }
 
-    /// Factors; where a block has no pivot, or none above `floor` times its own columns, the site.
+    /// Factors the matrix. Fails with the site of the first block without a pivot above `floor` times its own columns.
     pub(super) fn factor_lists(&mut self, n: usize, floor: f64) -> Result<(), usize> {
         let size = n * n;
         let open = self.open();
@@ -62,7 +62,7 @@ impl<T: Real> Blocks<T> {
         }
     }
 
-    /// What the last site of a ring and the others do to one another.
+    /// The coupling of the last site of a ring with the others.
     fn factor_border(&mut self, n: usize) -> bool {
         let size = n * n;
         let (open, last) = (self.open(), self.sites - 1);

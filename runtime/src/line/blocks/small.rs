@@ -11,11 +11,11 @@ use crate::line::pivots;
 /// Column after column.
 pub(in crate::line) type Block<T, const N: usize> = [[T; N]; N];
 
-/// A closed form multiplies roundings by the volume of a box over that of the columns of a block, which are as long as
-/// the edges of the box: at least this part, squared.
+/// The closed form multiplies rounding by the product of the lengths of the columns over the volume that they span. The
+/// square of the inverse ratio must be at least this.
 const VOLUME: f64 = 1.0 / 64.0;
 
-/// What is left of a column, as a part of what it was, squared: far more than what rounding leaves of nothing.
+/// The least squared share of a column that must remain after elimination, far more than rounding leaves.
 const LEFT: f64 = 1e-12;
 
 #[inline(always)]
@@ -59,8 +59,8 @@ fn dot<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
     sum
 }
 
-/// The inverse of a block of up to three rows in closed form: of one whose columns span a large part of the volume that
-/// they could, in every lane, and are not what rounding leaves of those of `own`, if that is given.
+/// The inverse of a block of up to three rows in closed form. `None` unless, in every lane, its columns span a large
+/// share of the volume that their lengths allow. If `own` is given, they must also exceed the rounding of its columns.
 #[inline(always)]
 fn inverse<T: Real, const N: usize>(
     a: &Block<T, N>,
@@ -95,7 +95,7 @@ fn inverse<T: Real, const N: usize>(
     for square in &squares[1..] {
         largest *= *square;
     }
-    // Not so where a number is none, or too large or small to be squared.
+    // False for NaN, and for numbers whose squares overflow or underflow.
     let mut far = (volume * volume - largest * T::from_f64(VOLUME)).exceeds(T::zero());
     if let Some(own) = own {
         for k in 0..N {
@@ -116,7 +116,7 @@ fn inverse<T: Real, const N: usize>(
     Some(out)
 }
 
-/// What is factored.
+/// The factored matrix.
 struct Factors<'a, T, const N: usize> {
     before: &'a [Block<T, N>],
     left: &'a [Block<T, N>],
@@ -137,7 +137,7 @@ impl<'a, T: Real, const N: usize> Factors<'a, T, N> {
         }
     }
 
-    /// `x` by the inverse of what is left at a site.
+    /// Multiplies `x` by the inverse of the remaining block of a site.
     #[inline(always)]
     fn undo(&self, site: usize, x: &mut [T; N]) {
         match self.inverted[site] {
@@ -177,7 +177,7 @@ impl<'a, T: Real, const N: usize> Factors<'a, T, N> {
     }
 }
 
-/// What is left at a site, inverted or factored, and its inverse times what it is asked for.
+/// The remaining block of a site, inverted or factored, and its inverse times the next block.
 struct Settled<T, const N: usize> {
     left: Block<T, N>,
     inverted: bool,
@@ -185,7 +185,7 @@ struct Settled<T, const N: usize> {
     value: [T; N],
 }
 
-/// Inverts or factors what is left at a site; `own` is given where that must not be rounding of it.
+/// Inverts or factors the remaining block of a site. If `own` is given, the remainder must exceed its rounding.
 #[inline(always)]
 fn settle<T: Real, const N: usize>(
     left: Block<T, N>,
@@ -204,7 +204,7 @@ fn settle<T: Real, const N: usize>(
     }
 }
 
-/// The same with pivots, apart from what is mostly done, whose numbers stay in registers.
+/// The variant with pivots. It is not inlined, so that the common case keeps its numbers in registers.
 #[inline(never)]
 fn pivoted<T: Real, const N: usize>(
     mut left: Block<T, N>,
@@ -231,7 +231,7 @@ fn pivoted<T: Real, const N: usize>(
     })
 }
 
-/// Factors and solves; where a block has no pivot, or none above `floor` times its own columns, the site.
+/// Factors and solves. Fails with the site of the first block without a pivot above `floor` times its own columns.
 pub(super) fn factor_and_solve<T: Real, const N: usize>(
     all: &mut Blocks<T>,
     floor: f64,
@@ -276,7 +276,7 @@ pub(super) fn factor_and_solve<T: Real, const N: usize>(
     Ok(())
 }
 
-/// What the last site of a ring and the others do to one another.
+/// The coupling of the last site of a ring with the others.
 fn border<T: Real, const N: usize>(all: &mut Blocks<T>, floor: f64) -> Result<(), usize> {
     let (open, last) = (all.open(), all.sites - 1);
     let mut list = core::mem::take(&mut all.border);

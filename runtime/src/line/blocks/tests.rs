@@ -113,7 +113,7 @@ fn a_block_of_dependent_columns_is_named() {
     assert_eq!((told, blocks.without_pivot()), (Err(2), Some(2)));
 }
 
-/// What is left of a block may be well conditioned and yet rounding of it.
+/// The remainder of a block may be well conditioned and yet be rounding of the block.
 #[test]
 fn what_rounding_leaves_of_a_block_is_no_pivot() {
     let mut blocks = Blocks::new(3, 2, false);

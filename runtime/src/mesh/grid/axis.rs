@@ -1,5 +1,5 @@
-//! One direction of a uniform grid: where its nodes are, what they weigh, and which of them a node beyond an end is
-//! the image of. Takes a length, a number of intervals and what stands at the ends.
+//! One direction of a uniform grid: the coordinates and weights of its nodes, and the images of nodes beyond its ends.
+//! Takes a length, a number of intervals and the boundary condition.
 
 use super::super::{MeshError, Wall};
 use crate::{ParameterError, Problem, Real};
@@ -19,7 +19,7 @@ pub(super) struct Spot<T> {
     pub cell: usize,
     /// Position within it, in intervals from 0 to 1.
     pub fraction: T,
-    /// Whether the coordinate is beyond a wall; `fraction` is that of its mirror image then.
+    /// Whether the coordinate is beyond a wall; `fraction` then belongs to its mirror image.
     pub mirrored: bool,
 }
 
@@ -37,7 +37,7 @@ impl Axis {
     /// An axis.
     ///
     /// # Errors
-    /// A length that is no positive number; no interval at all, or more than 2^30.
+    /// If the length is not positive and finite, or the number of intervals is zero or more than 2^30.
     pub fn new(length: f64, intervals: usize, wall: Wall) -> Result<Self, ParameterError> {
         let refused = |field, problem, remedy| ParameterError {
             field,
@@ -73,7 +73,7 @@ impl Axis {
         self.intervals
     }
 
-    /// Number of nodes: that of the intervals, and one more between walls.
+    /// Number of nodes: the number of intervals, plus one between walls.
     #[must_use]
     pub fn nodes(&self) -> usize {
         self.wall.nodes(self.intervals)
@@ -85,7 +85,7 @@ impl Axis {
         self.length / self.intervals as f64
     }
 
-    /// What stands at the ends.
+    /// The boundary condition.
     #[must_use]
     pub fn wall(&self) -> Wall {
         self.wall
@@ -158,7 +158,7 @@ impl Axis {
         match self.wall {
             Wall::Periodic => {
                 let shift = n * (at / n).floor();
-                // Of a coordinate so far away that the product is not exact, the exact remainder.
+                // If the coordinate is so far away that the product is not exact, take the exact remainder.
                 let shift = match (0.0..=n).contains(&(at - shift)) {
                     true => shift,
                     false => at - at.rem_euclid(n),

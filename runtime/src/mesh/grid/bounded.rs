@@ -1,7 +1,7 @@
 //! The Helmholtz smoother between two walls: `S = (M + α²K)⁻¹ M` with the mass and stiffness matrices M, K of linear
-//! finite elements and natural (Neumann) ends. With the lumped mass D of the trapezoid rule `M = D - (s²/6) K`, s the
-//! spacing, so that S is a function of D⁻¹K and its own adjoint in the weights of nodes. Takes rows of values, the
-//! first and last on the walls; constants it leaves as they are, to the last bit.
+//! finite elements and natural (Neumann) ends. With the lumped mass D of the trapezoid rule and the spacing s,
+//! `M = D - (s²/6) K`. Hence S is a function of D⁻¹K, and self-adjoint in the weights of nodes. Takes rows of values,
+//! the first and last on the walls; leaves constants unchanged, bit for bit.
 
 use super::axis::Axis;
 use crate::Real;
@@ -14,9 +14,9 @@ pub(super) const BLOCK: usize = 8;
 pub(super) struct Bounded<T> {
     /// `(α/s)²`.
     stiffness: T,
-    /// What is taken of the row before, forwards.
+    /// The factors of the previous row in the forward sweep.
     forwards: Vec<T>,
-    /// What is taken of the row behind, backwards.
+    /// The factors of the next row in the backward sweep.
     backwards: Vec<T>,
     /// Reciprocal pivots.
     pivots: Vec<T>,

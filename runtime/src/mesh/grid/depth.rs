@@ -1,5 +1,5 @@
-//! Depth on a grid: the masses of particles spread over nodes by B-splines, `H_i = Σ_a m_a Φ_i(X_a) / w_i`, where Φ_i is
-//! the spline of node i with its images behind walls, and w_i the weight of the node in the trapezoid rule. Then
+//! Depth on a grid: B-splines spread the masses of particles over nodes, `H_i = Σ_a m_a Φ_i(X_a) / w_i`. Φ_i is the
+//! spline of node i with its images behind walls, and w_i the weight of the node in the trapezoid rule. Then
 //! `Σ w_i H_i = Σ m_a` to rounding. Takes positions that need not be wrapped; the transposed derivative gathers
 //! `m_a Σ_i seed_i Φ_i'(X_a) / w_i`, the exact gradient.
 
@@ -182,9 +182,9 @@ macro_rules! named {
         named!($name, 2, SVector<T, 2>);
 
         impl<T: Real, const D: usize> $name<T, D> {
-            /// What stands at the nodes, interpolated by the splines of the deposit at the particles of its last value,
-            /// `Σ_i values_i Φ_i(X_a)`, whatever their masses. Of values times the weights of nodes the pull-back is
-            /// the gradient of this times the mass.
+            /// Interpolates values at the nodes to the particles of the last deposit, by the same splines:
+            /// `Σ_i values_i Φ_i(X_a)`, independent of their masses. The pull-back of the values times the weights of
+            /// nodes is the gradient of this interpolant times the mass.
             ///
             /// # Errors
             /// One of the lists has another length.

@@ -15,7 +15,7 @@ impl<const D: usize> Nodes<D> {
     /// The nodes of the grid of a setting.
     ///
     /// # Errors
-    /// There is no grid, a direction has no interval or no positive length, or there are more than 2^32 nodes.
+    /// If the setting lacks a grid, a direction lacks intervals or a positive length, or the nodes exceed 2^32.
     pub fn new(setting: &Setting<D>) -> Result<Self, ParameterError> {
         let refused = |text, remedy| ParameterError {
             field: "grid",

@@ -1,6 +1,6 @@
-//! A grid with a margin of places around its nodes, so that splines near an end need no case of their own. What is
-//! summed at a place of the margin belongs to the node it is an image of, around a period or behind a wall: folding
-//! adds it there, and the transposed map copies it back. Walls need no particles of their own.
+//! A grid with a margin around its nodes, so that splines near an end need no special case. Each point of the margin is
+//! the image of a node, around a period or behind a wall. Folding adds the sums of the margin to the nodes, and the
+//! transposed map copies the nodes to the margin. Walls need no particles of their own.
 
 use super::nodes::Nodes;
 use crate::Real;

@@ -45,7 +45,7 @@ pub(super) fn is_plain<T: 'static>() -> bool {
 
 impl fmt::Debug for Transformed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Plans have no representation of their own.
+        // Plans do not implement `Debug`.
         let mut all = f.debug_struct("Transformed");
         all.field("symbol", &self.symbol).finish_non_exhaustive()
     }
@@ -120,7 +120,7 @@ fn full_angle<T: Real>() -> T {
     half + half
 }
 
-/// Coefficients of the circulant matrix whose eigenvalues are those of so many waves.
+/// Coefficients of the circulant matrix with the eigenvalues `symbol(waves)`.
 fn kernel<T: Real>(nodes: usize, symbol: impl Fn(usize) -> T) -> Vec<T> {
     let step = full_angle::<T>() / T::from_f64(nodes as f64);
     let cosines: Vec<T> = (0..nodes)

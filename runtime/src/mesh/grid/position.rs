@@ -1,4 +1,4 @@
-//! What fields of particles have in common along a line and in the plane: the coordinates of a value.
+//! The coordinates of a value of a field of particles, along a line and in the plane.
 
 use crate::Real;
 use nalgebra::SVector;
@@ -8,7 +8,7 @@ pub trait Position<T, const D: usize>: Copy + Send + Sync {
     /// Its coordinates.
     fn coordinates(&self) -> [T; D];
 
-    /// The one with these coordinates.
+    /// The value with these coordinates.
     fn of(coordinates: [T; D]) -> Self;
 }
 

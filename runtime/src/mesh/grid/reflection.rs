@@ -1,6 +1,6 @@
-//! Reflection of particles that have crossed a wall. In the exact flow none does; with finite steps some do, and are put
-//! back by a mirror image of position and velocity, which changes neither the depth on a grid, itself even about the
-//! walls, nor the kinetic energy.
+//! Reflection of particles that have crossed a wall. In the exact flow particles never cross; with finite steps some
+//! do. The reflection mirrors their position and velocity. It leaves the kinetic energy and the depth on a grid
+//! unchanged, since the depth is even about the walls.
 
 use super::super::{Domain, MeshError, Wall};
 use crate::Real;

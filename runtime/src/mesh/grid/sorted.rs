@@ -8,7 +8,7 @@ use super::position::Position;
 use crate::Real;
 use core::ops::Range;
 
-/// What is kept of a particle: all that deposit and gather need.
+/// The data of a particle for deposit and gather.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Particle<T, const D: usize> {
     /// Position within its cell, from 0 to 1 along each direction.
@@ -109,7 +109,7 @@ impl<T: Real, const D: usize> Sorted<T, D> {
         }
     }
 
-    /// Of so many pieces of work, how many each thread takes; none if there is one thread.
+    /// The number of pieces of work for each thread; `None` for a single thread.
     #[cfg(feature = "rayon")]
     pub fn each(&self, pieces: usize) -> Option<usize> {
         (self.threads > 1).then(|| pieces.div_ceil(self.threads).max(1))
@@ -176,8 +176,8 @@ impl<T: Real, const D: usize> Sorted<T, D> {
     }
 }
 
-/// Pieces of work in groups of so many, one for each thread: an iterator that is told the fewest of a thread leaves an odd
-/// number of them to one.
+/// Groups of `each` pieces of work, one group for each thread. With `with_min_len` instead, rayon distributes an odd
+/// number of pieces unevenly.
 #[cfg(feature = "rayon")]
 pub(super) fn grouped<P>(pieces: impl Iterator<Item = P>, each: usize) -> Vec<Vec<P>> {
     let mut pieces = pieces.peekable();

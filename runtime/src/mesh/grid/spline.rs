@@ -1,6 +1,6 @@
-//! B-splines of a uniform grid, as numbers within one interval: the values of those that do not vanish there, and
-//! their slopes. Takes the position in the interval, from 0 to 1; the sum of the values is 1, that of the slopes 0.
-//! Cubic ones have two continuous derivatives, quintic ones four.
+//! B-splines of a uniform grid within one interval: the values and slopes of all splines that do not vanish there.
+//! Takes the position in the interval, from 0 to 1. The values add up to 1, the slopes to 0. Cubic splines have two
+//! continuous derivatives, quintic splines four.
 
 use crate::Real;
 

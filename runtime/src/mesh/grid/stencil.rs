@@ -1,6 +1,6 @@
-//! What one row of cells adds to the grid and takes from it: the masses of its particles by the splines of the `K x K`
-//! nodes around each, and the derivatives of what stands at those nodes. Takes the rows of places that the splines of
-//! the row of cells cover. The innermost loops of deposit and gather: indices instead of adaptors, which are not inlined.
+//! The innermost loops of deposit and gather, for one row of cells. Deposit adds the masses of its particles to the
+//! `K x K` nodes around each, gather reads derivatives from these nodes. Takes the rows of nodes that the splines of
+//! the row of cells cover. The loops use indices, since iterator adaptors are not inlined.
 
 use super::position::Position;
 use super::sorted::Particle;
@@ -100,7 +100,7 @@ pub(super) fn gather<T: Real, A: Position<T, D>, const D: usize, const K: usize>
     }
 }
 
-/// What stands at the nodes, interpolated at the particles of one row of cells, from `K` rows of places.
+/// Interpolates values at the nodes to the particles of one row of cells, from `K` rows of places.
 #[inline(always)]
 pub(super) fn interpolate<T: Real, const D: usize, const K: usize>(
     places: &[T],

@@ -10,8 +10,9 @@ use core::f64::consts::PI;
 /// Wave numbers that are tried, from 0 to twice the largest that a grid holds.
 const TRIED: u32 = 512;
 
-/// The largest of `q² φ(q)² S(q)` over waves of q radians an interval, with the transform `φ(q) = (sin(q/2)/(q/2))⁴` of a
-/// cubic spline (that of a quintic one is less) and the smoother `S = 1/(1 + r²θ²)`, θ being the wave that the grid sees.
+/// The largest value of `q² φ(q)² S(q)` over waves of q radians per interval. `φ(q) = (sin(q/2)/(q/2))⁴` is the
+/// transform of a cubic spline, an upper bound for a quintic one. The smoother is `S = 1/(1 + r²θ²)`, with θ the alias
+/// of the wave on the grid.
 fn steepest(ratio: f64) -> f64 {
     let of = |i: u32| {
         let q = 2.0 * PI * f64::from(i) / f64::from(TRIED);
@@ -23,10 +24,10 @@ fn steepest(ratio: f64) -> f64 {
     1.001 * (1..TRIED).map(of).fold(0.0, larger)
 }
 
-/// A bound for the angular frequency of small waves in a layer that has several particles in each cell, its depth
-/// smoothed over the length `alpha`: `ω² = f² + c² |k|² φ(k)² S(k)`, whose last factors are those of splines and of the
-/// smoother. `speed` is the speed c of long waves, c0 times the root of the largest depth; `coriolis` is f. Steps of the
-/// Stoermer-Verlet method that are longer than `2/ω` let such waves grow without bound.
+/// A bound for the angular frequency of small waves in a layer with several particles per cell, whose depth is smoothed
+/// over the length `alpha`: `ω² = f² + c² |k|² φ(k)² S(k)`, with the factors φ of the splines and S of the smoother.
+/// `speed` is the speed c of long waves, c0 times the root of the largest depth; `coriolis` is f. If a step of the
+/// Störmer-Verlet method is longer than `2/ω`, such waves grow without bound.
 ///
 /// # Errors
 /// As [`Nodes::new`].

@@ -8,11 +8,11 @@ use crate::mesh::MeshError;
 pub(super) struct Bins {
     lengths: [f64; 2],
     count: [u32; 2],
-    /// Where the particles of each square begin, and those of the last end.
+    /// The first particle of each square, and the end of the last square.
     start: Vec<u32>,
     /// Particles by squares.
     sorted: Vec<u32>,
-    /// Of every particle: its square, and the whole periods taken off its place.
+    /// The square of every particle, and the whole periods subtracted from its position.
     square: Vec<[u32; 2]>,
     turns: Vec<[f64; 2]>,
 }

@@ -54,7 +54,7 @@ impl<T: Real> Voronoi<T> {
         for triangle in self.triangles() {
             let [a, b, c] = triangle.sites;
             let seeds = [seed(a), seed(b), seed(c)];
-            // Of a side, for its two ends; `w left(d)` leads from its middle to the circumcentre.
+            // The part of a side for its two ends; `w left(d)` leads from its middle to the circumcentre.
             let part = |k: usize| {
                 let (d, w) = (triangle.sides[k], triangle.weights[k]);
                 let difference = (seeds[k] - seeds[(k + 1) % 3]) * w * half;

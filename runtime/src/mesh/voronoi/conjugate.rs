@@ -8,7 +8,7 @@ use crate::Real;
 use crate::line::Threads;
 use crate::mesh::MeshError;
 
-/// What is left of the right side, in units of the rounding of one operation: 1e-12 in doubles.
+/// The tolerance of the relative residual, in units of the rounding of one operation: 1e-12 in doubles.
 const TOLERANCE: f64 = 1e-12 / (0.5 * f64::EPSILON);
 
 /// Iterations after which it is given up.
@@ -94,7 +94,7 @@ impl<T: Real> Iteration<T> {
             });
             let length = sum / curvature;
             let before = sum;
-            // What the image is of is needed no longer: in its place comes the residual over the diagonal.
+            // The residual over the diagonal overwrites the image.
             [left, sum] = sums.over(residual, image, |first, residual, image| {
                 let [mut left, mut sum] = [T::zero(); 2];
                 for (k, (residual, image)) in residual.iter_mut().zip(image).enumerate() {
@@ -136,7 +136,7 @@ impl<T: Real> Iteration<T> {
         let cycle = ((TOLERANCE * T::EPSILON * 1e-3).ln() / rate.ln()).ceil() as usize;
         for _ in 0..=T::ORDER {
             self.direction.fill(T::zero());
-            // Of the three-term recurrence.
+            // The weight of the three-term recurrence.
             let mut weight = 0.0;
             for k in 0..cycle {
                 weight = match k {

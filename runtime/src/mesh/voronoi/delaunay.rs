@@ -1,7 +1,7 @@
-//! The Delaunay triangulation of sites on a torus: made by insertion, then kept while the sites move, by flips of
-//! edges (Lawson, 1977; on flat surfaces Indermitte, Liebling, Troyanov and Clemencon, 2001), and made anew where
-//! a triangle has turned over. Takes places; gives half-edges. The torus is never cut: there are no copies of
-//! sites, and a few sites, or one, are no special case.
+//! The Delaunay triangulation of sites on a torus. It is built by insertion, and updated by flips of edges while the
+//! sites move (Lawson, 1977; on flat surfaces Indermitte, Liebling, Troyanov and Clemencon, 2001). If a triangle has
+//! turned over, it is rebuilt. Takes positions; gives half-edges. The torus is never cut or copied, and even a single
+//! site needs no special case.
 
 use super::half_edges::{HalfEdges, next, previous};
 use super::predicates::{in_circle, turn};
@@ -15,7 +15,7 @@ const FAR: f64 = 2.0;
 /// How many grains a triangle is high at least: of fewer, its angles are not known to three digits.
 const THINNEST: f64 = 2048.0;
 
-/// Offsets beyond this are no longer kept up.
+/// The largest offset that is updated.
 const LARGEST_OFFSET: f64 = 4096.0;
 
 /// A Delaunay triangulation that follows its sites.
@@ -34,7 +34,7 @@ pub(super) struct Delaunay {
     pub threads: Threads,
 }
 
-/// What the sites' motion has cost.
+/// The work for the motion of the sites.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counted {
     /// Edges that were flipped.
@@ -70,7 +70,7 @@ impl Delaunay {
         self.torus.between(from, to, self.edges.offset[e])
     }
 
-    /// Makes the triangulation that of these sites, which need not be wrapped.
+    /// Updates the triangulation to these sites, which need not be wrapped.
     pub fn follow(&mut self, at: impl Fn(usize) -> [f64; 2]) -> Result<(), MeshError> {
         let kept = !self.edges.origin.is_empty() && self.place(&at)? && self.find_suspects();
         if kept {

@@ -1,4 +1,4 @@
-//! What an iteration starts from: the extrapolation of the last four solutions. Takes solutions one after another; keeps
+//! The start of an iteration: the extrapolation of the last four solutions. Takes solutions one after another; stores
 //! the latest first.
 
 use crate::Real;

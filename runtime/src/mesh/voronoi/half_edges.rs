@@ -14,13 +14,13 @@ pub(super) struct HalfEdges {
     pub offset: Vec<[i16; 2]>,
 }
 
-/// The half-edge after this one in its triangle.
+/// The next half-edge in the triangle.
 #[inline(always)]
 pub(super) fn next(e: usize) -> usize {
     if e % 3 == 2 { e - 2 } else { e + 1 }
 }
 
-/// The half-edge before this one in its triangle.
+/// The previous half-edge in the triangle.
 #[inline(always)]
 pub(super) fn previous(e: usize) -> usize {
     if e.is_multiple_of(3) { e + 2 } else { e - 1 }

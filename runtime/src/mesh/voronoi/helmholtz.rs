@@ -13,8 +13,9 @@ use super::within::Within;
 pub type helmholtz_depth<T> = Smoothed<T, Cotangents<T>, 1>;
 
 /// The same, smoothed twice: `(A + alpha^2 K) A^-1 (A + alpha^2 K) phi = m`. Waves have
-/// `omega^2 = g h k^2 / (1 + alpha^2 k^2)^2`, so that long ones are as slow as with [`helmholtz_depth`] and a length greater by
-/// `sqrt(2)`, while what stands between neighbouring particles is smoothed by the square.
+/// `omega^2 = g h k^2 / (1 + alpha^2 k^2)^2`. Long waves are as slow as with [`helmholtz_depth`] and a length greater
+/// by `sqrt(2)`. Differences between neighbouring particles are damped by the square of the factor of
+/// [`helmholtz_depth`].
 #[allow(non_camel_case_types)] // Models name it.
 pub type helmholtz_twice<T> = Smoothed<T, Cotangents<T>, 2>;
 

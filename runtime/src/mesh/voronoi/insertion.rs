@@ -1,7 +1,7 @@
-//! A Delaunay triangulation from nothing, by inserting one site after another into that of a torus with a single
-//! site. Takes places; gives half-edges, numbered in the order of the sites. The order of insertion is random in
-//! rounds that double, and along a curve that fills the torus within each (Amenta, Choi and Rote, 2003), which
-//! makes the expected work proportional to the number of sites; it depends on nothing but numbers and places.
+//! Builds a Delaunay triangulation: inserts one site after another into the triangulation of a torus with a single
+//! site. Takes positions; gives half-edges, numbered in the order of the sites. The sites are inserted in random rounds
+//! of doubling size, in each round along a curve that fills the torus (Amenta, Choi and Rote, 2003). The expected work
+//! is then proportional to the number of sites. The order depends only on the numbers and positions of the sites.
 
 use super::delaunay::Delaunay;
 use super::half_edges::{next, previous};
@@ -117,7 +117,7 @@ impl Delaunay {
         for _ in 0..4 * self.edges.len() {
             let edge = self.edge(e);
             if turn(edge, to_site) < 0.0 {
-                // Seen from the triangle across, whose half-edge leaves where this one arrives.
+                // The vector from the other end of the edge, where the half-edge of the adjacent triangle begins.
                 to_site = less(to_site, edge);
                 e = self.edges.twin[e] as usize;
                 inside = 1;

@@ -1,6 +1,6 @@
 //! `A + alpha^2 K` on the edges of a mesh, with `K` the Laplace operator of linear finite elements on the Delaunay
-//! triangles, `(K f)_a = sum_b (l/R) (f_a - f_b)`: by rows, made of the mesh's half-edges at every update. Symmetric
-//! and positive definite, because Delaunay triangulations have no negative `l/R`.
+//! triangles, `(K f)_a = sum_b (l/R) (f_a - f_b)`. Its rows are computed from the half-edges at every update. It is
+//! symmetric and positive definite, because `l/R` is never negative in a Delaunay triangulation.
 
 use super::mesh::{Plane, Voronoi, left};
 use super::rows::Rows;
@@ -13,7 +13,7 @@ use nalgebra::SVector;
 #[derive(Clone, Debug)]
 pub struct Cotangents<T> {
     rows: Rows<T>,
-    /// Of each half-edge, half the cotangent of the angle across it.
+    /// Half the cotangent of the angle opposite each half-edge.
     halves: Vec<T>,
     alpha_squared: T,
 }

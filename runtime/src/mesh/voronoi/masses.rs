@@ -1,8 +1,8 @@
-//! Masses as models give them. Takes one for each particle; refuses what are none.
+//! Checks the masses of particles. Takes one mass for each particle; rejects invalid ones.
 
 use crate::{ParameterError, Problem, Real};
 
-/// Refuses masses that are no masses.
+/// Rejects invalid masses.
 pub(super) fn check_masses<T: Real>(masses: &[T], particles: usize) -> Result<(), ParameterError> {
     let refused = |problem, remedy| ParameterError {
         field: "m",

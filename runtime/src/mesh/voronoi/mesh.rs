@@ -68,8 +68,10 @@ impl<T: Real> Voronoi<T> {
     /// For as many particles, which are given by [`Voronoi::update`].
     ///
     /// # Errors
-    /// A domain that is not periodic in both directions or has no area, no particle or too many, a scalar of
-    /// several lanes.
+    /// - The domain is not periodic in both directions, or its area is not positive and finite.
+    /// - One period is more than 1e6 times the other.
+    /// - The number of particles is zero or above [`Voronoi::MOST`].
+    /// - The scalar has several lanes.
     pub fn new(domain: &Domain<2>, particles: usize) -> Result<Self, ParameterError> {
         let refused = |problem, remedy| ParameterError {
             field: "domain",
@@ -133,7 +135,7 @@ impl<T: Real> Voronoi<T> {
         self.local.len()
     }
 
-    /// What its motion has cost so far.
+    /// The work for its motion so far.
     #[must_use]
     pub fn counted(&self) -> Counted {
         self.delaunay.counted

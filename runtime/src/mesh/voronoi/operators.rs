@@ -1,6 +1,6 @@
-//! Gradient, divergence and curl of values at particles, on the Voronoi diagram: those that belong to the exact change of
-//! areas, and those of means on faces. Takes values at all sites; gives values at all sites. They are for looking at a
-//! flow; the forces of a model are derivatives of its potential.
+//! Gradient, divergence and curl of values at particles, on the Voronoi diagram. One set is consistent with the exact
+//! change of areas, the other uses means on faces. Takes values at all sites; gives values at all sites. Use them to
+//! analyse a flow; the forces of a model are derivatives of its potential.
 
 use super::cells::Face;
 use super::mesh::{Plane, Voronoi, dot, left};
@@ -50,9 +50,9 @@ impl<T: Real> Voronoi<T> {
         })
     }
 
-    /// `(1/A_a) sum_b (q_a + q_b)/2 l n`: of means at the edges' middles, which are not those of the faces. Of linear
-    /// functions it is exact on lattices alone, elsewhere its error does not fall with the distance of particles. With
-    /// `q = m h` and divided by `-m` it is an operator that has been used for the acceleration of shallow water.
+    /// `(1/A_a) sum_b (q_a + q_b)/2 l n`: from means at the middles of edges, which differ from the middles of faces.
+    /// For linear functions it is exact on lattices only; elsewhere its error does not decrease with the distance of
+    /// particles. With `q = m h` and divided by `-m` it has been used for the acceleration of shallow water.
     ///
     /// # Errors
     /// [`MeshError::Count`] where there are not as many values as sites.

@@ -1,6 +1,6 @@
-//! Where particles start: rows of a lattice, shifted or not, hexagons, or at random and then spread evenly. Takes a
-//! periodic domain; gives places in it. The random numbers are a linear congruential sequence (Knuth's multiplier), so
-//! that a start is the same everywhere.
+//! Initial positions of particles: rows of a lattice, shifted or not, hexagons, or at random and then spread evenly.
+//! Takes a periodic domain; gives positions in it. The random numbers are a linear congruential sequence (Knuth's
+//! multiplier), so that positions are the same on every machine.
 
 use super::mesh::{Plane, Voronoi};
 use crate::mesh::{Domain, MeshError};
@@ -12,7 +12,7 @@ use nalgebra::SVector;
 pub struct Jitter {
     /// The largest displacement along either direction, in units of the square root of the area of a particle.
     pub size: f64,
-    /// Of the random numbers.
+    /// The seed of the random numbers.
     pub seed: u64,
 }
 
@@ -72,7 +72,7 @@ pub fn hexagonal(domain: &Domain<2>, columns: usize, jitter: Jitter) -> Vec<SVec
 /// Particles at random, then moved `sweeps` times to the centres of mass of their cells, all at once (Lloyd, 1982).
 ///
 /// # Errors
-/// What a mesh refuses of the domain; more than 2^31 particles.
+/// If [`Voronoi::new`] rejects the domain or the number of particles, or if two particles coincide.
 pub fn scattered(
     domain: &Domain<2>,
     particles: usize,
@@ -81,7 +81,7 @@ pub fn scattered(
 ) -> Result<Vec<SVector<f64, 2>>, ParameterError> {
     let mut mesh = Voronoi::new(domain, particles)?;
     let mut random = Sequence(seed);
-    // The numbers after those of a lattice with the same seed.
+    // Skip the numbers that a lattice with the same seed uses.
     for _ in 0..2 * particles {
         random.next();
     }
@@ -104,7 +104,7 @@ pub fn scattered(
 /// Moves particles to the centres of mass of their cells, all at once, `sweeps` times.
 ///
 /// # Errors
-/// Those of [`Voronoi::update`].
+/// As [`Voronoi::update`].
 pub fn relax(
     mesh: &mut Voronoi<f64>,
     places: &mut [SVector<f64, 2>],

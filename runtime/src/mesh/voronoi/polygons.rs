@@ -89,7 +89,7 @@ fn span(corners: &[Plane<f64>], along: usize) -> core::ops::RangeInclusive<i64> 
     ends.0.floor() as i64..=ends.1.floor() as i64
 }
 
-/// What of a convex polygon has a coordinate between `low` and `low + 1`.
+/// The part of a convex polygon with a coordinate between `low` and `low + 1`.
 fn between(
     corners: &[Plane<f64>],
     along: usize,
@@ -101,7 +101,7 @@ fn between(
     clip(kept, along, |x| low + 1.0 - x, out);
 }
 
-/// What of a convex polygon is where a function of one coordinate is not negative (Sutherland and Hodgman, 1974).
+/// The part of a convex polygon where a function of one coordinate is not negative (Sutherland and Hodgman, 1974).
 fn clip(
     corners: &[Plane<f64>],
     along: usize,

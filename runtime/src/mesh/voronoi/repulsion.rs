@@ -9,12 +9,12 @@ use crate::mesh::{Functional, MeshError, Setting, Wall};
 use crate::{ParameterError, Problem, Real};
 use nalgebra::SVector;
 
-/// Half the energy of each pair that a particle belongs to: that of a pair at the distance `R < rc` is
+/// Half the energy of all pairs of a particle. A pair at the distance `R < rc` has the energy
 /// `kappa <m> (1 - R/rc)^3`, with `<m>` the mean of the masses and `kappa` the square of a velocity.
 ///
-/// Twice continuously differentiable, and zero where no two particles are nearer than `rc`. With the depth `h0` of a
-/// layer at rest and its wave speed, `c0^2 = g h0`, a tenth of `c0^2` and 0.7 times the distance of particles at rest
-/// hold against shear.
+/// The energy is twice continuously differentiable, and zero if all particles are at least `rc` apart. For a layer
+/// with the depth `h0` and the wave speed `c0^2 = g h0`, use `kappa = c0^2 / 10` and `rc` of 0.7 times the distance of
+/// particles at rest: these values resist shear.
 #[allow(non_camel_case_types)] // Models name it.
 #[derive(Clone, Debug)]
 pub struct pair_core<T> {
@@ -22,7 +22,7 @@ pub struct pair_core<T> {
     radius: T,
     /// `kappa <m>`.
     strength: T,
-    /// Of the last value: the pairs within the radius, both ways, in the order of their first particles.
+    /// The pairs within the radius at the last value, both ways, in the order of their first particles.
     pairs: Vec<Pair<T>>,
 }
 
@@ -43,7 +43,7 @@ impl<T: Real> pair_core<T> {
         self.pairs.len() / 2
     }
 
-    /// What is left of one at a distance.
+    /// `1 - distance / radius`.
     fn nearness(&self, distance: T) -> T {
         T::one() - distance / self.radius
     }

@@ -1,5 +1,5 @@
-//! A mesh and what is extrapolated on it, written down and put back: a trajectory that is resumed goes on with the same
-//! edges in the same order, hence to the same bits. Takes and gives words; what is no triangulation is refused.
+//! Saves and restores a mesh and the solutions extrapolated on it. A resumed trajectory has the same edges in the same
+//! order, and therefore continues bit for bit. Takes and gives words; rejects edges that are not a triangulation.
 
 use super::delaunay::Delaunay;
 use super::half_edges::{HalfEdges, next};

@@ -1,5 +1,6 @@
-//! Loops that threads share and that no number of threads changes a bit of: what is collected keeps its order, and sums
-//! are those of pieces of fixed length, added in their order. Threads need the feature `rayon`.
+//! Loops over several threads, whose results are the same, bit for bit, for any number of threads. Collected items keep
+//! their order, and sums are computed for pieces of fixed length and added in their order. Threads need the feature
+//! `rayon`.
 
 use crate::Real;
 use crate::line::Threads;

@@ -13,18 +13,18 @@ use crate::mesh::{Functional, MeshError, Setting};
 use crate::{ParameterError, Real};
 use nalgebra::SVector;
 
-/// What a depth is smoothed by: `H = A + alpha^2 K`, with `K` symmetric, not negative, and zero of constants.
+/// A smoothing operator `H = A + alpha^2 K`, with `K` symmetric, positive semidefinite, and zero for constants.
 pub trait Operator<T: Real>: Clone + Send + Sync {
     /// Its room.
     fn new(setting: &Setting<2>, alpha: T) -> Self;
 
-    /// Makes it that of a mesh.
+    /// Updates the operator to a mesh.
     ///
     /// # Errors
-    /// What it cannot be made of.
+    /// If the operator is undefined on the mesh.
     fn update(&mut self, mesh: &Voronoi<T>) -> Result<(), MeshError>;
 
-    /// It, by rows.
+    /// The rows of the operator.
     fn rows(&self) -> &Rows<T>;
 
     /// Adds to `out` how `-u.(H v)` changes with each place.
@@ -33,10 +33,10 @@ pub trait Operator<T: Real>: Clone + Send + Sync {
 
 /// Depths at the particles, smoothed `TIMES` times, each to a relative residual of 1e-12.
 ///
-/// Every equation is solved from what its last four solutions extrapolate to, and not again at the same places. The
-/// derivative of `sum seed_a phi_a` takes as many further solutions, `H lambda = seed` and so on, but none where the seed
-/// is a multiple of the masses, as that of the potential energy is: these are the same multiple of the depths, in
-/// reverse order.
+/// Every solution starts from an extrapolation of the last four solutions, and is reused at the same positions. The
+/// derivative of `sum seed_a phi_a` needs `TIMES` adjoint solutions, `H lambda = seed` and so on. If the seed is a
+/// multiple of the masses, as for the potential energy, they are the same multiple of the depths in reverse order and
+/// need no further solution.
 #[derive(Clone, Debug)]
 pub struct Smoothed<T, O, const TIMES: usize> {
     pub(super) mesh: Voronoi<T>,
@@ -47,7 +47,7 @@ pub struct Smoothed<T, O, const TIMES: usize> {
     pub(super) at: Vec<Plane<T>>,
     /// The depths.
     pub(super) depths: [Extrapolated<T>; TIMES],
-    /// Whether mesh and operator are those of the last value.
+    /// Whether mesh and operator belong to the last value.
     pub(super) ready: bool,
     adjoints: [Vec<T>; TIMES],
     right: Vec<T>,
@@ -71,7 +71,7 @@ impl<T: Real, O: Operator<T>, const TIMES: usize> Smoothed<T, O, TIMES> {
     /// The masses with which the depth at the places `at` is `depth`.
     ///
     /// # Errors
-    /// Those of [`Voronoi::update`].
+    /// As [`Voronoi::update`].
     pub fn masses(
         mesh: &mut Voronoi<T>,
         at: &[SVector<T, 2>],
@@ -134,7 +134,7 @@ impl<T: Real, O: Operator<T>, const TIMES: usize> Smoothed<T, O, TIMES> {
         Ok(())
     }
 
-    /// What the seed is multiplied by in the derivative of each depth by its right side, the last one first.
+    /// Solves for the adjoint of each depth, the last one first.
     fn solve_back(&mut self, seed: &[T]) -> Result<(), MeshError> {
         let rows = self.operator.rows();
         self.adjoint_products = 0;

@@ -1,5 +1,5 @@
-//! How near particles are, and what that asks of the step. Takes a mesh and the speeds of waves; gives distances and
-//! rates, with the sites where they are.
+//! Distances of particles, and the bound that they put on the step. Takes a mesh and the speeds of waves; gives
+//! distances and rates, with the sites where they are.
 
 use super::mesh::Voronoi;
 use crate::mesh::MeshError;
@@ -33,9 +33,9 @@ impl Voronoi<f64> {
         nearest
     }
 
-    /// The largest speed over distance of two neighbours: with `speeds` the wave speeds `sqrt(g h)` at particles, one
+    /// The largest speed over distance of two neighbours. If `speeds` are the wave speeds `sqrt(g h)` at particles, one
     /// step should be at most about half of its inverse. Waves of a depth that is smoothed over the length `alpha` are
-    /// slower: there `1/alpha` can stand in place of the inverse distance.
+    /// slower: for these you can use `1/alpha` instead of the inverse distance.
     ///
     /// # Errors
     /// [`MeshError::Count`].

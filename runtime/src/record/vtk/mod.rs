@@ -20,11 +20,11 @@ const HEAD: &str = "<?xml version=\"1.0\"?>\n<VTKFile version=\"1.0\" byte_order
 /// Numbers at points, or at cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Values {
-    /// What they are called.
+    /// The name of the values.
     pub name: String,
     /// How many there are at each: 1 for numbers, 3 for vectors, which are drawn as arrows.
     pub components: usize,
-    /// Those of one point after those of another.
+    /// The numbers, point after point.
     pub numbers: Vec<f64>,
 }
 

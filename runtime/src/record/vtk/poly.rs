@@ -35,8 +35,8 @@ impl PolyData {
     /// Writes a file of them.
     ///
     /// # Errors
-    /// Those of `file`; `InvalidInput` where values are not as many as points or cells, and where a cell has a corner
-    /// that is no point.
+    /// The errors of `file`. `InvalidInput` if the number of values differs from the number of points or cells, or if a
+    /// cell has a corner beyond the last point.
     pub fn write(&self, file: &mut dyn Write) -> io::Result<()> {
         let count = self.points.len();
         let cells = [self.vertices.len(), self.lines.len(), self.polygons.len()];

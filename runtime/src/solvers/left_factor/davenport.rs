@@ -29,7 +29,7 @@ const STAGNATED_ROUNDINGS: f64 = 100.0;
 /// The principal solution `Omega` of `Omega C^T - C Omega^T = hat(v)`.
 ///
 /// # Errors
-/// [`Unsolved`] when there is no principal solution in some lane, with the exact bound ratio.
+/// [`Unsolved`] if some lane is beyond the bound of the principal solution, with the exact bound ratio.
 #[inline]
 pub fn davenport<T: Real>(c: &Matrix3<T>, v: &Vector3<T>) -> Result<Rotation<T>, Unsolved> {
     let start = match eigenvector(c, v) {
@@ -73,10 +73,10 @@ pub fn davenport<T: Real>(c: &Matrix3<T>, v: &Vector3<T>) -> Result<Rotation<T>,
     Err(refuse(c, v, previous))
 }
 
-/// The same by the solver named: any but this one prepares the factor anew.
+/// The same by the solver `method`. Every other solver prepares the factor anew.
 ///
 /// # Errors
-/// [`Unsolved`]; also when the matrix is no left factor, which other solvers need.
+/// [`Unsolved`]; for other solvers also if the matrix is not a left factor.
 #[inline]
 pub fn rotation_at<T: Real>(
     c: &Matrix3<T>,

@@ -1,5 +1,5 @@
 //! A left factor, validated and brought to its principal frames once.
-//! Takes the matrix `C`; gives what every solver needs of it.
+//! Takes the matrix `C`; gives the data that the solvers need.
 
 use super::{Refusal, Unsolved};
 use crate::groups::Orthogonal;
@@ -16,7 +16,7 @@ use nalgebra::{SMatrix, SVector, Vector3};
 pub(super) const LARGEST: usize = 8;
 
 /// A left factor `C = P Q`, `P` symmetric and positive, `Q` a rotation, with the principal frame of
-/// `P`: there the equation is that of a diagonal factor.
+/// `P`, in which the factor is diagonal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeftFactor<const N: usize, T = f64> {
     /// `C` as given.
@@ -56,7 +56,7 @@ impl<const N: usize> Saved for LeftFactor<N, f64> {
     }
 }
 
-/// A matrix that is no left factor.
+/// A matrix that is not a left factor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LeftFactorError {
@@ -97,7 +97,7 @@ impl fmt::Display for LeftFactorError {
 impl std::error::Error for LeftFactorError {}
 
 impl LeftFactorError {
-    /// The same error, said of the parameter `field`.
+    /// The same error as a [`ParameterError`] of the parameter `field`.
     #[cold]
     pub fn in_field(self, field: &'static str) -> ParameterError {
         let remedy = match self {
@@ -207,14 +207,14 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
         self.given
     }
 
-    /// The principal solution by the solver named.
+    /// The principal solution by the solver `method`.
     ///
     /// `h_n` is the step times the edge momentum, a skew matrix: `Omega C^T - C Omega^T = h_n`.
     /// Equal arguments give equal results. Nothing is allocated.
     ///
     /// # Errors
-    /// [`Unsolved`] when there is no principal solution, with how far the momentum is beyond the
-    /// exact bound; when the solver named does not apply; never an unconverged result.
+    /// [`Unsolved`] if the momentum is beyond the exact bound of the principal solution, with the
+    /// ratio of both; if the solver does not apply; or if it does not converge.
     #[inline]
     pub fn solve(
         &self,
@@ -274,12 +274,12 @@ impl<const N: usize, T: Real> LeftFactor<N, T> {
             .map_err(|_| self.unsolved(method, &h_n, Refusal::DoesNotApply))
     }
 
-    /// The principal solutions in three dimensions, for the momentum vectors of bodies that do not wait
-    /// for one another: each is that of [`LeftFactor::rotation`], to the last bit.
+    /// The principal solutions in three dimensions, for the momentum vectors of independent bodies. Each
+    /// equals the result of [`LeftFactor::rotation`], bit for bit.
     ///
     /// # Errors
-    /// As [`LeftFactor::solve`], of the first body that has no solution.
-    // A function of its own: the bodies share its registers, not those of the step.
+    /// As [`LeftFactor::solve`], for the first body that fails.
+    // A separate function: the bodies need all registers.
     #[inline(never)]
     pub fn rotations<const COUNT: usize>(
         &self,

@@ -6,49 +6,49 @@ use crate::solvers::Method;
 use crate::solvers::largest_step::largest_step;
 use core::fmt;
 
-/// What went wrong.
+/// The kind of failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// There is no principal solution: the momentum is beyond the exact bound.
+    /// The momentum is beyond the exact bound of the principal solution.
     BeyondBound,
     /// The iteration did not converge although the momentum is within the bound.
     NotConverged,
     /// A solution was found, but not the principal one.
     NotPrincipal,
-    /// The solver named does not serve this size, factor or scalar.
+    /// The requested solver does not support this size, factor or scalar.
     DoesNotApply,
     /// The momentum is NaN or infinite.
     NotFinite,
 }
 
-/// The error of a step that the solver of a left factor refuses.
+/// The error of a step for which the solver of a left factor fails.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unsolved {
     /// The solver.
     pub method: Method,
-    /// What went wrong.
+    /// The kind of failure.
     pub refusal: Refusal,
-    /// The scaled momentum over its exact bound: above 1 there is no solution. Of several lanes,
-    /// the worst.
+    /// The scaled momentum over its exact bound, in the worst lane. Above 1 the principal solution
+    /// does not exist.
     pub ratio: f64,
     /// The component or the plane in which a short step turns fastest, in the frame of the factor:
-    /// that of the largest momentum over moment of inertia.
+    /// it has the largest ratio of momentum to moment of inertia.
     pub fastest: Part,
     /// The lane of the worst ratio; 0 for types without lanes.
     pub lane: u8,
     /// The largest entry of `Omega C^T - C Omega^T - h N` when the solver gave up; NaN where it
     /// found none to try.
     pub residual: f64,
-    /// The step size refused, where the caller knows it.
+    /// The step size that failed, if the caller knows it.
     pub h: Option<f64>,
-    /// The largest step size that can be solved from the same state, where it is known.
+    /// The largest step size that succeeds from the same state, if it is known.
     pub largest_step: Option<f64>,
 }
 
 impl Unsolved {
-    /// The same error with the step size that was refused, and the largest that would do: the
-    /// largest trial whose bound ratio, as `ratio` gives it, is at most 1.
+    /// The same error with the step size that failed, and the largest that succeeds: the largest
+    /// trial step for which `ratio` gives at most 1.
     #[cold]
     #[must_use]
     pub fn with_searched_step(self, h: f64, ratio: impl Fn(f64) -> Option<f64>) -> Self {

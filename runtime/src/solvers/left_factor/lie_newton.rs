@@ -25,8 +25,8 @@ const MOST_STEPS: usize = 50;
 /// Attempts on the way from no momentum to the whole, where the direct one fails.
 const MOST_ATTEMPTS: usize = 60;
 
-/// A residual of this many roundings of twice the factor's largest entry is zero. What is left of it
-/// acts in every step alike, so that it is driven down to where it no longer falls.
+/// A residual of this many roundings of twice the factor's largest entry is zero. Its remainder has
+/// the same effect in every step, so the iteration continues until it no longer decreases.
 const CONVERGED_ROUNDINGS: f64 = 1.0;
 
 /// Where the residual stops falling below this many roundings, rounding is the reason.

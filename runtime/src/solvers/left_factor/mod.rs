@@ -4,9 +4,9 @@
 //!
 //! With `A = Omega C^T` it reads `A - A^T = V`, `A^T A = C C^T`, `V = h N`: a Riccati equation for
 //! the symmetric part of `A` (Cardoso and Leite, Linear Algebra Appl. 360, 2003; Moser and Veselov,
-//! Commun. Math. Phys. 139, 1991). Of its solutions the principal one is taken, whose `A` has its
-//! spectrum in the right half plane; it tends to the polar factor of `C` with the momentum and
-//! exists up to an exact bound ([`LeftFactor::reach`]).
+//! Commun. Math. Phys. 139, 1991). The solvers find the principal solution, for which the spectrum of
+//! `A` is in the right half plane. It tends to the polar factor of `C` as the momentum tends to zero,
+//! and exists up to an exact bound ([`LeftFactor::reach`]).
 
 mod davenport;
 mod factor;

@@ -9,8 +9,8 @@ use crate::solvers::golden_section::peak;
 use nalgebra::{SMatrix, SVector};
 
 impl<const N: usize, T: Real> LeftFactor<N, T> {
-    /// The ratio of `h N` to its exact bound: at most 1 if and only if the principal solution
-    /// exists, linear in the length of `h_n`. Of several lanes, the worst; NaN when not finite.
+    /// The ratio of `h N` to its exact bound, in the worst lane. It is at most 1 if and only if the
+    /// principal solution exists, and linear in the length of `h_n`. NaN if `h_n` is not finite.
     ///
     /// It is the maximum over `nu > 0` of the norm of `D^-1/2 V D^-1/2`, `D = nu + C C^T / nu`: the
     /// Hermitian matrix polynomial `nu^2 + C C^T - i nu V` must not lose its positivity.
@@ -122,8 +122,8 @@ fn ratio<const N: usize>(c: &SVector<f64, N>, v: &SMatrix<f64, N, N>) -> f64 {
         let w = SMatrix::<f64, N, N>::from_fn(|i, j| scale[i] * v[(i, j)] * scale[j]);
         largest_singular_value(&w)
     };
-    // Outside the squares of the spectrum D grows in every direction: the norm falls. A flat body
-    // has its first end at 0, which 1e-12 of the last stands for.
+    // Outside the squares of the spectrum D grows in every direction, so the norm decreases. For a flat
+    // body the first end is 0, which 1e-12 of the last replaces.
     let last = 2.0 * c.amax().ln();
     let first = 2.0 * c.min().max(1e-12 * c.amax()).ln();
     let count = ((last - first) / 0.25).ceil().max(1.0);

@@ -2,10 +2,9 @@
 //! Takes a left factor and `h N`; gives the principal solution to some hundreds of roundings.
 //!
 //! The complex Schur form is found by shifted QR with plane rotations (Golub and Van Loan, Matrix
-//! Computations, 7.5 and 7.6), at most [`SWEEPS`] sweeps an eigenvalue, then ordered so that the right
-//! half plane comes first. It is written here because the real Schur form of the linear algebra
-//! library at hand does not converge on these matrices, whose eigenvalues come in pairs of opposite
-//! sign.
+//! Computations, 7.5 and 7.6), with at most [`SWEEPS`] sweeps per eigenvalue. It is then ordered so that
+//! the right half plane comes first. The real Schur form of nalgebra does not converge on these
+//! matrices, whose eigenvalues come in pairs of opposite sign.
 
 use super::factor::{LARGEST, LeftFactor};
 use super::sign::{finish, hamiltonian};
@@ -139,7 +138,7 @@ impl Schur {
             for i in first..=last {
                 self.t[(i, i)] += shift;
             }
-            // The shift was subtracted in the block only: entries beside it are those of rotations.
+            // The shift was subtracted in the block only, so the rotations alone change the entries outside.
         }
         true
     }

@@ -53,7 +53,7 @@ pub(super) fn finish<T: Real, const N: usize>(
     let f = product - product.transpose() - h_n;
     let residual = largest(f.iter().map(|x| x.magnitude()));
     let unit = largest(c.iter().map(|x| x.magnitude()));
-    // The subspace is exact to rounding times its condition; more is no solution.
+    // The subspace is exact to rounding times its condition; a larger residual is an error.
     if residual <= 1e6 * T::EPSILON * unit && omega_is_rotation(&omega) {
         return Ok(omega);
     }

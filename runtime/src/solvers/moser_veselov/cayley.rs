@@ -27,7 +27,7 @@ pub(super) fn gyroscopic<T: Real, const DIAGONAL: bool>(body: &Poinsot<T>, v: [T
     }
 }
 
-/// What the linear solve needs of the body, `kappa` and `a = |u|^2`; constant in free motion.
+/// The data of the linear solve, from the body, `kappa` and `a = |u|^2`; constant in free motion.
 ///
 /// `adj(d - hat u) u = (adj d + a) u + (d u) x u`, `det(d - hat u) = det d + u . d u`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! The coefficients of the modified moments, as rational numbers.
 //! Taken by [`super::preprocess`]; one list for each power of the step, from the second on.
 //!
-//! Found by putting the Taylor series of the exact motion into the Moser-Veselov equation
-//! `I c + c x I c = (1 + |c|^2) h mu / 2`, solving it for the moments, and fitting
-//! `1 / I_i' = s / I_i + d` in exact arithmetic at fifty rational bodies and momenta; the fit is
-//! overdetermined and leaves nothing. That `s` and `d` exist is the theorem of Hairer and Vilmart,
-//! J. Phys. A 39 (2006) 13225.
+//! The Taylor series of the exact motion was inserted into the Moser-Veselov equation
+//! `I c + c x I c = (1 + |c|^2) h mu / 2`. This was solved for the moments. The coefficients of
+//! `1 / I_i' = s / I_i + d` were fitted in exact arithmetic at fifty rational bodies and momenta. The
+//! fit is overdetermined and its residual is zero. Hairer and Vilmart, J. Phys. A 39 (2006) 13225, prove
+//! that `s` and `d` exist.
 
 /// `factor H^energy C^momentum e1^p e2^q e3^r`, with `H = h^2` times the energy, `C = h^2 |mu|^2 /
 /// 2` and the elementary symmetric functions `e` of the inverse moments.
@@ -31,7 +31,7 @@ const fn term(
     }
 }
 
-/// Of `s - 1`: powers 2, 4, 6, 8 of the step.
+/// The terms of `s - 1`: powers 2, 4, 6, 8 of the step.
 pub(super) const FACTOR: [&[Term]; 4] = [
     &[term(-1, 3, 1, 0, [1, 0, 0]), term(1, 6, 0, 1, [0, 1, 0])],
     &[
@@ -81,7 +81,7 @@ pub(super) const FACTOR: [&[Term]; 4] = [
     ],
 ];
 
-/// Of `d`.
+/// The terms of `d`.
 pub(super) const SHIFT: [&[Term]; 4] = [
     &[term(1, 6, 1, 0, [0, 1, 0]), term(-1, 3, 0, 1, [0, 0, 1])],
     &[

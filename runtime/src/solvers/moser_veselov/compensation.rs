@@ -1,15 +1,17 @@
 //! The turn about the spatial momentum that makes a step with modified moments symplectic on T*SO(3).
 //! Takes a body, the order of its steps and a trajectory; gives that turn, a constant of the trajectory.
 //!
-//! A step of the body whose inverse moments are `s / I + d` is a motion of the true body for the time `h s'` and then a turn about
-//! the momentum as its square generates it, for the time `h d'`: the free motion, its energy `H` and `C = |mu|^2 / 2` are all
-//! that a map can be made of that keeps momentum and energy and is symplectic for constant `s`, `d`. With `s`, `d` functions of `H`
-//! and `C`, so are `s'` and `d'`, and the map is symplectic if and only if `s' dH + d' dC` is closed. A further turn for the
-//! time `h b`, `b` a function of `H` and `C`, makes it so when `db/dH = ds'/dC - dd'/dH`.
+//! Let `H` be the energy and `C = |mu|^2 / 2`. A map that conserves momentum and energy and is symplectic for constant
+//! `s`, `d` is a composition of the flows of `H` and `C`. A step of the body with inverse moments `s / I + d` is such a
+//! map: a motion of the true body for the time `h s'`, then the flow of `C` for the time `h d'`, a turn about the
+//! momentum. If `s`, `d` are functions of `H` and `C`, so are `s'` and `d'`, and the map is symplectic if and only if
+//! `s' dH + d' dC` is closed. A further turn for the time `h b`, `b` a function of `H` and `C`, makes it symplectic if
+//! `db/dH = ds'/dC - dd'/dH`.
 //!
-//! `s'` and `d'` are found from the series of order ten, which say what body must be stepped in the place of another: the body
-//! with inverse moments `s' / I + d'` is the one in whose place `s / I + d` is right. They are polynomials in `h^2 H` and `h^2 C`, and so
-//! is `b`; all are right up to the eighth power of `h`, whatever the order of the step, and begin with that power which the step leaves out.
+//! `s'` and `d'` follow from the series of order ten. The series give, for every body, the body to step instead; for
+//! the body with inverse moments `s' / I + d'` this is the body with `s / I + d`. `s'`, `d'` and `b` are polynomials in
+//! `h^2 H` and `h^2 C`, correct up to the eighth power of `h` for every order of the step. `s' - 1`, `d'` and `b` begin
+//! with the first power that the step neglects.
 
 use super::coefficients::{FACTOR, SHIFT, Term};
 use super::preprocess::Invariants;

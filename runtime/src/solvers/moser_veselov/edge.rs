@@ -113,9 +113,9 @@ impl<T: Real> Edge<T> {
         }
     }
 
-    /// The same where one iteration finds the root of the quartic, and whether it does. There is no
-    /// branch: a loop over many bodies vectorises. `DIAGONAL` says that the body is given in
-    /// principal axes. What is not found is of no meaning.
+    /// The same by one iteration for the root of the quartic; also returns whether that suffices. The
+    /// code is free of branches, so that a loop over many bodies vectorises. Set `DIAGONAL` if the body
+    /// is given in principal axes. If one iteration does not suffice, the result is meaningless.
     #[inline(always)]
     pub fn turn_at_once<const DIAGONAL: bool>(
         &self,
@@ -137,7 +137,7 @@ impl<T: Real> Edge<T> {
         self.space.set_one(lane, one.space);
     }
 
-    /// The same by the solver named, which prepares the body anew.
+    /// The same by the solver `method`, which prepares the body anew.
     ///
     /// # Errors
     /// As [`Edge::turn`]; also when the solver does not serve this scalar.

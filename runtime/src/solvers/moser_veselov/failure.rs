@@ -10,29 +10,30 @@ use crate::solvers::Method;
 use core::fmt;
 use nalgebra::Vector3;
 
-/// The Moser-Veselov equation has no principal solution: the body would turn too far in one step.
+/// The step is too long for the Moser-Veselov equation to have a principal solution: the body would
+/// turn too far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MoserVeselovError {
-    /// The scaled momentum over its exact bound: above 1 there is no solution. Of several lanes,
-    /// the worst. NaN when the momentum is not finite.
+    /// The scaled momentum over its exact bound, in the worst lane. Above 1 the principal solution does
+    /// not exist. NaN if the momentum is not finite.
     pub ratio: f64,
-    /// The step size refused, where the caller knows it.
+    /// The step size that failed, if the caller knows it.
     pub h: Option<f64>,
-    /// The largest step size that can be solved from the same state, where it is known; a free
-    /// body's is `h / ratio`.
+    /// The largest step size that succeeds from the same state, if it is known; for a free body it is
+    /// `h / ratio`.
     pub largest_step: Option<f64>,
     /// Index (0, 1, 2) of the momentum component of largest `|h N_i| / I_ii`.
     pub component: usize,
     /// `|h N_i| / I_ii` of that component, at most one in a turn about that axis alone; `I_ii` is a body's moment of inertia, and the
     /// stiffness of a rod that is read along its length.
     pub share: f64,
-    /// The order of the step: above two, the ratio is that of the modified moments, and infinite
-    /// where these are no longer positive.
+    /// The order of the step. Above two, the ratio belongs to the modified moments, and is infinite if
+    /// these are not positive.
     pub order: Order,
-    /// The solver, where another than the one by `kappa` was asked for.
+    /// The solver, `kappa` unless you requested another.
     pub solver: Method,
-    /// The lane all this is about: the worst, or that of the smallest step where it was searched.
-    /// 0 for types without lanes.
+    /// The lane of these numbers: the worst lane, or the lane of the smallest step if steps were
+    /// searched. 0 for types without lanes.
     pub lane: u32,
 }
 
@@ -128,7 +129,7 @@ impl MoserVeselovError {
         }
     }
 
-    /// The same error with the step size that was refused, and the largest that would do.
+    /// The same error with the step size that failed, and the largest that succeeds.
     #[cold]
     #[must_use]
     pub fn with_steps(self, h: f64, largest_step: f64) -> Self {
@@ -147,8 +148,8 @@ impl MoserVeselovError {
         self.with_steps(h, h / self.ratio * INSIDE)
     }
 
-    /// The same error for an edge momentum that depends on the step: the largest step is searched,
-    /// lane by lane, and the smallest of them told.
+    /// The same error for an edge momentum that depends on the step: searches the largest step of
+    /// every lane, and reports the smallest of them.
     #[cold]
     #[must_use]
     pub fn with_searched_step<T: Real>(
@@ -164,7 +165,7 @@ impl MoserVeselovError {
                 let n = edge_momentum(T::from_f64(trial)) * T::from_f64(trial);
                 Some(reach(&own_body, &n.map(|x| x.lane(lane))))
             });
-            // NaN, which an infinite momentum gives, is told only if nothing else is.
+            // NaN in a later lane is ignored: the comparison is false.
             if told.largest_step.is_none_or(|smallest| largest < smallest) {
                 told = Self {
                     lane: index(lane),

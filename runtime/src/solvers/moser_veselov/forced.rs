@@ -31,8 +31,8 @@ use nalgebra::Vector3;
 /// ```
 ///
 /// # Errors
-/// [`MoserVeselovError`] when there is no principal solution, in any lane, or `h_n` is not finite.
-/// The step size is not known here: see [`MoserVeselovError::with_steps`].
+/// [`MoserVeselovError`] if `h_n` is beyond the bound of the principal solution in some lane, or not
+/// finite. The error does not contain the step size: see [`MoserVeselovError::with_steps`].
 #[inline(always)]
 pub fn forced<T: Real>(
     body: &Poinsot<T>,
@@ -53,9 +53,9 @@ pub fn forced<T: Real>(
     }
 }
 
-/// The principal solutions of bodies that are alike, and whether one iteration found the root of each.
-/// There is no branch, so that the bodies are solved side by side. What is not found is of no meaning;
-/// what is found is that of [`forced()`], to the last bit.
+/// The principal solutions of equal bodies, and whether one iteration found the root of each. The code
+/// is free of branches, so that the bodies are solved side by side. If the root of a body is found, its
+/// solution equals the result of [`forced()`], bit for bit; otherwise it is meaningless.
 #[inline(always)]
 pub(in crate::solvers) fn forced_together<T: Real, const COUNT: usize>(
     body: &Poinsot<T>,
@@ -99,8 +99,8 @@ fn principal<T: Real, const DIAGONAL: bool>(body: &Poinsot<T>, u: [T; 3]) -> Opt
     Some(momentum.quaternion::<DIAGONAL>(body, kappa))
 }
 
-/// The same where one iteration finds the root, and whether it does; without a branch, so that a
-/// loop over many bodies vectorises. What is not found is of no meaning.
+/// The same by one iteration; also returns whether that suffices. Free of branches, so that a loop
+/// over many bodies vectorises. If one iteration does not suffice, the result is meaningless.
 #[inline(always)]
 pub(super) fn principal_at_once<T: Real, const DIAGONAL: bool>(
     body: &Poinsot<T>,
@@ -141,8 +141,8 @@ impl<T: Real> Momentum<T> {
     #[inline(always)]
     fn quaternion<const DIAGONAL: bool>(&self, body: &Poinsot<T>, kappa: T) -> [T; 4] {
         let Self { u, a, .. } = *self;
-        // adj(I - kappa) u = adj(I) u + kappa (I - s1) u + kappa^2 u and det(I - kappa), sorted by
-        // powers so that little is left to do once kappa is known.
+        // adj(I - kappa) u = adj(I) u + kappa (I - s1) u + kappa^2 u and det(I - kappa) are sorted by
+        // powers: few operations have to wait for kappa.
         let rest_u = body.rest_times::<DIAGONAL>(u);
         let adjugate_u = body.adjugate_and_times::<DIAGONAL>(a, u);
         let gyro = gyroscopic::<T, DIAGONAL>(body, u);

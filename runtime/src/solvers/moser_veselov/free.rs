@@ -24,8 +24,8 @@ const PROJECT_EVERY: u32 = 64;
 /// common sign, and would add up until the projection.
 const REPAIR_EVERY: u32 = 8;
 
-/// Relative change of the energy, in roundings, up to which a new attitude is one of the same
-/// trajectory: those of some projections.
+/// Relative change of the energy, in roundings, up to which a new attitude belongs to the same
+/// trajectory: several projections change it by that much.
 const SAME_TRAJECTORY: f64 = 64.0;
 
 /// Squared sine of the angle between `u` and `adj(I) u` below which the energy is left alone: so
@@ -33,7 +33,7 @@ const SAME_TRAJECTORY: f64 = 64.0;
 /// the sine times the rounding error.
 const DEGENERATE: f64 = 1e-6;
 
-/// What a projection has taken out: the rounding of the steps since the one before.
+/// The rounding that a projection has removed, from the steps since the previous projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction<T = f64> {
     /// Change of the body momentum, over its length.
@@ -45,13 +45,13 @@ pub struct Correction<T = f64> {
 /// The constants and the momentum of one free trajectory.
 ///
 /// `|mu|^2` and `mu . I^-1 mu` are exact invariants of the discrete motion, so `kappa` is a
-/// constant and a step costs one division and one square root. Every 64 steps rounding is taken
-/// out: the momentum goes back to its two quadrics, the attitude to where it maps the body
-/// momentum on the spatial one.
+/// constant and a step costs one division and one square root. Every 64 steps a projection removes
+/// rounding: it moves the momentum back to its two quadrics, and turns the attitude so that it maps
+/// the body momentum to the spatial momentum.
 ///
-/// Inside, the body stands in its principal axes, so that every body costs what a diagonal one
-/// does; a type with derivatives stays in the axes given, since those of a principal frame do not
-/// exist where two moments agree.
+/// The solver works in principal axes, so that every body costs the same as a diagonal one. Types
+/// with derivatives use the given axes, since a principal frame is not differentiable if two moments
+/// agree.
 ///
 /// ```
 /// use clebsch::nalgebra::{Matrix3, Vector3};
@@ -86,18 +86,18 @@ pub struct Free<T = f64> {
     until_projection: u32,
     /// Whether it is made.
     projects: bool,
-    /// The turn about the momentum that makes up for modified moments, where it is asked for, and the
-    /// steps until the next projection. It is made where projections are, after every single step:
-    /// steps without it do not pay for it.
+    /// The compensating turn about the momentum, if requested, and the steps until the next projection.
+    /// The turn is made by the code of the projections, after every single step, so that steps without
+    /// it cost nothing.
     compensation: Option<(Rotation<T>, u32)>,
     /// Squares of the last [`Correction`].
     corrected: [T; 2],
-    /// Where the last step ended: an attitude that is not this one has been put there by the user.
+    /// The attitude at the end of the last step. If the given attitude differs, the user has set it.
     attitude: Rotation<T>,
     momentum: SpatialMomentum<T>,
     h: T,
     order: Order,
-    /// What solves a step; all but the one by `kappa` do without the constants.
+    /// The solver of a step; all solvers but `kappa` ignore the constants.
     method: Method,
     /// The body in the axes given.
     given: Poinsot<T>,
@@ -107,7 +107,7 @@ pub struct Free<T = f64> {
     per_square: T,
     /// `u . adj(I) u`; constant.
     energy: T,
-    /// What turns `u` back into the momentum: `2 unit / h`.
+    /// The factor from `u` to the momentum: `2 unit / h`.
     per_scale: T,
     /// For many plain steps at once.
     phase: Phase<T>,
@@ -128,7 +128,7 @@ crate::saved!([] Axis { body, space });
 
 impl<T: Real> Free<T> {
     /// Prepares a trajectory from the attitude, the spatial momentum and the step size `h` (of
-    /// either sign, not zero). Of order two, symplectic.
+    /// either sign, not zero). The steps have order two and are symplectic.
     ///
     /// # Errors
     /// [`MoserVeselovError`], with the largest step size that would do, when the motion is too fast
@@ -234,7 +234,7 @@ impl<T: Real> Free<T> {
         self.order
     }
 
-    /// What the last projection has taken out; zero before the first, at step 64.
+    /// The correction of the last projection; zero before the first projection, at step 64.
     #[must_use]
     pub fn correction(&self) -> Correction<T> {
         let [momentum, attitude] = self.corrected.map(T::sqrt);
@@ -251,11 +251,11 @@ impl<T: Real> Free<T> {
         }
     }
 
-    /// The same trajectory, its steps followed by a turn about the spatial momentum that makes the map
-    /// of momentum and attitude symplectic again, where modified moments do not: for orders four,
-    /// six and eight up to terms of the order of the tenth's, whose own are not known. The turn is
-    /// of the size of the error of a step and constant, so that order, energy and momentum are as
-    /// before. Of order two nothing is missing, and of order ten nothing that is known.
+    /// The same trajectory with compensated steps: each step is followed by a constant turn about the
+    /// spatial momentum. For orders four, six and eight this makes the map of momentum and attitude
+    /// symplectic up to the error of a step of order ten. The turn is as small as the error of a step,
+    /// so that order, energy and momentum are unchanged. Steps of order two need no compensation; for
+    /// order ten none is known.
     #[must_use]
     pub fn compensated(mut self) -> Self {
         if !matches!(self.order, Order::Two | Order::Ten) {
@@ -320,8 +320,8 @@ impl<T: Real> Free<T> {
         Ok(())
     }
 
-    /// Goes on from where somebody else has left the body. Compositions do so in every step: on the
-    /// same trajectory all constants are as they were, and only the place on it is new.
+    /// Continues from a state that was changed from outside. Compositions do so in every step. On the
+    /// same trajectory the constants are unchanged, and only the position on it is new.
     #[inline(never)]
     fn rejoin(
         &mut self,
@@ -507,7 +507,7 @@ impl<T: Real> Free<T> {
                 until_projection = PROJECT_EVERY;
             }
         }
-        // What is not finite stays so: one test is enough.
+        // NaN and infinity persist, so one test is enough.
         if !norm.is_finite() {
             return Err(self.not_finite());
         }
@@ -554,7 +554,7 @@ impl<T: Real> Free<T> {
         }
     }
 
-    /// What is not part of every step: the projection, and a compensating turn.
+    /// The operations outside the fast path: the projection, and a compensating turn.
     #[cold]
     #[inline(never)]
     fn settle(&mut self, attitude: &mut Rotation<T>) {

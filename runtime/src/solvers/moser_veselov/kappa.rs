@@ -3,7 +3,7 @@
 //!
 //! Over `s3` the quartic is
 //! `g = (e - k) - (s1 a / s3) k + a^2 / s3 + k^2 ((s2 + 2a) / s3 - (s1 / s3) k + k^2 / s3)`.
-//! It is positive at 0; without a real root there is no principal solution.
+//! It is positive at 0. The principal solution exists only if the quartic has a real root.
 
 use super::Poinsot;
 use crate::Real;
@@ -24,7 +24,7 @@ const MOST_FAST: usize = 6;
 /// ten. Double-double needs 53 + 10.
 const MOST_MONOTONE: usize = 100;
 
-/// What the root needs of the body; all over `s3`.
+/// The invariants of the body for the quartic, all over `s3`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Symmetric<T> {
     /// `1 / s3`.
@@ -161,8 +161,8 @@ impl<T: Real> Quartic<T> {
     }
 
     /// Newton's method from below the smallest root, in the lanes where `slow` is 1: the iterates
-    /// rise to it and never pass it. A point with `g > 0` and `g' >= 0` on the way proves that
-    /// there is no root.
+    /// rise to it and never pass it. If `g > 0` and `g' >= 0` at an iterate, a real root does not
+    /// exist.
     fn monotone(&self, slow: T) -> Option<T> {
         let one = T::one();
         let constant = self.energy + self.square;

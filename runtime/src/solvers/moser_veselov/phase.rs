@@ -1,14 +1,14 @@
 //! The attitude of a free body along its trajectory, as a turn about its spatial momentum.
-//! Takes the scaled body momentum, step by step; gives the attitude when it is asked for.
+//! Takes the scaled body momentum, step by step; gives the attitude on request.
 //!
-//! The spatial momentum is constant, so an attitude is known by where the momentum stands in the
-//! body and one angle about it. With `s(u)` the shortest rotation of the direction of `u` on that
-//! of an axis `e`, every attitude is `g z s(u)`: `g` is constant, `z` a turn about `e`. A step
+//! The spatial momentum is constant, so the direction of the momentum in the body and one angle about
+//! it determine an attitude. Let `s(u)` be the shortest rotation that takes the direction of `u` to
+//! an axis `e`. Every attitude is then `g z s(u)`: `g` is constant, `z` a turn about `e`. A step
 //! multiplies `z`, as a complex number, by
 //! `(|u| det + d_e n_e) + i (kappa det + |u| n_e)` over its length: the components of
 //! `s(u) (det, n)` along `1` and `e`, with `u . n = kappa det` and the third row of
-//! `(d - hat u) n = det u`. That takes six products where those of quaternions take twenty and a
-//! root, and a rounding of `z` can turn the body about its momentum only.
+//! `(d - hat u) n = det u`. That takes six products instead of twenty and a root for the product of
+//! quaternions, and rounding of `z` can only turn the body about its momentum.
 //!
 //! The axis `e` is the principal one that the momentum goes round, so that `s(u)` never comes near
 //! half a turn.
@@ -41,7 +41,7 @@ pub(super) struct Phase<T> {
     current: bool,
 }
 
-/// What a step needs, in the axes relabelled.
+/// The constants of a step, in the relabelled axes.
 #[derive(Clone, Copy)]
 pub(super) struct Path<T> {
     adjugate: [T; 3],

@@ -84,7 +84,7 @@ impl<T: Real> Form<T> {
     }
 }
 
-/// Why a matrix is no Poinsot matrix. Rows and columns count from 0.
+/// Why a matrix is not a Poinsot matrix. Rows and columns count from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum PoinsotError {
@@ -268,8 +268,8 @@ impl<T: Real> Poinsot<T> {
         Matrix3::new(x, xy, xz, xy, y, yz, xz, yz, z).map(|entry| entry * self.symmetric.zeroth)
     }
 
-    /// What has `inertia` for its `I / unit`, in the same unit. It need not be a body: `J` may have
-    /// a negative eigenvalue, the solver needs `I` alone.
+    /// The solver data with `inertia` as `I / unit`, in the same unit. It need not be a body: `J` may
+    /// have a negative eigenvalue, since the solver needs `I` alone.
     pub(super) fn with_inertia(&self, inertia: &Matrix3<T>) -> Self {
         let half = T::from_f64(0.5);
         let inertia = (inertia + inertia.transpose()).map(|x| x * half);

@@ -1,14 +1,14 @@
 //! Modified moments, with which the Moser-Veselov step of a free body is of high order.
 //! Takes the body, its scaled momentum and the order; gives the body to step instead.
 //!
-//! With `1 / I_i' = s / I_i + d` the discrete motion stays on the orbit of the true body, and `s`
-//! and `d`, series in the square of the step, can be chosen so that it keeps time along it and
-//! turns as the true body does (Hairer and Vilmart, J. Phys. A 39 (2006) 13225). They depend on
-//! the energy and `|mu|^2` only, which the motion keeps: a trajectory needs them once.
+//! With `1 / I_i' = s / I_i + d` the discrete motion stays on the orbit of the true body. `s` and `d`
+//! are series in the square of the step, chosen so that the motion along the orbit and the attitude
+//! agree with the true body (Hairer and Vilmart, J. Phys. A 39 (2006) 13225). They depend on the energy
+//! and `|mu|^2` only, which the motion conserves: a trajectory needs them once.
 //!
 //! The momentum's map is Poisson at every order. The map of momentum and attitude together is
-//! symplectic at order two only: `s` and `d` differ between neighbouring trajectories. What is
-//! missing is a turn about the momentum of the size of the error of the step
+//! symplectic at order two only, since `s` and `d` differ between neighbouring trajectories. A turn
+//! about the momentum, as small as the error of the step, restores symplecticity
 //! ([`Free::compensated`](super::Free::compensated)).
 
 use super::Poinsot;
@@ -62,8 +62,8 @@ impl fmt::Display for Order {
     }
 }
 
-/// The body to step instead of `body`, for the trajectory through `u = h mu / (2 unit)`; `None`
-/// where the step is so long that a modified moment is no longer positive, in any lane.
+/// The body to step instead of `body`, for the trajectory through `u = h mu / (2 unit)`. `None` if
+/// the step is so long that a modified moment is not positive in some lane.
 pub(super) fn preprocessed<T: Real>(
     body: &Poinsot<T>,
     u: [T; 3],
@@ -84,7 +84,7 @@ pub(super) fn preprocessed<T: Real>(
     positive(&inertia).then(|| body.with_inertia(&inertia))
 }
 
-/// What the coefficients are polynomials in.
+/// The variables of the polynomials.
 pub(super) struct Invariants<T> {
     /// `h^2` times the energy.
     pub(super) energy: T,
@@ -95,7 +95,7 @@ pub(super) struct Invariants<T> {
 }
 
 impl<T: Real> Invariants<T> {
-    /// Those of the trajectory through `u = h mu / (2 unit)`, in units of the body.
+    /// The invariants of the trajectory through `u = h mu / (2 unit)`, in units of the body.
     pub(super) fn of(body: &Poinsot<T>, u: [T; 3]) -> Self {
         let [x, y, z] = u;
         let squares = [x * x, y * y, z * z];

@@ -30,7 +30,7 @@ fn about<T: Real>(axis: usize, cosine: T, sine: T) -> Rotation<T> {
 }
 
 impl<T: Real> PrincipalAxes<T> {
-    /// The axes of a body, lane by lane. Derivative parts are those of a fixed frame: of use for
+    /// The axes of a body, lane by lane. The derivative parts treat the frame as fixed, so use this for
     /// types without derivatives only.
     pub(super) fn of(body: &Poinsot<T>) -> Self {
         let [x, y, z] = body.moments;

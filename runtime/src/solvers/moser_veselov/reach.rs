@@ -9,10 +9,10 @@ use nalgebra::Vector3;
 /// The ratio of `h N` to its exact bound: at most 1 if and only if the principal solution exists.
 /// It is linear in the length of `h_n`. NaN when `h_n` is not finite.
 ///
-/// With the eigenvalues `j_i` of `J`, the square of the ratio is the maximum over `x > 0` of
-/// `x (x |v|^2 + |J v|^2) / prod_i (x + j_i^2)`, `v = h N` (factorisation of Hermitian matrix
-/// polynomials). Each principal component contributes one bump in `log x`, with its peak at the
-/// product of the two other eigenvalues and at least as wide as `sech^2`.
+/// Let `j_i` be the eigenvalues of `J` and `v = h N`. The square of the ratio is the maximum over `x > 0`
+/// of `x (x |v|^2 + |J v|^2) / prod_i (x + j_i^2)` (factorisation of Hermitian matrix polynomials).
+/// Each principal component contributes one bump in `log x`, with its peak at the product of the two
+/// other eigenvalues and at least as wide as `sech^2`.
 #[must_use]
 pub fn reach(body: &Poinsot<f64>, h_n: &Vector3<f64>) -> f64 {
     let length = h_n.amax();
@@ -30,8 +30,8 @@ pub fn reach(body: &Poinsot<f64>, h_n: &Vector3<f64>) -> f64 {
         let x = t.exp();
         x / (x + j1 * j1) * ((x * vv + jv) / ((x + j2 * j2) * (x + j3 * j3)))
     };
-    // The outermost peaks bracket the maximum. For a flat body the first is at x = 0, which 1e-24
-    // of the last stands for without a visible difference.
+    // The outermost peaks bracket the maximum. For a flat body the first is at x = 0, which 1e-24 of
+    // the last replaces without a visible difference.
     let last = (j2 * j3).ln();
     let first = (j1 * j2).max(j2 * j3 * 1e-24).ln();
     // A quarter of a unit is a fourteenth of the width of the narrowest bump.

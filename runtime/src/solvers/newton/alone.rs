@@ -1,4 +1,4 @@
-//! One equation solved by itself, without those of steps before and after it.
+//! Solves a single equation, outside a trajectory.
 //! Takes a guess, the size of the terms, the residual and its tangent; gives a converged element or an error.
 
 use super::{BOUND_ROUNDINGS, LAST_ATTEMPT, NewtonError, Progress, REMEMBERED, Search, Solved};

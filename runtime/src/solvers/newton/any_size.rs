@@ -1,7 +1,6 @@
-//! The same method for equations whose group and number of unknowns are known when a model is read, over
-//! plain numbers: what stands in arrays elsewhere stands in lists here. Every decision and every operation
-//! is that of [`Search`](super::Search) and [`Newton`](super::Newton), so that solutions agree to the last
-//! bit.
+//! Newton's method for equations whose group and number of unknowns are known at run time, over plain numbers.
+//! It uses lists instead of arrays. It makes the same decisions and operations as [`Search`](super::Search) and
+//! [`Newton`](super::Newton), so that solutions agree bit for bit.
 //! Takes a chart of the group, residuals and tangents; gives a converged element or an error.
 
 mod chart;
@@ -57,8 +56,8 @@ pub struct AnySearch<C: Chart> {
 }
 
 impl<C: Chart> AnySearch<C> {
-    /// Nothing known: the first guess is the neutral element. Blocks of three are factored without exchange
-    /// of rows only where `in_blocks`: where a static size is that of the equations.
+    /// A search without a past: the first guess is the neutral element. `in_blocks` allows to factor blocks of
+    /// three without exchange of rows. Set it if the static size equals the number of equations.
     #[must_use]
     pub fn new(dimension: usize, in_blocks: bool, tries: bool) -> Self {
         Self {
@@ -334,11 +333,11 @@ impl<C: Chart> AnyNewton<'_, C> {
         self.search.open || reduced && self.search.whole.is_none()
     }
 
-    /// Looks whether the solution, or else which element, is the principal root. None where it is, or where
-    /// no other can be polished; else the iteration has begun again there.
+    /// Finds the principal root and compares it with the solution. If they differ, the iteration begins again at the
+    /// principal root, unless it already did so.
     ///
     /// # Errors
-    /// [`Fold`] where there is no principal root.
+    /// [`Fold`] if the principal root does not exist.
     #[cold]
     pub fn settle(
         &mut self,
@@ -382,7 +381,7 @@ impl<C: Chart> AnyNewton<'_, C> {
         if self.iteration > 0 {
             return self.size > WORTH_KEEPING * self.previous && !self.polished();
         }
-        // What is foreseen to rounding needs no more than the tangent of a step before.
+        // If the prediction is exact to rounding, the tangent of an earlier step suffices.
         !(self.size <= CONVERGED_ROUNDINGS * UNIT && self.search.age < OLDEST_TANGENT)
     }
 
@@ -523,14 +522,14 @@ impl<C: Chart> AnyNewton<'_, C> {
         }
     }
 
-    /// The principal root was found, but is no root to rounding.
+    /// The error if the principal root was found, but its residual exceeds rounding.
     #[cold]
     #[must_use]
     pub fn unpolished(&self) -> NewtonError {
         self.error(NewtonFailure::NotConverged, self.iteration)
     }
 
-    /// There is no principal root; `failure` says why another way failed before.
+    /// The error if the principal root does not exist; `failure` is the cause of an earlier failure.
     #[cold]
     #[must_use]
     pub fn folded(&self, fold: Fold, failure: Option<NewtonError>) -> NewtonError {
@@ -571,7 +570,7 @@ fn largest_of(numbers: &[f64], units: &[f64]) -> f64 {
     largest + 0.0 * f64::abs(sum)
 }
 
-/// What was found out about a solution.
+/// The result of [`AnyNewton::settle`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Settled {
     /// It is the principal root.

@@ -1,6 +1,6 @@
-//! When corrections say that a velocity is found: the last one is rounding of the velocity in its own scale.
-//! Takes one correction after the other, each relative to the length of the part of the velocity it changes. Knows
-//! nothing of the sizes by which residuals are judged, so that wrong ones end no iteration.
+//! Decides from the corrections when a velocity is found: the last one must be rounding of the velocity in its own
+//! scale. Takes the corrections in order, each relative to the length of the part of the velocity that it changes.
+//! Scales of residuals do not enter, so that wrong scales cannot end an iteration.
 
 use super::{CONVERGED_ROUNDINGS, FORESIGHT, POLISHED_ROUNDINGS, STAGNATED_ROUNDINGS};
 use crate::scalar::Real;
@@ -31,18 +31,18 @@ pub(super) struct Residual {
     pub iteration: usize,
 }
 
-/// What follows once a correction is known.
+/// The next action after a correction is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Next {
-    /// It is made, and another follows.
+    /// Make the correction, then another.
     Correct,
-    /// It is made, and is the last.
+    /// Make the correction, the last one.
     CorrectAndEnd,
-    /// It is not made: of what is rounding already it would add its own.
+    /// Do not make the correction: the error is rounding already, and the correction would add its own.
     End,
 }
 
-/// What a correction is.
+/// The judgement of a correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Judged {
     /// Another follows.
@@ -73,8 +73,8 @@ impl Corrections {
         }
     }
 
-    /// Whether the residual is nothing but rounding, and a further correction would be too. What is only foreseen is
-    /// corrected once.
+    /// Whether the residual is pure rounding, and a further correction would be too. A predicted velocity is corrected
+    /// at least once.
     #[inline(always)]
     pub fn are_polished<T: Real>(&self, r: Residual) -> bool {
         T::ORDER == 0
@@ -83,9 +83,9 @@ impl Corrections {
             && self.leave_rounding::<T>(r.size / r.previous)
     }
 
-    /// Takes a correction over the length of its part of the velocity, and the residual that it is made for. `decrement`
-    /// is Newton's, the scalar product of both: it has one unit for all equations, that of an action, and does not
-    /// depend on their sizes.
+    /// Takes a correction over the length of its part of the velocity, and its residual. `decrement` is Newton's
+    /// decrement, the scalar product of both. Its unit is an action for all equations, and it does not depend on their
+    /// scales.
     #[inline(always)]
     pub fn next<T: Real>(
         &mut self,
@@ -108,8 +108,8 @@ impl Corrections {
         if may_end && r.size <= POLISHED_ROUNDINGS * unit && judged == Judged::Last {
             return Next::End;
         }
-        // What is left after this correction, if it does as well as the last. The residual alone may fall too far: where
-        // one equation was large at the first trial, it tells nothing of the others.
+        // The residual after this correction, if it is as good as the last. The decrease of the residual alone may be
+        // too optimistic: if one equation dominated at the first trial, it does not show the others.
         let factor = FORESIGHT * (r.size / r.previous).max(fall);
         let is_foreseen = may_end && r.size * factor <= POLISHED_ROUNDINGS * unit;
         match judged != Judged::More || (is_foreseen && self.leave_rounding::<T>(factor)) {
@@ -118,7 +118,7 @@ impl Corrections {
         }
     }
 
-    /// What the last correction is, where the residual is rounding.
+    /// Judges the last correction, if the residual is rounding.
     #[inline(always)]
     fn judged<T: Real>(&mut self, decrement: impl FnOnce() -> f64) -> Judged {
         if self.last <= ROUNDINGS * T::EPSILON {
@@ -171,7 +171,7 @@ mod tests {
         // As Newton's method begins where a cubic term rules: each correction is two thirds of the one before.
         let slow: Vec<f64> = (0..20).map(|i| 0.5 * f64::powi(2.0 / 3.0, i)).collect();
         assert_eq!(ends(1.0, &slow), None);
-        // What a badly conditioned tangent makes of rounding.
+        // Rounding, amplified by a badly conditioned tangent.
         assert_eq!(ends(1.0, &[1e-4, 1e-11, 8e-12]), Some(3));
         // A velocity that vanishes beside the terms of its equations.
         assert_eq!(ends(1e-17, &[1e-17, 9e-18, 1e-17, 8e-18]), Some(4));
@@ -197,7 +197,7 @@ mod tests {
         };
         // An equation that had no terms at rest is large beside its scale; the other corrections fall as their squares.
         assert_eq!(next([2.9e-2, 8.4e-7]), Next::Correct);
-        // A first correction beside a velocity of zero has no length to be measured by.
+        // A first correction from zero velocity lacks a length to compare with.
         assert_eq!(next([4.7e307, 1.1e-6]), Next::Correct);
         // Those that fall as far as the residual leave rounding.
         assert_eq!(next([2.9e-2, 1e-14]), Next::CorrectAndEnd);
@@ -232,7 +232,7 @@ mod tests {
             for p in [1e-9, 0.1, 1e4] {
                 for b in [0.0, 1e-6, 0.3, 1e6] {
                     let (found, wanted) = stiffening(p, b, factor);
-                    // What is not corrected any more: the root itself is known to a few roundings.
+                    // The accepted error: the root itself is known to a few roundings.
                     let off = (found - wanted).abs();
                     assert!(
                         off <= ROUNDINGS * f64::EPSILON * wanted,

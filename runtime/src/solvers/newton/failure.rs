@@ -1,5 +1,5 @@
-//! Why Newton's method found no solution: how far off it was, which equation was worst, and which
-//! step could have been made from the same state.
+//! Why Newton's method failed: the last residual, the worst equation, and the largest step that is
+//! possible from the same state.
 //! Takes the last residual and a way to try other steps; gives the error.
 
 use super::{Fold, Found, LAST_ATTEMPT, MOST_ITERATIONS, Newton, Progress, Search};
@@ -11,20 +11,20 @@ use crate::{StepCause, StepError};
 use core::cell::Cell;
 use core::fmt;
 
-/// What went wrong.
+/// The kind of failure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NewtonFailure {
     /// The residual is still too large.
     NotConverged,
-    /// The tangent matrix has no inverse.
+    /// The tangent matrix is singular.
     SingularTangent,
     /// The residual became NaN or infinite.
     NotFinite,
-    /// There is no principal root: on the way from rest to the momenta of the node the tangent
-    /// becomes singular, or the equations lose their meaning.
+    /// The principal root does not exist: on the way from rest to the momenta of the node the tangent
+    /// becomes singular, or the equations become undefined.
     Fold {
-        /// What part of the way there is.
+        /// The share of the way up to that point.
         share: f32,
     },
 }
@@ -32,24 +32,24 @@ pub enum NewtonFailure {
 /// The equations of a step that Newton's method did not solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonError {
-    /// What went wrong.
+    /// The kind of failure.
     pub failure: NewtonFailure,
     /// Corrections made.
     pub iterations: u8,
     /// The residual that is largest compared with the terms of its equation, over all lanes; NaN
     /// if any is.
     pub residual: f64,
-    /// What it should have come below.
+    /// The bound that the residual had to reach.
     pub tolerance: f64,
-    /// The step size refused, where the caller knows it.
+    /// The step size that failed, if the caller knows it.
     pub h: Option<f64>,
-    /// The largest step that a fresh workspace takes from the same state, found by bisection, of
-    /// the sign of `h`; 0 when none above `h / 2^380` will do, `h` itself when only the workspace
-    /// led astray.
+    /// The largest step that succeeds with a new workspace from the same state, with the sign of `h`,
+    /// found by bisection. It is 0 if no step above `h / 2^380` succeeds, and `h` itself if only the
+    /// old workspace caused the failure.
     pub largest_step: Option<f64>,
     /// The equation of the largest residual: a component of the momentum of a configuration, in
-    /// the frame in which the model is stated. Where a largest step was found, that of the
-    /// shortest step refused: the equation that ceases to have a solution.
+    /// the frame of the model. If a largest step was found, the equation comes from the shortest
+    /// step that failed.
     pub worst: Coordinate,
     /// The lane it is in; 0 for types without lanes.
     pub lane: u8,
@@ -286,7 +286,7 @@ where
         })
     }
 
-    /// The principal root was found, but is no root to rounding.
+    /// The error if the principal root was found, but its residual exceeds rounding.
     #[cold]
     #[inline(never)]
     pub fn unpolished(&self) -> NewtonError {
@@ -304,7 +304,7 @@ where
         }
     }
 
-    /// There is no principal root; `failure` says why another way failed before.
+    /// The error if the principal root does not exist; `failure` is the cause of an earlier failure.
     #[cold]
     #[inline(never)]
     pub fn folded(&self, fold: Fold, failure: Option<NewtonError>) -> NewtonError {

@@ -115,8 +115,8 @@ impl Parts {
         }
     }
 
-    /// The lengths by which later corrections of each part are measured: those of the first correction, or a small share of
-    /// the part that moves most.
+    /// The lengths that later corrections of each part are compared with: the lengths of the first correction, or a
+    /// small share of the part that moves most.
     pub(super) fn course(
         &self,
         lengths: &[f64],
@@ -184,9 +184,9 @@ impl Kinds<'_> {
     }
 
     /// The unit of length of each part: 1 for pure numbers; for translations the radius at which they weigh as much as the
-    /// angles of the same element. A part that its own equations do not contain is a multiplier: its unit is the value that
-    /// acts in the equations of the others as one unit of theirs, times so many that it is measured by all of the part that
-    /// moves most. It differs from a velocity in that it may jump. `entry` is the tangent.
+    /// angles of the same element. A part that its own equations do not contain is a multiplier, which may jump, unlike
+    /// a velocity. Its unit is the value that acts in the other equations as one unit of their parts, multiplied so
+    /// that the multiplier is compared with the whole part that moves most. `entry` is the tangent.
     pub(super) fn units_into(
         &self,
         entry: &dyn Fn(usize, usize) -> f64,

@@ -5,10 +5,10 @@
 //! Where the tangent becomes singular, at a fold, the curve turns back: the equations may have other roots beyond, to
 //! which no motion of small steps leads.
 //!
-//! The curve is followed in stages. A stage is accepted where its first two corrections by one tangent fall by a factor
-//! of four, which bounds how the tangent changes along it (Deuflhard, Newton Methods for Nonlinear Problems, 2011,
-//! sections 2.1 and 5.1). Where a part lacks a scale of its own the equations and the tangent are also looked at on the
-//! way: see [`stage`](super::stage). All are tests at points, not proofs.
+//! The curve is followed in stages. A stage is accepted if its first two corrections by one tangent decrease by a
+//! factor of four. This bounds the change of the tangent along the stage (Deuflhard, Newton Methods for Nonlinear
+//! Problems, 2011, sections 2.1 and 5.1). If a part lacks a natural scale, the equations and the tangent are also
+//! checked at points in between: see [`stage`](super::stage). All are tests at points, not proofs.
 //!
 //! Takes the equations of one lane; gives the root, or how far the curve could be followed.
 
@@ -52,11 +52,11 @@ const SAME: f64 = 1e-3;
 pub(super) enum Traced<G> {
     /// The solution is the principal root.
     Principal,
-    /// There was no solution, or another: this is the principal root.
+    /// The principal root, if the solution differs from it or is missing.
     Elsewhere {
         /// The root, to the precision of a stage.
         root: G,
-        /// A polished root is no further from it than these lengths, part by part.
+        /// The largest distance of a polished root from it, part by part.
         reach: Vec<f64>,
     },
 }
@@ -178,8 +178,8 @@ pub(super) fn trace<C: Curve>(
     Err(Fold::at(share, parts.fastest(&toward, &stage.units)))
 }
 
-/// The equations of one lane on a group that is a type. What follows the curve is compiled once for each group, not for
-/// every model and scalar.
+/// The equations of one lane on a static group. The code that follows the curve is compiled once for each group, and
+/// not for every model and scalar.
 pub struct Equations<'a, G, const D: usize> {
     /// The residual `P(v) - m`.
     pub residual: &'a dyn Fn(&G) -> SVector<f64, D>,

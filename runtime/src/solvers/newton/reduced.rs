@@ -113,7 +113,7 @@ where
         self.completed(whole, Newton::correct_from_left)
     }
 
-    /// [`is_principal`](Newton::is_principal) of all unknowns: `tangent` is that of all equations at rest.
+    /// [`is_principal`](Newton::is_principal) for all unknowns: `tangent` is the tangent of all equations at rest.
     #[inline(always)]
     pub fn is_part_of_principal(
         &mut self,
@@ -148,7 +148,7 @@ where
         }
         match correct(self) {
             Progress::Continue => Progress::Continue,
-            // What was corrected last has its rest at the next trial.
+            // The other unknowns of this solution follow at the next trial.
             Progress::Solved(solved) => {
                 self.found = Some(solved.iterations);
                 Progress::Continue

@@ -1,4 +1,4 @@
-//! What a search remembers, written down and made again.
+//! Saves and restores the memory of a search.
 
 use super::{Search, Summary};
 use crate::groups::Group;

@@ -1,6 +1,6 @@
-//! Scales of equations that their own terms do not tell: an equation is solved when its residual is rounding
-//! beside its scale, and no smaller than what rounding of the velocities leaves of it.
-//! Takes the tangent factored last, as absolute values, and scales; raises them. Gives what corrections are measured by.
+//! Scales of equations beyond the size of their own terms: an equation is solved if its residual is rounding compared
+//! with its scale, and rounding of the velocities may leave a larger residual than its terms show.
+//! Takes the tangent factored last, as absolute values, and scales; raises them. Gives the lengths for corrections.
 
 use super::parts::{Aside, Kinds};
 use crate::scalar::larger;
@@ -20,7 +20,7 @@ pub(super) fn measure(
     [units, noise]: [&mut [f64]; 2],
 ) {
     kinds.units_into(entry, Aside::OfStep, units);
-    // Own equations, and those that the own unknown does not enter, as of a held constraint.
+    // Its own equation, and equations without their own unknown, such as constraints.
     let of = |k: usize| {
         let rows = (0..kinds.size).filter(|i| *i == k || entry(*i, *i) == 0.0);
         let each = rows.map(|i| {
@@ -48,7 +48,7 @@ pub(super) fn measure(
     }
 }
 
-/// What the equations do with the velocities.
+/// The tangent of the equations, and the lengths of the velocities.
 pub(super) struct Tangent<'a> {
     /// The absolute value of the entry of an equation and a coordinate, zero where it is not known.
     pub entry: &'a dyn Fn(usize, usize) -> f64,
@@ -59,15 +59,15 @@ pub(super) struct Tangent<'a> {
 }
 
 impl Tangent<'_> {
-    /// Raises what is rounding beside others.
+    /// Raises scales that are rounding compared with others.
     pub fn raise(&self, scales: &mut [f64]) {
         self.momenta(scales);
         self.constraints(scales);
     }
 
-    /// One over the lengths that corrections of coordinates are measured by: that of the part of the velocity, or the
-    /// root of the rounding of the longest part, in the unit of all, where that is more. Zero for multipliers: they are
-    /// no velocities, and vanish wherever nothing reacts. Every correction of a part of length zero is large.
+    /// The inverse lengths for corrections of coordinates. The length is the length of the part of the velocity, or
+    /// [`SHARE`] times the longest part in common units, whichever is larger. The inverse is zero for multipliers,
+    /// which vanish without a constraint force. Every correction of a part of length zero is large.
     pub fn inverse_lengths(&self, out: &mut [f64]) {
         let parts = 0..out.len();
         let root = |part: usize| {
@@ -75,7 +75,7 @@ impl Tangent<'_> {
             own.fold(0.0, |most: f64, k| most.max((self.entry)(k, k).sqrt()))
         };
         let length = |part: usize| self.lengths.get(part).copied().unwrap_or(0.0);
-        // There are no more parts than coordinates.
+        // The number of parts is at most the number of coordinates.
         let most = (parts.clone()).fold(0.0, |most: f64, p| most.max(length(p) * root(p)));
         let known = most > 0.0 && most.is_finite();
         for (i, inverse) in out.iter_mut().enumerate() {
@@ -95,9 +95,9 @@ impl Tangent<'_> {
         }
     }
 
-    /// A momentum and the root of its own entry of the tangent have one unit for all equations, the root of an action. Below
-    /// `EPSILON` of the largest so measured, what solving for all velocities together leaves of an equation is larger than what
-    /// would be asked of it. Entries that are zero, or not known, measure nothing.
+    /// A momentum over the root of its diagonal entry of the tangent has the same unit for all equations, the root of
+    /// an action. In this unit no scale may be below `EPSILON` of the largest: the joint solution for all velocities
+    /// leaves rounding of that size. Diagonal entries that are zero or unknown are skipped.
     fn momenta(&self, scales: &mut [f64]) {
         let root = |i: usize| (self.entry)(i, i).sqrt();
         let known = |i: &usize| root(*i) > 0.0 && root(*i).is_finite();
@@ -109,11 +109,11 @@ impl Tangent<'_> {
         }
     }
 
-    /// Of an equation that its own unknown does not enter, as of a held constraint, rounding of the velocities leaves something: those
-    /// of a part are rounded together, to the length of the part or to what the rounding of its momenta makes of them. Its own
-    /// terms may say less: where a rotation keeps an axis of the basis, entries that vanish are terms of nothing but
-    /// rounding. Each correction is rounded as a whole, so that the square of the rounding can be reached, and half of those digits
-    /// are asked for.
+    /// An equation without its own unknown, such as a constraint, has a residual from the rounding of the velocities.
+    /// The velocities of a part are rounded relative to the length of the part, or to the effect of rounding of its
+    /// momenta. The terms of the equation may be smaller: if a rotation preserves an axis of the basis, vanishing
+    /// entries are pure rounding. Each correction is rounded as a whole, so the square of the rounding could be
+    /// reached; half of these digits are required.
     fn constraints(&self, scales: &mut [f64]) {
         let size = scales.len();
         for i in (0..size).filter(|i| (self.entry)(*i, *i) == 0.0) {
@@ -122,7 +122,7 @@ impl Tangent<'_> {
                 let entry = (self.entry)(i, j);
                 if entry > 0.0 {
                     let moved = entry * self.velocity((self.part_of)(j), scales);
-                    // What is not known raises nothing.
+                    // Unknown entries do not raise a scale.
                     least = if moved > least && moved.is_finite() {
                         moved
                     } else {
@@ -134,7 +134,7 @@ impl Tangent<'_> {
         }
     }
 
-    /// The length of a part of the velocity, or what its momenta make of it where that is more.
+    /// The length of a part of the velocity, or the velocity of its momentum scales, whichever is larger.
     fn velocity(&self, part: usize, scales: &[f64]) -> f64 {
         let length = self.lengths.get(part).copied().unwrap_or(0.0);
         let own = (0..scales.len()).filter(|j| (self.part_of)(*j) == part);

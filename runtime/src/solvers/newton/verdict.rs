@@ -1,6 +1,6 @@
-//! Whether the solution of a step is the principal root: the test in every step, and the results of all lanes where that
-//! is not enough.
-//! Takes the residual at rest, then the equations lane by lane; gives the principal roots where the solution is none in
+//! Checks that the solution of a step is the principal root: a test in every step, and a trace of each lane if the test
+//! fails.
+//! Takes the residual at rest, then the equations lane by lane; gives the principal roots if the solution differs in
 //! some lane.
 
 use super::parts::{comes_near, varies_little};
@@ -14,8 +14,8 @@ impl<T: Real, G, const D: usize, W: Group<T>, const E: usize> Newton<'_, T, G, D
 where
     G: Group<T> + Found<W>,
 {
-    /// Whether the solution found is the principal root: because it follows from rest, where the residual is `at_rest`, or
-    /// because this is where it was looked for.
+    /// Whether the solution is the principal root: either it is connected to rest, where the residual is `at_rest`, or
+    /// the search began at the traced principal root and stayed near it.
     #[inline(always)]
     pub fn is_principal(
         &self,
@@ -26,15 +26,15 @@ where
         self.follows(&G::within(solution), at_rest, residual) || self.is_anchored(solution)
     }
 
-    /// Whether this is where the principal root was looked for.
+    /// Whether the search began at the traced principal root and the solution is within its reach.
     #[inline(always)]
     pub(super) fn is_anchored(&self, solution: &W) -> bool {
         self.anchor
             .is_some_and(|anchor| anchor.holds::<T>(*solution))
     }
 
-    /// Whether the first correction from rest, by the tangent at hand, comes within a quarter of the way to the solution:
-    /// from there the second one would be as small. Every part and every lane is asked.
+    /// Whether the first correction from rest, by the current tangent, leaves at most a quarter of the way to the
+    /// solution, in every part and every lane. The second correction would then be as small.
     #[inline(always)]
     fn follows(
         &self,
@@ -125,7 +125,7 @@ impl<G: Copy, const D: usize> Verdict<G, D> {
     /// Looks at a lane: its root, where that is another than the solution.
     ///
     /// # Errors
-    /// [`Fold`] where the lane has no principal root.
+    /// [`Fold`] if the principal root of the lane does not exist.
     pub fn trace<L: Group<f64>>(
         &mut self,
         lane: usize,
@@ -157,7 +157,7 @@ impl<G: Copy, const D: usize> Verdict<G, D> {
     }
 }
 
-/// The numbers of an element in one lane put into that of all lanes.
+/// The numbers of an element in one lane, to be set in an element over all lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Numbers {
     list: [f64; 64],
@@ -165,7 +165,7 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// Those of an element: an 8 x 8 matrix has the most.
+    /// The numbers of an element, at most the 64 of an 8 x 8 matrix.
     pub fn of<X: OfScalars<Scalar = f64>>(element: &X) -> Self {
         let mut numbers = Self {
             list: [0.0; 64],
@@ -181,7 +181,7 @@ impl Numbers {
         numbers
     }
 
-    /// The same element over all lanes, this one put into its lane.
+    /// A function that sets one lane of an element over all lanes, number by number.
     pub fn put<T: Real>(&self, lane: usize) -> impl FnMut(T) -> T {
         let mut place = 0;
         move |mut x: T| {

@@ -9,8 +9,8 @@ use crate::validate::{ROUNDINGS, mirrored_difference};
 use nalgebra::Matrix3;
 
 /// A body in unit quaternions: the symmetric matrix `A` and the number `β` of
-/// `w A v + v x A v + β v = h N / 2`, in body axes (moments, mass times length squared), with what
-/// the solver derives from them once.
+/// `w A v + v x A v + β v = h N / 2`, in body axes (moments, mass times length squared). Includes the
+/// constants that the solver derives from them once.
 ///
 /// `I = A + β`, the inertia of small steps, is positive definite; `A` itself need not be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,7 +89,7 @@ impl<T: Real> QuaternionBody<T> {
                 }
             }
         }
-        // `A = I - β` may be a small difference, its rounding is that of `I` and `β`.
+        // `A = I - β` may be a small difference with the rounding of `I` and `β`.
         let both = Matrix3::from_diagonal_element(T::from_f64(2.0 * real.magnitude()));
         mirrored_difference(&(a + both)).map_err(|(row, column, upper, lower)| {
             let problem = Problem::NotSymmetric {

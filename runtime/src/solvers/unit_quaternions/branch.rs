@@ -34,7 +34,8 @@ fn turns<T: Real>(mask: T, then: Turn<T>, otherwise: Turn<T>) -> Turn<T> {
     }
 }
 
-/// The turn where one step of Newton's method does not do; nothing where some lane has none. What a lane finds does not depend on the others.
+/// The turn, if one step of Newton's method does not suffice; `None` if some lane lacks a solution. The result of a
+/// lane does not depend on the other lanes.
 #[inline(never)]
 pub(super) fn turn<T: Real>(body: &QuaternionBody<T>, u: [T; 3]) -> Option<Turn<T>> {
     let one = T::one();
@@ -147,8 +148,8 @@ pub(super) fn followed(
         let found = solve(&tangent, &Vector3::from(scaled(taken)))
             .and_then(|change| corrected(body, scaled(next), &q, &change));
         match found {
-            // At its end the branch turns back, and its tangent changes sign; another one, which
-            // may go on beyond, is not this one.
+            // At its end the branch turns back, and its tangent changes sign. Another branch may
+            // continue beyond it, and must not be taken.
             Some((root, there))
                 if (0.7..1.4).contains(&(determinant(&there) / determinant(&tangent))) =>
             {
@@ -184,7 +185,7 @@ fn corrected(
         let (residual, tangent) = balance(body, u, &root);
         let correction = solve(&tangent, &residual)?;
         let far = size(&correction);
-        // What is rounding of the equation, or of the root, is as good as it gets.
+        // A residual or correction at rounding level cannot be improved.
         if size(&residual) <= 2.0 * f64::EPSILON * scale || far <= 2.0 * f64::EPSILON {
             return Some((root, tangent));
         }

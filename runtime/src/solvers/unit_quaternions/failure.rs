@@ -9,15 +9,15 @@ use crate::solvers::moser_veselov::{fastest, index, largest_step};
 use core::fmt;
 use nalgebra::Vector3;
 
-/// The equation has no principal solution: the body would turn too far in one step.
+/// The step is too long for the equation to have a principal solution: the body would turn too far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuaternionError {
-    /// The scaled momentum over its bound, along its direction: above 1 there is no solution. Of
-    /// several lanes, the worst. NaN when the momentum is not finite.
+    /// The scaled momentum over its bound, along its direction, in the worst lane. Above 1 the
+    /// principal solution does not exist. NaN if the momentum is not finite.
     pub ratio: f64,
-    /// The step size refused, where the caller knows it.
+    /// The step size that failed, if the caller knows it.
     pub h: Option<f64>,
-    /// The largest step size that can be solved from the same state, where it is known.
+    /// The largest step size that succeeds from the same state, if it is known.
     pub largest_step: Option<f64>,
     /// Index (0, 1, 2) of the momentum component of largest `|h N_i| / I_ii`.
     pub component: usize,
@@ -55,8 +55,8 @@ impl QuaternionError {
         worst
     }
 
-    /// The same error with the step that was refused, and the largest that would do of all that are
-    /// solved together with it: `ratio` of a trial step is at most 1 where that can be made.
+    /// The same error with the step that failed, and the largest step for which all equations solved
+    /// together succeed: `ratio` of a trial step is then at most 1.
     #[cold]
     #[must_use]
     pub fn with_searched_steps(self, h: f64, ratio: impl Fn(f64) -> Option<f64>) -> Self {
@@ -67,8 +67,8 @@ impl QuaternionError {
         }
     }
 
-    /// The same error with the step that was refused and the largest that would do, lane by lane,
-    /// the smallest of them; `edge_momentum` is `N` for a trial step.
+    /// The same error with the step that failed and the largest that succeeds, the smallest over the
+    /// lanes; `edge_momentum` is `N` for a trial step.
     #[cold]
     #[must_use]
     pub fn with_searched_step<T: Real>(
@@ -90,7 +90,7 @@ impl QuaternionError {
                 largest_step(h, |trial| Some(if solved(trial) { 0.0 } else { 2.0 }))
             };
             let largest = largest * INSIDE;
-            // NaN, which an infinite momentum gives, is told only if nothing else is.
+            // NaN in a later lane is ignored: the comparison is false.
             if told.largest_step.is_none_or(|smallest| largest < smallest) {
                 told = Self {
                     h: Some(h),
@@ -104,7 +104,7 @@ impl QuaternionError {
     }
 }
 
-/// The ratio of `h N` to its bound; 0 where there is a solution, NaN where it is not finite.
+/// The ratio of `h N` to its bound; 0 if a solution exists, NaN if `h N` is not finite.
 fn reach(body: &QuaternionBody<f64>, h_n: &Vector3<f64>) -> f64 {
     let [[x, y, z]] = h_n.data.0;
     let s = body.half_over_unit;

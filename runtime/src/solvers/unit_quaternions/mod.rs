@@ -4,12 +4,12 @@
 //! It belongs to discrete Lagrangians `(2/h) (v . A v) - (4/h) β w` (thesis section 2.8, the
 //! Cayley-Klein form; there `A = I - c`, `β = c`). With `β = 0` it is the Moser-Veselov equation
 //! seen from SU(2). Let `I = A + β`, `u = h N / 2` and `s = v . A v + β (1 - w)`. Then
-//! `(I - s - hat u) v = w u` is linear: with `det = det(I - s - hat u)` and
-//! `n = adj(I - s - hat u) u`, `(w, v) = (det, n) / |(det, n)|`, and what is left is
-//! `u . n - s det = β (|(det, n)| - det)` for the number `s` alone.
+//! `(I - s - hat u) v = w u` is linear. With `det = det(I - s - hat u)` and
+//! `n = adj(I - s - hat u) u` its solution is `(w, v) = (det, n) / |(det, n)|`. The remaining equation
+//! `u . n - s det = β (|(det, n)| - det)` determines `s`.
 //!
-//! Of the solutions, the principal one is taken: that into which the neutral element grows as `u`
-//! grows from zero. Where it ends, [`QuaternionError`] tells the step that could be made.
+//! The solver finds the principal solution, which is connected to the neutral element at `u = 0`. If
+//! it does not exist, [`QuaternionError`] gives the largest possible step.
 
 mod body;
 mod branch;

@@ -14,7 +14,7 @@ use crate::solvers::moser_veselov::{dot, symmetric_times};
 /// thousands of random bodies, in fifty digits).
 pub(super) const EASY: f64 = 0.02;
 
-/// Below this one step of Newton's method will do, if that is small.
+/// Below this, one step of Newton's method suffices, if the step is small.
 pub(super) const QUICK: f64 = 0.002;
 
 /// So small, in parts of the smallest moment: what it leaves is of its square, and of it times the
@@ -53,7 +53,7 @@ pub(super) struct Equation<T> {
     /// `tr I |u|^2 / det I`.
     pull: T,
     energy: T,
-    /// `|I^-1 u|^2`, the leading part of `|n|^2`, and that of its derivative.
+    /// `|I^-1 u|^2`, the leading part of `|n|^2`, and the leading part of its derivative.
     leading: T,
     leaning: T,
     zeroth: T,
@@ -86,7 +86,7 @@ fn gyroscopic<T: Real, const DIAGONAL: bool>(
     }
 }
 
-/// What the momentum `N` in the body changes by, `-(4/h) v x A v`, with `scale = h / (2 unit)`.
+/// The change `-(4/h) v x A v` of the momentum `N` in the body, with `scale = h / (2 unit)`.
 #[inline(always)]
 pub(super) fn change<T: Real>(body: &QuaternionBody<T>, scale: T, turn: &Turn<T>) -> [T; 3] {
     let [_, x, y, z] = turn.omega;
@@ -164,8 +164,9 @@ impl<T: Real> Equation<T> {
 
     /// One step of Newton's method from `s`: its change, and the turn there.
     ///
-    /// The slope is that of the series of `|(det, n)|`: off by a part of `9 y^3`. To first degree in
-    /// the change the quaternion need not wait for it, nor the division by its length.
+    /// The slope comes from the series of `|(det, n)|`, with a relative error of `9 y^3`. The quaternion is
+    /// computed to first degree in the change, so that neither it nor the division by its length waits for
+    /// the change.
     #[inline(always)]
     pub(super) fn quick(&self, s: T) -> (T, Turn<T>) {
         let (two, three, four) = (T::from_f64(2.0), T::from_f64(3.0), T::from_f64(4.0));

@@ -25,7 +25,7 @@ impl<T: Real> Free<T> {
         *attitude = aligned;
     }
 
-    /// The square of a change of `u`, over that of its length.
+    /// The square of a change of `u`, over the square of its length.
     #[inline(always)]
     pub(super) fn relative_change(&self, before: [T; 3], after: [T; 3]) -> T {
         let change = [0, 1, 2].map(|i| after[i] - before[i]);

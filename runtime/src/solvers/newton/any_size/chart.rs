@@ -1,4 +1,4 @@
-//! A group by what a value says of it, where its kind and size are known when a model is read.
+//! Groups described by a value, for models whose groups and sizes are known at run time.
 //! Takes elements and coordinates; gives elements, and the equations of one lane on it.
 
 use crate::groups::Coordinate;
@@ -7,7 +7,7 @@ use crate::solvers::newton::Parts;
 use crate::solvers::newton::principal::Curve;
 use core::fmt::Debug;
 
-/// A group by what a value says of it, as [`Group`](crate::groups::Group) says it by a type.
+/// A group described by a value, as [`Group`](crate::groups::Group) describes it by a type.
 pub trait Chart {
     /// Its elements.
     type Element: Clone + Debug;
@@ -18,7 +18,7 @@ pub trait Chart {
     /// The part of an element of another chart that is searched for, if the rest follows from it.
     fn part(&self, of: &Self, whole: &Self::Element) -> Self::Element;
 
-    /// What a coordinate stands for.
+    /// The meaning of a coordinate.
     fn coordinate(&self, index: usize) -> Coordinate;
 
     /// The neutral element.

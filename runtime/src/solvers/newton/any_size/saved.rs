@@ -1,4 +1,4 @@
-//! What a search of any size remembers, written down and made again.
+//! Saves and restores the memory of a search of any size.
 
 use super::{AnySearch, Chart};
 use crate::linalg::DenseFactors;
