@@ -1,11 +1,12 @@
-//! Carlson's integral R_F by its principal invariants, with derivatives. Takes invariants, or a symmetric matrix; gives half the
-//! integral of `1/sqrt(t^3 + I1 t^2 + I2 t + I3)` over positive t, by the rule of tanh and sinh.
+//! Carlson's integral R_F in terms of principal invariants, with derivatives. Takes invariants or a symmetric matrix;
+//! gives half the integral of `1/sqrt(t^3 + I1 t^2 + I2 t + I3)` over positive t, by tanh-sinh quadrature.
 
 use crate::functions::square_root;
 use crate::matrix::Matrix;
 use crate::number::Number;
 
-/// Points on each side of the middle, and their distance: the rule is exact to rounding for what is not far from a sphere.
+/// The number of points on each side of the middle, and their distance. Close to a sphere, the rule is exact to
+/// rounding.
 const POINTS: i32 = 110;
 const APART: f64 = 0.045;
 
@@ -50,7 +51,7 @@ fn of_invariants(first: &Number, second: &Number, third: &Number) -> Number {
             .plus(third);
         sum = sum.plus(&Number::within(weight, 1e-15 * weight).over(&square_root(&cubic)));
     }
-    // What the rule leaves.
+    // The error of the quadrature rule.
     sum.error += 1e-15 * sum.value.abs();
     for slope in &mut sum.slopes {
         slope.error += 1e-15 * slope.value.abs();

@@ -1,5 +1,5 @@
-//! Evaluates expressions of the statement on numbers with derivatives. Takes an expression and where it stands; gives its value, or
-//! what of it cannot be evaluated here.
+//! Evaluates expressions of the statement on numbers with derivatives. Takes an expression and its position in time and
+//! along a label; gives its value, or the reason why it cannot be evaluated.
 
 use crate::calls::called;
 use crate::expression::{Expression, Kind};
@@ -10,10 +10,11 @@ use crate::scene::Scene;
 use crate::terms::Terms;
 use crate::value::Value;
 
-/// Where an expression stands.
+/// The position in time and along a label at which an expression is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Here {
-    /// Steps after the first node of the edge, or, of what is carried, 0 for the stored and 1 for the varied node.
+    /// The number of steps after the first node of the edge. In an update of an advected quantity, 0 is the stored node
+    /// and 1 the varied node.
     pub time: i32,
     /// The index along a label.
     pub index: i64,
@@ -69,7 +70,7 @@ impl Here {
     }
 }
 
-/// The result, or what is missing.
+/// The value, or the reason why the expression cannot be evaluated.
 pub type Evaluated = Result<Value, String>;
 
 /// A sentence about sizes.
@@ -81,7 +82,7 @@ impl Scene<'_> {
     /// The value of an expression.
     ///
     /// # Errors
-    /// What of it cannot be evaluated.
+    /// Why the expression cannot be evaluated.
     pub fn value(&self, e: &Expression, here: Here) -> Evaluated {
         match &e.kind {
             Kind::Number(a, b) => Ok(Value::number(rational(*a, *b))),
@@ -127,10 +128,11 @@ impl Scene<'_> {
         }
     }
 
-    /// The value of an expression in which sums go over the sites of their letters, or over these where there are any.
+    /// The value of an expression in which sums run over the sites `over`, or over the sites of their letters if `over`
+    /// is `None`.
     ///
     /// # Errors
-    /// What of it cannot be evaluated.
+    /// Why the expression cannot be evaluated.
     pub fn value_with_sums(&self, e: &Expression, here: Here, over: Option<Vec<i64>>) -> Evaluated {
         self.sum_over(Some(over));
         let value = self.value(e, here);
@@ -138,7 +140,7 @@ impl Scene<'_> {
         value
     }
 
-    /// A sum over sites; of a term that says over which sites it is summed, what stands at one of them.
+    /// A sum over sites. If no range is set, the term has its own range, and this is the value at one site.
     fn summed(&self, whole: &Expression, inner: &Expression, here: Here) -> Evaluated {
         let Some(over) = self.summed_over() else {
             return self.value(inner, here);
@@ -197,7 +199,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Whether what stands first in an expression is a unit quaternion.
+    /// Whether the first operand of an expression that is not a number is a unit quaternion.
     fn is_quaternion(&self, e: &Expression) -> bool {
         let stated = self.stated();
         let mut first = None;

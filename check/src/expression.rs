@@ -1,5 +1,5 @@
-//! Expressions of the statement without the places at which they were written. Takes those of the syntax tree; gives a tree that
-//! is walked, split and evaluated here.
+//! Expressions of the statement without their source positions. Takes expressions of the syntax tree; gives a tree that
+//! this crate walks, splits and evaluates.
 
 use clebsch_core::syntax::ast::{self, Size};
 use std::collections::BTreeMap;
@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 /// An expression.
 #[derive(Clone, Debug)]
 pub struct Expression {
-    /// What it is.
+    /// The kind of the expression.
     pub kind: Kind,
 }
 
@@ -20,7 +20,7 @@ pub enum Kind {
     Constant(f64),
     /// A name.
     Name(String),
-    /// What must be of a shape: its word, rows and columns.
+    /// An expression with a declared shape: the word, then rows and columns.
     Shaped(Box<Expression>, String, [usize; 2]),
     /// A sum of signed terms: `true` marks a term that is subtracted.
     Sum(Vec<(bool, Expression)>),
@@ -81,7 +81,7 @@ impl Expression {
         Self { kind }
     }
 
-    /// What it is made of directly, in order.
+    /// The direct operands, in order.
     #[must_use]
     pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
@@ -120,7 +120,7 @@ impl Expression {
         }
     }
 
-    /// Whether a name stands in it.
+    /// Whether the expression contains a name.
     pub fn has(&self, name: &str) -> bool {
         let mut found = false;
         self.each(&mut |e| found |= matches!(&e.kind, Kind::Name(n) if n == name));

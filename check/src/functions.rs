@@ -1,5 +1,5 @@
-//! Functions of one number: value, first and second derivative. Takes a number; gives the function of it, or says that there is
-//! no such function.
+//! Functions of one number, with first and second derivative. Takes a name and a number; gives the value, or nothing if
+//! the function is unknown.
 
 use crate::number::Number;
 

@@ -18,11 +18,12 @@ pub enum Group {
     Motion(usize),
 }
 
-/// Roundings of 1 in an entry of a rotation: that of the number, two of the product of the element before with a velocity, and one
-/// that solving for the velocity leaves.
+/// The error of an entry of a rotation, in roundings of 1: one from the stored number, two from the product of the
+/// previous element with a velocity, and one from solving for the velocity.
 const OF_A_TURN: f64 = 4.0;
 
-/// Most roundings by which columns that are kept orthonormal now and then are off; more is a fault.
+/// The largest defect, in roundings, of columns that are orthonormalised from time to time. A larger defect is an
+/// error.
 pub const MOST_OF_A_DEFECT: f64 = 256.0;
 
 /// A matrix by its entries that are not zero: row, column, value.
@@ -61,9 +62,10 @@ impl Group {
         }
     }
 
-    /// An element from the numbers of a state, row by row, or the four components of a quaternion; `unit` is the relative error of
-    /// one rounding. Entries of rotations are as uncertain as 1, those of linear maps as the largest. So are coordinates of a motion
-    /// by a velocity in space, which turns them; one by a velocity of the body adds to each.
+    /// An element from the numbers of a state in row-major order, or from the four components of a quaternion. `unit`
+    /// is the relative error of one rounding. Entries of rotations have the error of 1, and entries of linear maps have
+    /// the error of the largest entry. A spatial velocity turns the coordinates of a motion, so each has the error of
+    /// the largest coordinate. A body velocity adds to each coordinate, so each has its own error.
     #[must_use]
     pub fn element(self, side: Side, numbers: &[f64], unit: f64) -> Option<Matrix> {
         let n = self.rows();
@@ -180,7 +182,7 @@ impl Group {
     #[must_use]
     pub fn momentum(self, numbers: &[f64]) -> Option<Vec<f64>> {
         match self {
-            // Of a model of every size the momentum is a skew matrix in three dimensions too.
+            // If the model has a generic size, the momentum is a skew matrix in three dimensions too.
             Self::Rotation(n) if numbers.len() == n * n => {
                 let own = self
                     .basis()

@@ -1,5 +1,5 @@
-//! Held constraints: they are zero at both nodes, and their reactions act along their gradients. Takes the residuals of the momenta of
-//! a node; gives what no multiplier explains.
+//! Constraints: they are zero at both nodes, and their reactions act along their gradients. Takes the residuals of the
+//! momenta at a node; gives the part that no multiplier explains.
 
 use crate::evaluate::Here;
 use crate::judge::Part;
@@ -11,16 +11,17 @@ use crate::stated::{Hold, Stated};
 use crate::terms::Lives;
 use crate::value::Value;
 
-/// Sums over more sites than this are not summed: their gradients at the sites that are judged are those of single terms.
+/// If a constraint sums over more sites than this, the sum is not evaluated. Its gradients at the judged sites come
+/// from single terms.
 const SUMMED: usize = 4096;
 
-/// The least unit of an equation beside the largest.
+/// The smallest unit of an equation, relative to the largest unit.
 const LEAST_UNIT: f64 = 1e-60;
 
-/// The gradient of one held number at one node, by variables of the step.
+/// The gradient of one component of a constraint at one node, by variables of the step.
 pub struct Gradient(Vec<(usize, f64, f64)>);
 
-/// All held numbers at a node: how far each is from zero, and its gradient.
+/// All components of constraints at a node: the residual and the gradient of each.
 ///
 /// # Errors
 /// One cannot be evaluated.
@@ -45,7 +46,7 @@ pub fn held(
                     .iter()
                     .filter_map(|s| Some((usize::try_from(s.of).ok()?, s.value, s.error)));
                 let gradient: Vec<_> = slopes.collect();
-                // What stands still needs no multiplier.
+                // A constraint without varied quantities needs no multiplier.
                 if gradient.is_empty() {
                     continue;
                 }
@@ -55,7 +56,8 @@ pub fn held(
                 }
             }
         }
-        // The multipliers of a line are found together, as far as the site is seen that is rounded most.
+        // The solver finds all multipliers of a chain together. Every site gets the bound of the judged site with the
+        // largest rounding.
         let most = parts
             .iter()
             .skip(own)
@@ -66,22 +68,22 @@ pub fn held(
     Ok((parts, gradients))
 }
 
-/// The gradient of a held number by the variables of a node.
+/// The gradient of one component of a constraint by the variables of a node.
 #[derive(Clone, Debug)]
 pub struct Rate {
     /// The name of the constraint.
     pub name: String,
     /// The index along a label, of one that is counted.
     pub site: Option<usize>,
-    /// What is left of the constraint.
+    /// The residual of the constraint.
     pub value: f64,
-    /// A bound on the error of that.
+    /// A bound on the error of the residual.
     pub error: f64,
     /// Variables and derivatives.
     pub slopes: Vec<(usize, f64)>,
 }
 
-/// The gradients of all held numbers at the first node.
+/// The gradients of all components of constraints at the first node.
 ///
 /// # Errors
 /// One cannot be evaluated.
@@ -155,10 +157,11 @@ fn values(
     .collect()
 }
 
-/// Takes from the residuals of a node what multipliers explain: a projection in units of the bounds. The bound of what is left is
-/// what the projection makes of them.
+/// Removes from the residuals of a node the part that multipliers explain, by a projection in units of the bounds. The
+/// projection also gives the new bounds.
 pub fn without_reactions(residuals: &mut [Part], variables: &[usize], gradients: &[Gradient]) {
-    // An equation without terms has no rounding: its unit is small beside the others, and its square is a number.
+    // An equation without terms has zero rounding. Its unit is small relative to the others, but its square does not
+    // underflow.
     let most = residuals.iter().map(|r| r.bound).fold(0.0, larger);
     let least = if most > 0.0 { LEAST_UNIT * most } else { 1.0 };
     let unit: Vec<f64> = residuals.iter().map(|r| r.bound.max(least)).collect();
@@ -218,7 +221,8 @@ pub fn without_reactions(residuals: &mut [Part], variables: &[usize], gradients:
     }
 }
 
-/// Takes from `x` its parts along directions that are orthonormal. Twice: once leaves rounding of what is taken away.
+/// Subtracts from `x` its components along orthonormal directions. It does so twice, since the first pass leaves
+/// rounding errors.
 fn take_away(frame: &[Vec<f64>], x: &mut [f64]) {
     for _ in 0..2 {
         for known in frame {

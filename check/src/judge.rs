@@ -1,4 +1,4 @@
-//! The judgement of one step. Takes the numbers of two nodes; gives what is left of every equation beside the bound on its rounding.
+//! Judges one step. Takes the numbers of two nodes; gives the residual of every equation and the bound on its rounding.
 
 use crate::group::MOST_OF_A_DEFECT;
 use crate::holds;
@@ -12,22 +12,24 @@ use crate::statements;
 use clebsch_core::syntax::ast::Model;
 use std::borrow::Cow;
 
-/// Roundings of the terms of an equation that a solver may leave of it, beside those of its own evaluation.
+/// Roundings of the terms of an equation that a solver may leave, in addition to the rounding of the evaluation.
 const LEFT_BY_SOLVERS: f64 = 8.0;
 
-/// The same of what is held: searches for multipliers end when corrections are no more than 32 double roundings of its terms.
+/// The same for constraints. A search for multipliers ends when corrections are at most 32 double roundings of the
+/// terms.
 pub const LEFT_OF_WHAT_IS_HELD: f64 = 128.0;
 
-/// Products of numbers larger than this may be larger than any number.
+/// Products of numbers larger than this may overflow.
 const LARGE: f64 = 1e150;
 
-/// Significant bits of terms whose sums and products are exact: a zero of such terms proves nothing.
+/// The largest number of significant bits for which sums and products are exact. A zero residual of such terms proves
+/// nothing.
 const EXACT_BITS: u32 = 26;
 
-/// What is left of one equation.
+/// The residual of one equation.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// What it is the equation of.
+    /// The name of the equation.
     pub what: String,
     /// The site, of a quantity that has one.
     pub site: Option<usize>,
@@ -35,18 +37,18 @@ pub struct Part {
     pub component: usize,
     /// The end of the edge: 0 or 1.
     pub node: usize,
-    /// What is left.
+    /// The residual.
     pub residual: f64,
-    /// The bound on what rounding leaves.
+    /// The largest residual that rounding explains.
     pub bound: f64,
-    /// The sizes of its terms, summed.
+    /// The sum of the sizes of its terms.
     pub terms: f64,
-    /// Whether an exact zero is to be expected of it.
+    /// Whether the residual may be exactly zero.
     pub is_exact: bool,
 }
 
 impl Part {
-    /// The residual in units of its bound: zero where nothing is left, NaN where a number is.
+    /// The residual in units of its bound: 0 if the residual is zero, NaN if the residual or the bound is NaN.
     #[must_use]
     pub fn ratio(&self) -> f64 {
         match self.residual == 0.0 && !self.bound.is_nan() {
@@ -67,7 +69,7 @@ impl Part {
         self.residual.abs() / (UNIT * self.terms)
     }
 
-    /// A held number.
+    /// The residual of one component of a constraint.
     #[must_use]
     pub fn held(name: &str, index: Option<i64>, node: usize, x: &Number) -> Self {
         Self {
@@ -86,16 +88,16 @@ impl Part {
 /// The judgement of a step.
 #[derive(Clone, Debug)]
 pub struct Judged {
-    /// The equation whose residual is largest beside its bound.
+    /// The equation whose residual is largest relative to its bound.
     pub worst: Option<Part>,
-    /// How many equations test something.
+    /// The number of equations that test something.
     pub tested: u64,
-    /// The largest residual of these, in roundings of its own terms.
+    /// The largest residual of the tested equations, in roundings of its own terms.
     pub roundings: f64,
 }
 
 impl Judged {
-    /// Of nothing.
+    /// The judgement of an empty set of equations.
     #[must_use]
     pub fn nothing() -> Self {
         Self {
@@ -105,7 +107,7 @@ impl Judged {
         }
     }
 
-    /// That of both.
+    /// The judgement of both sets of equations.
     #[must_use]
     pub fn and(mut self, other: Self) -> Self {
         self.tested += other.tested;
@@ -145,15 +147,15 @@ impl Judge {
         }
     }
 
-    /// The step number `step`, from the numbers of one node to those of the next.
+    /// Judges step number `step`, from the numbers of one node to the numbers of the next node.
     ///
     /// # Errors
-    /// What of the statement cannot be evaluated.
+    /// Why the statement cannot be evaluated.
     pub fn step(&self, step: u64, before: &[f64], after: &[f64]) -> Result<Judged, String> {
         self.part(step, 1.0, before, after)
     }
 
-    /// A step that is a part of this share of step number `step`.
+    /// Judges a substep with this share of step number `step`.
     ///
     /// # Errors
     /// As [`Judge::step`].
@@ -187,10 +189,10 @@ impl Judge {
         Ok(out)
     }
 
-    /// What is left of every equation of a step.
+    /// The residuals of all equations of a step.
     ///
     /// # Errors
-    /// What of the statement cannot be evaluated.
+    /// Why the statement cannot be evaluated.
     pub fn parts(&self, step: u64, before: &[f64], after: &[f64]) -> Result<Vec<Part>, String> {
         self.parts_of(&self.setup, step, before, after)
     }
@@ -236,7 +238,7 @@ impl Judge {
                             + UNIT * residual.abs()
                             + LEFT_BY_SOLVERS * UNIT * terms,
                         terms,
-                        // Of a body at rest forces and reactions cancel, which may be exact.
+                        // At an equilibrium, forces and reactions may cancel exactly.
                         is_exact: is_short(*p),
                     });
                 }

@@ -1,8 +1,10 @@
-//! The momenta of initial velocities: the discrete Legendre transform of the action as stated. Takes the numbers of a node and
-//! velocities; gives `-D1 L` of a step that begins with these velocities, in the limit of small steps.
+//! Computes the momenta of initial velocities by the discrete Legendre transform of the action as stated. Takes the
+//! numbers of a node and velocities; gives `-D1 L` of a step that begins with these velocities, in the limit of small
+//! steps.
 //!
-//! The limit is the momentum to every order of the method: a step of h from it begins with the velocity that was given, while
-//! `-D1 L` of a displacement of h times the velocity belongs to the mean velocity over that step, which differs by a term of order h.
+//! The limit is the momentum to every order of the method: a step of size h from it begins with the given velocity. If
+//! the displacement is h times the velocity, `-D1 L` belongs to the mean velocity over that step, which differs by a
+//! term of order h.
 
 mod determined;
 mod step;
@@ -20,10 +22,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The angle by which the first displacement turns.
 const FIRST: f64 = 0.25;
 
-/// The largest error, beside the momenta, of a limit that exists.
+/// The largest error, relative to the momenta, with which a limit counts as converged.
 const CONVERGED: f64 = 1e-7;
 
-/// What momenta that do not depend on another velocity may differ by, beside the largest of them.
+/// The largest difference between momenta that do not depend on another velocity, relative to the largest momentum.
 const APART: f64 = 1e-9;
 
 /// The momentum of one configuration.
@@ -38,9 +40,9 @@ pub struct Momentum {
 /// Why velocities give no momenta.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoMomentum {
-    /// The statement, or what of it, is not evaluated.
+    /// The statement or a part of it cannot be evaluated.
     Unread(String),
-    /// The derivative of the action of a step has no limit of small steps.
+    /// The derivative of the action of a step does not converge for small steps.
     NoLimit,
     /// A velocity is not tangent to a constraint: its name, the site, and the rate at which it is left.
     Across(String, Option<usize>, f64),
@@ -73,7 +75,7 @@ impl Legendre {
     /// Why it cannot be evaluated.
     pub fn new(model: &Model, sizes: &[(String, usize)], setup: Setup) -> Result<Self, String> {
         let mut stated = Stated::read(model, sizes)?;
-        // Functionals of all sites stand in terms of a node, which vanish with the step.
+        // Functionals of all sites appear in terms of a node, which vanish with the step.
         let functionals = std::mem::take(&mut stated.functionals);
         stated
             .terms
@@ -81,8 +83,8 @@ impl Legendre {
         Ok(Self { stated, setup })
     }
 
-    /// The momenta at a node of configurations that move with these velocities. What is not named rests, but for the
-    /// configurations whose momenta are `known`: they have velocities that are not known here.
+    /// The momenta of configurations at a node with these velocities. If a configuration is not named, it is at rest.
+    /// If its momentum is `known`, its velocity is unknown here.
     ///
     /// # Errors
     /// [`NoMomentum`].
@@ -99,7 +101,7 @@ impl Legendre {
             self.tangent(node, velocities, &moving)?;
             return Ok(plain);
         }
-        // With other velocities of these the momenta that are asked for must be the same.
+        // The requested momenta must not depend on the velocities of configurations with known momenta.
         let known: BTreeSet<&str> = known.iter().map(String::as_str).collect();
         let mut others = velocities.clone();
         for m in &moving {
@@ -141,7 +143,7 @@ impl Legendre {
         let mut out = Vec::with_capacity(moving.len());
         for (m, found) in moving.iter().zip(refined) {
             let size = found.values.iter().fold(0.0, |a, x| f64::max(a, x.abs()));
-            // Of momenta that vanish rounding alone is left.
+            // If a momentum vanishes, only rounding is left.
             if !(found.error <= CONVERGED * size || found.error <= 2.0 * found.rounding) {
                 return Err(NoMomentum::NoLimit);
             }
@@ -176,8 +178,9 @@ impl Legendre {
         })
     }
 
-    /// The longest step that is tried: at most that of the case, which resolves the motion, and nothing turns far over it. A power
-    /// of two, by which divisions are exact.
+    /// The largest step that is tried. It is a power of two, so that divisions are exact. Rotations turn by at most
+    /// `FIRST` in it. If a configuration moves or nothing turns, it is not larger than the step of the case, which
+    /// resolves the motion.
     fn longest(&self, velocities: &Velocities) -> f64 {
         let turning = velocities.values().filter_map(|v| v.turning.as_ref());
         let fastest = most(turning.flat_map(|(w, _)| w));
@@ -190,7 +193,7 @@ impl Legendre {
         time.log2().floor().exp2()
     }
 
-    /// Refuses velocities that leave a constraint.
+    /// Rejects velocities that are not tangent to a constraint.
     fn tangent(
         &self,
         node: &[f64],
@@ -245,10 +248,10 @@ impl Legendre {
     }
 }
 
-/// Part of its terms by which the rate of what is held may differ from zero.
+/// The largest rate of change of a constraint, relative to its terms, that counts as zero.
 const TANGENT: f64 = 1e-8;
 
-/// The mean of a step forward and one backward, in which odd powers of the step cancel.
+/// The mean of a forward and a backward step, in which odd powers of the step cancel.
 fn mean((ahead, behind): (Block, Block)) -> Block {
     let both = |a: Vec<f64>, b: Vec<f64>| -> Vec<f64> {
         let each = a.into_iter().zip(b);

@@ -1,17 +1,17 @@
-//! Definitions of a model, and their expressions in the place of their names.
+//! Definitions of a model, and their substitution into expressions.
 
 use crate::expression::{Expression, Kind, Sizes};
 use clebsch_core::syntax::ast::{self, Model, Statement};
 use std::collections::BTreeMap;
 
-/// How deep definitions may stand in one another.
+/// The largest depth of nested definitions.
 const DEEPEST: usize = 64;
 
 /// Definitions by name, and sizes by name.
 pub struct Lets(BTreeMap<String, Expression>, Sizes);
 
 impl Lets {
-    /// Those of a model.
+    /// The definitions of a model.
     #[must_use]
     pub fn of(model: &Model, sizes: &Sizes) -> Self {
         let each = model.statements.iter().filter_map(|s| match s {
@@ -23,10 +23,10 @@ impl Lets {
         Self(each.collect(), sizes.clone())
     }
 
-    /// An expression with definitions put in, to the last one.
+    /// An expression in which all definitions are substituted.
     ///
     /// # Errors
-    /// They stand in one another without end.
+    /// The definitions are nested too deeply.
     pub fn put(&self, e: &ast::Expression) -> Result<Expression, String> {
         let mut out = Expression::of(e, &self.1);
         for _ in 0..DEEPEST {

@@ -1,12 +1,16 @@
-//! An independent verdict on the steps of a model. A step is judged by the derivative of the action *as stated*: the syntax tree is
-//! evaluated on dual numbers, before any rewriting, each number with a running bound on its rounding. Derivation, emission and
-//! execution of a model share nothing with this crate but the text and its parser.
+//! An independent check of the steps of a model. This crate judges a step by the derivative of the action *as stated*.
+//! It evaluates the syntax tree on dual numbers, before any rewriting, and keeps a running bound on the rounding of
+//! each number. It shares only the text and its parser with derivation, emission and execution of the model.
 //!
-//! Of the step from node k to node k+1 it is asked, with the stored elements and momenta of both nodes,
-//! that `p_k = -D1 L` and `p_{k+1} = D2 L`, along variations `R exp(hat xi)` where the velocity is seen from the body and
-//! `exp(hat xi) R` where it is seen from space; that what is carried went on as its constraint says; and that what is held is zero.
+//! For the step from node k to node k+1, the crate checks with the stored elements and momenta of both nodes:
 //!
-//! The same derivative gives the momenta of initial velocities: [`Legendre`] evaluates `-D1 L` for steps that begin with these velocities.
+//! - `p_k = -D1 L` and `p_{k+1} = D2 L`, along variations `R exp(hat xi)` for a body velocity and `exp(hat xi) R` for a
+//!   spatial velocity;
+//! - advected quantities follow their constraints;
+//! - other constraints are zero.
+//!
+//! The same derivative gives the momenta of initial velocities: [`Legendre`] evaluates `-D1 L` for steps that begin
+//! with these velocities.
 
 mod calls;
 mod carlson;

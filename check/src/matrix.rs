@@ -58,7 +58,7 @@ impl Matrix {
         }
     }
 
-    /// The entry of this row and column, zero where there is none.
+    /// The entry in this row and column, or zero outside the matrix.
     #[must_use]
     pub fn at(&self, i: usize, j: usize) -> Number {
         let inside = i < self.rows && j < self.cols;
@@ -80,7 +80,7 @@ impl Matrix {
         }
     }
 
-    /// The sum of two of one size.
+    /// The sum of two matrices of the same size.
     #[must_use]
     pub fn plus(&self, other: &Self) -> Option<Self> {
         let both = self.entries.iter().zip(&other.entries);

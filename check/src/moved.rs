@@ -9,9 +9,9 @@ use crate::stated::{Role, Side};
 /// The axes of an angular velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frame {
-    /// Those of the body: the rate of change is `R hat(w)`.
+    /// Components in the body: the rate of change is `R hat(w)`.
     Body,
-    /// Those of space: the rate of change is `hat(w) R`.
+    /// Components in space: the rate of change is `hat(w) R`.
     Space,
 }
 

@@ -25,7 +25,7 @@ pub struct Slope {
 pub struct Number {
     /// The value.
     pub value: f64,
-    /// A bound on its error, that of the data included.
+    /// A bound on its error, including the error of the data.
     pub error: f64,
     /// Derivatives, in the order of the variables; those that are missing are zero.
     pub slopes: Vec<Slope>,
@@ -179,7 +179,7 @@ impl Number {
         }
     }
 
-    /// A function of it, by its value and first two derivatives there; the value rounded so many times.
+    /// A function of this number, from its value and its first two derivatives. The value has this number of roundings.
     #[must_use]
     pub fn through(&self, [value, first, second]: [f64; 3], roundings: f64) -> Self {
         // Twice the second derivative: it may be larger within the error.
@@ -209,7 +209,7 @@ impl Number {
 
 type Pair = (f64, f64);
 
-/// Derivatives of a function of two numbers; what is missing is an exact zero.
+/// Derivatives of a function of two numbers. A missing derivative is exactly zero.
 fn merged(a: &[Slope], b: &[Slope], with: impl Fn(Pair, Pair) -> Pair) -> Vec<Slope> {
     let mut out = Vec::with_capacity(a.len().max(b.len()));
     let (mut i, mut j) = (0, 0);

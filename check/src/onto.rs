@@ -1,5 +1,5 @@
-//! A start that was typed with ten digits, moved onto its constraints. Takes the numbers of a node; gives those of the nearest
-//! configuration that obeys the constraints to rounding, and how far it is.
+//! Moves a start that was typed with ten digits onto its constraints. Takes the numbers of a node; gives the nearest
+//! configuration that satisfies the constraints to rounding, and how far it is.
 
 use crate::group::Group;
 use crate::holds::{Rate, gradients, is_long};
@@ -13,13 +13,14 @@ use crate::sites::{Moving, all_moving, varied};
 use crate::stated::{Role, Side, Stated};
 use clebsch_core::syntax::ast::Model;
 
-/// What may be left of a constraint beside its terms: a start that is farther off is a mistake, which the model says.
+/// The largest residual of a constraint, relative to its terms, that is corrected. A larger residual is a mistake,
+/// which the model reports.
 const NEAR: f64 = 1e-9;
 
-/// Corrections: each squares what is left.
+/// The largest number of corrections. Each correction squares the residual.
 const CORRECTIONS: usize = 4;
 
-/// Most iterations for one correction.
+/// The largest number of iterations for one correction.
 const ITERATIONS: usize = 4000;
 
 /// A start that was moved.
@@ -27,15 +28,15 @@ const ITERATIONS: usize = 4000;
 pub struct Moved {
     /// The numbers of the node.
     pub node: Vec<f64>,
-    /// The constraint that was left most.
+    /// The constraint with the largest residual.
     pub name: String,
-    /// By how much it was left.
+    /// Its residual before the move.
     pub off: f64,
     /// The largest change of a number.
     pub by: f64,
 }
 
-/// The start on its constraints; none if it is on them to rounding already, or too far from them to be meant.
+/// Moves a start onto its constraints. Returns nothing if it satisfies them to rounding, or if it is too far from them.
 ///
 /// # Errors
 /// Why the statement cannot be evaluated.
@@ -56,7 +57,7 @@ pub fn onto_constraints(
     let Some(worst) = worst.filter(|worst| ratio(worst) > 1.0) else {
         return Ok(None);
     };
-    // Of numbers that are none nothing is near.
+    // If a residual is not a number, the start is not near.
     let is_near = |rate: &Rate| rate.value.abs() <= NEAR * rate.error / UNIT;
     if !start.iter().all(is_near) {
         return Ok(None);
@@ -69,7 +70,7 @@ pub fn onto_constraints(
         let next = changed(&stated, setup, &moving, &at, &change).ok_or("sizes do not fit")?;
         let rates_next = rates(&stated, setup, &next, &moving)?;
         let left_next = most(&rates_next);
-        // Rounding is left in the end.
+        // Stop when only rounding is left.
         if left_next >= left || left_next.is_nan() {
             break;
         }
@@ -88,7 +89,7 @@ pub fn onto_constraints(
     }))
 }
 
-/// What is left of a constraint, in units of what rounding explains.
+/// The residual of a constraint, in units of the residual that rounding explains.
 fn ratio(rate: &Rate) -> f64 {
     match rate.value == 0.0 {
         true => 0.0,
@@ -113,7 +114,7 @@ fn rates(
     Ok(all)
 }
 
-/// The least change of all variables that takes what is left away, by conjugate gradients.
+/// The smallest change of all variables that removes the residuals, by conjugate gradients.
 fn correction(rates: &[Rate], count: usize) -> Vec<f64> {
     let spread = |weights: &[f64]| {
         let mut out = vec![0.0; count];
@@ -188,7 +189,7 @@ fn changed(
     Some(out)
 }
 
-/// A variation as a velocity over a time of one.
+/// A variation as a velocity over unit time.
 fn velocity(role: &Role, numbers: &[f64], components: &[f64]) -> Option<Velocity> {
     let (group, side) = match role {
         Role::Element(group, side) => (*group, *side),

@@ -1,4 +1,4 @@
-//! What is known of the quantities and statements of a model, once they are sorted.
+//! The quantities and statements of a model, sorted.
 
 use crate::expression::Expression;
 use crate::group::Group;
@@ -9,13 +9,13 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Where a quantity lives along a label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Sites {
-    /// At nodes of the line, or at the members of a set.
+    /// At nodes of the chain, or at the members of a set.
     Nodes,
     /// At segments.
     Segments,
 }
 
-/// On which side of an element its velocity stands.
+/// The side of an element on which its velocity acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// `next(R) = R*O`.
@@ -24,7 +24,7 @@ pub enum Side {
     Space,
 }
 
-/// What a quantity is.
+/// The role of a quantity.
 #[derive(Clone, Debug)]
 pub enum Role {
     /// Constant.
@@ -33,7 +33,7 @@ pub enum Role {
     Element(Group, Side),
     /// Values that are added.
     Field(Layout),
-    /// Carried by the configurations.
+    /// A quantity that the configurations advect.
     Advected,
 }
 
@@ -55,23 +55,23 @@ pub enum Layout {
 pub struct Quantity {
     /// Its name.
     pub name: String,
-    /// What it is.
+    /// Its role.
     pub role: Role,
-    /// The label that it lives along, by its number, and at which sites.
+    /// The index of its label, and its kind of sites.
     pub at: Option<(usize, Sites)>,
     /// The parameter by which it grows around a ring.
     pub offset: Option<String>,
-    /// How it goes on, of what is advected.
+    /// The update, if the quantity is advected by an update.
     pub update: Option<Expression>,
-    /// What it is, of what is advected by definition.
+    /// The definition, if the quantity is advected by definition.
     pub definition: Option<Expression>,
     /// Whether it is a number.
     pub is_number: bool,
-    /// Whether its four rows are those of a quaternion.
+    /// Whether it is a quaternion.
     pub is_quaternion: bool,
 }
 
-/// A way to end a line.
+/// An end condition of a chain.
 #[derive(Clone, Debug)]
 pub struct End {
     /// Its name.
@@ -84,14 +84,14 @@ pub struct End {
     pub terms: Vec<Term>,
 }
 
-/// A constraint that is held: zero, and the sites that it is counted over.
+/// A constraint: a term that must be zero, and its sites.
 #[derive(Clone, Debug)]
 pub struct Hold {
     /// The name of its multiplier.
     pub name: String,
     /// Left side less right side.
     pub value: Term,
-    /// Whether it holds sums over sites.
+    /// Whether it constrains sums over sites.
     pub of_sums: bool,
 }
 
@@ -116,11 +116,11 @@ pub struct Stated {
     pub scale: Option<Expression>,
     /// The node rule.
     pub rule: NodeRule,
-    /// What is held.
+    /// The constraints.
     pub holds: Vec<Hold>,
     /// End conditions at the first and at the last site.
     pub ends: [Vec<End>; 2],
-    /// Whether there is a line, by the number of its label.
+    /// The index of the label of the chain, if the model has a chain.
     pub line: Option<usize>,
     /// The functionals of all sites, which are not evaluated here.
     pub functionals: BTreeSet<String>,

@@ -1,11 +1,11 @@
-//! The limit of values at ever shorter steps that depend on the square of the step: by polynomials through them (Neville), of
-//! which the one is taken whose error is estimated to be least (Ridders). Takes the values at steps that are halved, in blocks of
-//! what has one size; gives the limits with their errors.
+//! The limit of values for small steps, if the values depend on the square of the step. Polynomials through the values
+//! are extrapolated (Neville), and the one with the smallest estimated error is used (Ridders). Takes values at halved
+//! steps, in blocks of values of similar size; gives the limits with their errors.
 
-/// Most values that are asked for.
+/// The largest number of steps.
 const MOST: usize = 14;
 
-/// Bounds on rounding are several times what rounding does.
+/// The typical rounding error, as a fraction of its bound.
 const BOUND_OF_ROUNDING: f64 = 1.0 / 16.0;
 
 /// The values of a block.
@@ -22,7 +22,7 @@ pub struct Block {
 /// The limit of a block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refined {
-    /// The values, zero where rounding explains what is found.
+    /// The values; zero if rounding explains a value.
     pub values: Vec<f64>,
     /// An estimate of the largest of their errors.
     pub error: f64,
@@ -33,7 +33,7 @@ pub struct Refined {
 /// The limits of the blocks of `at` at steps 1, 1/2, 1/4, ...
 ///
 /// # Errors
-/// Those of the values.
+/// The errors of `at`.
 pub fn limit<E>(mut at: impl FnMut(u32) -> Result<Vec<Block>, E>) -> Result<Vec<Refined>, E> {
     let mut best: Vec<Refined> = Vec::new();
     let mut rows: Vec<Vec<Vec<f64>>> = Vec::new();
@@ -89,7 +89,7 @@ fn extrapolated(block: Block, row: &mut Vec<Vec<f64>>, best: &mut Refined) -> bo
     is_good
 }
 
-/// The largest difference, infinite where one is no number.
+/// The largest difference, or infinity if a difference is not a number.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     let each = a.iter().zip(b).map(|(x, y)| (x - y).abs());
     each.fold(0.0, |most, d| match d.is_nan() {

@@ -5,13 +5,14 @@ use crate::sites::mixed;
 use std::collections::BTreeSet;
 use std::fmt;
 
-/// Steps that are judged of a long run, beside the last.
+/// The number of judged steps of a long run, in addition to the last step.
 const SAMPLE: usize = 100;
 
-/// Equations that must test something before it counts that all of them hold exactly: of one or two that is chance.
+/// If at least this many equations are tested and all of them hold exactly, the check has measured nothing. One or two
+/// may hold exactly by chance.
 const ENOUGH: u64 = 8;
 
-/// A residual below this part of one rounding of its terms is no result of rounding.
+/// A residual below this fraction of one rounding of its terms cannot result from rounding.
 const FAR_BELOW: f64 = 1e-3;
 
 /// Which steps are judged.
@@ -25,8 +26,8 @@ pub enum Which {
     None,
 }
 
-/// The steps that are judged, by their numbers: step n ends at node n. They depend on the number of steps alone, so that a run
-/// that is gone on with judges the same ones.
+/// The steps that are judged, by their numbers: step n ends at node n. They depend only on the number of steps, so a
+/// resumed run judges the same steps.
 #[derive(Clone, Debug)]
 pub struct Chosen {
     which: Which,
@@ -34,7 +35,7 @@ pub struct Chosen {
 }
 
 impl Chosen {
-    /// Of so many steps.
+    /// Chooses from a run with `total` steps.
     #[must_use]
     pub fn new(which: Which, total: u64) -> Self {
         let mut steps = BTreeSet::new();
@@ -63,7 +64,7 @@ impl Chosen {
     }
 }
 
-/// What came out of the judged steps.
+/// The result of the judged steps.
 #[derive(Clone, Debug, Default)]
 pub struct Verdict {
     /// How many steps were judged.
@@ -72,7 +73,7 @@ pub struct Verdict {
     pub worst: Option<(u64, Part)>,
     /// How many equations tested something.
     pub tested: u64,
-    /// The largest residual of these, in roundings of its own terms.
+    /// The largest residual of the tested equations, in roundings of its own terms.
     pub roundings: f64,
     /// Why steps were not judged, if they were not.
     pub not_judged: Option<String>,
@@ -110,15 +111,16 @@ impl Verdict {
         self.worst.as_ref().map_or(0.0, |(_, part)| part.ratio())
     }
 
-    /// Whether an equation is left by more than rounding explains.
+    /// Whether a residual is larger than rounding explains.
     #[must_use]
     pub fn is_broken(&self) -> bool {
         let ratio = self.ratio();
         ratio > 1.0 || ratio.is_nan()
     }
 
-    /// Whether all residuals are far below rounding though their terms are rounded: then the check has measured nothing. The
-    /// residual of a momentum that is zero, or has so few bits that its arithmetic is exact, may well be zero.
+    /// Whether all residuals are far below the rounding of their terms. The check has then measured nothing. Single
+    /// residuals may well be zero: if the momentum is zero, or if its numbers have so few bits that their arithmetic is
+    /// exact.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.tested >= ENOUGH && self.roundings < FAR_BELOW

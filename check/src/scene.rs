@@ -1,5 +1,6 @@
-//! The values of names on one edge: stored numbers of both nodes, varied about them. Takes the model and the numbers of a state; gives
-//! elements, velocities, fields, and what is carried by its own constraint from the stored to the varied configuration.
+//! The values of names on one edge: the stored numbers of both nodes, and variations about them. Takes the model and
+//! the numbers of a state; gives elements, velocities, fields, and advected quantities. The constraints of advected
+//! quantities carry them from the stored to the varied configuration.
 
 use crate::evaluate::{Evaluated, Here};
 use crate::expression::Expression;
@@ -18,7 +19,8 @@ use std::collections::{BTreeMap, HashMap};
 /// A quantity at a site: its name, and the site if it has any.
 pub type Copy<'a> = (&'a str, Option<usize>);
 
-/// What is varied: the first variable of each configuration; those of the second node come behind those of the first.
+/// The varied configurations, each with its first variable. The variables of the second node follow the variables of
+/// the first.
 pub type Varied<'a> = BTreeMap<Copy<'a>, u32>;
 
 type Key<'a> = (&'a str, Option<usize>, i32, Option<usize>);
@@ -31,11 +33,11 @@ pub struct Scene<'a> {
     setup: &'a Setup,
     /// The numbers of both nodes.
     nodes: [&'a [f64]; 2],
-    /// What is varied.
+    /// The varied configurations.
     varied: &'a Varied<'a>,
     /// Parameters of an end condition, at this site.
     local: Option<(&'a [String], usize)>,
-    /// What sums over sites go over, while a constraint on them is evaluated.
+    /// The range of sums over sites, while a constraint on sums is evaluated.
     sums: RefCell<Option<Option<Vec<i64>>>>,
     known: RefCell<HashMap<Key<'a>, Value>>,
 }
@@ -73,12 +75,13 @@ impl<'a> Scene<'a> {
         self.stated
     }
 
-    /// From now on sums go over these sites, or over all where none are named; or a sum is what stands at one site.
+    /// Sets the range of sums: the given sites, or all sites of their letters. With `None`, a sum is the value at one
+    /// site.
     pub fn sum_over(&self, over: Option<Option<Vec<i64>>>) {
         *self.sums.borrow_mut() = over;
     }
 
-    /// What sums go over.
+    /// The range of sums.
     #[must_use]
     pub fn summed_over(&self) -> Option<Option<Vec<i64>>> {
         self.sums.borrow().clone()
@@ -175,7 +178,7 @@ impl<'a> Scene<'a> {
         let moves = here.carried.is_none() || here.time == 1;
         match (&q.role, own) {
             (Role::Parameter, _) => self.parameter(&q.name, site, q.is_quaternion),
-            // What an end holds.
+            // A configuration that an end condition prescribes.
             (Role::Element(..) | Role::Field(_), None) => {
                 self.parameter(&q.name, site, q.is_quaternion)
             }
@@ -202,7 +205,8 @@ impl<'a> Scene<'a> {
                 (Some(_), 0, _) | (None, _, None) => {
                     Ok(stored(own, own.of(self.nodes[node]), q.is_quaternion))
                 }
-                // What no velocity takes along is not varied: its update at once need not leave it, as `t + 1` does not.
+                // A quantity that no velocity advects is not varied. Its update may change it even in zero time, as `t
+                // + 1` does.
                 (None, _, Some(update)) if !self.is_taken_along(update) => {
                     Ok(stored(own, own.of(self.nodes[node]), q.is_quaternion))
                 }
@@ -231,7 +235,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Whether a velocity stands in an update.
+    /// Whether an update contains a velocity.
     fn is_taken_along(&self, update: &Expression) -> bool {
         let mut velocities = self.stated.velocities.keys();
         velocities.any(|velocity| update.has(velocity))
@@ -294,7 +298,7 @@ fn misread(name: &str) -> String {
     format!("the numbers of `{name}` do not fit its shape")
 }
 
-/// How many variables come before those of a node.
+/// The number of variables before the variables of a node.
 fn of_node(group: Group, node: usize) -> u32 {
     small(group.basis().len() * node)
 }

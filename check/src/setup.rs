@@ -1,10 +1,10 @@
-//! What a case adds to a statement: numbers of parameters, where the numbers of a state stand, how many sites there are, how a
-//! line ends.
+//! The data that a case adds to a statement: numbers of parameters, the positions of numbers in a state, the numbers of
+//! sites, and the end conditions.
 
 use crate::stated::{Sites, Stated};
 use std::collections::HashMap;
 
-/// Where numbers of a quantity stand, and their shape.
+/// The position of the numbers of a quantity, and their shape.
 #[derive(Clone, Copy, Debug)]
 pub struct Numbers {
     /// The first of them.
@@ -24,17 +24,17 @@ impl Numbers {
     }
 }
 
-/// A field by its name, with rows and columns.
+/// The name of a field, with its rows and columns.
 pub type Field<'a> = (&'a str, usize, usize);
 
-/// What a case says.
+/// The data of a case.
 #[derive(Clone, Debug, Default)]
 pub struct Setup {
-    /// The step.
+    /// The step size.
     pub h: f64,
     /// The count of each label, in the order of the statement.
     pub counts: Vec<usize>,
-    /// Whether the line is a ring.
+    /// Whether the chain is a ring.
     pub periodic: bool,
     /// Which end condition holds at the first and at the last site.
     pub ends: [usize; 2],
@@ -44,7 +44,7 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Steps of `h` with these parameters, and states of these observables, all row by row.
+    /// The data for steps of size `h`, from parameters and from the observables of a state, in row-major order.
     pub fn new<'a>(
         h: f64,
         parameters: impl Iterator<Item = (Field<'a>, &'a [f64])>,
@@ -84,7 +84,7 @@ impl Setup {
         count + usize::from(open && sites == Sites::Nodes)
     }
 
-    /// Where the numbers of a quantity stand in a state, if it moves.
+    /// The position of the numbers of a quantity in a state, if the quantity moves.
     #[must_use]
     pub fn observed(&self, name: &str, site: Option<usize>) -> Option<&Numbers> {
         match site {
@@ -93,7 +93,7 @@ impl Setup {
         }
     }
 
-    /// Where a momentum stands in a state: by the name of its configuration, or alone.
+    /// The position of a momentum in a state: under `base` with the name of its configuration, or under `base` alone.
     #[must_use]
     pub fn momentum(&self, base: &str, name: &str, site: Option<usize>) -> Option<&Numbers> {
         let own = self.observed(&format!("{base}_{name}"), site);

@@ -1,5 +1,5 @@
-//! Which sites are judged in a step, and at which indices a term meets them. Of a short line all; of a long one its ends and two
-//! windows elsewhere.
+//! The sites that are judged in a step, and the indices at which a term involves them. On a short chain all sites are
+//! judged. On a long chain the ends and two windows elsewhere are judged.
 
 use crate::scene::Varied;
 use crate::setup::Setup;
@@ -7,7 +7,7 @@ use crate::stated::{Role, Sites, Stated};
 use crate::terms::{Letter, Term};
 use std::collections::BTreeSet;
 
-/// Up to so many sites of a label all of them are judged.
+/// If a label has at most this many sites, all of them are judged.
 const ALL: usize = 96;
 
 /// Sites of a window.
@@ -125,7 +125,7 @@ pub fn range(stated: &Stated, setup: &Setup, term: &Term) -> Option<std::ops::Ra
     Some(from..=to)
 }
 
-/// The indices at which a term meets what is varied; a single one for a term that stands once.
+/// The indices at which a term involves varied quantities. A term that is not summed gets the single index 0.
 #[must_use]
 pub fn indices(stated: &Stated, setup: &Setup, term: &Term, moving: &[Moving<'_>]) -> Vec<i64> {
     let Some(range) = range(stated, setup, term) else {

@@ -1,5 +1,5 @@
-//! What a model states, by name: quantities, constraints, end conditions, the Lagrangian with its definitions put in.
-//! Takes a syntax tree; gives the statements sorted, or why they cannot be judged.
+//! The statements of a model, by name: quantities, constraints, end conditions, the Lagrangian with its definitions
+//! substituted. Takes a syntax tree; gives the sorted statements, or the reason why they cannot be judged.
 
 use crate::expression::{Expression, Kind};
 use crate::group::Group;
@@ -271,13 +271,13 @@ fn labels(model: &Model) -> Vec<String> {
     each.collect()
 }
 
-/// Whether a shape is a number, and whether it is that of quaternions.
+/// Whether a shape is a number, and whether it is a quaternion.
 fn kind(shape: &Kindred) -> (bool, bool) {
     let name = shape.name.text.as_str();
     (name == "Real", name == "SU")
 }
 
-/// On which side of the element the velocity stands.
+/// The side of the element on which the velocity acts.
 fn side_of(
     value: &Expression,
     element: &str,

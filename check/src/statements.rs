@@ -1,4 +1,5 @@
-//! Whether what is carried went on as its own constraint says, between the stored nodes. This sees a clock that stands still.
+//! Checks that advected quantities follow their constraints between the stored nodes. This detects a clock that does
+//! not advance.
 
 use crate::evaluate::Here;
 use crate::judge::Part;
@@ -9,7 +10,7 @@ use crate::sites::Moving;
 use crate::stated::{Role, Stated};
 use std::collections::BTreeSet;
 
-/// What is left of each statement.
+/// The residuals of all statements.
 ///
 /// # Errors
 /// One cannot be evaluated.
@@ -28,7 +29,7 @@ pub fn carried(
         };
         let sites: BTreeSet<Option<usize>> = match q.at {
             None => std::iter::once(None).collect(),
-            // Those of what is judged.
+            // The sites that are judged.
             Some(at) => {
                 let own =
                     |m: &&Moving| stated.quantities.get(m.name).and_then(|q| q.at) == Some(at);

@@ -5,12 +5,12 @@ use crate::expression::{Expression, Kind};
 use crate::stated::{Role, Sites, Stated};
 use crate::words::{flat, of_kind, quotient, with_sign, without_sign, words};
 
-/// Where a term lives in time.
+/// The place of a term in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lives {
     /// Nothing in it moves.
     Nowhere,
-    /// At one node, so many steps after the first of the edge.
+    /// At one node, this number of steps after the first node of the edge.
     Node(i32),
     /// On the edge.
     Edge,
@@ -30,22 +30,22 @@ pub struct Letter {
 pub struct Term {
     /// The term.
     pub value: Expression,
-    /// Where it lives in time.
+    /// Its place in time.
     pub lives: Lives,
     /// The label along which it is summed.
     pub label: Option<usize>,
-    /// Its letters along that label, and those of what it was split from.
+    /// Its letters along that label, including the letters of the term that it was split from.
     pub letters: Vec<Letter>,
     /// The sites that the statement sums over.
     pub over: Option<Sites>,
-    /// Whether something that belongs to no site moves in it.
+    /// Whether it contains a moving quantity without a site.
     pub global: bool,
 }
 
 /// Splits expressions.
 pub struct Terms<'a>(&'a Stated);
 
-/// What a walk through an expression finds.
+/// The result of a walk through an expression.
 #[derive(Default)]
 struct Found {
     label: Option<usize>,
@@ -57,7 +57,7 @@ struct Found {
 }
 
 impl<'a> Terms<'a> {
-    /// Those of a model.
+    /// Splits expressions of this model.
     #[must_use]
     pub fn of(stated: &'a Stated) -> Self {
         Self(stated)
@@ -88,7 +88,7 @@ impl<'a> Terms<'a> {
         Ok(out)
     }
 
-    /// The terms of an end condition, which stand once.
+    /// The terms of an end condition, which are not summed.
     ///
     /// # Errors
     /// A term cannot be judged.
@@ -174,8 +174,8 @@ impl<'a> Terms<'a> {
         Ok(())
     }
 
-    /// The summands that are summed over sites by themselves: numbers before a bracket are multiplied in, a bracket with a term
-    /// of one neighbour stays whole below the top, and so does a difference in time.
+    /// Splits an expression into parts that are summed over sites separately. Numbers before a bracket are multiplied
+    /// in. Below the top, a bracket with a term of one neighbour stays whole. So does a difference in time.
     fn by_sites(&self, e: &Expression, top: bool) -> Vec<Expression> {
         match &e.kind {
             Kind::Sum(terms) => {
@@ -301,8 +301,8 @@ impl<'a> Terms<'a> {
         term.is_ok_and(|term| !matches!(term.lives, Lives::Nowhere))
     }
 
-    /// Summands with the constant ones added to the first that lives on the edge: `3` belongs to the velocity in
-    /// `q^2*(3 - tr(O))`, and `3*q^2` is no term of a node.
+    /// Summands, with constant summands added to the first summand that lives on the edge. In `q^2*(3 - tr(O))`, the
+    /// constant `3` belongs to the velocity, and `3*q^2` is not a term of a node.
     fn with_constants(&self, terms: &[Expression]) -> Vec<Expression> {
         let on_edge = |t: &Expression| {
             let term = self.whole(t.clone());

@@ -1,5 +1,5 @@
-//! Where the action of a start is not a number. Takes the numbers of a node; gives the smallest part of the statement that is
-//! not finite there, or has no finite derivative, with its site and the values of its arguments.
+//! Finds where the action of a start is not a number. Takes the numbers of a node; gives the smallest part of the
+//! statement with an infinite or undefined value or derivative, its site and the values of its arguments.
 
 mod text;
 
@@ -21,9 +21,9 @@ pub struct Undefined {
     pub site: Option<(String, i64)>,
     /// The part as a statement would have it.
     pub part: String,
-    /// Its value; none if it is finite and its derivative is not.
+    /// Its value, or `None` if only its derivative is infinite or undefined.
     pub value: Option<f64>,
-    /// Its numbers: each as a statement would have it, with its value.
+    /// Its arguments, each as a statement writes it, with its value.
     pub arguments: Vec<(String, f64)>,
     /// The vector of which the part is the length, if it is a length.
     pub length_of: Option<String>,
@@ -103,17 +103,18 @@ fn at(term: &Term, index: i64) -> Here {
     }
 }
 
-/// What of a value is not finite.
+/// The part of a value that is not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fault {
     Value(f64),
     Slope,
 }
 
-/// What is looked for.
+/// A test for the faults that a search looks for.
 type Wanted<'w> = &'w dyn Fn(&Scene<'_>, &Expression, Here) -> Option<Fault>;
 
-/// What of a value is not finite. What is not evaluated here, as a functional of all sites, is left to the message of the step.
+/// The fault of an expression, if its value or derivative is not finite. Expressions that this crate does not evaluate,
+/// such as functionals of all sites, are left to the error of the step.
 fn fault(scene: &Scene<'_>, e: &Expression, here: Here) -> Option<Fault> {
     let Ok(Value::Known(value)) = scene.value(e, here) else {
         return None;
@@ -146,7 +147,7 @@ fn root_of_zero(scene: &Scene<'_>, e: &Expression, here: Here) -> Option<Fault> 
     (moves && zero).then_some(Fault::Slope)
 }
 
-/// The smallest part of an expression that has what is looked for.
+/// The smallest part of an expression that has the wanted fault.
 fn innermost(
     scene: &Scene<'_>,
     e: &Expression,

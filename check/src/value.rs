@@ -1,14 +1,15 @@
-//! Values of expressions: matrices of numbers, and what takes its size from its neighbours, `Id`, `E1` and what is made of them.
+//! Values of expressions: matrices of numbers, and values such as `Id` and `E1` that take their size from other
+//! operands.
 
 use crate::matrix::Matrix;
 use crate::number::Number;
 
-/// What has no size of its own.
+/// The form of a value of unknown size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Open {
     /// A vector.
     Column,
-    /// The transpose of one.
+    /// The transpose of a vector.
     Row,
     /// A square matrix.
     Square,
@@ -19,7 +20,7 @@ pub enum Open {
 pub struct Sparse {
     /// Its form.
     pub form: Open,
-    /// What stands on the diagonal of a square one, beside the entries.
+    /// The number that a square value adds to each entry of its diagonal.
     pub diagonal: Number,
     /// Entries by row and column, counted from 0.
     pub entries: Vec<(usize, usize, Number)>,
@@ -28,9 +29,9 @@ pub struct Sparse {
 /// A value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// Of known size.
+    /// A value of known size.
     Known(Matrix),
-    /// Of a size that what stands beside it tells.
+    /// A value that takes its size from other operands.
     Open(Sparse),
 }
 

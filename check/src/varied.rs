@@ -1,4 +1,5 @@
-//! Values from the numbers of a state: elements with their variations, fields whose numbers are variables, what is carried.
+//! Values from the numbers of a state: elements with variations, fields whose numbers are variables, advected
+//! quantities.
 
 use crate::group::{Entries, Group, LEFT};
 use crate::matrix::Matrix;
@@ -12,7 +13,7 @@ pub fn small(n: usize) -> u32 {
     u32::try_from(n).unwrap_or(u32::MAX)
 }
 
-/// What is carried, as it is stored: as uncertain as its largest entry.
+/// The stored value of an advected quantity. Each entry has the error of the largest entry.
 pub fn stored(own: &Numbers, numbers: &[f64], is_quaternion: bool) -> Value {
     let size = numbers.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
     let of = |x: f64| Number::within(x, UNIT * size);

@@ -2,7 +2,7 @@
 
 use crate::expression::{Expression, Kind};
 
-/// Factors with those of products among them.
+/// A list of factors, with products replaced by their factors.
 pub fn flat(list: &[Expression]) -> Vec<Expression> {
     let each = list.iter().flat_map(|f| match &f.kind {
         Kind::Product(inner) => flat(inner),
@@ -30,7 +30,7 @@ pub fn with_sign(e: Expression, minus: bool) -> Expression {
     }
 }
 
-/// Whether an expression has a minus, and what stands behind it.
+/// Whether an expression has a minus sign, and the expression without its sign.
 pub fn without_sign(e: &Expression) -> (bool, &Expression) {
     match &e.kind {
         Kind::Neg(inner) => {
@@ -41,7 +41,7 @@ pub fn without_sign(e: &Expression) -> (bool, &Expression) {
     }
 }
 
-/// The words of an expression, those of steps in time left out.
+/// The words of an expression, without steps in time.
 pub fn words(e: &Expression) -> String {
     let head = match &e.kind {
         Kind::Call(f, list) if f == "next" && list.len() == 1 => {

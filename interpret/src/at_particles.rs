@@ -1,5 +1,6 @@
-//! Functionals of all sites at the particles of a fluid before it starts. Takes the places of the particles and what a case gives
-//! beside; gives the values at each particle and, of what stands on a grid, the slopes, by the splines of its deposit.
+//! Evaluates functionals of all sites at the particles of a fluid before a run starts. Takes the positions of the
+//! particles and the data of the case. Gives the value at each particle. If a functional lives on a grid, the splines
+//! of its deposit interpolate it and give its slopes.
 
 use crate::functional::{Around, Held, made};
 use crate::lines::{Numbers, extent};
@@ -18,7 +19,7 @@ pub struct Placed<'a> {
     pub lengths: &'a [f64],
     /// Whether each of them ends in walls.
     pub walls: &'a [bool],
-    /// Cells of the grid along each, where there is one.
+    /// The number of grid cells along each direction, if there is a grid.
     pub cells: Option<&'a [usize]>,
     /// Coordinates of one particle after the other.
     pub at: &'a [f64],
@@ -27,25 +28,26 @@ pub struct Placed<'a> {
 /// A functional at the particles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AtParticles {
-    /// The value at each particle; of one on a grid by the splines of its deposit.
+    /// The value at each particle. If the functional lives on a grid, the splines of its deposit interpolate it.
     pub values: Vec<f64>,
-    /// Of one on a grid the derivatives along each direction, one particle after the other. Of the functional that the
-    /// potential is made of they are the force for unit mass, as the deposit pulls it back, to rounding.
+    /// The derivatives along each direction, one particle after the other, if the functional lives on a grid. For the
+    /// functional in the potential they are the force per unit mass, as the pull-back of the deposit gives it, up to
+    /// rounding.
     pub slopes: Option<Vec<f64>>,
 }
 
-/// Why a functional has no values at the particles.
+/// Why a functional cannot be evaluated at the particles.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Unvalued {
-    /// What it is made of is not given, by name.
+    /// A quantity that the functional depends on is not given; its name.
     Missing(String),
-    /// It is Rust code, by its path.
+    /// The functional is Rust code and needs a build; its path.
     Path(String),
-    /// It cannot be made of what is given.
+    /// The given values are not valid for the functional.
     Parameter(ParameterError),
-    /// It has no value there.
+    /// The functional cannot be evaluated at these positions.
     Mesh(MeshError),
-    /// Its domain has no grid, or it is made of something else than these places.
+    /// The domain lacks a grid, or the functional does not depend on these positions.
     Unfit,
 }
 
@@ -75,11 +77,11 @@ impl From<MeshError> for Unvalued {
     }
 }
 
-/// The functional number `mesh` of a model at the particles; `numbers` gives parameters by their names as the model writes them,
-/// those at particles one after the other.
+/// Evaluates functional number `mesh` of a model at the particles. `numbers` returns parameters by their names in the
+/// model, and data of particles as one list with one particle after the other.
 ///
 /// # Errors
-/// [`Unvalued`]: what is missing, or why there is no value.
+/// [`Unvalued`], if a quantity is missing or the functional cannot be evaluated.
 pub fn at_particles(
     lattice: &Lattice,
     mesh: usize,
@@ -140,7 +142,7 @@ fn named(mesh: &Mesh) -> Result<&str, Unvalued> {
     known.ok_or_else(|| Unvalued::Path(mesh.path.clone()))
 }
 
-/// The values at the sites of a functional, and the number of the first of those that it is made of.
+/// The values of a functional at its sites, and the index of the functional at the root, which takes the positions.
 fn values(
     lattice: &Lattice,
     at: usize,
@@ -158,7 +160,7 @@ fn values(
             (column, at)
         }
         Source::Field(_) => return Err(Unvalued::Unfit),
-        // Functionals are declared before those that are made of them.
+        // A functional can depend only on functionals declared before it.
         Source::Functional(i) if *i < at => values(lattice, *i, around, placed, numbers)?,
         Source::Functional(_) => return Err(Unvalued::Unfit),
     };
@@ -183,7 +185,7 @@ fn values(
     Ok((Column::Numbers(out), root))
 }
 
-/// A deposit as what interpolates: that of unit masses, so that particles without mass have values and slopes too.
+/// A deposit that interpolates. It has unit masses, so that massless particles also get values and slopes.
 trait Interpolates<A, const D: usize>:
     for<'a> Functional<f64, D, Argument = A, Data<'a> = (&'a [f64],)>
 {

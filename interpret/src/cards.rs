@@ -44,18 +44,19 @@ fn once(
 /// Most sites of a label.
 pub const MOST_SITES: usize = 10_000_000;
 
-/// Most segments or sites of a label for which a lattice is derived body by body: the work of that grows
-/// with the square of their number, a second or two here.
+/// The largest number of segments or sites of a label for which clebsch expands a chain body by body. The work grows
+/// with the square of that number; here it takes a second or two.
 pub const MOST_BODY_BY_BODY: usize = 32;
 
-/// The same where constraints are held: none, since a step body by body solves for all velocities and multipliers at once, and
-/// proves that its root is the principal one, which of four links takes a minute.
+/// The same limit for chains with constraints. It is zero: a step body by body solves for all velocities and
+/// multipliers at once. It also proves that the root is principal, which takes a minute for four links.
 pub const MOST_HELD_BODY_BY_BODY: usize = 0;
 
-/// The same where velocities of neighbours stand in one term: so does a step for the velocities of all bodies.
+/// The same limit if a term couples velocities of neighbours: a step body by body then also solves for all velocities
+/// at once.
 pub const MOST_TOGETHER_BODY_BY_BODY: usize = 8;
 
-/// Most sites that are derived body by body.
+/// The largest number of sites that clebsch expands body by body.
 fn most_body_by_body(model: &Model) -> usize {
     let is_held = model
         .statements
@@ -67,16 +68,16 @@ fn most_body_by_body(model: &Model) -> usize {
     }
 }
 
-/// The card of the model that a text states: a bare `model NAME { ... }`, or Rust source with one
-/// `model! { ... }`. Of named sizes each is three where that is admitted, else its smallest.
+/// The card of the model in a text: a bare `model NAME { ... }`, or Rust source with one `model! { ... }`. Each named
+/// size is 3 if the model admits it, otherwise the smallest admitted size.
 ///
 /// # Errors
-/// [`Refused`] for what is no model, and for models that need a build.
+/// [`Refused`], if the text is not a valid model or the model needs a build.
 pub fn card(source: &str) -> Result<Card, Refused> {
     card_and_warnings(source).map(|(card, _)| card)
 }
 
-/// The same, and what derives in the text and is hardly meant.
+/// The card of a text and the warnings about the model.
 ///
 /// # Errors
 /// As [`card`].
@@ -84,7 +85,8 @@ pub fn card_and_warnings(source: &str) -> Result<(Card, Vec<Warning>), Refused> 
     at_sizes(source, None)
 }
 
-/// The card of a model with labels, for so many sites and these ends, and what is hardly meant.
+/// The card of a model with labels for the chosen numbers of sites and end conditions, and the warnings about the
+/// model.
 ///
 /// # Errors
 /// As [`card`].
@@ -107,7 +109,7 @@ fn on_lattice(source: &str, choice: &Choice, known: Option<Card>) -> Result<Told
             most: MOST_SITES,
         });
     }
-    // Functionals of all sites have no form body by body.
+    // Functionals of all sites cannot be expanded body by body.
     if !lattice.meshes.is_empty() {
         return match LineModel::read(source) {
             Ok(line) => card_of_line((&model, &lattice), choice, line, source, known),
@@ -123,8 +125,8 @@ fn on_lattice(source: &str, choice: &Choice, known: Option<Card>) -> Result<Told
             Ok(line) => return card_of_line((&model, &lattice), choice, line, source, known),
             Err(_) if !beyond(most) => {}
             Err(NoLine::Form(why)) => written_out = Some(why),
-            // What is wrong with a model is said of its bodies too; what is not read of a line is
-            // written out.
+            // If the interpreter does not support a construct of the program with loops, clebsch expands the chain body
+            // by body.
             Err(NoLine::Refused(Refused::Construct(what))) => {
                 written_out = Some(format!("`{what}` is not executed in them"));
             }
@@ -143,7 +145,7 @@ fn on_lattice(source: &str, choice: &Choice, known: Option<Card>) -> Result<Told
         });
     }
     match body_by_body((&model, &lattice), choice, source, written_out, known) {
-        // What is too large body by body has one kernel for all sites.
+        // If the chain is too large to expand body by body, use the program with loops over sites.
         Err(Refused::Model(errors)) if errors.are_of_size() => match LineModel::read(source) {
             Ok(line) => card_of_line((&model, &lattice), choice, line, source, known),
             Err(_) => Err(Refused::Model(errors)),
@@ -152,7 +154,7 @@ fn on_lattice(source: &str, choice: &Choice, known: Option<Card>) -> Result<Told
     }
 }
 
-/// The card of a model with labels that is written out body by body whatever loops over sites take: what they are compared with.
+/// The card of a model with labels, always expanded body by body. Tests compare loops over sites with it.
 ///
 /// # Errors
 /// As [`card`].
@@ -164,7 +166,7 @@ pub fn card_body_by_body(source: &str, choice: &Choice) -> Result<(Card, Vec<War
     })
 }
 
-/// The card of a lattice that is written out; `written_out` says why, where loops over sites were asked for.
+/// The card of an expanded chain. If loops over sites were wanted, `written_out` says why they are not used.
 fn body_by_body(
     (model, lattice): (&Model, &Lattice),
     choice: &Choice,
@@ -180,7 +182,7 @@ fn body_by_body(
     }
     let text = Text::of_derivation(d)?;
     let mut opened = Opened::read(&text, None)?;
-    // What is not read of a line has none.
+    // A model that cannot be read as a chain does not need aligned signs.
     let signs = clebsch_core::line::signs(model, lattice).unwrap_or_default();
     opened.signs = Agreement::of(signs, lattice, choice, &opened.card);
     let card = kept(opened, |_| None);
@@ -203,7 +205,8 @@ fn body_by_body(
     Ok((card, warnings))
 }
 
-/// Invariants of a lattice that is written out as they are told: what is alike at several sites is one of more rows.
+/// Groups the invariants of an expanded chain as `words` lists them: like invariants of several sites become one with
+/// more rows.
 pub(crate) fn named(own: &[Invariant], words: Vec<InvariantWords>) -> Vec<Invariant> {
     let mut own = own.iter();
     let of = |told: InvariantWords| {
@@ -219,7 +222,7 @@ pub(crate) fn named(own: &[Invariant], words: Vec<InvariantWords>) -> Vec<Invari
     words.into_iter().filter_map(of).collect()
 }
 
-/// The card of a line.
+/// The card of a chain that runs with loops over sites.
 fn card_of_line(
     stated: (&Model, &Lattice),
     choice: &Choice,
@@ -259,7 +262,7 @@ thread_local! {
     static DERIVED: RefCell<Option<(String, Rc<Text>)>> = const { RefCell::new(None) };
 }
 
-/// What is made of a text, once for all sizes.
+/// The derivation of a text and its program, computed once for all sizes.
 fn derived(source: &str) -> Result<Rc<Text>, Refused> {
     let known = DERIVED.with_borrow(|last| {
         let found = last.as_ref().filter(|(text, _)| text == source);

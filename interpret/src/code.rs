@@ -18,7 +18,7 @@ pub use sweep::{Kind, Slice, Sweep, Terms};
 /// The places of a function that runs: parameters, then locals.
 pub type Places<T> = Vec<Value<T>>;
 
-/// A function of the runtime; nothing for arguments that it does not take.
+/// A function of the runtime. It returns nothing if it does not accept the arguments.
 pub type Native<T> = fn(&[&Value<T>], &[usize]) -> Option<Value<T>>;
 
 /// A function of the runtime that changes its first argument, or calls back.
@@ -59,12 +59,12 @@ impl Library for Rounded {
     }
 }
 
-/// Why an expression has no value.
+/// Why the evaluation of an expression ends without a value.
 #[derive(Debug)]
 pub enum Exit<T: Real> {
     /// The function returns.
     Return(Box<Value<T>>),
-    /// An operation on values that it does not take, which emission never asks for.
+    /// The operands do not fit the operation. Emitted code never causes this.
     Unfit(&'static str),
 }
 
@@ -95,7 +95,7 @@ pub enum Operator {
     AtLeast,
 }
 
-/// A function that is called rather than written out where it is called.
+/// A function that is called, not inlined at its calls.
 #[derive(Debug)]
 pub struct Routine<T: Real> {
     /// How many places it needs.
@@ -121,20 +121,20 @@ pub enum Pattern<T: Real> {
     None,
     /// This value.
     Exactly(Value<T>),
-    /// One of these.
+    /// Any of these patterns.
     Or(Vec<Pattern<T>>),
-    /// A variant of an enum by its full name, and its fields by their numbers.
+    /// The full name of an enum variant, and patterns of its fields by their numbers.
     Variant(Arc<str>, Vec<(u32, Pattern<T>)>),
 }
 
 /// An arm of a match.
 #[derive(Clone, Debug)]
 pub struct Arm<T: Real> {
-    /// What is met.
+    /// The pattern.
     pub pattern: Pattern<T>,
-    /// And holds.
+    /// The condition behind `if`.
     pub guard: Option<Code<T>>,
-    /// Then.
+    /// The expression behind `=>`.
     pub body: Code<T>,
 }
 
@@ -161,7 +161,7 @@ pub enum Code<T: Real> {
     Place(usize),
     /// A field of a struct, by the number of its name.
     Field(Box<Code<T>>, u32),
-    /// What stands inside: `.0` of a momentum.
+    /// The content of a newtype: `.0` of a momentum.
     Inner(Box<Code<T>>),
     /// An element of a list or of a matrix.
     Index(Box<Code<T>>, Vec<Code<T>>),
@@ -187,7 +187,7 @@ pub enum Code<T: Real> {
     Block(Vec<Code<T>>),
     /// A pattern bound.
     Let(Pattern<T>, Box<Code<T>>, Option<Box<Code<T>>>),
-    /// A value that is made once and then stands at a place.
+    /// A value that is computed once and then kept in a place.
     Once(usize, Box<Code<T>>),
     /// `if`
     If(Box<Code<T>>, Box<Code<T>>, Option<Box<Code<T>>>),
@@ -203,7 +203,7 @@ pub enum Code<T: Real> {
     Assign(Vec<Code<T>>, Box<Code<T>>),
     /// A number added to a place.
     Increase(Box<Code<T>>, Box<Code<T>>),
-    /// A struct; fields not given are those of the base.
+    /// A struct. Fields that are not listed come from the base.
     Struct(Arc<Layout>, Vec<(usize, Code<T>)>, Option<Box<Code<T>>>),
     /// A tuple or an array.
     List(Vec<Code<T>>),
@@ -224,7 +224,7 @@ pub type Evaluated<T> = Result<Value<T>, Exit<T>>;
 
 const WRONG: &str = "an operation on values whose shapes do not fit, or that it does not take";
 
-/// What a missing value ends in.
+/// Returns `Exit::Unfit` if a value is missing.
 #[inline]
 pub fn unfit<T: Real, V>(value: Option<V>) -> Result<V, Exit<T>> {
     value.ok_or(Exit::Unfit(WRONG))
@@ -310,7 +310,7 @@ impl<T: Real> Pattern<T> {
 }
 
 impl<T: Real> Code<T> {
-    /// The value that stands at a place.
+    /// The stored value that an expression refers to, if it refers to one.
     #[inline]
     pub fn place<'a>(&'a self, places: &'a Places<T>) -> Option<&'a Value<T>> {
         match self {
@@ -348,7 +348,7 @@ impl<T: Real> Code<T> {
         }
     }
 
-    /// The place by its number, where it is one of its own.
+    /// The number of the place, if the expression is a whole place.
     pub fn number(&self) -> Option<usize> {
         match self {
             Code::Place(at) => Some(*at),

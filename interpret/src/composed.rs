@@ -16,13 +16,13 @@ use clebsch::{StartError, StepError};
 pub struct Model {
     pub opened: &'static Opened,
     pub model: Value<f64>,
-    /// Any state: what the numbers of one mean.
+    /// Any state, as a template for the numbers of a state.
     pub state: Value<f64>,
     /// The parameters as given, and the step of the whole composition.
     pub fixed: Fixed,
 }
 
-/// The workspace of one step of a composition: places of its own, and tapes of its own step size.
+/// The workspace of one substep of a composition: its own places, and tapes for its own step size.
 #[derive(Clone, Debug)]
 pub struct Part {
     places: Places<f64>,

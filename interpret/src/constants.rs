@@ -7,7 +7,7 @@ use clebsch::card::{Card, Dimension, Field, Invariant, Kind, Open, OpenError};
 use clebsch::solvers::Method;
 use std::collections::BTreeMap;
 
-/// What stands in the constant `CARD` of a type.
+/// The constants of a type in the emitted program, such as `CARD`.
 pub struct Constants<'a> {
     program: &'a Program,
     ty: &'a str,

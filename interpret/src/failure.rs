@@ -13,47 +13,47 @@ use clebsch::{
 /// Any error of the runtime.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Failure {
-    /// Of a parameter.
+    /// An invalid parameter.
     Parameter(ParameterError),
-    /// Of a start.
+    /// A start that fails.
     Start(StartError),
-    /// Of a step.
+    /// A step that fails.
     Step(StepError),
-    /// Of a step, without its node.
+    /// The cause of a failed step, without its node.
     Cause(StepCause),
-    /// Of the Moser-Veselov equation.
+    /// An error of the Moser-Veselov equation.
     MoserVeselov(MoserVeselovError),
-    /// Of a body.
+    /// An error of a free body.
     Poinsot(PoinsotError),
-    /// Of a left factor.
+    /// An error of a left factor.
     LeftFactor(LeftFactorError),
-    /// Of a solver for a left factor.
+    /// An error of a solver for a left factor.
     Unsolved(Unsolved),
-    /// Of the equation in unit quaternions.
+    /// An error of the equation in unit quaternions.
     Quaternion(QuaternionError),
-    /// Of a linear equation.
+    /// A linear equation with a singular factor.
     Singular(SingularFactor),
-    /// Of an equation of one site.
+    /// The equation of a single site without a root.
     NoRoot(NoRoot),
-    /// Of the constraints of a line.
+    /// An error of the constraints of a chain.
     NoReaction(NoReaction),
-    /// Of a domain.
+    /// A step that leaves the domain of the model.
     Contact(Contact),
-    /// Of given values.
+    /// An error of the values that open a trajectory.
     Open(OpenError),
-    /// Of a given rotation.
+    /// A given matrix that is not a rotation.
     Rotation(NotARotation),
-    /// Of a given motion.
+    /// A given matrix that is not a rigid motion.
     Motion(NotARigidMotion),
-    /// Of a given map.
+    /// A given matrix that is not invertible.
     Map(NotInvertible),
-    /// Of a functional of all sites.
+    /// An error of a functional of all sites.
     Mesh(MeshError),
-    /// The same, with the name of its values.
+    /// An error of a functional of all sites, with the name of its values.
     Functional(&'static str, MeshError),
-    /// Along a line.
+    /// An error of a chain.
     Line(LineError),
-    /// Of one site, in a loop over sites.
+    /// An error at one site, in a loop over sites.
     At(usize, Box<Failure>),
     /// At one site, in a loop over sites.
     Site(usize),
@@ -91,11 +91,11 @@ from! {
     Mesh: MeshError,
 }
 
-/// What is not told by any other error.
+/// The cause if the error is of another kind.
 const UNTOLD: StepCause = StepCause::NotFinite { what: "step" };
 
 impl Failure {
-    /// As the cause of a refused step.
+    /// The error as the cause of a failed step.
     pub fn cause(self) -> StepCause {
         match self {
             Failure::Step(e) => e.cause,
@@ -120,7 +120,7 @@ impl Failure {
         }
     }
 
-    /// As the error of a line.
+    /// The error as an error of a chain.
     pub fn line(self) -> LineError {
         match self {
             Failure::Line(e) => e,
@@ -155,7 +155,7 @@ impl Failure {
         }
     }
 
-    /// The same error, told of a field.
+    /// The same error, with the name of a field.
     pub fn in_field(self, field: &'static str) -> Self {
         match self {
             Failure::Poinsot(e) => e.in_field(field).into(),

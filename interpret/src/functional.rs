@@ -1,5 +1,5 @@
-//! Functionals of all sites: those of the runtime, held behind one interface whatever they compute. Takes the name
-//! by which a model states one, with its setting and constants; gives values and pull-backs over lists of sites.
+//! Functionals of all sites: the runtime's functionals behind one interface. Takes the name of a functional in a model,
+//! its setting and its constants. Gives values and pull-backs over lists of sites.
 
 use crate::sites::Column;
 use crate::value::Value;
@@ -19,7 +19,7 @@ pub enum Extent {
     Plane(Domain<2>),
 }
 
-/// What a functional is made for.
+/// The setting that a functional is built for.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Around {
     /// On an interval.
@@ -62,11 +62,11 @@ impl Around {
     }
 }
 
-/// What a functional is made of at one site.
+/// The argument of a functional at one site.
 trait Element<T: Real>: Copy + Send + Sync + 'static {
     const ZERO: fn() -> Self;
 
-    /// Those of a list of sites; nothing where it is one of something else.
+    /// Reads a list of sites into `out`. Returns nothing if the list has another type.
     fn read(list: &Column<T>, out: &mut Vec<Self>) -> Option<()>;
 
     /// A list of sites.
@@ -108,7 +108,7 @@ impl<T: Real> Element<T> for SVector<T, 2> {
     }
 }
 
-/// A functional whatever it is made of.
+/// A functional with an argument of any type.
 trait Computes<T: Real>: Send + Sync {
     fn copied(&self) -> Box<dyn Computes<T>>;
     fn value(&mut self, at: &Column<T>, out: &mut [T]) -> Option<Result<(), MeshError>>;
@@ -116,7 +116,7 @@ trait Computes<T: Real>: Send + Sync {
     fn words(&mut self, words: &mut Words);
 }
 
-/// A functional with room for what it is made of.
+/// A functional with buffers for its arguments.
 #[derive(Clone)]
 struct With<F, A> {
     functional: F,
@@ -155,7 +155,7 @@ where
 
     fn words(&mut self, words: &mut Words) {
         let own: &mut dyn Any = &mut self.0.functional;
-        // Those of grids keep nothing that a later value depends on.
+        // Functionals on grids keep nothing that later values depend on.
         if let Some(f) = own.downcast_mut::<mesh::voronoi_area<f64>>() {
             f.words(words);
         } else if let Some(f) = own.downcast_mut::<mesh::second_moment<f64>>() {
@@ -172,7 +172,7 @@ where
     }
 }
 
-/// A functional that is held.
+/// A functional of any type.
 pub struct Held<T: Real>(Box<dyn Computes<T>>);
 
 impl<T: Real> Clone for Held<T> {
@@ -229,7 +229,7 @@ where
     Some(made)
 }
 
-/// The functional of this name; nothing where it takes other constants, or there is none.
+/// The functional of this name. Returns nothing if the name is unknown or the functional takes other constants.
 pub fn made<T: Real>(name: &str, around: &Around, data: &[Value<T>]) -> Made<T> {
     use Around::{Line, Plane};
     let numbers = |value: &Value<T>| match value {

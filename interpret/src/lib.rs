@@ -1,6 +1,6 @@
-//! Runs a model file without a Rust build. What a build would compile, the emitted program, is read
-//! as operations over numbered places and executed, so that steps agree with compiled ones to the last bit.
-//! Takes the text of a model; gives a [`Card`](clebsch::card::Card) whose trajectories run.
+//! Runs a model file without a Rust build. The interpreter reads the emitted program, which a build would compile, as
+//! operations over numbered places and executes them. Steps agree with compiled steps bit for bit. Takes the text of a
+//! model; gives a [`Card`](clebsch::card::Card) whose trajectories run.
 
 mod at_particles;
 mod cards;
@@ -34,7 +34,7 @@ use core::fmt;
 /// Why a model file is not run.
 #[derive(Debug)]
 pub enum Refused {
-    /// The text is no model, or one that has no stepper.
+    /// The text is not a valid model, or the model does not have a stepper.
     Model(Errors),
     /// The model is solved by a method that only built models have.
     Method {
@@ -43,7 +43,7 @@ pub enum Refused {
         /// How it is solved.
         method: String,
     },
-    /// A model has no such size.
+    /// The model does not admit the requested size.
     Size {
         /// The name of the model.
         model: String,
@@ -62,18 +62,18 @@ pub enum Refused {
     },
     /// More sites than a model without loops over sites is run with.
     TooLong {
-        /// Why it has no loops over sites, in words.
+        /// Why the model cannot run with loops over sites.
         why: String,
-        /// How many sites are asked for, by the name of their number.
+        /// The name of the label, and the requested number of sites.
         asked: (String, usize),
-        /// Most of them that are written out body by body.
+        /// The largest number of sites that clebsch expands body by body.
         most: usize,
     },
     /// More sites than any model is run with.
     TooManySites {
-        /// How many are asked for, by the name of their number.
+        /// The name of the label, and the requested number of sites.
         asked: (String, usize),
-        /// Most of them.
+        /// The largest number of sites.
         most: usize,
     },
     /// An operation that is not known here.

@@ -13,9 +13,9 @@ use clebsch_core::{Derivation, derive_source, emit};
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-/// Where values stand while a function of a model runs.
+/// The places of values while a function of a model runs.
 pub mod at {
-    /// The model: parameters and what is prepared.
+    /// The model: parameters and prepared data.
     pub const MODEL: usize = 0;
     /// The state.
     pub const STATE: usize = 1;
@@ -23,9 +23,9 @@ pub mod at {
     pub const WORK: usize = 2;
     /// The step size.
     pub const STEP: usize = 3;
-    /// What is observed.
+    /// The observables.
     pub const OUT: usize = 4;
-    /// What else is given.
+    /// Further input.
     pub const GIVEN: usize = 5;
     /// The first local.
     pub const FIRST: usize = 6;
@@ -49,15 +49,15 @@ pub struct Functions {
     pub new: Routine<f64>,
     /// From initial values to the state.
     pub begin: Routine<f64>,
-    /// The same, with momenta projected on constraints, where any are held.
+    /// The same, with momenta projected on the constraints, if there are any.
     pub projecting: Option<Routine<f64>>,
-    /// The model with another solver, where one can be chosen.
+    /// The model with another solver, if you can choose one.
     pub with_solver: Option<Routine<f64>>,
-    /// The workspace of a state, without a step that is tried.
+    /// The workspace of a state, without trying a step.
     pub prepared: Routine<f64>,
     /// The workspace compensated, of a free body.
     pub compensated: Option<Routine<f64>>,
-    /// One step from a state that is not kept, where only the end is asked for.
+    /// One step that does not keep the state before it, if only the final state is needed.
     pub attempt: Option<Routine<f64>>,
     /// One step.
     pub step: Routine<f64>,
@@ -67,7 +67,7 @@ pub struct Functions {
     pub invariants: Routine<f64>,
     /// Their scales.
     pub scales: Routine<f64>,
-    /// What is wrong with the kinetic energy.
+    /// Checks the kinetic energy.
     pub kinetic: Option<Routine<f64>>,
 }
 
@@ -84,7 +84,7 @@ pub struct Opened {
     pub parameters: (Arc<Layout>, Vec<Read>),
     /// The struct of the initial values.
     pub initial: (Arc<Layout>, Vec<Read>),
-    /// Signs that are made to agree along a line, where it is one that is written out.
+    /// Quantities whose signs must agree along a chain, if the model is an expanded chain.
     pub signs: Vec<Agreement>,
     /// The number of the name of a state's node.
     pub node: u32,
@@ -106,15 +106,15 @@ impl Text {
     /// Derives a text.
     ///
     /// # Errors
-    /// [`Refused`] for what is no model, or has no stepper.
+    /// [`Refused`], if the text is not a valid model or the model does not have a stepper.
     pub fn of(source: &str) -> Result<Self, Refused> {
         Self::of_derivation(derive_source(source).map_err(Refused::Model)?)
     }
 
-    /// The program of what is derived.
+    /// Emits the program of a derivation.
     ///
     /// # Errors
-    /// [`Refused`] for what has no stepper.
+    /// [`Refused`], if the model does not have a stepper.
     pub fn of_derivation(derivation: Derivation) -> Result<Self, Refused> {
         if let Some(refused) = emit::refusal_of_read(&derivation) {
             return Err(Refused::Model(refused.into()));
@@ -128,7 +128,7 @@ impl Text {
 }
 
 impl Opened {
-    /// Reads a derived model, at given sizes or those that are taken where none are named.
+    /// Reads a derived model at the given sizes, or at default sizes.
     ///
     /// # Errors
     /// [`Refused`] for models that need a build.
@@ -143,7 +143,7 @@ impl Opened {
         let card = constants.card()?;
         let mut shared = Shared::new(program, values.clone());
         let functions = functions(&mut shared, &name).map_err(|refused| match refused {
-            // What is not known yet belongs to a method that is not.
+            // An unsupported construct belongs to an unsupported method.
             Refused::Construct(what) if has_newton(d) => Refused::Method {
                 model: name.clone(),
                 method: format!("{} (at `{what}`)", card.solver),
@@ -231,7 +231,7 @@ fn chosen_sizes(program: &Program, name: &str, sizes: Option<&[usize]>) -> Resul
     Ok((values, chosen))
 }
 
-/// The struct of what is given, and how each field is read.
+/// The struct of an input, and how each field is read.
 fn given(shared: &mut Shared<'_>, name: &str) -> Result<(Arc<Layout>, Vec<Read>), Refused> {
     let layout = shared.layout(name)?;
     let fields = shared.program.structs.get(name);

@@ -7,7 +7,8 @@ use clebsch::line::Attitude;
 use clebsch::{OfScalars, Real};
 use std::sync::Arc;
 
-/// The value with every number replaced. Nothing for what is prepared of numbers, such as a solver's factors.
+/// The value with every number replaced. Returns nothing for data prepared from numbers, such as the factors of a
+/// solver.
 pub fn over<T: Real, U: Real>(
     value: &Value<T>,
     change: &mut impl FnMut(T) -> U,

@@ -16,14 +16,14 @@ pub struct Packed {
 }
 
 impl Packed {
-    /// The numbers of a state; nothing where there are too many.
+    /// The numbers of a state. Returns nothing if there are too many.
     pub fn of(state: &Value<f64>) -> Option<Self> {
         let mut all = Vec::new();
         numbers(state, &mut all)?;
         Packed::of_numbers(&all, node(state))
     }
 
-    /// These numbers at a node; nothing where there are too many.
+    /// These numbers at a node. Returns nothing if there are too many.
     pub fn of_numbers(all: &[f64], node: u64) -> Option<Self> {
         let mut packed = Packed {
             numbers: [0.0; MOST],

@@ -27,7 +27,7 @@ impl Program {
     /// Sorts the emitted items.
     ///
     /// # Errors
-    /// When the tokens are no items, which emission never gives.
+    /// If the tokens are not items. Emission never produces such tokens.
     pub fn read(tokens: TokenStream) -> Result<Self, Refused> {
         let file: syn::File = syn::parse2(tokens).map_err(|e| Refused::Construct(e.to_string()))?;
         let mut program = Program::default();
@@ -78,7 +78,7 @@ impl Program {
         Ok(())
     }
 
-    /// What the runtime's protocol adds to a model.
+    /// Adds the functions that the runtime's protocol gives to a model.
     fn take_protocol(&mut self, tokens: TokenStream) -> Result<(), Refused> {
         let protocol: Protocol =
             syn::parse2(tokens).map_err(|e| Refused::Construct(e.to_string()))?;

@@ -1,6 +1,6 @@
-//! What the runtime's protocol adds to a model, as functions to be executed: those that change a value of it, the steps
-//! of a forced body, and what it shows.
-//! Takes the call of `stepper!` that is emitted; gives functions by type and name. The others are the interpreter's own.
+//! Functions that the runtime's protocol adds to a model, to be executed: the functions that change a value of the
+//! model, the steps of a forced body, and the observers. Takes the emitted call of `stepper!`; gives functions by type
+//! and name. The interpreter implements the rest of the protocol.
 
 use crate::program::type_name;
 use proc_macro2::TokenStream;
@@ -35,7 +35,7 @@ impl Parse for Type {
 /// How a forced step is made.
 #[derive(Default)]
 struct Forced {
-    /// The fields that the factor of a trajectory is made of.
+    /// The fields that determine the factor of a trajectory.
     of: Vec<Ident>,
     /// The function that tests a start.
     tests: Option<Ident>,
@@ -59,7 +59,7 @@ impl Parse for Forced {
     }
 }
 
-/// An entry of what is shown: where it is found, and as what it is shown.
+/// An observable: its path and its shape.
 struct Shown {
     path: Vec<Ident>,
     shape: Option<Ident>,

@@ -71,7 +71,7 @@ impl Opened {
         let begin = projecting.unwrap_or(&f.begin);
         let state = run(begin, &mut places).map_err(Failure::start)?;
         put(&mut places, at::STATE, state.clone());
-        // Judged before the first step is tried: it may be why that is refused.
+        // Check the kinetic energy before the first step, since it may explain why the step fails.
         let kinetic = match &f.kinetic {
             Some(kinetic) => match run(kinetic, &mut places).map_err(Failure::open)? {
                 Value::Warning(warning) => Some(warning),
@@ -110,7 +110,7 @@ impl Opened {
         self.recordable.get_or_init(recordable).as_ref()
     }
 
-    /// What makes the steps that are asked for.
+    /// Chooses how to make steps with these settings.
     fn ways(
         &'static self,
         card: &'static Card,
@@ -163,7 +163,7 @@ impl Opened {
         Ok(Steps::Composed(Box::new((model, composition))))
     }
 
-    /// What is chosen about steps where nothing is.
+    /// The default choice of a solver.
     pub fn usual(&self) -> Value<f64> {
         match self.functions.with_solver {
             Some(_) => Value::None,
@@ -303,7 +303,7 @@ impl Held {
         &mut self.places
     }
 
-    /// The tapes go on from what is in the places.
+    /// The tapes continue from the values in the places.
     fn follow(&mut self) {
         if let Some(recorded) = &mut self.recorded {
             recorded.follow();
@@ -370,7 +370,7 @@ impl Opened {
 }
 
 impl Running {
-    /// One step; `seen` is shown each of the model's own that it is made of, as a share of the whole one, with the state after it.
+    /// One step. After each of the model's own steps, calls `seen` with its share of the whole step and the state.
     fn made(&mut self, seen: &mut dyn FnMut(f64, &mut Held)) -> Result<(), StepError> {
         let held = self.held.get_mut();
         match &mut self.steps {
@@ -396,7 +396,7 @@ impl Running {
                     held.put(here);
                     seen(share, held);
                 });
-                // Of a step that is refused the state is that before.
+                // If the step fails, `packed` is the state before it.
                 held.put(&packed);
                 made?;
             }
@@ -405,7 +405,7 @@ impl Running {
     }
 }
 
-/// Runs an observer of the state that stands there; its numbers are written to `out`.
+/// Runs an observer on the current state and writes its numbers to `out`.
 fn watch(places: &mut Places<f64>, routine: &Routine<f64>, out: &mut [f64]) {
     let mut list = match take(places, at::OUT) {
         Value::List(list) => list,

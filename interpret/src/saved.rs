@@ -1,4 +1,4 @@
-//! What moves, written down and made again: the values that a trajectory keeps between its steps.
+//! Saves and restores the values that a trajectory keeps between its steps.
 
 use crate::library::Factor;
 use crate::sites::Column;
@@ -45,7 +45,7 @@ impl Saved for Value<f64> {
             | Value::Domain(_)
             | Value::Function(_)
             | Value::Call(_) => {}
-            // What it stands for is put back whole.
+            // The state that a stamp refers to is restored completely.
             Value::Stamp(_) => {}
             // Begun anew in every step.
             Value::Multipliers(_) | Value::Band(_) => {}

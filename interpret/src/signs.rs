@@ -1,5 +1,5 @@
-//! Signs of unit quaternions of a line that is written out body by body, made to agree as a line with loops over
-//! sites does it. Takes the initial values in the order of a card; changes the signs of some.
+//! Signs of unit quaternions of an expanded chain. They are made to agree in the same way as in a chain with loops over
+//! sites. Takes the initial values in the order of a card; changes the signs of some.
 
 use clebsch::card::Card;
 use clebsch::line::{self, Attitude, Attitudes};
@@ -9,22 +9,22 @@ use clebsch_core::lattice::{Choice, Lattice};
 use clebsch_core::line::Signs;
 use nalgebra::Matrix4;
 
-/// One quantity along a line.
+/// One quantity along a chain.
 #[derive(Clone, Debug)]
 pub struct Agreement {
     /// The quantity.
     quantity: &'static str,
-    /// Where its sites stand among the initial values, in order.
+    /// The indices of its sites among the initial values, in order.
     sites: Vec<usize>,
-    /// Quaternions that ends give, the last one's before the first one's: where they stand among the parameters,
-    /// and the site that they meet.
+    /// Quaternions that end conditions prescribe, the last end before the first: the index among the parameters, and
+    /// the neighbouring site.
     walls: Vec<(usize, usize)>,
     /// Whether it has to agree around a ring.
     closes: bool,
 }
 
 impl Agreement {
-    /// Those of a card whose fields are copies of quantities.
+    /// The quantities of a card whose signs must agree. Fields of the card are copies of quantities.
     pub fn of(signs: Vec<Signs>, lattice: &Lattice, choice: &Choice, card: &Card) -> Vec<Self> {
         let each = signs.into_iter().filter_map(|signs| {
             let count = choice.sites_of(lattice, lattice.find(&signs.of)?);
@@ -64,7 +64,7 @@ impl Agreement {
     /// Makes the signs agree.
     ///
     /// # Errors
-    /// Where around a ring they cannot.
+    /// If the signs cannot agree around a ring.
     pub fn make(
         &self,
         parameters: &[Vec<f64>],
@@ -76,7 +76,7 @@ impl Agreement {
             Some(Attitude::of_quaternion(q))
         };
         let given: Option<Attitudes<f64>> = self.sites.iter().map(read).collect();
-        // What is no unit quaternion is told where it is read.
+        // Values that are not unit quaternions are reported when they are read.
         let Some(given) = given else {
             return Ok(());
         };

@@ -1,5 +1,5 @@
-//! Lists with a value for each site, their numbers side by side: what loops over sites read and fill.
-//! Takes values of one kind; gives each of them back, or a place to put another one.
+//! Lists with a value for each site, stored as contiguous numbers. Loops over sites read and fill them. Takes values of
+//! one kind; gives each value back, or a place for another value.
 
 use crate::value::{Layout, Struct, Value};
 use clebsch::Real;
@@ -42,7 +42,7 @@ impl<T: Real> PartialEq for dyn Asked<T> {
 }
 
 impl<T: Real> Column<T> {
-    /// No sites, of values like this one.
+    /// An empty column for values of the same type.
     pub fn like(value: &Value<T>) -> Self {
         match value {
             Value::Real(_) => Column::Numbers(Vec::new()),
@@ -58,7 +58,7 @@ impl<T: Real> Column<T> {
         }
     }
 
-    /// Values of one kind; nothing where they are of several.
+    /// A column of values of one kind. Returns nothing if the kinds differ.
     pub fn of(values: Vec<Value<T>>) -> Option<Self> {
         let Some(first) = values.first() else {
             return Some(Column::Values(values));
@@ -229,7 +229,7 @@ impl<T: Real> Column<T> {
     }
 }
 
-/// Where the numbers of the array of a site stand.
+/// The range of the numbers of the array of a site.
 #[inline]
 pub fn range([rows, cols]: [usize; 2], site: usize) -> Range<usize> {
     let size = rows * cols;

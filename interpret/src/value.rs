@@ -1,4 +1,4 @@
-//! What an expression of a step may be: numbers, matrices, group elements, momenta, prepared solvers.
+//! The values of expressions in a step: numbers, matrices, group elements, momenta, prepared solvers.
 
 use crate::failure::Failure;
 use crate::functional;
@@ -113,7 +113,7 @@ pub enum Value<T: Real> {
     Matrix(Matrix3<T>),
     /// A matrix of any other size.
     Dense(Dense<T>),
-    /// Zeros of a size that stands elsewhere.
+    /// Zeros whose size follows from the other operand.
     Zeros,
     /// A rotation of space.
     Rotation(Rotation<T>),
@@ -145,19 +145,19 @@ pub enum Value<T: Real> {
     Method(Method),
     /// An order of modified moments.
     Order(Order),
-    /// What a function asks of its argument.
+    /// The domain of the argument of a function.
     Domain(domain::Domain),
-    /// What has a domain.
+    /// A function with a domain.
     Function(domain::Function),
     /// A function called.
     Call(&'static domain::Call),
-    /// What is wrong with a kinetic energy.
+    /// A warning about the kinetic energy.
     Warning(KineticWarning),
     /// A struct of the emitted code.
     Struct(Struct<T>),
     /// An array or a tuple.
     List(Vec<Value<T>>),
-    /// A value for each site of a line.
+    /// A value for each site of a chain.
     Sites(Column<T>),
     /// The attitude of a site.
     Attitude(Box<line::Attitude<T>>),
@@ -175,7 +175,7 @@ pub enum Value<T: Real> {
     Part(usize, usize),
     /// A domain of particles.
     Extent(functional::Extent),
-    /// What functionals of all sites are made for.
+    /// The setting of functionals of all sites.
     Around(Box<functional::Around>),
     /// A functional of all sites.
     Functional(functional::Held<T>),
@@ -233,7 +233,7 @@ impl<T: Real> Value<T> {
 }
 
 impl<T: Real> PartialEq for Value<T> {
-    /// Numbers, matrices, group elements and momenta are compared; what is prepared never is.
+    /// Compares numbers, matrices, group elements and momenta. Prepared data are never equal.
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Value::Unit, Value::Unit) | (Value::None, Value::None) => true,

@@ -48,7 +48,7 @@ fn read(source: &str) -> Arc<LineModel> {
 fn started(chain: &Chain, source: &str, n: usize, h: f64) -> LineTrajectory {
     let model = read(source);
     let nodes = chain.nodes(n);
-    // What an end holds has no momentum.
+    // A configuration that an end prescribes does not have a momentum.
     let numbers = |name: &str| {
         let mut list = (chain.given)(name, nodes)?;
         if name.contains("_momentum_") {
@@ -70,8 +70,9 @@ fn own_momentum(chain: &Chain) -> String {
     format!("{frame}_momentum_{}", chain.element)
 }
 
-/// How far three nodes are off the discrete Euler-Lagrange equations of an action, and the momentum at the middle one off the
-/// derivative of the edge that comes to it, as shares of the largest of these.
+/// The residual of the discrete Euler-Lagrange equations of an action at three nodes. Also the difference between the
+/// momentum at the middle node and the derivative of the edge before it. Both are relative to the largest derivative of
+/// that edge.
 fn off(chain: &Chain, source: &str, n: usize, action: impl Fn(&[A], &[A]) -> D) -> [f64; 2] {
     let mut line = started(chain, source, n, H);
     let mut momentum = Vec::new();
@@ -114,7 +115,7 @@ fn off(chain: &Chain, source: &str, n: usize, action: impl Fn(&[A], &[A]) -> D) 
     [largest(left) / scale, largest(told) / scale]
 }
 
-/// What `1/h` makes of a rounding of places of a size of ten, some of them after one another.
+/// The rounding of positions of size ten, divided by h. Some positions are computed one after the other.
 const ROUNDED: f64 = 1e-11;
 
 #[test]

@@ -1,5 +1,5 @@
-//! Fluids that run from their text: every number that they show equals, to the last bit, that of the stepper which
-//! is compiled from the same statement.
+//! Fluids that run from their text. Every number equals, bit for bit, the number from the stepper that is compiled from
+//! the same statement.
 
 #![allow(missing_docs)]
 
@@ -57,7 +57,7 @@ fn vectors(list: &[f64]) -> Vec<Vector2<f64>> {
     list.chunks(2).map(Vector2::from_column_slice).collect()
 }
 
-/// Places of a jittered lattice, masses near that of depth 1, and momenta of velocities of size `speed`.
+/// Positions of a jittered lattice, masses close to depth 1, and momenta of velocities of size `speed`.
 fn particles(side: usize, speed: f64) -> Data {
     let domain = Domain::torus([1.0, 1.0]);
     let jitter = Jitter { size: 0.2, seed: 5 };

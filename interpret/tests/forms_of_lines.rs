@@ -1,5 +1,5 @@
-//! Terms that join both ends of a step to places, in forms that are not those of the middle of the step: loops over sites
-//! take them, and the motion is stationary for the action typed by hand.
+//! Terms that join both ends of a step to positions in forms other than the middle of the step. Loops over sites
+//! support them, and the motion is stationary for the action typed by hand.
 
 #![allow(missing_docs, mixed_script_confusables)]
 
@@ -30,7 +30,7 @@ fn ring(source: &str, numbers: &dyn Fn(&str) -> Option<Vec<f64>>) -> LineTraject
     model.start(&choice, H, numbers).expect("starts")
 }
 
-/// What is observed at three nodes, one after the other.
+/// An observable at three successive nodes.
 fn three(line: &mut LineTrajectory, name: &str) -> [Vec<f64>; 3] {
     // The data of the start are arbitrary: any state will do.
     line.step().expect("steps");
@@ -50,7 +50,7 @@ fn scattered(n: usize, by: f64) -> Vec<f64> {
 /// The action of an edge, by places at its two ends.
 type Numbers = fn(&[D], &[D]) -> D;
 
-/// The largest derivative of two edges at their common node, of those of one.
+/// The largest derivative of the sum of two edges at their common node, relative to the largest derivative of one edge.
 fn of_numbers(action: Numbers, [a, b, c]: &[Vec<f64>; 3]) -> f64 {
     let lifted = |x: &[f64]| -> Vec<D> { x.iter().map(|x| D::constant(*x)).collect() };
     let (before, after) = (lifted(a), lifted(c));

@@ -116,7 +116,7 @@ fn orders_and_solvers_agree_to_the_last_bit() {
 #[test]
 fn refusals_are_told_alike() {
     for (entry, card) in served() {
-        // What is refused by Newton's method is searched for in many steps.
+        // If Newton's method rejects a step, the search for a smaller step takes many steps.
         let few = if card.solver.contains("Newton") {
             1
         } else {

@@ -181,7 +181,7 @@ fn shapes_held_in_space() {
 #[test]
 fn matrices_held_to_be_rotations_turn_as_bodies_do() {
     let moments = [1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0];
-    // Of the angular velocity w the momenta hat(w) J and (tr(J) - J) w.
+    // The momenta hat(w) J and (tr(J) - J) w of the angular velocity w.
     let w = [0.3, -0.2, 0.1];
     let momentum = [
         0.0,
@@ -224,7 +224,8 @@ fn matrices_held_to_be_rotations_turn_as_bodies_do() {
     assert!(turning[1].abs() > 0.1);
 }
 
-/// What is held and what pulls are differences of places: how far these are from the origin adds their own rounding and no more.
+/// The constraint and the force depend on differences of positions. A distance from the origin adds only the rounding
+/// of the positions.
 #[test]
 fn sizes_of_differences_do_not_grow_with_the_places() {
     let sizes = |text: &str, place: f64, length: f64| {
@@ -263,7 +264,7 @@ fn sizes_of_differences_do_not_grow_with_the_places() {
     assert!(far < 3e2 * near, "{near} {far}");
 }
 
-/// A cart and its bob far away: the length is that of a difference, of components or along an axis.
+/// A cart and its bob far from the origin. The length is the length of a difference, of components or along an axis.
 #[test]
 fn the_length_between_a_number_and_a_vector_is_tested_far_away() {
     let cart = |constraint: &str| {

@@ -1,5 +1,5 @@
-//! Lines with held constraints that run from their text: every number equals, to the last bit, that of the stepper which is
-//! compiled, and to rounding that of the bodies written out.
+//! Chains with constraints that run from their text. Every number equals the number from the compiled stepper bit for
+//! bit, and the number from the expanded bodies to rounding.
 
 #![allow(missing_docs, mixed_script_confusables)]
 
@@ -90,7 +90,7 @@ fn composed_steps_have_their_order() {
                 line.step().expect("steps");
             }
             assert_eq!(line.node(), u64::from(steps));
-            // What the data begin with; multipliers are those of the last part.
+            // The quantities with initial data; multipliers belong to the last substep.
             let mut all = vec![0.0; card.observable_count()];
             line.observe(&mut all);
             let given = |f: &Field| data.of_ascii(beside::split(f).0).is_some();
@@ -208,7 +208,8 @@ fn a_site_without_mass_is_told_as_such() {
     assert!(!told.contains("follow from others"), "{told}");
 }
 
-/// Rows of a long line come from the short one: every multiplier has its place, constraints of all sites are told together.
+/// The rows of a long chain come from the short chain. Every multiplier has its row, and constraints of all sites form
+/// one invariant.
 #[test]
 fn the_card_of_a_long_held_line_tells_multipliers_and_constraints() {
     for (own, multiplier) in held::all().iter().zip(["n", "lambda"]) {
@@ -233,7 +234,7 @@ fn the_card_of_a_long_held_line_tells_multipliers_and_constraints() {
     }
 }
 
-/// What sums hold is told without a site, and a sum that no motion changes is refused.
+/// The error for a constrained sum does not name a site, and a sum that the motion cannot change is rejected.
 #[test]
 fn data_off_a_sum_are_refused_with_the_equation() {
     let [own, _] = sums::all();

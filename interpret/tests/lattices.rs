@@ -1,5 +1,5 @@
-//! Lattices that run from their files: closed forms, orders, copies of a lone body, and steps equal to
-//! those of the same bodies typed by hand and compiled.
+//! Lattices that run from their files: closed forms, orders, copies of a single body, and steps equal to the steps of
+//! the same bodies typed by hand and compiled.
 
 #![allow(missing_docs)]
 
@@ -324,8 +324,8 @@ fn more_sites_than_fit_into_memory_are_refused_at_once() {
     assert!(told.to_string().contains("`i = 1000000000000`"), "{told}");
 }
 
-/// What joins two fields at different sites of a line: of the second the momenta of all sites add up, with those of the first a sum
-/// that leaves an end out.
+/// A term joins two fields at different sites of a chain. The momenta of the second field add up over all sites. With
+/// the momenta of the first field, the sum omits an end.
 const CROSSED: &str = "model Crossed { label i in 0..N; periodic; param m, k, f: Real; field x, y: Real at nodes;
     lagrangian = m*((next(x)-x)^2 + (next(y)-y)^2)/(2*h) + f*(x+next(x))/2*(next(next(y,i))-next(y,i))
         - h*k*((next(x,i)-x)^2+(next(y,i)-y)^2)/2; }";

@@ -32,7 +32,7 @@ const H: f64 = 0.1;
 /// Momenta are some m Δx/h, of order ten: a hundred roundings of their terms m x/h.
 const ROUNDING: f64 = 3e-13;
 
-/// What a part of the action that is moved to another edge changes, of numbers of order one.
+/// The change if a part of the action moves to another edge, for numbers of order one.
 const SEEN: f64 = 1e-2;
 
 /// The action of a step from `q` to `r` at the time `t`, by hand; `p` the parameters in order.
@@ -160,7 +160,7 @@ fn a_factor_times_a_difference_is_one_term() {
         );
         assert!(off(&card, torn) > SEEN, "{term}");
     }
-    // What stands beside it in the bracket is a potential, at both ends of the step.
+    // The other summands in the bracket form a potential, at both ends of the step.
     let beside: Action = |p, _, q, r| {
         let potential = |a: Dual, b: Dual| a * b + a * square(b);
         let halves = potential(q[0], q[1]) + potential(r[0], r[1]);

@@ -1,5 +1,5 @@
-//! Lines that run from their text: every number that they show equals, to the last bit, that of the stepper
-//! which is compiled from the same statement.
+//! Chains that run from their text. Every number equals, bit for bit, the number from the stepper that is compiled from
+//! the same statement.
 
 #![allow(missing_docs, mixed_script_confusables)]
 
@@ -157,7 +157,7 @@ fn what_loops_over_sites_do_not_take_is_run_body_by_body_or_refused_at_once() {
 /// Long, since every line is derived with twelve and with a hundred sites.
 #[test]
 fn the_card_of_a_long_line_says_what_that_of_its_bodies_says() {
-    // The same observables and invariants, those of given sites left out.
+    // The cards agree in observables and invariants, except for omitted sites.
     for Line { source, cases, .. } in compiled::all() {
         let model = LineModel::read(source).expect("is read");
         let observed = |f: &Field| model.observers().any(|o| ascii(&o) == split(f).0);
@@ -167,7 +167,7 @@ fn the_card_of_a_long_line_says_what_that_of_its_bodies_says() {
                 let card = clebsch_interpret::card_on_lattice(source, &chosen);
                 card.expect("is read").0
             };
-            // Of an even ring the even and the odd sites may be two.
+            // In a ring of even length, even and odd sites may form two separate sets.
             let n = 12 + usize::from(case.ends.is_none());
             let (short, long) = (card(n), card(100));
             let shifted = |n: usize, field: &Field| {
@@ -185,7 +185,7 @@ fn the_card_of_a_long_line_says_what_that_of_its_bodies_says() {
                 (short.parameters, long.parameters),
                 (short.initial, long.initial),
                 (
-                    // What is made of others is not observed along a line, and the summary says so.
+                    // Derived quantities are not observed along a chain, and the summary lists them.
                     &short
                         .observables
                         .iter()
@@ -201,7 +201,7 @@ fn the_card_of_a_long_line_says_what_that_of_its_bodies_says() {
             let kept: Vec<&Invariant> = short.invariants.iter().filter(known).collect();
             assert_eq!(kept.len(), long.invariants.len(), "{case:?}");
             for (own, other) in kept.iter().zip(long.invariants) {
-                // What every site keeps is told as a sum.
+                // If every site conserves a quantity, the card lists the sum.
                 match own.rows == other.rows {
                     true => assert_eq!(*own, other, "{case:?}"),
                     false => {

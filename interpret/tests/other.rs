@@ -1,5 +1,5 @@
-//! Models that are in no gallery: groups, fields and functions that those of the gallery have not, built here
-//! and read from their texts.
+//! Models outside the gallery, with groups, fields and functions that the gallery lacks. They are built here and read
+//! from their texts.
 
 #![allow(missing_docs)]
 
@@ -399,7 +399,8 @@ fn turns_of_the_plane_beside_rotations_seen_from_space() {
     }
 }
 
-/// A chain of points whose velocities all stand in one another's equations; quartic where `b` is a term.
+/// A chain of points in which every equation contains velocities of neighbours; quartic if `b` multiplies a kinetic
+/// term.
 fn chain(count: usize, quartic: bool) -> String {
     let each = |f: &dyn Fn(usize) -> String, join: &str| -> String {
         (0..count).map(f).collect::<Vec<_>>().join(join)

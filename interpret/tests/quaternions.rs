@@ -1,5 +1,5 @@
-//! Lines in unit quaternions that run from their text: every number equals, to the last bit, that of the stepper which
-//! is compiled, and to rounding that of the bodies written out, whatever the signs with which they start.
+//! Chains in unit quaternions that run from their text, with any initial signs. Every number equals the number from the
+//! compiled stepper bit for bit, and the number from the expanded bodies to rounding.
 
 #![allow(missing_docs, mixed_script_confusables)]
 

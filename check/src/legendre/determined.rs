@@ -1,22 +1,23 @@
-//! Whether momenta know the velocities that they are made of: the velocity of a configuration without kinetic energy would be lost.
-//! Takes the momenta; compares them with those of rest.
+//! Checks that the momenta determine the velocities. Without kinetic energy, the velocity of a configuration would be
+//! lost. Takes the momenta; compares them with the momenta at rest.
 
 use super::{Legendre, Momentum, NoMomentum, Velocities, copy, mean};
 use crate::moved::Velocity;
 use crate::number::larger;
 use crate::sites::Moving;
 
-/// What the change of a momentum in the limit is at least, beside that over a step.
+/// The smallest change of a momentum in the limit that counts, relative to its change over a step.
 const KNOWN: f64 = 1e-9;
 
-/// A velocity of this part of the largest may vanish in the rounding of a momentum, as far from a vortex.
+/// A velocity below this fraction of the largest velocity may vanish in the rounding of a momentum, such as far from a
+/// vortex.
 const SLIGHT: f64 = 1e-9;
 
-/// Most configurations that are tried alone.
+/// The largest number of configurations that are tried separately.
 const MOST: usize = 8;
 
 impl Legendre {
-    /// Refuses a velocity on which no momentum depends.
+    /// Rejects a velocity on which no momentum depends.
     pub(super) fn determined(
         &self,
         node: &[f64],
@@ -55,7 +56,8 @@ impl Legendre {
         Ok(())
     }
 
-    /// By how much the momentum of each configuration differs from that of rest over a step.
+    /// How much the velocities change the momentum of each configuration over a finite step, compared with a step at
+    /// rest.
     fn over_a_step(
         &self,
         node: &[f64],

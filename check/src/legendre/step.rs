@@ -15,15 +15,15 @@ use crate::stated::Role;
 /// Configurations whose derivatives are taken together.
 const TOGETHER: usize = 32;
 
-/// How often what is missing of a velocity is put in.
+/// The largest number of corrections for the missing part of a velocity.
 const STAGES: usize = 4;
 
-/// Part of a velocity over which momenta are linear in it.
+/// The fraction of a velocity over which momenta are linear in it.
 const SMALL: f64 = 1.0 / 4096.0;
 
 impl Legendre {
-    /// `-D1 L` for a step of this length, by the components of each configuration. Displacements are rounded, by more than the
-    /// velocity far from the origin: what is missing of the velocity is put in by differences.
+    /// `-D1 L` for a step of this size, by the components of each configuration. Far from the origin, the rounding of
+    /// displacements exceeds the velocity. Differences of `-D1 L` add the missing part of the velocity.
     pub(super) fn sample(
         &self,
         node: &[f64],
@@ -38,7 +38,7 @@ impl Legendre {
         let shifts = self.shifts(&setup, moving, velocities);
         let speed = most(shifts.iter().flat_map(|(_, _, v)| v));
         let size = most(shifts.iter().flat_map(|(own, ..)| own.of(node)));
-        // What displacements between two nodes leave of velocities.
+        // The part of the velocities that the displacements between two nodes do not represent.
         let without = |left: &[Vec<f64>], (from, to): (&[f64], &[f64]), by: f64| -> Vec<Vec<f64>> {
             let each = left.iter().zip(&shifts).map(|(left, (own, ..))| {
                 let ends = own.of(from).iter().zip(own.of(to));
@@ -81,7 +81,7 @@ impl Legendre {
         Ok(out)
     }
 
-    /// The fields that move: where their numbers stand, their names, and their velocities.
+    /// The moving fields: the positions of their numbers, their names, and their velocities.
     fn shifts(
         &self,
         setup: &Setup,
@@ -125,7 +125,7 @@ impl Legendre {
         Ok(out)
     }
 
-    /// The numbers after a step with these velocities, of what is advected too.
+    /// The numbers after a step with these velocities, including advected quantities.
     fn after(
         &self,
         setup: &Setup,

@@ -254,7 +254,8 @@ fn residuals_far_below_rounding_are_a_failure() {
     assert!(at_rest.holds());
 }
 
-/// A pendulum whose support shakes, by one of its steps typed by hand: with the clock as it goes, and with one that stands still.
+/// A pendulum with a driven support. One of its steps is typed by hand, with an advancing clock and with a clock that
+/// does not advance.
 #[test]
 fn a_clock_that_stands_still_is_told() {
     let text = "model Driven {

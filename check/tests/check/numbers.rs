@@ -1,5 +1,5 @@
-//! The running error is at least the true one and at most a thousand times that of one rounding of the terms, for random expressions
-//! against the same ones in double-double.
+//! The running error bounds the true error, and is at most a thousand times one rounding of the terms. The tests
+//! compare random expressions with the same expressions in double-double.
 
 use clebsch_check::{Number, Slope, UNIT, function};
 

@@ -1,12 +1,12 @@
-//! What the kinds of operations do, each a function of its own: together they would need places for the
-//! values of all.
+//! One function for each kind of operation. A single function would need a stack frame with room for the values of all
+//! kinds.
 
 use super::{Arm, Code, Evaluated, Exit, Native, Operator, Places, Routine, WRONG, unfit};
 use crate::value::{Layout, Struct, Value};
 use clebsch::Real;
 use std::sync::{Arc, OnceLock};
 
-/// An argument that stands at a place is not copied.
+/// An argument. A value that is stored in a place is not copied.
 pub(super) enum Given<T: Real> {
     There,
     Made(Value<T>),
@@ -205,7 +205,7 @@ pub(super) fn called<T: Real>(
     own.resize(routine.places.max(own.len()), Value::Unit);
     let value = routine.body.returned(&mut own)?;
     for (a, changed) in arguments.iter().zip(own) {
-        // What was lent is given back; what was not changed is put back as it was.
+        // Return every argument to its place, whether the function changed it or not.
         if let Some(place) = a.place_mut(places) {
             *place = changed;
         }

@@ -7,7 +7,8 @@ use clebsch::Real;
 use std::sync::{Arc, OnceLock};
 
 impl<T: Real> Routine<T> {
-    /// The function over another scalar; nothing if it loops or calls what that scalar lacks.
+    /// The function over another scalar. Returns nothing if the function loops, or calls something that the scalar
+    /// lacks.
     pub fn over<U: Library>(&self, change: fn(T) -> U) -> Option<Routine<U>> {
         Some(Routine {
             places: self.places,
@@ -122,7 +123,8 @@ impl<T: Real, U: Library> Change<'_, T, U> {
     fn routine(self, function: &OnceLock<Routine<T>>) -> Option<Arc<OnceLock<Routine<U>>>> {
         let Routine { places, body } = function.get()?;
         let places = *places;
-        // Errors look for a step that can be made, by the function that failed. A changed function has no value there.
+        // To search for a step that succeeds, an error calls the function that failed. In the changed function this
+        // recursive call returns nothing.
         let body = match self.within.is_some_and(|within| within.has(function)) {
             true => Code::Call(|_, _| None, Vec::new(), Vec::new(), "itself".into()),
             false => {

@@ -5,7 +5,7 @@ use clebsch::Real;
 use std::collections::BTreeSet;
 
 impl<T: Real> Code<T> {
-    /// The operations that it consists of. Those of functions that it calls are not among them.
+    /// The direct operands, without the operations of called functions.
     pub fn parts(&self) -> Vec<&Code<T>> {
         match self {
             Code::Constant(_) | Code::Place(_) | Code::Iterate(_) => Vec::new(),

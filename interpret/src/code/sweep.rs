@@ -1,5 +1,5 @@
-//! Loops over sites: a body that is executed at each of them. What it fills is not read by it, so that it
-//! can be taken out for as long as the loop runs.
+//! Loops over sites. The body does not read the list that it fills, so the list is taken out of its place while the
+//! loop runs.
 
 use super::{Code, Evaluated, Exit, Iterate, Places, WRONG, unfit};
 use crate::failure::Failure;
@@ -9,7 +9,7 @@ use crate::value::Value;
 use clebsch::linalg::Dense;
 use clebsch::line;
 
-/// What is done with the values of the body.
+/// How a loop uses the values of its body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// `fill`: they are put into a list.
@@ -22,16 +22,16 @@ pub enum Kind {
     TryEach,
     /// `sum` and `total`.
     Sum(Terms),
-    /// The same of the sizes of their terms: a scale of what is summed.
+    /// The same sum over the sizes of the terms, which is a scale for the sum.
     Sizes(Terms),
 }
 
-/// What is summed.
+/// The type of the terms of a sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Terms {
-    /// Numbers: of no site 0.
+    /// Numbers. An empty sum is 0.
     Numbers,
-    /// Arrays: of no site zeros, whatever their shape.
+    /// Arrays. An empty sum is zero in any shape.
     Arrays,
 }
 
@@ -49,11 +49,11 @@ pub struct Slice {
 /// A loop.
 #[derive(Debug)]
 pub struct Sweep {
-    /// What is done with the values.
+    /// How the loop uses the values.
     pub kind: Kind,
-    /// What is filled.
+    /// The lists that the loop fills.
     pub out: Vec<Slice>,
-    /// From which site to which, where nothing is filled.
+    /// The range of sites, if the loop fills no list.
     pub range: Option<[Code<f64>; 2]>,
     /// The body.
     pub sites: SiteFunction,

@@ -53,7 +53,7 @@ pub fn binary<T: Real>(operator: Operator, a: &Value<T>, b: &Value<T>) -> Option
 }
 
 fn sum<T: Real>(a: &Value<T>, b: &Value<T>, f: impl Fn(T, T) -> T) -> Option<Value<T>> {
-    // Zeros are of the shape of what they stand beside.
+    // `Zeros` takes the shape of the other operand.
     let like = |z: &Value<T>, of: &Value<T>| match z {
         Value::Zeros => Some(of.dense()?.map(|_| T::zero())),
         own => own.dense(),
@@ -201,7 +201,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             (Value::Vector(x), Value::Vector(y)) => Some(Value::Real(x.dot(y))),
             (x, y) => Some(Value::Real(x.dense()?.dot(&y.dense()?))),
         },
-        // What products are at most, whatever the angle.
+        // Upper bounds of products, for any angle.
         ("dot_sizes", 2) => |a, _| Some(Value::Real(length(a.first()?)? * length(a.get(1)?)?)),
         ("cross_sizes", 2) => |a, _| {
             let size = length(a.first()?)? * length(a.get(1)?)?;

@@ -88,8 +88,9 @@ fn numbers<T: Real>(value: &Value<T>, count: usize) -> Option<Vec<T>> {
     (all.len() == count).then_some(all)
 }
 
-/// `rows.tie([first, last], |site| [...], |site, velocities| ..., |site, velocities| (..., ...))`: the velocities stand in the
-/// place of the rows, to which the sites of each term and what it gives are put. Momenta alone are part of that.
+/// `rows.tie([first, last], |site| [...], |site, velocities| ..., |site, velocities| (..., ...))`: the first element of
+/// `rows` contains the velocities. For each term, its sites and its contribution are appended. The closure for momenta
+/// alone is not called, since the last closure gives them too.
 fn tie<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     let [rows, ends, sites, _, term] = a else {
         return Err(missing());
@@ -115,12 +116,12 @@ fn tie<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     Ok(Value::Unit)
 }
 
-/// What all sites and terms add at some velocities.
+/// The contributions of all sites and terms at given velocities.
 struct Terms<'a, T: Real> {
     n: usize,
     sites: usize,
     own: &'a Code<T>,
-    /// Whether the momenta of a site are asked for at a velocity.
+    /// Whether the closure of a site takes a velocity.
     at_velocities: bool,
     between: &'a Code<T>,
 }

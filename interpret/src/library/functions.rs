@@ -1,12 +1,12 @@
-//! Functions that models are given by their paths: those of the runtime. Of others a file knows names alone, and
-//! needs a build.
+//! Functions that models call by path. The interpreter knows the runtime's functions. If a model calls another
+//! function, it needs a build.
 
 use crate::code::Native;
 use crate::value::Value;
 use clebsch::Real;
 use clebsch::functions::{carlson_rf, carlson_rf_of_invariants as by_invariants};
 
-/// The function of this path and method, as it is called with so many arguments.
+/// The function with this path and method, for this number of arguments.
 pub fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
     let found: Native<T> = match (name, arguments) {
         ("clebsch::functions::carlson_rf::value", 1) => |a, _| {

@@ -36,7 +36,7 @@ pub(crate) fn composed_kept<T: Real>(kept: Kept, a: &Dense<T>, b: &Dense<T>) -> 
     }
 }
 
-/// What two elements of rotations or maps give.
+/// Applies `f` to two rotations or two linear maps.
 fn of_both<T: Real>(
     a: &Value<T>,
     b: &Value<T>,
@@ -119,7 +119,7 @@ fn matrix<T: Real>(a: &Value<T>) -> Option<Value<T>> {
     })
 }
 
-/// The numbers of what is shown, matrices row by row.
+/// The numbers of an output, matrices in row-major order.
 fn numbers<T: Real>(a: &[&Value<T>], _: &[usize]) -> Option<Value<T>> {
     let shown = match a.first()? {
         Value::Real(x) => return Some(Value::List(vec![Value::Real(*x)])),

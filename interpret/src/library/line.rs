@@ -1,4 +1,4 @@
-//! What the steppers of models with labels call, but for their loops over sites.
+//! Functions that the steppers of models with labels call, except loops over sites.
 
 use crate::code::{Code, Exit, Native, Places, Special, unfit};
 use crate::failure::Failure;
@@ -25,7 +25,7 @@ fn told<T: Real>(r: Result<(), LineError>) -> Option<Value<T>> {
     Some(Value::result(r.map(|()| Value::Unit)))
 }
 
-/// Two counts, and what is made of them.
+/// A function of two counts.
 macro_rules! counts {
     ($f:expr) => {
         |a, _| {
@@ -194,7 +194,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
 }
 
 /// The shorter step that can be made, if there is one.
-#[allow(clippy::option_option)] // A value of another kind is no answer.
+#[allow(clippy::option_option)] // `None` marks a value of another kind.
 fn shorter_step<T: Real>(works: &Value<T>) -> Option<Option<f64>> {
     match works {
         Value::Double(h) => Some(Some(*h)),
@@ -359,7 +359,7 @@ fn root<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     }
 }
 
-/// The two ends of a range; the last where none is given.
+/// The two ends of a range. A missing end is the start or the end of the list.
 fn range<T: Real>(
     places: &mut Places<T>,
     from: &Code<T>,

@@ -1,4 +1,4 @@
-//! What steppers of fluids call: domains and settings, functionals of all sites, walls.
+//! Functions that the steppers of fluids call: domains and settings, functionals of all sites, walls.
 
 use crate::code::{Code, Exit, Native, Places, Special, unfit};
 use crate::functional::{Around, Extent, made};
@@ -18,7 +18,7 @@ fn told<T: Real>(done: Result<Value<T>, MeshError>) -> Value<T> {
     Value::result(done)
 }
 
-/// Numbers that stand in an array.
+/// The numbers of an array.
 fn doubles<T: Real>(value: &Value<T>) -> Option<Vec<f64>> {
     let Value::List(list) = value else {
         return None;

@@ -1,4 +1,4 @@
-//! What emitted code calls, by name: the runtime's own functions on [`Value`]s. One file a kind.
+//! Functions that emitted code calls, by name: the runtime's functions, applied to [`Value`]s. One file for each kind.
 
 mod algebra;
 mod band;
@@ -55,7 +55,7 @@ pub fn field<T: Real>(value: &Value<T>, name: u32) -> Option<Value<T>> {
     }
 }
 
-/// A part of a region by its name.
+/// A part of a region, by name.
 fn part<T: Real>(value: &Value<T>, name: &str) -> Option<Value<T>> {
     match value {
         Value::Struct(s) => {
@@ -66,7 +66,7 @@ fn part<T: Real>(value: &Value<T>, name: &str) -> Option<Value<T>> {
     }
 }
 
-/// What stands inside: the components of a momentum.
+/// The content of a newtype: the components of a momentum.
 pub fn inner<T: Real>(value: &Value<T>) -> Option<Value<T>> {
     match value {
         Value::Momentum(_, v) => Some(Value::Vector(*v)),
@@ -92,7 +92,7 @@ pub fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
         .or_else(|| band::native(name, arguments))
 }
 
-/// The same of those that residuals and tangents call: no solver, no element is moved.
+/// A function that residuals and tangents may call. Solvers and moves of elements are excluded.
 pub fn kernel<T: Real>(name: &str, arguments: usize) -> Option<Native<T>> {
     algebra::native(name, arguments)
         .or_else(|| functions::native(name, arguments))
@@ -109,7 +109,7 @@ pub fn special<T: Real>(name: &str) -> Option<Special<T>> {
         .or_else(|| band::special(name))
 }
 
-/// The same of those that residuals and tangents call.
+/// A special function that residuals and tangents may call.
 pub fn kernel_special<T: Real>(name: &str) -> Option<Special<T>> {
     special::kernel(name)
 }

@@ -1,4 +1,4 @@
-//! The search for the impulses of constraints along a line: the runtime's, over lists of numbers.
+//! The search for the impulses of constraints along a chain: the runtime's search, over lists of numbers.
 
 use crate::code::{Code, Exit, Native, Places, Special, unfit};
 use crate::failure::Failure;

@@ -1,4 +1,4 @@
-//! The solvers of steps, and what is prepared for them.
+//! The solvers of steps, and their prepared data.
 
 use super::momenta::three;
 use crate::code::Native;
@@ -114,7 +114,7 @@ fn text<T: Real>(a: &Value<T>) -> Option<&'static str> {
     }
 }
 
-/// The solution of a linear equation, or which factor has no inverse.
+/// The solution of a linear equation, or the singular factor.
 fn increment<T: Real>(solved: Option<Dense<T>>, factor: &'static str) -> Value<T> {
     match solved {
         Some(x) => Value::Element(Kept::Field, x),
@@ -122,7 +122,7 @@ fn increment<T: Real>(solved: Option<Dense<T>>, factor: &'static str) -> Value<T
     }
 }
 
-/// What is made of inverses that the model keeps, or which factor has none.
+/// The value computed from inverses that the model keeps, or the first singular factor.
 fn kept<T: Real>(
     inverses: &[(&Dense<T>, &'static str)],
     made: impl FnOnce() -> Dense<T>,
@@ -136,7 +136,7 @@ fn kept<T: Real>(
     )
 }
 
-/// The solution of `left X right = known`, or which factor has no inverse.
+/// The solution of `left X right = known`, or the singular factor.
 fn between<T: Real>(a: &[&Value<T>]) -> Option<Result<Dense<T>, SingularFactor>> {
     let [left, known, right, label] = a else {
         return None;
@@ -156,7 +156,7 @@ fn between<T: Real>(a: &[&Value<T>]) -> Option<Result<Dense<T>, SingularFactor>>
     })
 }
 
-/// The names of two factors, kept for good: they stand in errors.
+/// The names of two factors, as static strings for errors.
 fn names<T: Real>(a: &Value<T>) -> Option<[&'static str; 2]> {
     match a {
         Value::List(list) => match list.as_slice() {
@@ -440,7 +440,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             (Value::Search(search), Value::Search(like)) => Some(Value::Search(search.alike(like))),
             _ => None,
         },
-        // What says whether a step is only tried.
+        // Whether a step is only tried. A value other than a search is returned as it is.
         ("tries", 1) => |a, _| match a.first()? {
             Value::Search(search) => Some(Value::Bool(search.tries())),
             other => Some((*other).clone()),
@@ -453,7 +453,7 @@ pub(super) fn native<T: Real>(name: &str, arguments: usize) -> Option<Native<T>>
             Value::None => Some((*a.get(1)?).clone()),
             other => Some((*other).clone()),
         },
-        // Errors and values that are told as they are.
+        // `Ok`, `Some` and `Err` return their content.
         ("Ok", 1) | ("Some", 1) | ("Err", 1) => |a, _| Some((*a.first()?).clone()),
         _ => return None,
     })

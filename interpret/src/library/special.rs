@@ -157,7 +157,7 @@ fn remember<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     Ok(Value::Unit)
 }
 
-/// A closure that is asked many times; what it cannot answer ends the search.
+/// A closure that a search calls repeatedly. If a call fails, the search ends.
 struct Asked<'a, T: Real> {
     places: RefCell<&'a mut Places<T>>,
     closure: &'a Code<T>,
@@ -249,7 +249,7 @@ fn map_err<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     match value.run(places)? {
         Value::Failed(e) => {
             let told = closure.call(vec![Value::Failed(e)], places)?;
-            // The name of a functional beside its error.
+            // The name of a functional, together with its error.
             if let Value::List(both) = &told
                 && let [Value::Text(name), Value::Failed(e)] = both.as_slice()
                 && let Failure::Mesh(e) = **e
@@ -330,7 +330,7 @@ fn columns<T: Real>(places: &mut Places<T>, a: &[Code<T>]) -> Done<T> {
     }))
 }
 
-/// Those that residuals and tangents call.
+/// The special functions that residuals and tangents call.
 pub(super) fn kernel<T: Real>(name: &str) -> Option<Special<T>> {
     Some(match name {
         "as_mut_slice" => as_mut_slice,

@@ -1,4 +1,4 @@
-//! What is asked of parameters and initial values.
+//! Checks of parameters and initial values.
 
 use super::algebra::numbers;
 use crate::code::Native;

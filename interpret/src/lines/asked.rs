@@ -1,4 +1,4 @@
-//! What a line is asked at its node: energies, conserved totals and the sizes of their terms, and what is observed at sites.
+//! The values of a chain at its node: energies, conserved totals, the sizes of their terms, and observables at sites.
 //! Takes the routines of the model; gives numbers.
 
 use super::{LineTrajectory, columns, coordinates, numbers};
@@ -18,8 +18,8 @@ impl LineTrajectory {
         self.two(model.energies.as_ref()?)
     }
 
-    /// What is asked of the state as sizes are taken of it: momenta that are what is left of impulses that cancel count
-    /// as these.
+    /// Calls `of` with the state that measures sizes. If impulses cancel in a momentum, the momentum counts with their
+    /// size.
     pub fn measured<R>(&mut self, of: impl FnOnce(&mut Self) -> R) -> R {
         let model = self.model.clone();
         let enlarged = model.enlarged.as_ref().and_then(|e| self.ask(e));
@@ -61,8 +61,8 @@ impl LineTrajectory {
         numbers(&self.ask(routine)?)
     }
 
-    /// The length of the sums of the sizes of the terms of sites of a conserved total, for each of its components: one that is nothing but
-    /// rounding is measured by the others.
+    /// A scale for each component of a conserved total: the norm of its sums of term sizes. All components get the same
+    /// scale, because the terms of a single component may be rounding errors only.
     pub fn total_sizes(&mut self, name: &str) -> Option<Vec<f64>> {
         let model = self.model.clone();
         let (_, routine) = model.total_sizes.iter().find(|(own, _)| own == name)?;
@@ -71,7 +71,7 @@ impl LineTrajectory {
         Some(vec![length; all.len()])
     }
 
-    /// What is observed at all sites, one site after the other, matrices row after row.
+    /// An observable at all sites, one site after the other, matrices in row-major order.
     pub fn observe(&mut self, name: &str) -> Option<Vec<f64>> {
         let model = self.model.clone();
         for c in &model.coordinates {
@@ -82,7 +82,7 @@ impl LineTrajectory {
         self.seen(name)
     }
 
-    /// The same of what the program shows.
+    /// An observable as the program stores it.
     fn seen(&mut self, name: &str) -> Option<Vec<f64>> {
         let model = self.model.clone();
         let values = format!("values_{name}");
@@ -90,7 +90,7 @@ impl LineTrajectory {
         let (_, routine) =
             own.or_else(|| model.functionals.iter().find(|(own, _)| *own == values))?;
         let value = self.ask(routine)?;
-        // What belongs to the whole line is one value.
+        // A quantity of the whole chain is a single value.
         columns(&value).or_else(|| numbers(&value))
     }
 }

@@ -1,5 +1,5 @@
-//! The card of a line: that of a short line with the same ends, which is derived body by body, its fields
-//! repeated for all sites. Takes a model with labels and a choice; gives what the command reads and starts.
+//! The card of a chain. clebsch derives a short chain with the same end conditions body by body and repeats its fields
+//! for all sites. Takes a model with labels and a choice; gives the card that the command reads and starts.
 
 use super::LineModel;
 use super::coordinates::{self, Of};
@@ -17,7 +17,7 @@ use clebsch_core::{document, pipeline};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Where a field of the card belongs: a quantity of the emitted program, and its site.
+/// The origin of a field of the card: a quantity of the emitted program, and its site.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
     /// The name in the emitted program, such as `momentum_q`, in ASCII.
@@ -26,7 +26,7 @@ pub struct Place {
     pub site: Option<usize>,
 }
 
-/// A line that the command can start: its card, and where its fields belong.
+/// A chain that the command can start: its card, and the places of its fields.
 #[derive(Debug)]
 pub struct Carded {
     /// The program.
@@ -37,15 +37,15 @@ pub struct Carded {
     pub card: Card,
     /// The places of the parameters.
     pub parameters: Vec<Place>,
-    /// Those of the initial values.
+    /// The places of the initial values.
     pub initial: Vec<Place>,
-    /// Those of the observables.
+    /// The places of the observables.
     pub observables: Vec<Place>,
-    /// How many sites each quantity has, by its name.
+    /// The number of sites of each quantity, by name.
     pub sites: BTreeMap<String, usize>,
 }
 
-/// The short line that the card is made of.
+/// The short chain from which the card is built.
 struct Short<'a> {
     lattice: &'a Lattice,
     unfolded: &'a ExpandedModel,
@@ -62,10 +62,10 @@ struct Placed {
 }
 
 impl Carded {
-    /// The card of a model with so many sites and these ends, and what is hardly meant.
+    /// The card of a model for the chosen numbers of sites and end conditions, and the warnings about the model.
     ///
     /// # Errors
-    /// [`Refused`] where the short line does not derive.
+    /// [`Refused`], if the short chain cannot be derived.
     pub fn of(
         stated: (&Model, &Lattice),
         choice: &Choice,
@@ -85,11 +85,11 @@ impl Carded {
             pipeline::representative(statement, lattice).map_err(Refused::Model)?;
         let counts = representative.counts.iter().zip(&choice.counts);
         let short = Choice {
-            // Of functionals one site stands for all.
+            // With functionals, one site represents all sites.
             counts: match lattice.meshes.is_empty() {
                 true => counts
                     .map(|(n, most)| {
-                        // Of an even ring the even and the odd sites may be two.
+                        // In a ring of even length, even and odd sites may form two separate sets.
                         let odd = usize::from(choice.periodic);
                         ((*n).max(4) | odd).min(*most)
                     })
@@ -113,7 +113,7 @@ impl Carded {
         };
         let known = |p: &Place| model.observers().any(|o| ascii(&o) == p.key);
         let in_groups = |fields, initial| in_groups(&model.coordinates, fields, initial);
-        // What an end holds is a parameter.
+        // A value that an end condition prescribes is a parameter.
         let mut parameters = in_groups(expander.expanded(card.parameters), true);
         let space: Vec<_> = model
             .space()
@@ -143,7 +143,7 @@ impl Carded {
         );
         let rows = |name: &str| model.conserved().find(|(own, ..)| *own == name);
         let named = named(card.invariants, words.invariants).into_iter();
-        // Of what every site keeps the sum is taken.
+        // If every site conserves a quantity, the card lists the sum over sites.
         let named = named.map(|i| match rows(i.name) {
             Some((_, rows, _)) if rows != i.rows => Invariant {
                 formula: text(&format!("the sum of {}", i.formula)),
@@ -152,12 +152,12 @@ impl Carded {
             },
             _ => i,
         });
-        // Constraints are told of all sites together, not of those of the short line.
+        // The card reports constraints for all sites together, not for the sites of the short chain.
         let of_holds = |name: &str| name.starts_with("constraint_");
         let of_sums = !unfolded.totals.is_empty();
         let has_holds = !unfolded.holds.is_empty() || of_sums;
         let named = named.filter(|i| !(has_holds && of_holds(i.name)));
-        // Sums of this line that leave sites out, as ends may make them, are not those of all sites.
+        // If the end conditions omit sites from a total, it is not the sum over all sites and is dropped.
         let own = totals_on(lattice, &short, &unfolded, &whole.derivation);
         let is_same = |name: &str| {
             let mut there = model.densities(name).peekable();
@@ -169,7 +169,7 @@ impl Carded {
             name => model.totals().any(|t| t == name) && is_same(name),
         });
         let mut kept = kept;
-        // What functionals of all sites leave as it is, the short line does not tell.
+        // The short chain does not show which totals functionals of all sites conserve.
         let others = model.conserved();
         let others = others.filter(|(name, ..)| !lattice.meshes.is_empty() || of_holds(name));
         for (name, rows, reason) in others {
@@ -249,15 +249,15 @@ fn of_space(name: &str, count: usize) -> (Field, Place) {
     (field.spelt(text(&key)), Place { key, site: None })
 }
 
-/// How multipliers along a line are found.
+/// The solver for multipliers along a chain.
 const HELD: &str = "the multipliers of all sites together by Newton's method with block-tridiagonal derivatives, velocities \
                     site by site, so that the constraints hold at the end of the step";
 
-/// How multipliers of sums are found.
+/// The solver for multipliers of sums.
 const HELD_SUMS: &str = "the multipliers of sums over all sites together by Newton's method, velocities site by site, so that the \
                          constraints hold at the end of the step";
 
-/// How velocities are found that stand in the momenta of neighbours.
+/// The solver, if velocities enter the momenta of neighbouring sites.
 const TOGETHER: &str =
     "the velocities of all sites together by Newton's method with block-tridiagonal derivatives";
 
@@ -278,7 +278,7 @@ fn of_all_sites<'a>(summary: &str, names: impl Iterator<Item = &'a str>) -> Stri
     each.collect::<Vec<_>>().join("\n")
 }
 
-/// What a reader is told of how a line is run: what is not computed.
+/// Describes how a chain is run, and lists the quantities that are not computed.
 fn told(left_out: &[String]) -> String {
     let mut told =
         String::from("\nprogram              one for every number of sites, with loops over them");
@@ -289,7 +289,7 @@ fn told(left_out: &[String]) -> String {
     told
 }
 
-/// Fields of what a line keeps in coordinates as users give and see them.
+/// Replaces fields in the coordinates of a chain by the fields that users see.
 fn in_groups(
     all: &[Coordinates],
     fields: Vec<(Field, Place)>,
@@ -324,7 +324,7 @@ fn split(all: Vec<(Field, Place)>) -> Fields {
 }
 
 impl Short<'_> {
-    /// The momentum of a single configuration on the short line, which is named without it.
+    /// The momentum of the only configuration of the short chain, which is named without the configuration.
     fn alone(&self, field: &Field, fields: &[Field]) -> Option<Placed> {
         if !["momentum", "body_momentum", "spatial_momentum"].contains(&field.ascii) {
             return None;
@@ -370,7 +370,7 @@ impl Short<'_> {
         each.collect()
     }
 
-    /// What a field is a copy of.
+    /// The place of a field, with the quantity that the field is a copy of.
     fn placed(&self, field: &Field, fields: &[Field]) -> Option<Placed> {
         if let Some(alone) = self.alone(field, fields) {
             return Some(alone);
@@ -405,14 +405,14 @@ impl Short<'_> {
         })
     }
 
-    /// The label of the sites at which a multiplier holds something.
+    /// The label of the sites at which a multiplier enforces a constraint.
     fn held(&self, multiplier: &str) -> Option<usize> {
         let mut all = self.unfolded.holds.iter();
         let own = all.find(|h| h.name == multiplier)?;
         Some(own.range.label)
     }
 
-    /// A text in which parameters of the last end stand at the last site of the whole line.
+    /// Renames parameters of the last end condition in a text: their site becomes the last site of the whole chain.
     fn at_its_site(&self, text: &str) -> String {
         let count = self.lattice.line.map_or(0, |line| self.whole.count(line));
         let mut out = text.to_owned();
@@ -424,7 +424,7 @@ impl Short<'_> {
         out
     }
 
-    /// The site of the short line that one of the whole is like.
+    /// The site of the short chain that represents a site of the whole chain.
     fn like(&self, label: usize, site: usize) -> usize {
         let (short, whole) = (self.short.count(label), self.whole.count(label));
         let half = short / 2;
@@ -435,7 +435,7 @@ impl Short<'_> {
         }
     }
 
-    /// The fields of the whole line, in the order in which those of the short one stand.
+    /// The fields of the whole chain, in the order of the fields of the short chain.
     fn expanded(&self, fields: &[Field]) -> Vec<(Field, Place)> {
         let mut out = Vec::new();
         let mut block: Vec<Placed> = Vec::new();

@@ -1,6 +1,6 @@
-//! Steps of high order of a line: several of its own, of other lengths, counted as one node. The factors are those of bodies,
-//! see [`CompositionOrder`].
-//! Takes a line at its start; its steps are then composed.
+//! High-order steps of a chain. Each composed step consists of several substeps of other sizes and counts as one node.
+//! The factors are the same as for bodies, see [`CompositionOrder`]. Takes a chain at its start; its steps are then
+//! composed.
 
 use super::{LineTrajectory, Unstarted};
 use crate::code::Places;
@@ -10,21 +10,21 @@ use crate::value::Value;
 use clebsch::integrate::CompositionOrder;
 use clebsch::line::{LineError, Stamp, shorter};
 
-/// The steps that one step is made of.
+/// The substeps of a composed step.
 #[derive(Clone, Debug)]
 pub(super) struct Composed {
     order: CompositionOrder,
-    /// The workspace of each of them.
+    /// The workspace of each substep.
     pub(super) works: Vec<Value<f64>>,
-    /// The state that a step begins with, which stays where it is refused.
+    /// The state before a step, restored if the step fails.
     from: Value<f64>,
 }
 
 impl LineTrajectory {
-    /// The same line, each of its steps one of `h` composed of several to this order.
+    /// The same chain, with steps of size `h` that are composed to this order.
     ///
     /// # Errors
-    /// Where the first step cannot be made; with the step that can.
+    /// If the first step fails. The error contains a smaller step that succeeds, if one is found.
     pub(super) fn of_order(mut self, order: CompositionOrder, h: f64) -> Result<Self, Unstarted> {
         self.h = h;
         let works = self.workspaces(order, self.h)?;
@@ -37,7 +37,7 @@ impl LineTrajectory {
         Ok(self)
     }
 
-    /// Workspaces of the steps that one of `h` is made of.
+    /// The workspaces of the substeps of a step of size `h`.
     fn workspaces(
         &mut self,
         order: CompositionOrder,
@@ -52,8 +52,8 @@ impl LineTrajectory {
         each.collect()
     }
 
-    /// One composed step; where one of its parts is refused the state stays as it was.
-    /// `seen` is shown the factor of each part, and the line after it.
+    /// One composed step. If a substep fails, the state is unchanged. After each substep, `seen` receives its factor
+    /// and the chain.
     pub(super) fn composed_step(
         &mut self,
         seen: &mut dyn FnMut(f64, &mut Self),
@@ -94,7 +94,7 @@ impl LineTrajectory {
         made.map_err(|e| self.in_all(e, order, node))
     }
 
-    /// What is said of a part, said of the whole step: from which node, and which shorter one can be made.
+    /// Turns the error of a substep into an error of the whole step, with its node and a smaller step that succeeds.
     #[cold]
     fn in_all(&self, e: LineError, order: CompositionOrder, node: u64) -> LineError {
         match e {
@@ -120,8 +120,8 @@ impl LineTrajectory {
         })
     }
 
-    /// Marks a workspace as that of no state: what it holds is that of the same part of the step before, which a line that has
-    /// been written down and read cannot tell.
+    /// Marks a workspace as valid for no state. It contains data of the same substep of the previous step. A chain that
+    /// is saved and reloaded cannot recognise such data.
     fn begun_anew(&self, work: &mut Value<f64>) {
         if let Value::Struct(work) = work
             && let Some(stamp) = work.field_mut(self.model.stamp)
@@ -139,7 +139,7 @@ impl LineTrajectory {
     }
 }
 
-/// Puts a workspace where steps look for it, and what stood there in its place.
+/// Swaps a workspace with the workspace that steps use.
 fn exchange(places: &mut Places<f64>, work: &mut Value<f64>) {
     if let Some(place) = places.get_mut(at::WORK) {
         std::mem::swap(place, work);

@@ -1,5 +1,5 @@
-//! Elements of groups and their momenta as users give and see them, beside the coordinates in which a line keeps them.
-//! Takes numbers of all sites, one site after the other, matrices row after row; gives those of the other.
+//! Converts group elements and their momenta between the form that users see and the coordinates that a chain stores.
+//! Numbers are listed for all sites, one site after the other, matrices in row-major order.
 
 use super::{Numbers, Unstarted};
 use crate::text;
@@ -14,14 +14,14 @@ use clebsch_core::expr::symbol::ascii;
 use clebsch_core::line::{By, Coordinates};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
-/// What a name of the program is of an element.
+/// The role of a variable of the program in the form that users see.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Of {
-    /// What the element is shown for.
+    /// Users see the element in its place.
     Element,
-    /// What its momentum is shown for.
+    /// Users see the momentum of the element in its place.
     Momentum,
-    /// What is shown with these.
+    /// The element or its momentum already contains it.
     Rest,
 }
 
@@ -47,7 +47,7 @@ pub(super) fn shown(c: &Coordinates) -> [String; 3] {
     ["", "body_momentum_", "spatial_momentum_"].map(of)
 }
 
-/// What a name of the program is, as it is or in ASCII.
+/// The role of a variable of the program, by its name or its ASCII name.
 pub(super) fn of(c: &Coordinates, name: &str) -> Option<Of> {
     let is = |prefix: &str, own: &str| {
         let whole = format!("{prefix}{own}");
@@ -192,7 +192,7 @@ fn of_plane(one: &[f64]) -> Option<(Matrix2<f64>, Vector2<f64>)> {
     Some((Matrix2::new(a, b, c, d), Vector2::new(x, y)))
 }
 
-/// What the program asks for, by what is given.
+/// The values of a variable of the program, computed from the elements and momenta that the user gives.
 pub(super) fn given(c: &Coordinates, name: &str, numbers: &Numbers<'_>) -> Option<Vec<f64>> {
     let asked = of(c, name)?;
     let (rows, [high, wide]) = sizes(c);
@@ -291,7 +291,7 @@ pub(super) fn named(all: &[Coordinates], e: LineError) -> LineError {
     }
 }
 
-/// What is shown of elements and momenta, by what the program shows.
+/// The elements or momenta that users see, computed from the variables of the program.
 pub(super) fn told(
     c: &Coordinates,
     name: &str,

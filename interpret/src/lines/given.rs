@@ -1,5 +1,5 @@
-//! What a line is built and started from: the structs of the emitted program, their values taken from
-//! lists of numbers. Takes the types that emission declares; gives values of these types.
+//! The input from which a chain is built and started: fills the structs of the emitted program from lists of numbers.
+//! Takes the types that emission declares; gives values of these types.
 
 use super::Unstarted;
 use crate::functional::Extent;
@@ -18,8 +18,8 @@ use clebsch_core::lattice::Choice;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Gives the numbers of a quantity by the name in the emitted code: those of all its sites, one site after
-/// the other, matrices row after row.
+/// Returns the numbers of a quantity by its name in the emitted code: one site after the other, matrices in row-major
+/// order.
 pub type Numbers<'a> = dyn Fn(&str) -> Option<Vec<f64>> + 'a;
 
 /// How a field is read.
@@ -35,9 +35,9 @@ enum Read {
     Quaternion,
     /// A momentum of three components in the body.
     Momentum,
-    /// The same of every site.
+    /// A value of this kind for every site.
     Sites(Box<Read>),
-    /// How the line ends.
+    /// The end conditions.
     Ends,
     /// A number of sites.
     Count,
@@ -128,7 +128,7 @@ pub(crate) fn extent(lengths: &[f64], solid: &[bool]) -> Option<Extent> {
     })
 }
 
-/// What has been read of a value.
+/// Converts the result of reading a value. If the value is not valid, the error names the parameter.
 fn opened<X>(
     name: &'static str,
     read: Result<X, OpenError>,
@@ -259,7 +259,7 @@ impl Given {
         }
     }
 
-    /// Its value; `other` gives what is no numbers.
+    /// The struct as a value. `other` supplies the fields that are not numbers.
     pub fn value(
         &self,
         numbers: &Numbers<'_>,
@@ -277,7 +277,7 @@ impl Given {
     }
 }
 
-/// The structs of all ways in which a line may end.
+/// The structs of all end conditions of a chain.
 #[derive(Clone, Debug, Default)]
 pub struct Ends {
     /// The variants of both ends, in order.
@@ -287,14 +287,14 @@ pub struct Ends {
 }
 
 impl Ends {
-    /// Those of a model.
+    /// The end conditions of a model.
     pub fn of(shared: &mut Shared<'_>, name: &str) -> Result<Self, Refused> {
         let mut ends = Ends::default();
         for (at, suffix) in ["First", "Last"].into_iter().enumerate() {
             let owner = format!("{name}{suffix}");
             let order = shared.program.variants.get(&owner).cloned();
             for variant in order.unwrap_or_default() {
-                // A variant that only says which scalars there are is no end condition.
+                // A variant that only marks the scalar type is not an end condition.
                 if let Ok(given) = Given::named(shared, &format!("{owner}::{variant}")) {
                     ends.alternatives[at].push(given);
                 }
@@ -324,7 +324,7 @@ impl Ends {
         })
     }
 
-    /// How the line ends by a choice.
+    /// The chosen end conditions as a value.
     pub fn value(&self, choice: &Choice, numbers: &Numbers<'_>) -> Result<Value<f64>, Unstarted> {
         let missing = |what: &str| Unstarted::Missing(what.to_owned());
         if choice.periodic {
@@ -334,7 +334,7 @@ impl Ends {
         let chosen = |at: usize| -> Result<Value<f64>, Unstarted> {
             let given = self.alternatives[at].get(choice.ends[at]);
             let given = given.ok_or_else(|| missing(["the first end", "the last end"][at]))?;
-            // What both ends have has the name of its end, `F_0` and `F_N`.
+            // If both ends have a parameter, its name contains the end, `F_0` or `F_N`.
             let own = |name: &str| {
                 let of_end = format!("{name}_{}", ["0", "N"][at]);
                 numbers(&of_end).or_else(|| numbers(name))

@@ -6,8 +6,8 @@ use clebsch::kinetic::KineticWarning;
 use clebsch_core::lattice::Choice;
 
 impl LineModel {
-    /// What to say of a kinetic energy that is not positive; nothing for models that are no fluids, or that do not
-    /// tell the momenta of velocities. `sites` is how many sites a field has.
+    /// A warning if the kinetic energy is not positive. Returns nothing if the model is not a fluid, or does not define
+    /// momenta of given velocities. `sites` returns the number of sites of a field.
     pub(super) fn kinetic_warning(
         &self,
         choice: &Choice,

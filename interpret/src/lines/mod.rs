@@ -35,12 +35,12 @@ use given::{Ends, Given};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Why a line is not started.
+/// Why a chain cannot start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Unstarted {
     /// A quantity is not given.
     Missing(String),
-    /// A list of numbers is no whole number of values.
+    /// The length of a list is not a multiple of the number of components.
     Components {
         /// The quantity.
         quantity: String,
@@ -49,7 +49,7 @@ pub enum Unstarted {
         /// How many there are.
         found: usize,
     },
-    /// A value is not admissible, or the first step is refused.
+    /// A value is not valid, or the first step fails.
     Line(LineError),
 }
 
@@ -78,10 +78,10 @@ impl fmt::Display for Unstarted {
 
 impl std::error::Error for Unstarted {}
 
-/// What is asked of a state, by name.
+/// Routines that evaluate quantities of a state, by name.
 type Asked = Vec<(String, Routine<f64>)>;
 
-/// A model with labels whose lines can be started.
+/// A model with labels, from which you can start chains.
 #[derive(Debug)]
 pub struct LineModel {
     /// The name of the model.
@@ -95,7 +95,7 @@ pub struct LineModel {
     initial: Given,
     new: Routine<f64>,
     start: Routine<f64>,
-    /// The same, with momenta projected on constraints, where any are held.
+    /// The same, with initial momenta projected on the constraints, if there are any.
     projecting: Option<Routine<f64>>,
     step: Routine<f64>,
     workspace: Routine<f64>,
@@ -113,19 +113,19 @@ pub struct LineModel {
     momenta: Asked,
     /// Name, number of components, and why it is conserved.
     conserved: Vec<(String, usize, String)>,
-    /// What totals sum over all sites, as text, by their names.
+    /// The names of totals, and the terms that they sum over all sites, as text.
     densities: Vec<(String, String)>,
     node: u32,
     stamp: u32,
     places: usize,
-    /// What the program keeps in coordinates.
+    /// The group elements that the program stores in coordinates.
     coordinates: Vec<Coordinates>,
 }
 
-/// Why [`LineModel::read`] gives none: the model is wrong, its form is another, or it needs a build.
+/// Why [`LineModel::read`] fails: the model is wrong, loops over sites do not support its form, or it needs a build.
 #[derive(Debug)]
 pub enum NoLine {
-    /// The model takes no loops over sites; in words.
+    /// Loops over sites do not support the form of the model; the reason.
     Form(String),
     /// Anything else.
     Refused(Refused),
@@ -152,8 +152,7 @@ impl LineModel {
     /// Reads the text of a model with labels.
     ///
     /// # Errors
-    /// [`NoLine::Form`] for models that are solved together along the line, [`NoLine::Refused`] for what
-    /// is no such model.
+    /// [`NoLine::Form`], if the model cannot run with loops over sites; [`NoLine::Refused`] for any other error.
     pub fn read(source: &str) -> Result<Arc<Self>, NoLine> {
         let model = pipeline::parse_source(source).map_err(Refused::Model)?;
         let line = match core_line::Line::of(&model) {
@@ -209,7 +208,7 @@ impl LineModel {
             };
             Some((ascii(f), 1, reason))
         });
-        // Of functionals one site stands for all.
+        // With functionals, one site represents all sites.
         let sums = line.totals.iter().filter(|_| lattice.meshes.is_empty());
         let densities = sums.map(|t| (t.name.clone(), t.text(&line.representative)));
         let conserved = conserved.chain(of_constraints.collect::<Vec<_>>());
@@ -255,7 +254,7 @@ impl LineModel {
             false => None,
         };
         let sized = totals.iter().map(|(f, _)| {
-            // Of constraints the sizes of terms are another function.
+            // For constraints, another function computes the sizes of the terms.
             let own = match held(line, f) {
                 Some((multiplier, true)) => format!("constraint_rate_size_{multiplier}"),
                 Some((multiplier, false)) => format!("constraint_size_{multiplier}"),
@@ -348,13 +347,13 @@ impl LineModel {
         all.map(|(name, rows, reason)| (name.as_str(), *rows, reason.as_str()))
     }
 
-    /// What a total sums over all sites, as text: one for each of the ways of holding the ends in which it is another sum.
+    /// The terms that a total sums over all sites, as text. If end conditions change the sum, each variant is listed.
     pub(crate) fn densities(&self, name: &str) -> impl Iterator<Item = &str> {
         let own = self.densities.iter().filter(move |(own, _)| own == name);
         own.map(|(_, text)| text.as_str())
     }
 
-    /// The names of what is observed at sites, as [`LineTrajectory::observe`] takes them: what moves and its
+    /// The names of the observables at sites, as [`LineTrajectory::observe`] takes them: moving quantities and their
     /// momenta, then the values of functionals of all sites.
     pub fn observers(&self) -> impl Iterator<Item = String> + '_ {
         let functionals = self.functionals.iter();
@@ -366,14 +365,14 @@ impl LineModel {
         own.chain(in_groups).chain(values.map(str::to_owned))
     }
 
-    /// What else is given of a model whose particles live in a domain, by name, with how many numbers it is: the
-    /// lengths of a torus; `domain`, a box; the cells of a grid along each direction.
+    /// The names of the domain parameters of a model with particles, each with its number of values. They are the
+    /// lengths of a torus, `domain` for a box, and the cells of a grid along each direction.
     pub fn space(&self) -> impl Iterator<Item = (&str, usize)> {
         self.sites.space()
     }
 
-    /// The momenta that belong to velocities of a field of places, where the model tells them; lists of one site
-    /// after the other.
+    /// The momenta of given velocities of a field of positions, if the model defines them. Lists contain one site after
+    /// the other.
     ///
     /// # Errors
     /// As [`LineModel::start`].
@@ -426,11 +425,11 @@ impl LineModel {
         Ok(model)
     }
 
-    /// Starts a line with step `h`. `numbers` gives parameters and initial values by their names as the
-    /// model writes them, momenta as `momentum_q` or `body_momentum_Λ`.
+    /// Starts a chain with step size `h`. `numbers` returns parameters and initial values by their names in the model,
+    /// and momenta as `momentum_q` or `body_momentum_Λ`.
     ///
     /// # Errors
-    /// [`Unstarted`]: what is missing; the quantity and the site of a value that is not admissible.
+    /// [`Unstarted`] names the missing quantity, or the quantity and the site of a value that is not valid.
     pub fn start(
         self: &Arc<Self>,
         choice: &Choice,
@@ -440,7 +439,7 @@ impl LineModel {
         self.start_by(&self.start, choice, h, numbers)
     }
 
-    /// The same; momenta are projected on the constraints that are held, however far they point across.
+    /// The same, but projects the momenta on the constraints, however large their normal part is.
     ///
     /// # Errors
     /// As [`LineModel::start`].
@@ -516,7 +515,7 @@ fn unread() -> Failure {
     Failure::Cause(StepCause::Unread { what })
 }
 
-/// How many numbers a total has, by its type.
+/// The number of components of a total, from its type.
 fn rows(output: &syn::ReturnType) -> Option<usize> {
     let syn::ReturnType::Type(_, ty) = output else {
         return None;
@@ -525,7 +524,7 @@ fn rows(output: &syn::ReturnType) -> Option<usize> {
     Some(sizes.into_iter().product())
 }
 
-/// Numbers as arrays of one, which is what states hold.
+/// Numbers as arrays of one entry, which is the form in states.
 fn as_arrays(value: Value<f64>) -> Value<f64> {
     match value {
         Value::Sites(Column::Numbers(list)) => Value::Sites(Column::Arrays([1, 1], list)),
@@ -545,8 +544,7 @@ fn columns(value: &Value<f64>) -> Option<Vec<f64>> {
     Some(all)
 }
 
-/// The numbers of a value, matrices row after row; of rotations those of their matrices,
-/// of unit quaternions their components.
+/// The numbers of a value: matrices and rotations in row-major order, unit quaternions as components.
 fn numbers(value: &Value<f64>) -> Option<Vec<f64>> {
     Some(match value {
         Value::Real(x) => vec![*x],

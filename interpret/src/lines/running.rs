@@ -1,4 +1,4 @@
-//! Trajectories of lines as the command runs them: numbers in the order of a card.
+//! Trajectories of chains as the command runs them: numbers in the order of a card.
 
 use super::card::{Carded, Place};
 use super::{LineTrajectory, Unstarted};
@@ -84,7 +84,7 @@ impl Carded {
             if let Some(all) = given.get(own.as_str()) {
                 return self.numbers(name, all);
             }
-            // Of what both ends have, that of one.
+            // If both ends have the parameter, return the value of the end in the name.
             let (key, end) = own.rsplit_once('_')?;
             let [first, last] = given.get(key)?.as_slice() else {
                 return None;
@@ -113,7 +113,7 @@ impl Carded {
             false => self.model.start(&self.choice, h, &numbers),
         };
         let mut started = start(h);
-        // Where a part is refused, the whole step is, which says what can be made.
+        // If a substep fails, the whole step fails. The error of the whole step names a step size that succeeds.
         if let (
             Way::Composed(_),
             Err(Unstarted::Line(LineError::Step {
@@ -138,7 +138,7 @@ impl Carded {
         }))
     }
 
-    /// The numbers of all sites of a quantity: a momentum where its configuration is held is zero.
+    /// The numbers of a quantity at all sites. If an end prescribes a configuration, its momentum is zero.
     fn numbers(&self, name: &str, all: &Sites<'_>) -> Option<Vec<f64>> {
         let mut all = all.clone();
         all.sort_by_key(|(site, _)| *site);
@@ -169,7 +169,7 @@ impl Carded {
         self.sites.get(of).copied()
     }
 
-    /// A formula in parameters with the number of the site beside those that have one at each: `s J₅`.
+    /// A formula in parameters. Parameters with a value at each site get the number of the site: `s J₅`.
     fn formula_at(&self, formula: &str, site: usize) -> String {
         let mark = lowered(&site.to_string()).unwrap_or_default();
         let (mut out, mut word) = (String::new(), String::new());
@@ -201,7 +201,7 @@ impl Carded {
             Unstarted::Line(LineError::Site { at, error }) => at_start(ParameterError {
                 field: text(&match error.field == at.quantity {
                     true => format!("{}_{}", at.quantity, at.site),
-                    // What is made of parameters is told by its formula, not by what it is the inertia of.
+                    // Name a value computed from parameters by its formula, not by the quantity whose inertia it is.
                     false => self.formula_at(error.field, at.site),
                 }),
                 ..error
@@ -243,7 +243,7 @@ impl Carded {
         }
     }
 
-    /// Of each observable the number of its observer, and the site.
+    /// The index of the observer and the site, for each observable.
     fn order(&self) -> Vec<(usize, usize)> {
         let names: Vec<String> = self.model.observers().map(|o| ascii(&o)).collect();
         let place = |p: &Place| {
@@ -266,7 +266,7 @@ struct Running {
 }
 
 impl Running {
-    /// Writes the invariants, or the sums of the sizes of what they are made of.
+    /// Writes the invariants, or the sums of the sizes of their terms.
     fn sums(&self, line: &mut LineTrajectory, out: &mut [f64], sizes: bool) {
         let mut out = out.iter_mut();
         for invariant in self.carded.card.invariants {
@@ -286,7 +286,7 @@ impl Running {
     }
 }
 
-/// Writes the observables of a line, in the order of the card.
+/// Writes the observables of a chain, in the order of the card.
 fn observed(carded: &Carded, order: &[(usize, usize)], line: &mut LineTrajectory, out: &mut [f64]) {
     let names = carded.model.observers();
     let all: Vec<Vec<f64>> = names

@@ -1,5 +1,5 @@
-//! A line on its way: its node, its steps, and what of it a checkpoint keeps. What it is asked stands in `asked`.
-//! Takes a model and the places of its routines; goes from node to node.
+//! A running chain: its node, its steps, and the values that a checkpoint keeps. Module `asked` evaluates its
+//! quantities. Takes a model and the places of its routines; moves from node to node.
 
 use super::composed::Composed;
 use super::{LineModel, coordinates};
@@ -11,13 +11,13 @@ use clebsch::line::LineError;
 use clebsch::saved::{Saved, Words};
 use std::sync::Arc;
 
-/// A line on its way.
+/// A running chain.
 #[derive(Clone, Debug)]
 pub struct LineTrajectory {
     pub(super) model: Arc<LineModel>,
     pub(super) places: Places<f64>,
     pub(super) h: f64,
-    /// The parts of its steps, where they are composed.
+    /// The substeps, if the steps are composed.
     pub(super) composed: Option<Composed>,
 }
 
@@ -46,7 +46,7 @@ impl LineTrajectory {
         self.step_in_parts(&mut |_, _| {})
     }
 
-    /// The same; `seen` is shown each of the line's own steps that it is made of, as a share of the whole one, with the line after it.
+    /// The same. After each of the chain's own steps, calls `seen` with its share of the whole step and the chain.
     ///
     /// # Errors
     /// As [`LineTrajectory::step`].

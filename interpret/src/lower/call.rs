@@ -193,7 +193,7 @@ impl Lower<'_, '_> {
         made.map(Some).ok_or_else(|| refuse(c))
     }
 
-    /// A functional of all sites that is made: those of the runtime are known here.
+    /// Builds a functional of all sites. The interpreter knows only the runtime's functionals.
     #[inline(never)]
     fn functional(&mut self, of: &syn::Type, c: &syn::ExprCall) -> Result<Code<f64>, Refused> {
         let syn::Type::Path(of) = of else {
@@ -236,7 +236,7 @@ impl Lower<'_, '_> {
         for e in list {
             arguments.push(self.argument(e)?);
         }
-        // What calls back or changes places is no function of values.
+        // A function that takes a closure or changes places is not a function of values.
         let calls_back = arguments.iter().any(|a| matches!(a, Code::Closure(..)));
         if let Some(special) = crate::library::special(name)
             && (calls_back || crate::library::native::<f64>(name, arguments.len()).is_none())
@@ -300,8 +300,8 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// A function of the model: its body, with the parameters standing for what is given. Those that
-    /// are rarely called, or call themselves, have places of their own instead.
+    /// A function of the model: its body, with arguments in place of the parameters. A function that is rarely called,
+    /// or calls itself, gets its own places instead.
     fn written_out<'e>(
         &mut self,
         owner: &str,

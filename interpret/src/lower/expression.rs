@@ -1,4 +1,4 @@
-//! Expressions that are no calls.
+//! Expressions other than calls.
 
 use super::{Binding, Lower, refuse};
 use crate::Refused;
@@ -11,7 +11,7 @@ use clebsch::emitted::{Method, Order};
 use std::collections::BTreeMap;
 
 impl Lower<'_, '_> {
-    /// An expression; `ty` is what is known of its type.
+    /// An expression; `ty` is its type, if it is known.
     pub(super) fn expression(
         &mut self,
         e: &syn::Expr,
@@ -150,7 +150,7 @@ impl Lower<'_, '_> {
         })
     }
 
-    /// What a path names: a local, a size, a constant of the runtime.
+    /// The value of a path: a local, a size, or a constant of the runtime.
     #[inline(never)]
     pub(super) fn path(&self, path: &syn::Path) -> Result<Option<Code<f64>>, Refused> {
         let constant = |value| Ok(Some(Code::Constant(value)));
@@ -458,7 +458,7 @@ fn function(name: &str) -> Option<domain::Function> {
     })
 }
 
-/// Two operands and what stands between them.
+/// Two operands joined by their operator.
 fn joined(b: &syn::ExprBinary, x: Code<f64>, y: Code<f64>) -> Result<Code<f64>, Refused> {
     use syn::BinOp;
     let operator = match b.op {

@@ -1,5 +1,5 @@
-//! What the steppers of models with labels are made of beside expressions: loops over sites, parts of lists,
-//! end conditions.
+//! Parts of the steppers of models with labels other than expressions: loops over sites, parts of lists, end
+//! conditions.
 
 use super::expression::whole;
 use super::statement::is_place;
@@ -117,7 +117,7 @@ impl Lower<'_, '_> {
         }))))
     }
 
-    /// A closure that stands under a name, called.
+    /// A call of a closure that is bound to a name.
     #[inline(never)]
     pub(super) fn called_back(
         &mut self,

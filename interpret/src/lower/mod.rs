@@ -20,10 +20,10 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::{Arc, OnceLock};
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Clone)]
 enum Binding {
-    /// A place, and the struct that stands there.
+    /// A place, and the type of the struct in it.
     Place(Code<f64>, Option<String>),
     /// A closure, written out where it is given to a function.
     Closure(Box<syn::ExprClosure>),
@@ -31,7 +31,7 @@ enum Binding {
 
 type Routines = BTreeMap<(String, String), Arc<OnceLock<Routine<f64>>>>;
 
-/// What the lowering of all functions of one model shares.
+/// Data that the lowering of all functions of one model shares.
 pub struct Shared<'a> {
     /// The items.
     pub program: &'a Program,
@@ -39,11 +39,12 @@ pub struct Shared<'a> {
     pub sizes: BTreeMap<String, usize>,
     names: Rc<RefCell<BTreeMap<String, u32>>>,
     layouts: BTreeMap<String, Arc<Layout>>,
-    /// Whether sums over sites are those of the sizes of their terms.
+    /// Whether sums over sites add the sizes of their terms.
     pub by_size: bool,
-    /// Whether products of vectors are those of their lengths: what is read of a momentum has the size of the whole.
+    /// Whether products of vectors become products of their lengths, so that each part of a momentum has the size of
+    /// the whole.
     pub by_length: bool,
-    /// Whether of momenta at the start what points across constraints is taken away, of any size.
+    /// Whether initial momenta are projected on the constraints, however large the normal part is.
     pub projects: bool,
     /// The first place that no function uses.
     free: usize,
@@ -104,7 +105,7 @@ pub struct Lower<'a, 'b> {
     next: usize,
     /// The type whose function is lowered, and its name.
     within: Vec<(String, String)>,
-    /// Where the model stands, for as long as the places do; and the places of what was made of it.
+    /// The place of the model, and the places of values computed from the model alone.
     steady: Vec<usize>,
 }
 
@@ -123,7 +124,7 @@ pub fn entry(
         return Err(Refused::Construct(format!("{ty}::{name}")));
     };
     let mut lower = Lower {
-        // Places of their own: what is kept in one is not lost to another function.
+        // Each function has its own places, so that kept values are not lost to another function.
         next: first.max(shared.free),
         shared,
         scopes: vec![BTreeMap::new()],
@@ -147,7 +148,7 @@ pub fn entry(
     })
 }
 
-/// The same of a start that projects momenta on constraints, however far they point across.
+/// Lowers a start that projects momenta on the constraints, however large their normal part is.
 pub fn projecting(
     shared: &mut Shared<'_>,
     function: (&str, &str),
@@ -292,7 +293,7 @@ pub fn constant(e: &syn::Expr, sizes: &BTreeMap<String, usize>) -> Option<usize>
     }
 }
 
-/// What is not understood, in the words of the emitted code.
+/// The error for an unsupported construct, which quotes the emitted code.
 fn refuse(tokens: &impl ToTokens) -> Refused {
     let text: String = tokens.to_token_stream().to_string();
     Refused::Construct(text.chars().take(160).collect())

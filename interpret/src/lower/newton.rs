@@ -1,5 +1,5 @@
-//! The loop of Newton's method, read from emitted code: what is evaluated at a trial becomes operations,
-//! what the solver does with it is the solver's own.
+//! Reads the loop of Newton's method from emitted code. Evaluations at a trial become operations. The runtime's solver
+//! does the rest.
 
 use super::{Binding, Lower, Shared, refuse};
 use crate::Refused;
@@ -13,11 +13,11 @@ use quote::ToTokens;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What emitted code writes for one search.
+/// The emitted code of one search.
 pub struct Looped<'e> {
     /// `work.search.begin(node)`.
     pub begin: &'e syn::ExprMethodCall,
-    /// What follows.
+    /// The body of the loop.
     pub body: &'e syn::Block,
 }
 
@@ -107,7 +107,7 @@ impl Lower<'_, '_> {
         Ok(Some(Code::Constant(Value::Search(held))))
     }
 
-    /// What a search of a declared type is for.
+    /// The unknowns of a search, read from its declared type.
     pub(super) fn sought(&self, ty: &syn::Type) -> Result<&'static Sought, Refused> {
         let generics = arguments(ty).ok_or_else(|| refuse(ty))?;
         let [_, elements, whole @ ..] = generics.as_slice() else {
@@ -190,7 +190,7 @@ fn capacity(ty: &syn::Type) -> Option<usize> {
     })
 }
 
-/// A function by itself, such as the residual: its parameters stand at places from 0 on.
+/// A separate function, such as the residual. Its parameters are in the places from 0 on.
 fn alone(
     shared: &mut Shared<'_>,
     own_type: &str,
@@ -353,8 +353,8 @@ impl<'a> Lower<'a, '_> {
         })
     }
 
-    /// What is done where a solution is not known to be principal, and the function that looks for the
-    /// principal one.
+    /// The operations for a solution that is not known to be principal, and the name of the function that searches for
+    /// the principal one.
     fn settled(&mut self, call: &syn::ExprMethodCall) -> Result<(Settled, String), Refused> {
         let unknown = || refuse(call);
         let own = self.own_type().to_owned();
@@ -364,8 +364,8 @@ impl<'a> Lower<'a, '_> {
         let principal = name_in(&function.block, "principal").ok_or_else(unknown)?;
         let refused = name_in(&function.block, "refused").ok_or_else(unknown)?;
         let refused = program.function(&own, &refused).ok_or_else(unknown)?;
-        // Its parameters: the receiver, the step, the state, what is given, momenta, the iteration, how it
-        // ended, and the solver by name where there is a choice.
+        // Its parameters: the receiver, the step, the state, further input, momenta, the iteration, how the iteration
+        // ended, and the name of the solver if there is a choice.
         let mut scope = BTreeMap::new();
         let (mut at, tries) = (self.fresh(), self.fresh());
         for (i, parameter) in function.sig.inputs.iter().skip(1).enumerate() {
@@ -395,7 +395,7 @@ impl<'a> Lower<'a, '_> {
         Ok((settled, principal))
     }
 
-    /// What looks whether the motion to a solution leaves the domain.
+    /// The operations that check whether the motion to a solution leaves the domain.
     fn contact(&mut self, settled: &syn::ImplItemFn) -> Result<Option<Code<f64>>, Refused> {
         for statement in &settled.block.stmts {
             let syn::Stmt::Local(local) = statement else {

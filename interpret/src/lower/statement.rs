@@ -78,7 +78,7 @@ impl Lower<'_, '_> {
         Ok(out)
     }
 
-    /// What is filled in by a loop, from the model alone, is filled once.
+    /// If a loop fills a list from the model alone, the list is filled once.
     #[inline(never)]
     fn filled_once(&mut self, list: &mut Vec<Code<f64>>) {
         for i in 0..list.len() {
@@ -132,7 +132,7 @@ impl Lower<'_, '_> {
         let kind = self.kind(&init.expr);
         let value = self.expression(&init.expr, ty)?;
         if let syn::Pat::Struct(fields) = pat {
-            // Fields of what stands somewhere are used there.
+            // If the struct is stored in a place, its fields are used there without a copy.
             let base = match is_place(&value) {
                 true => value,
                 false => {
@@ -175,7 +175,7 @@ impl Lower<'_, '_> {
         Ok(())
     }
 
-    /// `let (a, b) = (&x, &y)`: names for what stands somewhere, if all of it does.
+    /// `let (a, b) = (&x, &y)`: binds the names without a copy, if every value is stored in a place.
     #[inline(never)]
     fn lent(&mut self, names: &syn::PatTuple, values: &syn::ExprTuple) -> Result<bool, Refused> {
         let mut bound = Vec::new();
@@ -196,7 +196,7 @@ impl Lower<'_, '_> {
         Ok(names.elems.len() == values.elems.len())
     }
 
-    /// Whether a value is made of the model alone: then it is made once. `own` are the places within it.
+    /// Whether a value depends on the model alone, so that it is computed once. `own` are the places within the value.
     pub(super) fn is_steady(&self, code: &Code<f64>, own: &mut Vec<usize>) -> bool {
         match code {
             Code::Constant(_) => true,
@@ -209,7 +209,7 @@ impl Lower<'_, '_> {
             Code::Call(_, list, ..) | Code::List(list) => {
                 list.iter().all(|c| self.is_steady(c, own))
             }
-            // What they change is given to them.
+            // Special functions change only their arguments.
             Code::Special(_, list, _) => list.iter().all(|c| self.is_steady(c, own)),
             Code::Closure(parameters, body) => {
                 own.extend(parameters);
@@ -302,7 +302,7 @@ impl Lower<'_, '_> {
     }
 }
 
-/// Whether an expression names a place, which may stand for it.
+/// Whether an expression refers to a place, so that a name can refer to it without a copy.
 pub(super) fn is_place(code: &Code<f64>) -> bool {
     match code {
         Code::Place(_) => true,

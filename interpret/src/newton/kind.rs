@@ -16,13 +16,13 @@ pub enum Kind {
     Quaternion,
     /// Rigid motions of space.
     Motion,
-    /// Those of the plane.
+    /// Rigid motions of the plane.
     Plane,
-    /// Invertible maps of so many dimensions.
+    /// Invertible maps in this number of dimensions.
     Linear(usize),
-    /// Rotations of so many dimensions.
+    /// Rotations in this number of dimensions.
     Orthogonal(usize),
-    /// Fields of so many rows and columns.
+    /// Fields with these numbers of rows and columns.
     Field(usize, usize),
 }
 

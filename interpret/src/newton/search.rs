@@ -12,12 +12,12 @@ use clebsch::saved::{Words, sites};
 use clebsch::solvers::newton::{AnySearch, Chart, Solved};
 use std::sync::{Arc, OnceLock};
 
-/// What a search is for.
+/// The unknowns of a search.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Sought {
     /// The groups of the velocities that are searched for.
     pub shape: Shape,
-    /// Those of all velocities, where others are solved for beforehand.
+    /// The groups of all velocities, if some of them are solved for beforehand.
     pub whole: Option<Shape>,
     /// How many coordinates the emitted code has places for.
     pub capacity: usize,
@@ -58,7 +58,7 @@ impl Held {
         self.search.only_try();
     }
 
-    /// A search for what another is for, with the purpose of this one.
+    /// A new search for the unknowns of `other`. It only tries steps if this search only tries steps.
     pub fn alike(&self, other: &Held) -> Held {
         Self::begun(other.sought, self.search.tries())
     }

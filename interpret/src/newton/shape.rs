@@ -17,7 +17,7 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// Of these groups.
+    /// The shape of these groups.
     pub fn new(kinds: Vec<Kind>) -> Self {
         let mut parts = Parts {
             of: Vec::new(),
@@ -44,7 +44,7 @@ impl Shape {
         self.counts.iter().sum()
     }
 
-    /// Which coordinates of all unknowns those of this part of them are.
+    /// The indices of the coordinates of this shape among all coordinates of `whole`.
     pub fn within(&self, whole: &Shape) -> Vec<usize> {
         let (mut first, mut all) = (0, Vec::new());
         for (own, kind) in self.kinds.iter().zip(&whole.kinds) {

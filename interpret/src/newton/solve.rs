@@ -17,11 +17,11 @@ use clebsch::solvers::newton::{
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// What is done where a solution is not known to be principal, or none was found.
+/// The operations if a solution is not known to be principal, or no solution was found.
 #[derive(Debug)]
 pub struct Settled {
-    /// Whether the motion leaves the domain: where the solution, whether the step is only tried, and
-    /// what looks.
+    /// If the motion may leave the domain: the place of the solution, the place of the flag for tried steps, and the
+    /// check.
     pub contact: Option<(usize, usize, Code<f64>)>,
     /// A step of another size by another search, from the same state.
     pub other: Code<f64>,
@@ -59,7 +59,7 @@ pub struct Solve {
     /// If Newton's method searches for a part of the trial: the whole trial over numbers with their rounding. It takes
     /// parameters, step, values of the node, momenta and the part.
     pub completed_at: Option<Routine<Rounded>>,
-    /// The parameters, the step, what the residual asks of the node and its momenta.
+    /// The parameters, the step, the values of the node that the residual needs, and the momenta.
     pub known: [Code<f64>; 4],
     /// The whole trial and the residual there.
     pub residual: AtTrial,
@@ -71,13 +71,13 @@ pub struct Solve {
     pub from_left: bool,
     /// Whether the action is convex.
     pub convex: Option<AtTrial>,
-    /// If the solution may be another root, or there is none.
+    /// The operations if the solution may be another root, or the search fails.
     pub settled: Settled,
-    /// The residual by itself: of parameters, step, what is asked of the node, momenta, trial.
+    /// The residual as a separate function of parameters, step, values of the node, momenta and trial.
     pub residual_at: Function,
-    /// The same over numbers with their rounding.
+    /// The same residual over numbers with their rounding.
     pub rounded_at: Routine<Rounded>,
-    /// The tangent by itself: of parameters, step, what is asked of the node, trial.
+    /// The tangent as a separate function of parameters, step, values of the node and trial.
     pub tangent_at: Function,
 }
 

@@ -8,19 +8,19 @@ use crate::value::{Struct, Value};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A list, or a field of one.
+/// A list, or a field of the entries of a list.
 #[derive(Clone, Debug)]
 pub struct List {
-    /// The path; nothing for what is kept at the sites of the loop.
+    /// The path, or `None` for the values that the loop keeps at its sites.
     pub path: Option<Code<f64>>,
-    /// Which field, one inside the other.
+    /// The field, as a path of nested fields.
     pub fields: Vec<usize>,
 }
 
 /// A value that was read.
 #[derive(Clone, Debug)]
 pub struct Read {
-    /// Where it stands.
+    /// The source of the value.
     pub from: From,
     /// Its first input.
     pub first: usize,
@@ -30,7 +30,7 @@ pub struct Read {
     pub kind: Value<f64>,
 }
 
-/// Where a value stands.
+/// The source of a value.
 #[derive(Clone, Debug)]
 pub enum From {
     /// At a path around the loop.

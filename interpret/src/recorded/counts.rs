@@ -1,4 +1,4 @@
-//! The counts of a value, such as the node of a state. A tape computes numbers; counts grow beside it.
+//! The counts of a value, such as the node of a state. A tape computes only numbers, so counts are advanced separately.
 
 use super::Traced;
 use crate::value::Value;

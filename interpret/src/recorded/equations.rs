@@ -75,7 +75,7 @@ pub struct Equations {
     given: usize,
     /// Which numbers of the solution a trial has.
     of_trial: Vec<usize>,
-    /// Computes the values of the places around from the numbers of the step, if a function has no tape.
+    /// If a function is not recorded, computes the values of the surrounding places from the numbers of the step.
     around: Ready,
     computed: Vec<usize>,
     places: Places<f64>,

@@ -15,7 +15,7 @@ pub struct Form {
 }
 
 impl Form {
-    /// The form of a body with these parameters; nothing if it has operations that only plain numbers have.
+    /// The form of a body with these parameters. Returns nothing if an operation supports only plain numbers.
     pub fn of(parameters: &[usize], body: &Code<f64>) -> Option<Self> {
         let mut filled: BTreeSet<usize> = parameters.iter().copied().collect();
         body.fills(&mut filled);
@@ -48,7 +48,7 @@ impl Form {
     }
 }
 
-/// The value of operations; nothing for errors, which are left to plain numbers.
+/// The value of operations. Returns nothing for an error; clebsch then computes with plain numbers.
 pub fn value_of(body: &Code<Traced>, places: &mut Places<Traced>) -> Option<Value<Traced>> {
     let value = body.returned(places).ok();
     value.filter(|value| !matches!(value, Value::Failed(_)))
@@ -63,7 +63,7 @@ pub fn is_same(a: &Code<f64>, b: &Code<f64>) -> bool {
     }
 }
 
-/// Whether the values at paths agree with these in all but their numbers. A list is compared by its length.
+/// Whether the values at these paths agree with the fixed values, except for numbers. Lists are compared by length.
 pub fn stands(fixed: &[(Code<f64>, Value<f64>)], places: &Places<f64>) -> bool {
     let same = |(path, value): &(Code<f64>, Value<f64>)| match (path.place(places), value) {
         (Some(Value::Sites(column)), Value::Int(n)) => i64::try_from(column.len()) == Ok(*n),

@@ -37,7 +37,7 @@ impl Function {
         }
     }
 
-    /// The value at these arguments; nothing where it has none.
+    /// The value at these arguments, if it exists.
     pub fn at(&self, given: &[&Value<f64>]) -> Option<Value<f64>> {
         let by_tape = self.by_tape(given);
         by_tape.or_else(|| run(&self.plain, given.iter().map(|x| (*x).clone()).collect()))
@@ -79,7 +79,7 @@ impl Function {
 }
 
 impl Tape {
-    /// The value at arguments of these numbers; nothing for other kinds of arguments.
+    /// The value at arguments of these numbers. Returns nothing for arguments of other kinds.
     fn at(&self, given: &[&Value<f64>], all: &[f64]) -> Option<Value<f64>> {
         let same = given.len() == self.takes.len()
             && given.iter().zip(&self.takes).all(|(a, b)| alike(a, b));

@@ -1,4 +1,4 @@
-//! What recorded functions keep: their tapes, and the registers that these run in.
+//! The storage of recorded functions: their tapes, and the registers of the tapes.
 
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
@@ -19,7 +19,7 @@ impl<T> Tapes<T> {
         }
     }
 
-    /// What a tape computes: the newest that `computes`, or another one, recorded now.
+    /// The result of the newest tape for which `computes` gives one, otherwise the result of a new recording.
     pub fn compute<V>(
         &self,
         computes: impl Fn(&T) -> Option<V>,

@@ -1,8 +1,8 @@
 //! Functions as tapes of scalar operations, recorded when they are first called.
 //!
-//! A tape computes what the function computes, to the last bit, as long as its decisions come out as they did when it
-//! was recorded. Otherwise clebsch runs the function itself. Newton's iteration stands between two tapes: the first computes
-//! what the equations need, the second the step from their solution.
+//! A tape computes the same result as the function, bit for bit, as long as its decisions come out as they did when it
+//! was recorded. If they do not, clebsch runs the function itself. Newton's iteration runs between two tapes: the first
+//! computes the input of the equations, and the second computes the step from their solution.
 
 mod ask;
 mod counts;
@@ -44,7 +44,7 @@ impl Library for Traced {
     }
 }
 
-/// Puts numbers into inputs; nothing if these are fewer.
+/// Writes numbers to inputs. Returns nothing if there are fewer inputs than numbers.
 fn load(inputs: &mut [[f64; 1]], numbers: &[f64]) -> Option<()> {
     for (slot, x) in inputs.get_mut(..numbers.len())?.iter_mut().zip(numbers) {
         *slot = [*x];

@@ -22,7 +22,7 @@ pub struct Cut {
     pub guards: usize,
     /// How many inputs there were before.
     pub inputs: usize,
-    /// What is solved.
+    /// The equations that are solved there.
     pub solved: SolvedHere,
 }
 
@@ -115,7 +115,7 @@ impl Iterate<Traced> for RecordedSolve {
         let mut held = held.clone();
         let (mut own, mut around, mut computed) = (Vec::new(), Vec::new(), Vec::new());
         for (at, value) in places.iter().enumerate() {
-            // What the equations could not use is not among the places.
+            // A value that the equations cannot use is replaced by `Unit`.
             let seen = over(value, &mut Traced::seen).unwrap_or(Value::Unit);
             let mut all = Vec::new();
             if !matches!(seen, Value::Unit)
@@ -313,7 +313,7 @@ pub struct Between {
     with: Arc<Solve>,
     node: i64,
     remembers: bool,
-    /// What the search had measured before the step.
+    /// The search before the step, with its measurements.
     before: Option<Held>,
     /// Whether this step has come to the equations.
     begun: bool,

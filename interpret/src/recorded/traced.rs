@@ -1,7 +1,8 @@
-//! A scalar that notes what is done to it, so that one evaluation of any generic code becomes a tape.
+//! A scalar that records its operations, so that one evaluation of generic code becomes a tape.
 //!
-//! Decisions that the code takes by the methods of [`Real`] which give a truth become guards of the tape. A number that
-//! leaves the tape in any other way, as `value()` does, spoils the recording: what is decided by it could not be seen.
+//! If the code decides by methods of [`Real`] that return a truth value, the decisions become guards of the tape. If a
+//! number leaves the tape in any other way, as with `value()`, the recording is void, since later decisions would be
+//! invisible.
 
 use super::solves::{Cut, SolvedHere};
 use crate::value::Value;
@@ -35,8 +36,8 @@ thread_local! {
 /// Most steps of a tape: what takes more is not recorded.
 const MOST: usize = 1 << 17;
 
-/// Records what `body` does; it gives the numbers that the tape is to compute. Nothing if that cannot be told from
-/// tests of numbers alone.
+/// Records `body`, which returns the numbers that the tape computes. Returns nothing if they depend on more than tests
+/// of numbers, or if the tape is too long.
 pub fn record(body: impl FnOnce() -> Option<Vec<Traced>>) -> Option<(Tape, usize)> {
     let (tape, inputs, cuts) = record_with_solves(None, body)?;
     cuts.is_empty().then_some((tape, inputs))
@@ -65,7 +66,7 @@ pub fn model() -> Option<Value<f64>> {
     noted(|here| here.model.clone()).flatten()
 }
 
-/// Ends a part of the recording; the next part takes as inputs what is solved for.
+/// Ends a part of the recording. The solution of the equations is the input of the next part.
 pub fn cut(solved: SolvedHere) {
     noted(|here| {
         here.cuts.push(Cut {

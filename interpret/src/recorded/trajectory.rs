@@ -99,7 +99,7 @@ pub struct Recorded {
     fixed: Fixed,
     step: Ways,
     watched: [Ways; 3],
-    /// The numbers of the state, then those of the workspace.
+    /// The numbers of the state, followed by the numbers of the workspace.
     numbers: Vec<f64>,
     /// How many are the state's.
     of_state: usize,
@@ -107,7 +107,7 @@ pub struct Recorded {
     newest: Newest,
 }
 
-/// A copy has no tapes yet.
+/// A copy starts without tapes.
 impl Clone for Recorded {
     fn clone(&self) -> Self {
         let own_step = !self.step.are_none();
@@ -253,7 +253,7 @@ impl Recorded {
         node.and_then(|n| u64::try_from(*n).ok())
     }
 
-    /// Writes what is watched; false if the function itself has to.
+    /// Writes observed numbers. Returns false if the function itself must run.
     pub fn watch(&mut self, which: Watched, places: &mut Places<f64>, out: &mut [f64]) -> bool {
         self.read(places);
         let Self {

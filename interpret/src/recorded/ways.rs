@@ -1,4 +1,4 @@
-//! The tapes of one function of a trajectory, one for each way in which its decisions came out.
+//! The tapes of one function of a trajectory, one for each outcome of its decisions.
 
 use super::counts::Growth;
 use super::kept::MOST;
@@ -10,7 +10,7 @@ use clebsch_program::{Frame, Machine};
 /// A function as tapes, by how it decided where it was recorded.
 #[derive(Debug)]
 pub struct Way {
-    /// What is solved on the way, with the tapes before.
+    /// The equations that are solved on the way, with the tapes before them.
     pub between: Vec<Between>,
     /// The last tape.
     pub machine: Machine,
@@ -74,7 +74,7 @@ impl Way {
     }
 }
 
-/// The ways of one function, that used last at the end, and how many more are recorded.
+/// The ways of one function, with the last used way at the end, and the number of further ways that may be recorded.
 #[derive(Debug)]
 pub struct Ways {
     known: Vec<Way>,

@@ -53,7 +53,7 @@ fn rows<const R: usize, const C: usize>(list: &[SMatrix<f64, R, C>]) -> Vec<f64>
         .collect()
 }
 
-/// Undeformed at the start, where momenta in coordinates are those of the body without a rounding.
+/// Undeformed at the start, where momenta in coordinates equal the momenta in the body exactly.
 pub fn compared() {
     let at_rest = Chain {
         given: |name, nodes| match name {

@@ -10,7 +10,7 @@ pub const H: f64 = 0.02;
 /// A line.
 pub struct Chain {
     pub source: &'static str,
-    /// What moves, and how many rows its matrix has.
+    /// The moving quantity, and the number of rows of its matrix.
     pub element: &'static str,
     pub rows: usize,
     /// How it ends; none around a ring.
@@ -72,7 +72,7 @@ fn units(n: usize) -> Vec<(Vec<f64>, usize)> {
     (0..n * n).map(unit).collect()
 }
 
-/// `(h/2)` times what stands at both ends.
+/// The sum of the values at both ends, times `h/2`.
 fn at_nodes(from: &[A], to: &[A], of: impl Fn(&[A]) -> D) -> D {
     (of(from) + of(to)) * real(H / 2.0)
 }

@@ -34,13 +34,13 @@ struct State {
 struct System {
     /// How many states are tried.
     states: u64,
-    /// What rounding leaves, over conditioning.
+    /// The error that rounding leaves, divided by the conditioning.
     rounding: f64,
     model: &'static str,
     draw: fn(&mut Source) -> State,
-    /// What is compared after a step, from the data.
+    /// The values that are compared after a step, computed by hand from the data.
     by_hand: fn(&State) -> Option<Vec<f64>>,
-    /// The same of what the card shows of its initial values and, of a held model, of its multiplier.
+    /// The same values from the output of the card. A model with a constraint also shows its multiplier.
     shown: fn(&[Vec<f64>]) -> Vec<f64>,
     /// Numbers of parameters and initial values that may be mistaken without leaving the constraints.
     free: (&'static [usize], &'static [usize]),
@@ -286,7 +286,7 @@ impl State {
 }
 
 impl System {
-    /// What may be mistaken, kind by kind.
+    /// The kinds of data in which a test makes an error.
     fn kinds(&self) -> Vec<(bool, usize)> {
         let (parameters, initial) = self.free;
         let parameters = parameters.iter().map(|k| (true, *k));

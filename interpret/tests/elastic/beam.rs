@@ -1,18 +1,18 @@
-//! The geometrically exact rod against the theory of beams that bend and shear (Timoshenko), for small motions across its
-//! axis: frequencies of a beam on two supports, and cantilevers at rest.
+//! Compares the geometrically exact rod with the Timoshenko theory of beams that bend and shear, for small motions
+//! across its axis. The tests are the frequencies of a beam on two supports, and cantilevers at equilibrium.
 //!
-//! With w the deflection and θ the turn of a section the strains are w' - θ and θ', and the balances of force and moment are
-//! `A w'' (in time) = S (w' - θ)'` and `I θ'' (in time) = K θ'' + S (w' - θ)`: A mass, I inertia of a unit of length, S and K the
-//! stiffnesses against shear and bending.
+//! Let w be the deflection and θ the rotation of a section. The strains are `w' - θ` and `θ'`. The balances of force
+//! and moment are `A w'' (in time) = S (w' - θ)'` and `I θ'' (in time) = K θ'' + S (w' - θ)`. Per unit of length, A is
+//! the mass and I the inertia; S and K are the stiffnesses against shear and bending.
 //!
-//! On two supports `w = W sin(k x) cos(ω t)`, `θ = Θ cos(k x) cos(ω t)` with `k = n π/L`: both balances and both ends, w = 0 and
-//! θ' = 0, hold where `(S k² - A ω²) W = S k Θ` and `(K k² + S - I ω²) Θ = S k W`, hence
-//! `A I ω⁴ - (A (K k² + S) + I S k²) ω² + S K k⁴ = 0`: the smaller root bends, the larger one shears. On sections of length s
-//! differences of sines at nodes are cosines at segments times `(2/s) sin(k s/2)`, which takes the place of k, and nothing else
-//! changes; with steps of h so does `(2/h) sin(ω h/2)` with ω.
+//! On two supports, `w = W sin(k x) cos(ω t)` and `θ = Θ cos(k x) cos(ω t)` with `k = n π/L`. The ends satisfy w = 0
+//! and θ' = 0. The balances hold if `(S k² - A ω²) W = S k Θ` and `(K k² + S - I ω²) Θ = S k W`. Hence `A I ω⁴ - (A (K
+//! k² + S) + I S k²) ω² + S K k⁴ = 0`: the smaller root bends, the larger root shears. On sections of length s,
+//! differences of sines at nodes are cosines at segments times `(2/s) sin(k s/2)`. This factor replaces k, and nothing
+//! else changes. With steps of size h, `(2/h) sin(ω h/2)` replaces ω.
 //!
-//! At rest a cantilever under its weight q has `w(L) = q L⁴/(8 K) + q L²/(2 S)`, under a force P on its end
-//! `w(L) = P L³/(3 K) + P L/S`: moments integrated twice, and the shear force once.
+//! At equilibrium under its weight q, a cantilever has `w(L) = q L⁴/(8 K) + q L²/(2 S)`. Under a force P on its end, it
+//! has `w(L) = P L³/(3 K) + P L/S`. In both, the moment is integrated twice and the shear force once.
 
 use clebsch_core::lattice::{Choice, Lattice};
 use clebsch_core::pipeline;
@@ -233,7 +233,7 @@ fn deflection(beam: &Beam) -> f64 {
     };
     let mut x = DVector::zeros(3 * n);
     let here = left(&x);
-    // Of the straight rod: the load is so small that one tangent serves.
+    // The tangent of the straight rod. The load is so small that one tangent suffices.
     let moved = 1e-6;
     let mut tangent = DMatrix::zeros(3 * n, 3 * n);
     for k in 0..3 * n {

@@ -5,7 +5,7 @@ use clebsch_oracle::oracle::dual::Number;
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::Square;
 
-/// The invariants that energies are made of, as the language writes them.
+/// The invariants from which energies are built, in the syntax of the language.
 const INVARIANTS: [&str; 4] = ["I1(X)", "I2(X)", "det(X)", "tr(X*X)"];
 
 /// Functions of one invariant.

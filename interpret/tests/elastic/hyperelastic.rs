@@ -12,14 +12,14 @@ use clebsch_oracle::oracle::square::Square;
 
 type Matrix = Square<f64, 3>;
 
-/// What an energy is a function of.
+/// The strain that an energy depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Strain {
-    /// `C = Qᵀ C0 Q`, as every energy that does not see where the body is turned to.
+    /// `C = Qᵀ C0 Q`: the energy does not change if the body is rotated in space.
     Reference,
-    /// `S = Q I0 Qᵀ`, as every energy that does not see how its points are named.
+    /// `S = Q I0 Qᵀ`: the energy does not change if the points of the body are renamed.
     Space,
-    /// `C I0`, which has the invariants of `C0 S`: what is both.
+    /// `C I0`, which has the invariants of `C0 S`: both symmetries.
     Both,
 }
 
@@ -39,7 +39,7 @@ const STATEMENTS: [Statement; 3] = [
 ];
 
 impl Strain {
-    /// Of a placement, as the action that is typed here has it.
+    /// The strain of a placement, for the action typed by hand.
     fn of<T: Number>(self, body: &Body, q: &Square<T, 3>) -> Square<T, 3> {
         let (metric, moments) = (
             Square::constant(&body.metric),
@@ -71,7 +71,7 @@ impl Statement {
                 "tr(C0*(next(Q) - Q)*I0*(next(Q) - Q)^T)",
             ),
         };
-        // What the statement does not carry is written by the placement.
+        // If the statement does not advect a strain, it is written in terms of the placement.
         let strain = match (self, strain) {
             (Self::Convective, Strain::Reference) => "C",
             (_, Strain::Reference) => "Q^T*C0*Q",
@@ -99,7 +99,7 @@ impl Statement {
     }
 }
 
-/// What a body is beside its energy.
+/// The data of a body other than its energy.
 struct Body {
     metric: Matrix,
     moments: Matrix,
@@ -347,7 +347,7 @@ fn the_three_statements_of_a_random_energy_are_one_motion() {
                 energy.text()
             );
         }
-        // What moves is far from what another energy does.
+        // Another energy gives a clearly different motion.
         let other = run(Statement::Material, &energy.changed(&mut source));
         assert!(off(&all[0], &other, 1.0) > 1e-5);
         assert!(off(&all[0], &q.0.concat(), 1.0) > 1e-2);

@@ -44,7 +44,7 @@ fn derivative(size: usize, map: impl Fn(&[f64]) -> Vec<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(columns[0].len(), size, |i, j| columns[j][i])
 }
 
-/// `D B Dᵀ - B'`, the largest entry over that of B'.
+/// `D B Dᵀ - B'`: the largest entry, divided by the largest entry of B'.
 fn defect(d: &DMatrix<f64>, before: &DMatrix<f64>, after: &DMatrix<f64>) -> f64 {
     (d * before * d.transpose() - after).amax() / after.amax()
 }
@@ -88,7 +88,7 @@ impl Section {
     fn step(&self, z: &[f64], h: f64) -> (Vec<f64>, Matrix3<f64>) {
         let one = vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
         let mut parameters = self.parameters.clone();
-        // Seen from a section that is not turned the force is that of space.
+        // Seen from a section that is not rotated, the force equals the spatial force.
         parameters.push(z[3..].to_vec());
         let initial = [one, z[..3].to_vec()];
         let started = (self.card.open)(&parameters, &initial, Settings::step(h));
@@ -110,7 +110,7 @@ impl Section {
         DMatrix::from_row_slice(b.rows, b.cols, &b.data)
     }
 
-    /// The defect of a map that is made of a step, with the bracket at its end or, wrongly, at its start.
+    /// The defect of a map built from a step, with the bracket at its end or, wrongly, at its start.
     fn defect(&self, z: &[f64], late: bool, map: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
         let from = |dz: &[f64]| -> Vec<f64> { z.iter().zip(dz).map(|(a, b)| a + b).collect() };
         let d = derivative(6, |dz| map(&from(dz)));
@@ -138,7 +138,8 @@ fn the_map_of_a_rod_at_rest_is_poisson() {
                 let own = rod.defect(&z, false, |z| rod.step(z, h).0);
                 assert!(own < TOLERANCE, "{h}: {own:e}");
                 worst = worst.max(own);
-                // Of another bracket, of sections whose length depends on the state, of the printed equation of the tangent.
+                // Three wrong maps: another bracket, sections with a state-dependent length, and the printed equation
+                // of the tangent.
                 let late = rod.defect(&z, true, |z| rod.step(z, h).0);
                 let long = rod.defect(&z, false, |z| rod.step(z, h * (1.0 + 0.1 * z[0])).0);
                 let printed = rod.defect(&z, false, |z| {

@@ -41,7 +41,8 @@ fn attitude(site: usize) -> Vec<f64> {
     }
 }
 
-/// The numbers of the longer chain at a site of it; all clocks agree, since a wall reads that of its neighbour.
+/// The numbers of the longer chain at one of its sites. All clocks agree, since a wall reads the clock of its
+/// neighbour.
 fn of_bodies(name: &str, site: usize) -> Vec<f64> {
     let j = site as f64;
     match name {
@@ -74,7 +75,7 @@ fn an_end_that_holds_a_rotation_is_a_wall_beside_a_shorter_chain() {
         let whole = card(BODIES, n, false, ends);
         let inner = card(BODIES, fewer, false, shorter);
         let given = |name: &str, site: Option<usize>| of_bodies(name, site.unwrap_or(0));
-        // Walls stand where the longer chain has its ends.
+        // The walls replace the ends of the longer chain.
         let moved = |name: &str, site: Option<usize>| match (name, site) {
             ("W", Some(0)) => attitude(0),
             ("W", _) => attitude(n),

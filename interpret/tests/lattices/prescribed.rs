@@ -1,12 +1,13 @@
-//! What an end prescribes stands still, and nothing else does: chains with clocks, with quantities that fields and rotations
-//! carry, and with terms of ends, against the discrete equations typed by hand and against shorter chains between walls.
+//! A quantity that an end prescribes is constant, and nothing else is. The chains have clocks, quantities that fields
+//! and rotations advect, and terms of ends. They are compared with the discrete equations typed by hand and with
+//! shorter chains between walls.
 
 use super::{card, choice, observed, started};
 
 const H: f64 = 0.05;
 const STEPS: usize = 60;
 
-/// What a chain of beads on springs has beside its springs.
+/// The additions to a chain of beads on springs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Beside {
     /// Constant forces.

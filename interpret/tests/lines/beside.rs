@@ -97,7 +97,7 @@ pub fn beside(
             continue;
         };
         let list = line.observe(&name).expect("is observed");
-        // What belongs to the whole line has no site.
+        // A quantity of the whole chain does not have a site.
         let at = site.unwrap_or(0) * field.count();
         let pair = own.iter().zip(&list[at..at + field.count()]);
         pairs.extend(pair.map(|(x, y)| [*x, *y]));
@@ -114,12 +114,12 @@ pub fn beside(
             continue;
         }
         let Some(values) = line.total(invariant.name) else {
-            // Of one choice of ends only: no total of every line.
+            // An invariant of this choice of ends only, not of every chain.
             continue;
         };
         match own.len() == values.len() {
             true => pairs.extend(own.iter().zip(&values).map(|(x, y)| [*x, *y])),
-            // What every site keeps: of a line the sum is told.
+            // If every site conserves a quantity, the chain reports the sum.
             false => pairs.extend(values.iter().map(|y| [own.iter().sum(), *y])),
         }
     }
@@ -295,7 +295,7 @@ pub fn another_term_is_seen(lines: &[Line], source: &str, term: &str, rest: &str
     assert!(differs, "{term}");
 }
 
-/// What a line says of data that it does not start with.
+/// The error if a chain cannot start with the data.
 pub fn refused(model: &Arc<LineModel>, source: &str, case: &Case, data: &Data) -> String {
     let chosen = choice(source, case.n, case.ends);
     let started = model.start(&chosen, case.h, &|name| data.get(name));

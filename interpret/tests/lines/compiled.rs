@@ -370,7 +370,7 @@ pub fn water(case: &Case) -> Data {
     let places = r.list(case.nodes(), 0.1).into_iter().enumerate();
     let places: Vec<f64> = places.map(|(i, x)| i as f64 + x).collect();
     let masses = about(1.0, r.list(case.nodes(), 0.2));
-    // Nearly at rest: momenta across the channel are those of the turning frame.
+    // Nearly at rest: momenta across the channel come from the rotating frame.
     let turning = masses.iter().zip(&places).map(|(m, x)| 0.6 * m * x);
     let across = r.list(case.nodes(), 0.05).into_iter().zip(turning);
     Data(BTreeMap::from([

@@ -60,7 +60,8 @@ fn woven(case: &Case) -> Data {
     ]))
 }
 
-/// Of up to twelve segments, since longer ones repeat the sites between the ends; cards of lines are few in a process.
+/// Chains of up to twelve segments, since longer chains repeat the sites between the ends. A process should build few
+/// cards of chains, since it keeps them.
 pub fn all() -> Vec<Line> {
     let few = |ends: &[[&'static str; 2]]| {
         let all = cases(true, ends).into_iter();

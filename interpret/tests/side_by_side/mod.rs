@@ -33,7 +33,7 @@ pub fn compare(built: &Card, read: &Card, case: &Case, settings: Settings, steps
     assert_eq!(seen(&*a, built), seen(&*b, read), "{label} at the start");
     for k in 0..steps {
         let (x, y) = (a.step(), b.step());
-        // Numbers in errors may be NaN: compared as they are told.
+        // Numbers in errors may be NaN, so the texts are compared.
         assert_eq!(format!("{x:?}"), format!("{y:?}"), "{label} in step {k}");
         assert_eq!(
             (a.node(), a.time().to_bits()),

@@ -6,7 +6,7 @@ use clebsch::card::{Card, Field, Kind};
 use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::square::Square;
 
-/// What one draw is made for.
+/// The settings of one draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Draw {
     pub h: f64,
@@ -34,7 +34,7 @@ fn matrix<const N: usize>(m: Square<f64, N>) -> Vec<f64> {
     m.0.concat()
 }
 
-/// A function of the size that is asked for.
+/// A function of the requested size.
 macro_rules! sized {
     ($n:expr, $source:ident, $f:ident) => {
         match $n {
@@ -101,7 +101,7 @@ impl Moves {
     }
 }
 
-/// A value at the start that is no momentum.
+/// An initial value other than a momentum.
 fn place(row: &Row, field: &Field, moves: Moves, draw: &Draw, source: &mut Source) -> Vec<f64> {
     let n = field.rows;
     let fine = draw.fine && moves != Moves::Not;
@@ -131,7 +131,7 @@ fn place(row: &Row, field: &Field, moves: Moves, draw: &Draw, source: &mut Sourc
             true => is_one(n),
             false => sized!(n, source, invertible),
         },
-        // What a body carries may be its inertia.
+        // A quantity that a body advects may be its inertia.
         Kind::Symmetric | Kind::SecondMoments if row.inertias.contains(&field.name) => {
             let own = sized!(n, source, positive);
             own.into_iter().map(|x| x * draw.mass).collect()

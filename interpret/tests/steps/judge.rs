@@ -8,7 +8,7 @@ use clebsch_oracle::oracle::points::Source;
 use clebsch_oracle::oracle::step::compare::{Off, ROUNDING};
 use clebsch_oracle::oracle::step::{Problem, Solved};
 
-/// A step is asked to be right to twelve digits.
+/// A step must be correct to twelve digits.
 pub const WANTED: f64 = 1e-12;
 
 /// Where the data leave more open: a step takes some hundred operations, which round independently, and each is worth
@@ -28,18 +28,18 @@ const SCALES: [[f64; 2]; 5] = [
     [1e3, 1.0],
 ];
 
-/// What is wrong with one step.
+/// The error of one step.
 #[derive(Clone, Debug)]
 pub struct Wrong(pub String);
 
-/// What was measured of a model.
+/// The measurements of a model.
 #[derive(Clone, Debug, Default)]
 pub struct Found {
     pub off: Off,
     /// The largest bound.
     pub allowed: f64,
     pub made: usize,
-    /// What steps were refused for.
+    /// The reasons why steps failed.
     pub refused: Vec<String>,
     /// Steps that were made, whose root the oracle does not reach from rest.
     pub lost: usize,

@@ -21,10 +21,10 @@ pub struct Line {
     pub action: Action,
     pub given: &'static [Quantity],
     pub moving: &'static [Quantity],
-    /// What an end that is pinned holds.
+    /// The quantities that a pinned end prescribes.
     pub pinned: &'static [&'static str],
     pub sites: &'static [Sites],
-    /// How far velocities of sites that stand in one term are apart.
+    /// The largest distance of sites whose velocities appear in one term.
     pub reach: usize,
     /// How many of the steps are refused, and what is off beyond the bound where that is known.
     pub refused: usize,

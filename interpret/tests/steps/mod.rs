@@ -90,7 +90,7 @@ fn told(row: &Judged) -> String {
     line
 }
 
-/// What a row does not admit.
+/// The defects of a row.
 fn verdict(row: &Judged) -> Vec<String> {
     let mut out = Vec::new();
     let (name, found) = (row.name, &row.found);

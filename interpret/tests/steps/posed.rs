@@ -11,7 +11,7 @@ use clebsch_oracle::oracle::sides::Side;
 use clebsch_oracle::oracle::step::group;
 use clebsch_oracle::oracle::step::{Block, Motion, Problem, Table};
 
-/// The basis of a group, by what is told of its element and of its momentum.
+/// The basis of a group, from the fields of its element and its momentum.
 fn basis(element: &Field, momentum: &Field) -> Motion {
     let side = match momentum.kind {
         Kind::SpatialMomentum => Side::Space,
@@ -55,7 +55,7 @@ pub fn element(field: &Field, list: &[f64]) -> Vec<Pair> {
     }
 }
 
-/// What is shown of an element, as a matrix and not moved into its group.
+/// The output for an element, as a matrix that is not moved into its group.
 pub fn shown(field: &Field, list: &[f64]) -> Vec<Pair> {
     match field.kind {
         Kind::UnitQuaternion => {
@@ -153,7 +153,7 @@ pub fn problem(row: &Row, card: &Card, draw: &Draw, data: &Data) -> Problem {
     }
 }
 
-/// What a state shows, as the oracle has it: what moves, and momenta.
+/// The output for a state in the form of the oracle: moving quantities, and momenta.
 pub fn observed(card: &Card, all: &[f64]) -> (Vec<Pair>, Vec<f64>) {
     let seen = |name: &str| {
         let mut from = 0;

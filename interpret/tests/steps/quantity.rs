@@ -13,7 +13,7 @@ pub enum At {
     Segments,
 }
 
-/// What a quantity is.
+/// The kind of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum What {
     /// A number or a vector of so many components.
@@ -99,7 +99,7 @@ impl What {
         }
     }
 
-    /// What the model has as the oracle has it: as it is told, and exactly in its group.
+    /// The values of the model in the form of the oracle: as given, and exactly in their group.
     pub fn values(self, list: &[f64]) -> [Vec<Pair>; 2] {
         use super::posed::{element, shown};
         let kind = match self {
@@ -135,7 +135,7 @@ fn turned([w, x, y, z]: [f64; 4]) -> Vec<f64> {
     ]
 }
 
-/// What one step is made for.
+/// The settings of one step.
 #[derive(Clone, Copy, Debug)]
 pub struct Draw {
     pub sites: Sites,

@@ -22,7 +22,7 @@ pub struct Row {
     pub idle: &'static [&'static str],
     /// How many of the steps are refused.
     pub refused: usize,
-    /// What is off beyond the bound, where that is known.
+    /// The known error, if it exceeds the bound.
     pub known: Option<f64>,
 }
 

@@ -88,8 +88,8 @@ fn put<const L: usize>(lanes: &mut [f64; L], own: impl Iterator<Item = f64>) {
     slots.for_each(|slot| *slot = last);
 }
 
-/// Puts outputs into a list, at so many sites from one on. `output` gives the lanes of an output by its number; `next` is the
-/// next to be put.
+/// Stores outputs in a list, at `count` sites from `first` on. `output` returns the lanes of an output by its number;
+/// `next` is the number of the next output.
 pub fn store<'a>(
     column: &mut Column<f64>,
     [first, count]: [usize; 2],

@@ -49,7 +49,7 @@ fn angles<T: Number>(e: &Edge<'_, T>) -> T {
         + e.h * e.given.real("g") * height
 }
 
-/// Of two rows and three columns, with an inertia on either side.
+/// A field with two rows and three columns, and an inertia on either side.
 fn sheet<T: Number>(e: &Edge<'_, T>) -> T {
     let (a, b) = (e.given.square::<2>("A"), e.given.square::<3>("B"));
     let d: [T; 6] = e.changes("F");

@@ -37,7 +37,7 @@ fn settle_pendulum(named: &mut Named) {
     tangent(&x, momentum);
 }
 
-/// Of one configuration alone the momentum is named without it.
+/// The momentum of a configuration. If the configuration is the only one, the momentum is named without it.
 fn momentum_of<'a>(named: &'a mut Named, name: &str) -> &'a mut Vec<f64> {
     let own = format!("_{name}");
     let found = named.iter_mut().find(|(key, _)| {
@@ -173,7 +173,7 @@ pub const ROWS: &[Row] = &[
         action!(frame, of_frame),
         &["J"],
     )
-    // What would stretch the axes is held.
+    // These components would stretch the axes, which the constraint prevents.
     .idle(&["momentum[1]", "momentum[3]", "momentum[8]"])
     .settled(settle_frame),
     Row::of(

@@ -55,7 +55,7 @@ fn exponential<T: Number>(e: &Edge<'_, T>) -> T {
 }
 
 fn space<T: Number>(e: &Edge<'_, T>) -> T {
-    // Of `next(q)*q^T`.
+    // The components of `next(q)*q^T`.
     let w = e.turn_in_space::<4>("q").0.map(|row| row[0]);
     let v = [w[1], w[2], w[3]];
     -(of::<T>(4.0) * e.given.real("c") / e.h) * w[0]
