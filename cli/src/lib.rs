@@ -46,8 +46,8 @@ pub fn run_process_on(gallery: &Gallery) -> ExitCode {
     ExitCode::from(on_streams_of_process(std::env::args_os(), gallery))
 }
 
-/// Runs `arguments` (the first is the program's name) on the shipped models and the streams of the process, for programs of other
-/// languages; gives the exit code.
+/// Runs `arguments` on the shipped models and the streams of the process, for programs in other languages. The
+/// first argument is the program's name. Gives the exit code.
 pub fn run_arguments(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     on_streams_of_process(arguments, &Gallery::shipped())
 }
@@ -71,7 +71,7 @@ pub fn execute(
     gallery: &Gallery,
     streams: &mut Streams<'_>,
 ) -> u8 {
-    // Names come from files and arguments, and nothing that they hold reaches a terminal unwritten.
+    // Names come from files and arguments. Their control characters must not reach a terminal.
     let (mut out, mut err) = (Plain(streams.out), Plain(streams.err));
     let streams = &mut Streams {
         input: streams.input,
@@ -104,9 +104,9 @@ pub fn execute(
     });
     done.unwrap_or_else(|failure| {
         if failure != Failure::ReaderGone {
-            // When even this cannot be written, the exit code is all there is left.
+            // If this cannot be written either, only the exit code remains.
             let text = failure.to_string();
-            // What is wrong with a model stands on lines of its own.
+            // A message about a model has its own lines, without the prefix `clebsch:`.
             let _ = match text.strip_prefix('\n') {
                 Some(of_model) => writeln!(streams.err, "{of_model}"),
                 None => writeln!(streams.err, "clebsch: {text}"),
@@ -141,12 +141,12 @@ fn dispatch(
             derive::derive(gallery, matches, streams)?;
             Ok(DONE)
         }
-        // clap demands a subcommand and knows no other.
+        // clap requires a subcommand and rejects all others.
         _ => Err(Failure::Usage("no such command".to_owned())),
     }
 }
 
-/// Help and version are results; everything else that clap says is a usage message.
+/// Help and version are results; every other answer of clap is a usage message.
 fn answer_clap(error: &clap::Error, streams: &mut Streams<'_>) -> u8 {
     let message = error.render();
     if error.use_stderr() {

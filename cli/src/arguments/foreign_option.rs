@@ -1,8 +1,9 @@
-//! Options as other programs call them: `--time` for `--until`. Takes what clap refuses; gives the same with the option to write.
+//! Options as other programs name them: `--time` for `--until`. Takes an error of clap; gives the error with
+//! the right option.
 
 use clap::error::{ContextKind, ContextValue};
 
-/// What options are called elsewhere, and here.
+/// Option names of other programs, each with the clebsch option for the same purpose.
 const NAMES: [(&str, &str); 9] = [
     ("--time", "--until"),
     ("--tmax", "--until"),

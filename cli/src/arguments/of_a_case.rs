@@ -1,9 +1,9 @@
-//! What says which case of which model is meant, and how it is run.
+//! The arguments that select a model and a case, and the options of its run.
 
 use super::option::{flag, json, option, order_number, positive_count, positive_number, step_size};
 use clap::{Arg, ArgAction, Command, value_parser};
 
-/// What every command that runs a case once takes.
+/// Adds the arguments of every command that runs a case once.
 pub(super) fn planned(command: Command, every: &'static str, out: &'static str) -> Command {
     of_a_case(command)
         .arg(option("every", "N", every).value_parser(positive_count))
@@ -21,7 +21,7 @@ pub(super) fn shown_case() -> Arg {
     )
 }
 
-/// What says which case is run, and how.
+/// Adds the arguments that select a case, and the options of its run.
 pub(super) fn of_a_case(command: Command) -> Command {
     command
         .arg(model())

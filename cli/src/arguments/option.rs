@@ -1,4 +1,5 @@
-//! Options and flags, and the checks of their values that need no model. Takes a text; gives its value, or what to give.
+//! Options and flags, and the checks of their values that need no model. Takes a text; gives its value, or the
+//! message.
 
 use crate::words::number::{value, whole};
 use clap::{Arg, ArgAction};
@@ -18,7 +19,7 @@ pub(super) fn flag(name: &'static str, help: &'static str) -> Arg {
         .help(help)
 }
 
-/// Negative numbers reach the value's own check, whose message says what is wrong with them.
+/// Negative numbers are passed to the check of the value, which has a clearer message.
 pub(super) fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
     Arg::new(name)
         .long(name)

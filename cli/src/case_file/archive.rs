@@ -1,5 +1,6 @@
-//! Arrays of an npz: a zip of npy files, as `numpy.savez` and a run's trajectory.npz are. Takes the file; gives its arrays by
-//! name, with shapes and numbers. Formats: PKWARE APPNOTE 6.3 (4.3.7, 4.3.12, 4.3.16), NEP 1. Members are read as they are stored.
+//! Arrays of an npz: a zip of npy files, written by `numpy.savez` or by a run as trajectory.npz. Takes the
+//! file; gives its arrays by name, with shapes and numbers. Formats: PKWARE APPNOTE 6.3 (4.3.7, 4.3.12,
+//! 4.3.16), NEP 1. Only uncompressed members are read.
 
 use crate::words::plain::shown;
 use crate::words::suggestion::did_you_mean;
@@ -7,7 +8,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-/// Bytes of the record at the end of a zip, and of the longest comment behind it.
+/// Sizes in bytes of the record at the end of a zip, and of the longest comment after it.
 const END: usize = 22;
 const COMMENT: usize = 0xffff;
 
@@ -53,7 +54,7 @@ impl Archive {
     /// Opens a file.
     ///
     /// # Errors
-    /// It cannot be read, or is no zip.
+    /// The file cannot be read, or it is not a zip archive.
     pub(crate) fn open(path: &Path) -> Result<Self, String> {
         let name = shown(path).to_string();
         let unread = |error: std::io::Error| format!("cannot read {name}: {error}");
@@ -119,10 +120,10 @@ impl Archive {
         self.members.iter().any(|m| m.name == array)
     }
 
-    /// The array of this name.
+    /// The array with this name.
     ///
     /// # Errors
-    /// There is none, it is not of numbers, compressed or damaged.
+    /// There is no such array, or it is not numeric, compressed or damaged.
     pub(crate) fn array(&self, array: &str) -> Result<Array, String> {
         let name = &self.name;
         let member = self.members.iter().find(|m| m.name == array);
@@ -150,7 +151,7 @@ impl Archive {
         if offset + 30 > length {
             return Err(damaged());
         }
-        // The name and what stands behind it need not be as long there as in the directory.
+        // The name and the extra field may have other lengths here than in the directory.
         let head = bytes(&mut file, offset, 30).map_err(unread)?;
         let behind =
             head.get(26..).map_or(0, |b| number(b, 2)) + head.get(28..).map_or(0, |b| number(b, 2));
@@ -189,7 +190,8 @@ fn number(bytes: &[u8], size: usize) -> u64 {
 }
 
 impl Array {
-    /// The array in an npy file; an error has the type of entries that are no numbers, or none where the file is damaged.
+    /// The array in an npy file. The error is the type of the entries if they are not numbers, and `None` if
+    /// the file is damaged.
     fn read(mut npy: Vec<u8>) -> Result<Self, Option<String>> {
         let head = npy.get(..12).filter(|h| h.starts_with(b"\x93NUMPY"));
         let head = head.ok_or(None)?;
@@ -233,7 +235,7 @@ impl Array {
         }
     }
 
-    /// So many numbers from that of index `from` on, the last index running fastest.
+    /// `count` numbers from index `from`, in row-major order.
     pub(crate) fn numbers(&self, from: usize, count: usize) -> Vec<f64> {
         let size = self.entry.size();
         let at = |index: usize| {
@@ -247,7 +249,7 @@ impl Array {
         (from..from + count).map(at).collect()
     }
 
-    /// Where an entry stands whose first index runs fastest.
+    /// Converts a row-major index to the index of the same entry in column-major order.
     fn in_fortran(&self, index: usize) -> usize {
         let mut rest = index;
         let mut stride = self.shape.iter().product::<usize>();
@@ -262,7 +264,7 @@ impl Array {
 }
 
 impl Entry {
-    /// That of a type as numpy writes it; none of what is no number, or has its highest byte first.
+    /// The entry type that numpy writes as `kind`. `None` if it is big-endian or not a number.
     fn named(kind: &str) -> Option<Self> {
         let kind = kind.strip_prefix(['<', '|'])?;
         let (letter, size) = kind.split_at_checked(1)?;

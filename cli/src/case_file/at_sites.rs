@@ -1,5 +1,5 @@
-//! The sites of a case of a model with labels: what expressions hold there, and which element of a list or of an array of a file
-//! belongs to a site.
+//! The sites of a case, if the model has labels: the names that expressions can read there, and the element of
+//! a list or an array for each site.
 
 use super::chosen;
 use super::copies::{Base, Copies, Group, base};
@@ -29,7 +29,7 @@ pub(super) struct AtSites<'a> {
 }
 
 impl<'a> AtSites<'a> {
-    /// Those of a case.
+    /// Reads the sites of a case.
     pub(super) fn read(
         file: &File<'_>,
         top: &DeTable<'_>,
@@ -50,7 +50,7 @@ impl<'a> AtSites<'a> {
         })
     }
 
-    /// What a field of the card is a copy of.
+    /// The quantity and site that a field of the card is a copy of.
     pub(super) fn base(&self, field: &Field) -> Option<Base<'_>> {
         base(&self.copies, field)
     }
@@ -75,7 +75,7 @@ impl<'a> AtSites<'a> {
 
     /// At which of its sites a field is.
     pub(super) fn at<'f>(&self, field: &'f Field, base: &Base<'_>) -> Site<'f> {
-        // Momenta have no value where their configuration is given; a list may leave these sites out.
+        // A momentum is undefined at sites whose configuration is given; a list may omit these sites.
         let group = self.group(base.of);
         let (every, left) = group.map_or((&[][..], &[][..]), |g| (&g.sites[..], &g.moving[..]));
         let place = |list: &[usize]| list.binary_search(&base.site).unwrap_or(0);
@@ -88,7 +88,7 @@ impl<'a> AtSites<'a> {
     }
 }
 
-/// What an expression holds: the numbers of the case, and at a site its number.
+/// The names that an expression can read: the numbers of the case, and at a site its number.
 pub(super) struct Here<'a> {
     pub scope: &'a Scope,
     pub sites: Option<&'a AtSites<'a>>,

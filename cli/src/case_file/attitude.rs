@@ -9,18 +9,18 @@ use clebsch::groups::Rotation;
 use clebsch::nalgebra::{DMatrix, Matrix3};
 use toml::de::DeValue;
 
-/// How far the norm of a quaternion may be from 1, and the products of columns of a matrix from those of unit vectors. Six digits
-/// typed by hand pass, and matrices of single precision; a quaternion that was never normalised does not.
+/// Tolerance for the norm of a quaternion and for the products of the columns of a rotation matrix. Six digits
+/// typed by hand and matrices of single precision pass. A quaternion that was never normalised does not.
 const ALLOWED: f64 = 1e-6;
 
-/// What products of columns differ by from those of unit vectors in a matrix that is printed in full.
+/// Error of the products of columns in a rotation matrix that is printed with all digits.
 const ROUNDING: f64 = 1e-12;
 
-/// What to write for a rotation in space.
+/// The accepted forms of a rotation in space, for messages.
 const OF_SPACE: &str = "a 3x3 matrix [[..], [..], [..]], a unit quaternion [w, x, y, z], { axis = [..], angle = .. }, \
                         { euler = \"zxz\", angles = [..] } or { from = [..], to = [..] }";
 
-/// What to write for a field, in words.
+/// The accepted forms of a value of `field`, for messages.
 pub(super) fn expected(field: &Field) -> String {
     let n = field.rows;
     match (field.kind, n) {
@@ -52,7 +52,7 @@ pub(super) fn numbers(
     }
 }
 
-/// The same from the numbers of an array: a matrix, or a quaternion.
+/// Converts the numbers of an array: a matrix, or a quaternion.
 pub(super) fn of_array(
     field: &Field,
     numbers: &[f64],
@@ -72,7 +72,7 @@ pub(crate) fn is_key_of_rotation(key: &str) -> bool {
     tables::keys().any(|known| known == key)
 }
 
-/// Whether a value stands for an element by a table of its own.
+/// Whether a value is a table that describes a rotation or a rigid motion.
 pub(super) fn is_table(value: &DeValue<'_>) -> bool {
     value.as_table().is_some_and(|table| {
         let own = tables::keys().chain(["rotation", "position"]);
@@ -80,7 +80,7 @@ pub(super) fn is_table(value: &DeValue<'_>) -> bool {
     })
 }
 
-/// Whether a 4 x 4 matrix is that of the left multiplication by a quaternion, rather than a list of four quaternions.
+/// Whether a 4 x 4 matrix is a left multiplication by a quaternion, rather than a list of four quaternions.
 pub(super) fn is_left_factor(value: &DeValue<'_>) -> bool {
     let matrix = Kind::Matrix.field("", [4, 4], "");
     let Ok(all) = entries(&matrix, value, &Nameless) else {
@@ -103,7 +103,7 @@ fn rotation(field: &Field, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Matr
     }
 }
 
-/// The rotation of a quaternion, which is made a unit one.
+/// The rotation of a quaternion, which is normalised.
 fn unit(q: &[f64]) -> Result<Rotation, String> {
     let &[w, x, y, z] = q else {
         return Err(format!(
@@ -112,7 +112,7 @@ fn unit(q: &[f64]) -> Result<Rotation, String> {
         ));
     };
     let norm = (w * w + x * x + y * y + z * z).sqrt();
-    // Written so that NaN is refused.
+    // A NaN norm fails this comparison.
     let near = (norm - 1.0).abs() <= ALLOWED;
     if !near {
         return Err(format!(
@@ -141,7 +141,7 @@ fn plane(field: &Field, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Vec<f64
     Ok(vec![cosine, -sine, sine, cosine])
 }
 
-/// A unit quaternion, by its four numbers or the matrix of its left multiplication, as the field asks.
+/// A unit quaternion, given by its four numbers or by a matrix, in the form that the field requires.
 fn quaternion(field: &Field, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Vec<f64>, String> {
     if let Shape::Matrix(4, 4) = shape(value) {
         let matrix = Kind::Matrix.field("", [4, 4], "");
@@ -225,7 +225,8 @@ fn motion(
     Ok(assembled(&turn, &place))
 }
 
-/// The homogeneous matrix of `n` dimensions whose rotation was rounded. What is wrong with its last row the model says.
+/// The homogeneous matrix in `n` dimensions with its rotation made orthonormal. The last row is copied; the
+/// model checks it.
 fn homogeneous(all: &[f64], n: usize) -> Vec<f64> {
     let at = |i: usize, j: usize| all.get(i * (n + 1) + j).copied().unwrap_or_default();
     let block = (0..n * n).map(|k| at(k / n, k % n)).collect();
@@ -250,7 +251,8 @@ fn by_rows(m: &Matrix3<f64>) -> Vec<f64> {
     m.transpose().iter().copied().collect()
 }
 
-/// The nearest rotation to a matrix that was rounded; others are left to the model, which says what is wrong with them.
+/// The nearest rotation, if a matrix is orthonormal up to rounding. Other matrices are unchanged; the model
+/// reports them.
 fn orthonormal(all: Vec<f64>, n: usize) -> Vec<f64> {
     let mut m = DMatrix::from_row_slice(n, n, &all);
     let defect = |m: &DMatrix<f64>| (m.transpose() * m - DMatrix::identity(n, n)).amax();

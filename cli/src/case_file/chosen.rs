@@ -1,5 +1,5 @@
-//! How many sites a case has and how its line ends: its tables `[labels]` and `[ends]`. Takes the text; gives the choice, or what
-//! is wrong with it.
+//! The number of sites of a case and the ends of its chain: its tables `[labels]` and `[ends]`. Takes the text;
+//! gives the choice, or an error.
 
 use super::location::File;
 use super::scope::Scope;
@@ -13,13 +13,13 @@ use clebsch_core::{document, pipeline};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Number of sites where no case says one.
+/// The default number of sites.
 const SITES: usize = 8;
 
-/// Number of particles of a fluid where no case says one.
+/// The default number of particles of a fluid.
 const PARTICLES: usize = 64;
 
-/// What holds where no case says otherwise.
+/// The choice that applies if a case sets nothing.
 pub(crate) fn default_choice(stated: &Stated) -> Option<Choice> {
     let shortest = pipeline::representative(&stated.model, &stated.lattice).ok()?;
     let mut choice = document::default_choice(&stated.lattice, shortest);
@@ -34,18 +34,18 @@ pub(crate) fn default_choice(stated: &Stated) -> Option<Choice> {
     Some(choice)
 }
 
-/// The choice that a case makes in its tables `[labels]` and `[ends]`; none for a model that cannot be written out, which its
-/// derivation tells of, with the place in its text.
+/// The choice that a case makes in its tables `[labels]` and `[ends]`. `None` if the model cannot be expanded;
+/// its derivation reports the error, with the position in its text.
 ///
 /// # Errors
-/// Usage: no TOML, an unknown label or end condition, a number of sites that is none.
+/// Usage: the text is not TOML, a label or an end condition is unknown, or a number of sites is invalid.
 pub(crate) fn choice(name: &str, text: &str, stated: &Stated) -> Result<Option<Choice>, Failure> {
     let file = File::new(name, text);
     let document = file.document()?;
     of_case(&file, document.get_ref(), stated)
 }
 
-/// The same of a case that is being read.
+/// The choice of a case that is being read.
 pub(super) fn of_case(
     file: &File<'_>,
     top: &DeTable<'_>,
@@ -79,7 +79,7 @@ pub(super) fn of_case(
         let wrong =
             |message: &str| file.wrong(Some(&value.span()), &format!("labels.{asked}: {message}"));
         let count = match value.get_ref() {
-            // Of a grid its cells are given.
+            // The domain gives the number of cells of a grid.
             _ if own.is_some_and(|l| l.grid) => space.as_ref().map(Space::count),
             other => {
                 let count = scope.whole(other).map_err(|why| wrong(&why))?;
@@ -109,8 +109,8 @@ pub(super) fn of_case(
     Ok(Some(choice))
 }
 
-/// Refuses a case that does not say how the line ends and gives a parameter of an end condition, or of the ring, that is no
-/// default: it would be left aside.
+/// Rejects a case that gives a parameter of an end condition, or of the ring, without choosing that end
+/// condition. clebsch would ignore such a parameter. Parameters of the default ends are accepted.
 fn ends_unchosen(
     file: &File<'_>,
     stated: &Stated,

@@ -1,4 +1,4 @@
-//! Which sites the quantities of a lattice have, and at which of them they are given.
+//! The sites of each quantity of a chain, and the sites at which its value is given.
 //! Takes a model with labels and a choice; gives the sites of each quantity, in order.
 
 use super::stated::Stated;
@@ -9,7 +9,8 @@ use clebsch_core::syntax::ast::Statement;
 use std::borrow::Cow;
 use std::collections::HashSet;
 
-/// Most copies for which the lattice is written out to find them: there every statement is heeded.
+/// The largest number of copies for which the model is expanded to find them. The expansion takes every
+/// statement into account.
 const WRITTEN_OUT: usize = 4096;
 
 /// The sites of one quantity.
@@ -21,7 +22,7 @@ pub(crate) struct Group {
     pub label: Option<usize>,
     /// Its sites.
     pub sites: Vec<usize>,
-    /// Those at which it is not given.
+    /// The sites at which the value is not given.
     pub moving: Vec<usize>,
 }
 
@@ -34,12 +35,12 @@ pub(crate) struct Copies {
     pub of_ends: Vec<String>,
     /// The line.
     pub line: Option<usize>,
-    /// Of a configuration besides which nothing moves: its name in ASCII, its site, its label.
+    /// If only one configuration moves: its name in ASCII, its site, its label.
     pub only: Option<(String, usize, usize)>,
 }
 
 impl Copies {
-    /// Those of a choice; `None` where the lattice cannot be written out.
+    /// The copies for a choice; `None` if the model cannot be expanded.
     pub(crate) fn of(stated: &Stated, choice: &Choice) -> Option<Self> {
         let lattice = &stated.lattice;
         let counts = lattice.quantities.iter();
@@ -94,7 +95,7 @@ impl Copies {
         }
     }
 
-    /// The same without writing anything out.
+    /// The copies without expanding the model.
     fn counted(lattice: &Lattice, choice: &Choice) -> Self {
         let mut of_ends = Vec::new();
         let mut held: Vec<(&str, bool)> = Vec::new();
@@ -141,20 +142,20 @@ pub(crate) struct Base<'a> {
     pub label: usize,
     /// Whether it belongs to an end condition.
     pub end: bool,
-    /// Whether it is a copy that is given at an end.
+    /// Whether its value is given at an end.
     pub given: bool,
-    /// The name in ASCII of the quantity that it is, or whose momentum it is.
+    /// The ASCII name of the quantity. For a momentum, the name of its configuration.
     pub of: &'a str,
     /// Whether it is a momentum of that.
     pub is_momentum: bool,
 }
 
-/// What a field of a card is a copy of.
+/// The quantity and site that a field of a card is a copy of.
 pub(crate) fn base<'a>(copies: &'a Copies, field: &Field) -> Option<Base<'a>> {
     if let Some((of, site, label)) = &copies.only
         && ["momentum", "body_momentum", "spatial_momentum"].contains(&field.ascii)
     {
-        // Of a single configuration the momentum is named without it.
+        // If there is only one configuration, the name of the momentum omits it.
         return Some(Base {
             key: format!("{}_{of}", field.ascii).into(),
             site: *site,
@@ -193,7 +194,7 @@ pub(crate) fn base<'a>(copies: &'a Copies, field: &Field) -> Option<Base<'a>> {
     })
 }
 
-/// The configuration of a lattice on which nothing else moves.
+/// The configuration of a model, if only one moves.
 fn the_only_one(lattice: &Lattice, unfolded: &ExpandedModel) -> Option<(String, usize, usize)> {
     let mut moving = unfolded.copies.iter().filter(|c| {
         let own = lattice.find(&c.of);

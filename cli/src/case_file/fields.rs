@@ -1,5 +1,5 @@
-//! The tables `[parameters]` and `[initial]` of a case. Takes a table and the fields of a card; gives the numbers of each field, in
-//! order, and how configurations start whose momenta are not given.
+//! The tables `[parameters]` and `[initial]` of a case. Takes a table and the fields of a card; gives the
+//! numbers of each field, in order, and the velocities of configurations without a given momentum.
 
 use super::at_sites::AtSites;
 use super::copies::Base;
@@ -23,11 +23,11 @@ pub(super) struct Fields<'a> {
     pub file: &'a File<'a>,
     pub scope: &'a Scope,
     pub arrays: Arrays,
-    /// Of a model with labels.
+    /// The sites, if the model has labels.
     pub sites: Option<&'a AtSites<'a>>,
     /// The lines of keys.
     pub lines: BTreeMap<String, usize>,
-    /// What is given by velocities, and what rests.
+    /// The velocities that the case gives, and the configurations that start at rest.
     pub motion: Motion,
     /// Keys of each table that gave a value.
     pub seen: BTreeMap<&'static str, HashSet<String>>,
@@ -95,7 +95,7 @@ impl Fields<'_> {
                 self.velocities(table, index, base)?;
                 return Ok(vec![0.0; field.count()]);
             }
-            // A slip of the keyboard comes first.
+            // A misspelt key is reported first.
             if base.is_none() {
                 self.known(table)?;
             }
@@ -121,7 +121,7 @@ impl Fields<'_> {
         Ok(numbers)
     }
 
-    /// What is wrong if a field is given twice: by its inertia too, or a momentum by a velocity too.
+    /// The failure if a field is given twice: also by its inertia, or a momentum also by a velocity.
     fn second(
         &self,
         table: &Table<'_, '_>,
@@ -140,7 +140,7 @@ impl Fields<'_> {
             return None;
         }
         let velocities = table.ways(index, base).filter_map(|(_, _, keys)| {
-            // One site may have a momentum of its own among velocities.
+            // One site may have a momentum although the other sites have velocities.
             let keys = keys.into_iter().flatten();
             table.find(keys.filter(|own| !own.of_sites || key.of_sites), false)
         });
@@ -152,7 +152,7 @@ impl Fields<'_> {
         Some(self.file.wrong(Some(&other.value.span()), &message))
     }
 
-    /// The velocities of a configuration whose momentum is not given; without any it rests.
+    /// The velocities of a configuration without a given momentum. Without velocities it starts at rest.
     fn velocities(
         &mut self,
         table: &Table<'_, '_>,
@@ -242,7 +242,8 @@ impl Fields<'_> {
         }
     }
 
-    /// Keeps the line of a value: under the name of its field, or of values at all sites once under that of their quantity.
+    /// Stores the line of a value under the name of its field. Values at all sites share one entry, under the
+    /// name of their quantity.
     fn keep_line(&mut self, table: &'static str, field: &'static str, line: usize, of_sites: bool) {
         let quantity = quantity_of(field).filter(|_| of_sites);
         if quantity.is_none_or(|quantity| self.quantities.insert((table, quantity))) {

@@ -1,4 +1,5 @@
-//! Values of a fluid at its particles and nodes: places on a lattice, depths, velocities, expressions of the place.
+//! Values of a fluid at its particles and nodes: positions on a lattice, depths, velocities, expressions in the
+//! position.
 //! Takes a case; gives the numbers of every quantity at all of its sites.
 
 mod expressions;
@@ -35,11 +36,11 @@ pub(super) struct Column {
     line: usize,
 }
 
-/// All of them.
+/// All values of a fluid.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Fluid {
     columns: BTreeMap<String, Column>,
-    /// What belongs to no site, by name.
+    /// The quantities without a site, by name.
     whole: BTreeMap<String, Vec<f64>>,
     /// Keys that were read.
     used: HashSet<String>,
@@ -52,7 +53,7 @@ struct Reader<'a> {
     choice: &'a Choice,
     space: &'a Space,
     scope: Scope,
-    /// Where the nodes of the grid are, and their weights.
+    /// The positions of the nodes of the grid, and their weights.
     nodes: (Vec<Vec<f64>>, Vec<f64>),
     /// Meshes at the particles, by number, once an expression takes them.
     meshes: RefCell<BTreeMap<usize, Rc<AtParticles>>>,
@@ -60,7 +61,7 @@ struct Reader<'a> {
     fluid: Fluid,
 }
 
-/// What is wrong with a value, and where it stands if that is a part of it.
+/// A mistake in a value, with its range in the text if only a part of the value is wrong.
 struct Wrong {
     why: String,
     at: Option<Range<usize>>,
@@ -84,7 +85,7 @@ impl From<Fault> for Wrong {
 type Given<'a, 'i> = Option<&'a Spanned<DeValue<'i>>>;
 
 impl Fluid {
-    /// That of a case; nothing for models that are no fluids.
+    /// Reads the fluid of a case; `None` if the model is not a fluid.
     pub(super) fn read(
         file: &File<'_>,
         top: &DeTable<'_>,
@@ -196,7 +197,7 @@ impl Reader<'_> {
         self.file.wrong(span.as_ref(), &format!("{key}: {message}"))
     }
 
-    /// The same of a part of a value.
+    /// The failure for a mistake in a part of a value.
     fn wrong_part(&self, key: &str, value: Given<'_, '_>, wrong: &Wrong) -> Failure {
         match &wrong.at {
             Some(span) => self
@@ -230,7 +231,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The first particle that starts beyond a wall: the reflections of a step are not meant for it.
+    /// The first particle that starts beyond a wall. Reflections assume that a particle starts inside.
     fn outside(&self, places: &[f64]) -> Option<String> {
         const ROUNDING: f64 = 1e-12;
         let d = self.space.lengths.len();
@@ -262,7 +263,8 @@ impl Reader<'_> {
         ))
     }
 
-    /// A field that is no place of particles; what is missing is told where the card is filled.
+    /// Reads a field other than the positions of particles. A missing field is reported later, when the card is
+    /// filled.
     fn beside_places(&mut self, q: &Quantity, value: Given<'_, '_>) -> Result<(), Failure> {
         let (Some(given), Some(_)) = (value, q.shape.components()) else {
             return Ok(());
@@ -315,7 +317,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The part of the domain that each particle has: the same for all, or its Voronoi cell.
+    /// The part of the domain that belongs to each particle: equal parts, or its Voronoi cell.
     #[allow(clippy::cast_precision_loss)]
     fn shares(&self, q: &Quantity, given: Option<&DeValue<'_>>) -> Result<Vec<f64>, String> {
         let count = self.count(q);
@@ -338,7 +340,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Momenta or velocities; what has neither rests. The momenta of velocities are computed once the card is filled.
+    /// Reads momenta or velocities. Without either the particles start at rest. Momenta are computed from
+    /// velocities later, when the card is filled.
     fn motion(&mut self, q: &Quantity, initial: Option<&DeTable<'_>>) -> Result<(), Failure> {
         let name = ascii(&q.name.text);
         for key in ["momentum", "velocity"].map(|word| format!("{word}_{name}")) {
@@ -353,7 +356,7 @@ impl Reader<'_> {
     }
 }
 
-/// Depths, if all of them are some.
+/// The depths, if all of them are positive.
 fn positive(depths: Vec<f64>) -> Result<Vec<f64>, String> {
     match depths.iter().position(|depth| *depth <= 0.0) {
         None => Ok(depths),

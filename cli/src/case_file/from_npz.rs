@@ -1,5 +1,5 @@
-//! Values of a case from an array of a file: `q = { npz = "out/trajectory.npz", key = "q", sample = -1 }`. Takes the table and what
-//! the quantity is; gives its numbers at each of its sites, or what is wrong with the table and where that stands.
+//! Values of a case from an array of a file: `q = { npz = "out/trajectory.npz", key = "q", sample = -1 }`.
+//! Takes the table and the quantity; gives its numbers at each of its sites, or an error with its position.
 
 use super::archive::{Archive, Array};
 use super::location::File;
@@ -14,34 +14,34 @@ use std::rc::Rc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// What the table may hold.
+/// The keys that the table may contain.
 const KEYS: [&str; 3] = ["npz", "key", "sample"];
 
-/// Whether a value is such a table.
+/// Whether a value is a table with such keys.
 pub(super) fn is_meant(value: &DeValue<'_>) -> bool {
     let table = value.as_table();
     table.is_some_and(|t| KEYS.iter().any(|key| t.contains_key(*key)))
 }
 
-/// What a quantity takes of an array.
+/// The shapes and sites that a quantity accepts from an array.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wanted<'a> {
-    /// The shapes that a value may have.
+    /// The accepted shapes of a value.
     pub values: &'a [Vec<usize>],
-    /// The sites that it has; none of what belongs to no site.
+    /// The sites of the quantity, if it has sites.
     pub sites: Option<&'a [usize]>,
-    /// Those of them whose values may stand alone, as momenta do where no end holds their configuration.
+    /// For momenta: the sites whose configuration no end gives. An array may contain only these sites.
     pub moving: Option<&'a [usize]>,
 }
 
-/// What is wrong, and where it stands.
+/// A mistake, and its range in the text.
 #[derive(Debug)]
 pub(super) struct Fault {
     pub why: String,
     pub at: Range<usize>,
 }
 
-/// The files of a case, each opened once, and what was taken from them.
+/// The files of a case, each opened once, and the values read from them.
 #[derive(Debug)]
 pub(super) struct Arrays {
     folder: PathBuf,
@@ -55,14 +55,14 @@ pub(super) struct Taken {
     numbers: Vec<f64>,
     /// The shape of a value.
     shape: Vec<usize>,
-    /// Where among the values each site has its own; none of what belongs to no site.
+    /// The index of the value of each site, if the quantity has sites.
     places: Option<BTreeMap<usize, usize>>,
     /// The array and its file, for messages.
     name: String,
 }
 
 impl Arrays {
-    /// Those of the case in a file: paths are relative to its folder.
+    /// The arrays of a case file. Paths are relative to its folder.
     pub(super) fn of(file: &File<'_>) -> Self {
         let folder = Path::new(file.name).parent();
         Arrays {
@@ -72,7 +72,7 @@ impl Arrays {
         }
     }
 
-    /// The values that a table asks for; `named` is the array where it names none.
+    /// The values that a table requests. If it names no array, the array is called `named`.
     pub(super) fn take(
         &self,
         value: &Spanned<DeValue<'_>>,
@@ -130,7 +130,7 @@ impl Arrays {
         };
         let named = key.unwrap_or(named);
         let array = archive.array(named).map_err(of_key)?;
-        // A run says of which sites its array is where some site has its value given.
+        // If the value at some site is given, the run lists the sites of its array in a second array.
         let told = format!("sites_of_{named}");
         let told = match wanted.sites.is_some() && archive.has(&told) {
             true => Some(whole_numbers(&archive.array(&told).map_err(of_key)?)),
@@ -203,7 +203,7 @@ impl Arrays {
 }
 
 impl Taken {
-    /// The numbers of a site; those of all of what belongs to no site.
+    /// The numbers of a site. If the quantity has no sites, all its numbers.
     pub(super) fn at(&self, site: usize) -> Result<&[f64], String> {
         let Some(places) = &self.places else {
             return Ok(&self.numbers);
@@ -238,7 +238,7 @@ pub(super) fn shapes(field: &Field) -> Vec<Vec<usize>> {
     }
 }
 
-/// How an array is that of a quantity.
+/// How an array fits a quantity.
 struct Fit {
     /// How many samples there are, if any.
     samples: Option<usize>,
@@ -248,7 +248,8 @@ struct Fit {
     value: Vec<usize>,
 }
 
-/// The way to read an array of a shape; one without samples first, unless one is asked for.
+/// The way to read an array of a shape. Unless samples are requested, it tries to read the array without
+/// samples first.
 fn fit(shape: &[usize], wanted: Wanted<'_>, told: Option<&[usize]>, sampled: bool) -> Option<Fit> {
     let plain = |shape: &[usize], samples: Option<usize>| {
         wanted.values.iter().find_map(|value| {
@@ -275,13 +276,14 @@ fn fit(shape: &[usize], wanted: Wanted<'_>, told: Option<&[usize]>, sampled: boo
     };
     match sampled {
         true => with_samples().or_else(|| plain(shape, None)),
-        // A list of numbers may be meant for sites: that they are samples of one number is to be said.
+        // A list of numbers may be intended as values at sites, so it is not read as samples; the message
+        // explains this.
         false if wanted.sites.is_none() && shape.len() == 1 => plain(shape, None),
         false => plain(shape, None).or_else(with_samples),
     }
 }
 
-/// That an array has none of the shapes that are taken.
+/// The message for an array with none of the accepted shapes.
 fn misshapen(name: &str, array: &Array, wanted: Wanted<'_>, told: Option<&[usize]>) -> String {
     let mut counts: Vec<Option<usize>> = match (told, wanted.sites) {
         (Some(sites), _) | (None, Some(sites)) => vec![Some(sites.len())],
@@ -342,7 +344,7 @@ fn text<'a>(table: &'a DeTable<'_>, key: &str) -> Result<Option<&'a str>, Fault>
     })
 }
 
-/// A whole number of the table.
+/// An integer of the table.
 fn whole_number(value: &Spanned<DeValue<'_>>) -> Result<i64, Fault> {
     let own = match value.get_ref() {
         DeValue::Integer(n) => i64::from_str_radix(n.as_str(), n.radix()).ok(),
@@ -354,7 +356,7 @@ fn whole_number(value: &Spanned<DeValue<'_>>) -> Result<i64, Fault> {
     })
 }
 
-/// Sites, which are whole numbers.
+/// Sites, which are integers.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn whole_numbers(array: &Array) -> Vec<usize> {
     let count = array.shape.iter().product();

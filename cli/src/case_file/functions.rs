@@ -1,5 +1,6 @@
 //! Functions that a case gives: `[functions]` with `b = "0.1*cos(2*pi*x/Lx)"` for `given b(Vec<2>): Real = case;`.
-//! Takes the text of a model and a case; gives the text with the expressions in it, which the engine differentiates.
+//! Takes the text of a model and a case; gives the text with these expressions, which are differentiated like
+//! the others.
 
 use super::location::File;
 use super::space::Space;
@@ -19,11 +20,11 @@ use toml::de::DeValue;
 /// The table of a case.
 pub(super) const TABLE: &str = "functions";
 
-/// The text of a model with what its functions are, and where each of them stands in it.
+/// The text of a model with its functions filled in, and the position of each of them.
 pub(crate) struct Filled {
     /// The text.
     pub text: String,
-    /// Bytes of the text, and the key of the case that stands there.
+    /// Byte ranges of the text, each with the key of the case that provided it.
     put: Vec<(Range<usize>, String)>,
 }
 
@@ -35,7 +36,7 @@ impl Filled {
         }
     }
 
-    /// What is wrong of a function of the case: the first mistake that stands in one, told at its key.
+    /// The first error inside a function of the case, reported at the key of that function.
     pub(crate) fn wrong_in(&self, errors: &Errors, case: Option<(&str, &str)>) -> Option<Failure> {
         let (name, text) = case?;
         let (diagnostic, key) = errors.iter().find_map(|d| {
@@ -53,11 +54,11 @@ impl Filled {
     }
 }
 
-/// The text of a model with what its functions are: by the case in the file `case`, or by samples. Unchanged where the
-/// case gives none, or where the text does not read: what is wrong of it is told later.
+/// The text of a model with its functions filled in, from the case in the file `case` or from samples. The text
+/// is unchanged if the case gives no functions, or if the text does not parse; its errors are reported later.
 ///
 /// # Errors
-/// Usage: a function is missing, unknown, or no expression in its argument.
+/// Usage: a function is missing, unknown, or not an expression in its argument.
 pub(crate) fn put_in(text: &str, case: Option<(&str, &str)>) -> Result<Filled, Failure> {
     let Ok(model) = pipeline::parse_source(text) else {
         return Ok(Filled::unchanged(text));
@@ -211,7 +212,8 @@ fn with_lengths(text: &str, lengths: Option<&[f64]>) -> String {
     out
 }
 
-/// The text of the model with the expressions after the word `case`, from its end to its beginning, so that places before stay.
+/// The text of the model with the expressions inserted after the word `case`. It works backwards, so that
+/// earlier positions remain valid.
 fn replaced(text: &str, open: &[Open], written: &[Vec<String>]) -> Filled {
     let mut out = text.to_owned();
     let mut all: Vec<(usize, &str, String)> = open
@@ -238,7 +240,7 @@ fn replaced(text: &str, open: &[Open], written: &[Vec<String>]) -> Filled {
     }
 }
 
-/// Where the word `case` that begins at a line and a column ends, in bytes.
+/// The byte after the word `case` that starts at this line and column.
 fn after_word(text: &str, place: (usize, usize)) -> Option<usize> {
     let at = offset(text, place)?;
     text.get(at..)?.starts_with("case").then_some(at + 4)

@@ -1,5 +1,5 @@
-//! A body by its inertia, where the model asks for second moments: principal moments or the matrix
-//! I in the place of J. Takes a table of a case file; gives J with `I = tr(J) Id - J`.
+//! The inertia of a body instead of its second moments: principal moments, or the matrix I instead of J.
+//! Takes a table of a case file; gives J with `I = tr(J) Id - J`.
 
 use super::value::{Numbers, numbers};
 use crate::words::number;
@@ -7,8 +7,8 @@ use clebsch::card::{Field, Kind};
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// The key under which the inertia may stand beside the field's own: `I` for `J`, `I2` for `J2`.
-/// None where the field is no matrix of second moments, or has another letter.
+/// The key under which a case may give the inertia instead of the field: `I` for `J`, `I2` for `J2`. `None` if
+/// the field is not a matrix of second moments, or if `name` does not start with `J`.
 pub(super) fn key_of(field: &Field, name: &str) -> Option<String> {
     if field.kind != Kind::SecondMoments {
         return None;
@@ -27,7 +27,7 @@ pub(super) fn inside<'a, 'i>(
     inner.get("I").filter(|_| inner.len() == 1)
 }
 
-/// The inertia in the place of a field of second moments: a matrix, or its diagonal.
+/// The field of the inertia that replaces second moments: a matrix, or its diagonal.
 pub(super) fn field(field: &Field) -> Field {
     Field {
         kind: Kind::Diagonal,
@@ -35,7 +35,8 @@ pub(super) fn field(field: &Field) -> Field {
     }
 }
 
-/// Why no body in space has these principal moments; nothing of a matrix that is not diagonal.
+/// The reason why these principal moments are impossible for a body in space; `None` if the matrix is not
+/// diagonal.
 fn impossible(entries: &[f64], n: usize) -> Option<String> {
     let at = |i: usize| entries.get(i * n + i).copied().unwrap_or_default();
     let is_diagonal = entries
@@ -68,7 +69,7 @@ pub(super) fn second_moments(
     let inertia = self::field(field);
     let wanted = "expected the principal moments of inertia [a, b, c] or the matrix [[..], ..]";
     let entries = numbers(&inertia, value, of).map_err(|message| {
-        // What is said of one entry stands; of the whole, it is the inertia that was asked for.
+        // A message about a single entry is kept. A message about the whole value asks for the inertia instead.
         match message.split_once(", found ") {
             Some((_, found)) => format!("{wanted}, found {found}"),
             None => message,
@@ -77,7 +78,7 @@ pub(super) fn second_moments(
     of_entries(field, &entries)
 }
 
-/// The same of the entries of its matrix.
+/// J of an inertia given by the entries of its matrix.
 pub(super) fn of_entries(field: &Field, entries: &[f64]) -> Result<Vec<f64>, String> {
     let n = field.rows;
     for i in 0..n {

@@ -1,21 +1,22 @@
-//! Names of quantities at sites: `m_7` is the value of `m` at the site 7. Takes names; gives their parts, and the lines of a case
-//! where they are given.
+//! Names of quantities at sites: `m_7` is the value of `m` at site 7. Takes names; gives their parts, and their
+//! lines in a case.
 
 use std::collections::BTreeMap;
 
-/// The line of a value: its own, or that of its quantity at all sites (`parameters.m` of `parameters.m_7`).
+/// The line of a value. A value at a site may have the line of its quantity (`parameters.m` for
+/// `parameters.m_7`).
 pub(crate) fn line_of(lines: &BTreeMap<String, usize>, key: &str) -> Option<usize> {
     let found = lines.get(key).or_else(|| lines.get(quantity_of(key)?));
     found.copied()
 }
 
-/// The quantity of which a name is that of the value at a site: `m` of `m_7`.
+/// The quantity in the name of its value at a site: `m` of `m_7`.
 pub(crate) fn quantity_of(name: &str) -> Option<&str> {
     let (quantity, site) = name.rsplit_once('_')?;
     site.bytes().all(|b| b.is_ascii_digit()).then_some(quantity)
 }
 
-/// The same with the number of the site: `m` and 7 of `m_7`.
+/// The quantity and the number of the site: `m` and 7 of `m_7`.
 pub(crate) fn at_site(name: &str) -> Option<(&str, usize)> {
     let quantity = quantity_of(name)?;
     let site = name.strip_prefix(quantity)?.strip_prefix('_')?;

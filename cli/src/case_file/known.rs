@@ -1,4 +1,5 @@
-//! The keys that a table of a case may have. Takes a table; refuses a key that gives no field, with the one that is meant.
+//! The keys that a table of a case may contain. Takes a table; rejects a key without a field, and suggests the
+//! intended key.
 
 use super::at_sites::AtSites;
 use super::fields::Fields;
@@ -9,13 +10,13 @@ use crate::words::suggestion::{did_you_mean, slip};
 use std::collections::HashSet;
 
 impl Fields<'_> {
-    /// Refuses keys that no field has.
+    /// Rejects keys without a field.
     pub(super) fn known(&self, table: &Table<'_, '_>) -> Result<(), Failure> {
         let Some(values) = table.values else {
             return Ok(());
         };
-        // Of a configuration whose every copy is given nothing is initial, and of an alternative
-        // that is not chosen nothing is asked.
+        // Two more kinds of keys are accepted: in [initial], a configuration whose every copy is given; in
+        // [parameters], a parameter of an alternative that is not chosen.
         let is_left = |sites: &AtSites<'_>, key: &str| match table.name {
             "initial" => sites.group(key).is_some(),
             _ => sites.stated.of_other_ends(key),
@@ -54,7 +55,7 @@ impl Fields<'_> {
         self.file.known_keys(values, &known, &place, &otherwise)
     }
 
-    /// The keys that the fields of a table may have, in their order.
+    /// The keys of the fields of a table, in order.
     fn names(&self, table: &Table<'_, '_>) -> Vec<String> {
         let fluid = self.sites.and_then(|sites| sites.fluid.as_ref());
         let mut names: Vec<String> = fluid

@@ -1,5 +1,5 @@
-//! The sample case of a model with labels: a key for each quantity as stated, expressions in the label.
-//! Takes a card and the choice it was made for; gives the text of a case file.
+//! The sample case of a model with labels: a key for each quantity of the text, with expressions in the label.
+//! Takes a card and its choice; gives the text of a case file.
 
 use super::copies::{Base, Copies, base};
 use super::motion::elements;
@@ -77,7 +77,7 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
         for (at, field) in fields.iter().enumerate() {
             let base = base(&copies, field);
             let key = base.as_ref().map_or(field.ascii, |b| &*b.key);
-            // What is given at an end has its value among those of all sites.
+            // A value given at an end is an element of the list of all sites.
             if base.as_ref().is_some_and(|b| b.given) || told.iter().any(|t| t == key) {
                 continue;
             }
@@ -100,7 +100,7 @@ pub(crate) fn write_lattice(card: &Card, stated: &Stated, choice: &Choice, named
     text
 }
 
-/// How the line may end.
+/// Writes the possible end conditions.
 fn ends(text: &mut String, stated: &Stated, choice: &Choice) {
     let lattice = &stated.lattice;
     let Some(line) = lattice.line_label() else {
@@ -132,7 +132,7 @@ fn ends(text: &mut String, stated: &Stated, choice: &Choice) {
     );
 }
 
-/// A sample value, as TOML; `turned` where momenta of square shape are skew.
+/// A sample value, as TOML. If `turned`, square momenta are skew.
 fn sample(
     stated: &Stated,
     field: &Field,

@@ -1,4 +1,4 @@
-//! Where in a case file a key stands, so that every message can name file, line and field.
+//! The positions of keys in a case file, so that every message can name file, line and field.
 //! Takes the file's name and text; gives lines and placed messages.
 
 use super::motion::Motion;
@@ -22,7 +22,7 @@ pub struct Located {
     pub file: String,
     /// Line, from 1, of each key such as `parameters.J`.
     pub lines: BTreeMap<String, usize>,
-    /// How what is not given by momenta starts.
+    /// The velocities of the start, and the configurations at rest.
     pub(crate) motion: Motion,
     /// How many sites a model with labels has, and how its line ends.
     pub(crate) choice: Option<Choice>,
@@ -37,7 +37,7 @@ pub(super) struct File<'a> {
 }
 
 impl<'a> File<'a> {
-    /// A file as it is.
+    /// A file with this name and text.
     pub fn new(name: &'a str, text: &'a str) -> File<'a> {
         File {
             name,
@@ -46,10 +46,10 @@ impl<'a> File<'a> {
         }
     }
 
-    /// What it holds.
+    /// The parsed document.
     ///
     /// # Errors
-    /// Usage: it is no TOML, with the line.
+    /// Usage: the text is not TOML; the message has the line.
     pub fn document(&self) -> Result<Spanned<DeTable<'a>>, Failure> {
         DeTable::parse(self.text).map_err(|error| {
             let span = error.span();
@@ -66,10 +66,10 @@ impl<'a> File<'a> {
         1 + self.ends.partition_point(|end| *end < span.start)
     }
 
-    /// The table `name`; `None` when the file has none.
+    /// The table `name`; `None` if the file does not contain it.
     ///
     /// # Errors
-    /// Usage: what has this name is not a table.
+    /// Usage: the value with this name is not a table.
     pub fn table<'t, 'i>(
         &self,
         top: &'t DeTable<'i>,
@@ -90,10 +90,10 @@ impl<'a> File<'a> {
         }
     }
 
-    /// Refuses a key of a table that is not among those that are known; `otherwise` may say what is meant.
+    /// Rejects a key of a table that is not in `known`. `otherwise` may suggest the intended key.
     ///
     /// # Errors
-    /// Usage: the first such key.
+    /// Usage: the first unknown key.
     pub fn known_keys(
         &self,
         table: &DeTable<'_>,

@@ -1,6 +1,6 @@
-//! Cases as TOML files: what `clebsch case` prints and `clebsch run --case FILE.toml` reads.
-//! Keys: `model`, `name`, `doc`, `h`, `steps`, tables `[parameters]`, `[initial]`, `[bounds]`,
-//! and of models with labels `[labels]` and `[ends]`.
+//! Cases as TOML files: the output of `clebsch case` and the input of `clebsch run --case FILE.toml`. Keys:
+//! `model`, `name`, `doc`, `h`, `steps`, tables `[parameters]`, `[initial]`, `[bounds]`, and for models with
+//! labels `[labels]` and `[ends]`.
 
 pub(crate) mod archive;
 mod at_sites;

@@ -1,5 +1,5 @@
-//! The motion with which a case starts, where it is not given by momenta: velocities, or nothing, which is rest. Takes them by the
-//! fields of a card; puts the momenta that the action gives to them into the case.
+//! The initial motion of a case without momenta: velocities, or rest. Takes the velocities by the fields of a
+//! card; computes the momenta from the action and stores them in the case.
 
 use super::keys::at_site;
 use super::velocity::{Way, momentum_of, suffix};
@@ -15,13 +15,13 @@ use clebsch_core::syntax::ast::Model;
 use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap};
 
-/// Most momenta of rest that a reader is told of.
+/// The largest number of momenta at rest that are reported.
 const MOST_TOLD: usize = 4;
 
 /// A velocity that the case gives.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
-    /// The field of the momentum, by its place.
+    /// The index of the momentum's field.
     pub momentum: usize,
     pub way: Way,
     /// The key as the case has it.
@@ -34,13 +34,13 @@ pub(super) struct Start {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Motion {
     pub(super) given: Vec<Start>,
-    /// The momenta of what rests, by their places.
+    /// The indices of the momenta whose configurations start at rest.
     pub(super) resting: Vec<usize>,
-    /// What is told of a configuration that was moved onto its constraints.
+    /// The report, if a configuration was moved onto its constraints.
     onto: Option<String>,
 }
 
-/// What is wrong with a velocity.
+/// A velocity that cannot be used, with the reason.
 pub(crate) struct Wrong {
     pub key: String,
     pub line: usize,
@@ -82,7 +82,7 @@ impl Motion {
                 }
                 Ok(())
             }
-            // What rests has no momentum, but where the action has terms linear in velocities.
+            // A configuration at rest has momentum zero, unless the action has terms linear in velocities.
             Err(_) if self.given.is_empty() => Ok(()),
             Err(NoMomentum::Lost(name)) => {
                 let zero = self.zero(card, choice, case, &name);
@@ -129,13 +129,13 @@ impl Motion {
         Ok(each.collect())
     }
 
-    /// The momenta that are not given.
+    /// The momenta that the case does not give.
     fn asked(&self) -> impl Iterator<Item = usize> {
         let given = self.given.iter().map(|start| start.momentum);
         given.chain(self.resting.iter().copied())
     }
 
-    /// The parameter that is 0 and without which a configuration has no kinetic energy.
+    /// The parameter that is 0 and thereby removes the kinetic energy of a configuration.
     fn zero(
         &self,
         card: &Card,
@@ -205,7 +205,8 @@ impl Motion {
         }
     }
 
-    /// The velocities that a case gives by a name, at one site or at all, by their places here; and what stands there.
+    /// The indices of the velocities that a case gives under a name, at one site or at all sites, and the field
+    /// of one of them.
     pub(crate) fn named(&self, name: &str, card: &Card) -> Option<(Vec<usize>, Field)> {
         let of = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
             let all = self.given.iter().enumerate();
@@ -230,8 +231,8 @@ impl Motion {
         own.map(|start| start.key.as_str())
     }
 
-    /// Gives a velocity in the place of the momentum that the case gives; none if `name` is not the key of a velocity, or if
-    /// the case gives this one already.
+    /// Replaces the momentum that the case gives by a velocity. `None` if `name` is not the key of a velocity,
+    /// or if the case already gives this velocity.
     pub(crate) fn give(
         &mut self,
         name: &str,
@@ -271,12 +272,12 @@ impl Motion {
         }
     }
 
-    /// Says that a momentum is given after all.
+    /// Records that a momentum is given.
     pub(crate) fn gives(&mut self, momentum: usize) {
         self.resting.retain(|at| *at != momentum);
     }
 
-    /// What a reader is told of the momenta.
+    /// The lines about momenta that a run prints.
     pub(crate) fn told(&self, card: &Card, case: &Case) -> Vec<String> {
         let mut out: Vec<Told<'_>> = Vec::new();
         for start in &self.given {
@@ -331,7 +332,7 @@ impl Motion {
         let resting = self.resting.iter().filter_map(|at| {
             let numbers = case.initial.get(*at)?;
             let moves = numbers.iter().any(|x| *x != 0.0);
-            // Of many sites one tells it.
+            // Only nonzero momenta are listed here; the lines about zero momenta are above.
             let field = card.initial.get(*at).filter(|_| moves)?;
             Some(format!(
                 "initial {} of rest: {}",
@@ -347,7 +348,7 @@ impl Motion {
     }
 }
 
-/// What is said of a velocity that no momentum knows.
+/// The message for a velocity on which its momentum does not depend.
 fn lost(card: &Card, name: &str, momentum: &str) -> String {
     let own = card.initial.iter().find(|f| f.name == name);
     let quantity = quantity(own.map_or(name, |f| f.ascii));
@@ -367,7 +368,8 @@ fn lost(card: &Card, name: &str, momentum: &str) -> String {
     )
 }
 
-/// The velocities that a key stands for: the momentum that each replaces, its key with the site, and how many numbers it has.
+/// The velocities that a key names. For each: the momentum that it replaces, its key with the site, and its
+/// number of entries.
 fn velocities(name: &str, card: &Card) -> Vec<(usize, Way, String, usize)> {
     let mut places: Vec<(usize, usize)> = elements(card.initial).into_iter().collect();
     places.sort_unstable();
@@ -386,12 +388,13 @@ fn velocities(name: &str, card: &Card) -> Vec<(usize, Way, String, usize)> {
     found
 }
 
-/// Whether a key is that of a velocity of the model.
+/// Whether a key names a velocity of the model.
 pub(crate) fn is_velocity(name: &str, card: &Card) -> bool {
     !velocities(name, card).is_empty()
 }
 
-/// Whether a configuration takes both: a rigid motion has the rate of its position beside an angular velocity.
+/// Whether a configuration has both velocities: a rigid motion has the rate of its position and an angular
+/// velocity.
 fn is_beside(a: Way, b: Way) -> bool {
     (a == Way::Rate) != (b == Way::Rate)
 }
@@ -423,7 +426,7 @@ fn list(numbers: &[f64]) -> String {
     }
 }
 
-/// The configuration of each momentum, by their places.
+/// The configuration of each momentum, as indices of fields.
 pub(super) fn elements(fields: &[Field]) -> HashMap<usize, usize> {
     let places: HashMap<&str, usize> = fields
         .iter()
@@ -444,10 +447,11 @@ pub(super) fn elements(fields: &[Field]) -> HashMap<usize, usize> {
     each.collect()
 }
 
-/// A statement, its sizes by name, and what a case adds to it.
+/// A model, its sizes by name, and the data of a case.
 pub(crate) type Statement = (Model, Vec<(String, usize)>, Setup);
 
-/// The statement of a case, its sizes, and what the case adds to it, with states of these fields; none if its text is not at hand.
+/// The model of a case, its sizes, and the data of the case, with these fields as state. `None` if its text is
+/// unavailable.
 pub(crate) fn statement(
     card: &Card,
     choice: Option<&Choice>,
@@ -469,7 +473,7 @@ pub(crate) fn statement(
 }
 
 thread_local! {
-    /// The model that this thread parsed last: the cases of a sweep all state the same one.
+    /// The model that this thread parsed last. All cases of a sweep have the same model.
     static PARSED: RefCell<Option<(&'static str, Model)>> = const { RefCell::new(None) };
 }
 
@@ -489,14 +493,15 @@ fn parsed(source: &'static str) -> Option<Model> {
     Some(model)
 }
 
-/// What evaluates the action of a case.
+/// The Legendre transform of a case, which evaluates its action.
 fn legendre(card: &Card, choice: Option<&Choice>, case: &Case) -> Result<Legendre, String> {
     let found = statement(card, choice, case, card.initial);
     let (model, sizes, setup) = found.ok_or_else(|| "its text is not at hand".to_owned())?;
     Legendre::new(&model, &sizes, setup)
 }
 
-/// Moves a configuration onto its constraints where digits that were left out take it off them; what is told of it.
+/// Moves a configuration onto its constraints if its digits were rounded too far to satisfy them. Returns the
+/// report.
 fn onto(card: &Card, choice: Option<&Choice>, case: &mut Case) -> Option<String> {
     // Cases of models without constraints are not evaluated.
     if !card.source.contains("hold") {
@@ -517,7 +522,7 @@ fn onto(card: &Card, choice: Option<&Choice>, case: &mut Case) -> Option<String>
     ))
 }
 
-/// Where the action of a start is not a number, if that is found.
+/// The part of the action that is undefined at the start, if it can be found.
 pub(crate) fn undefined(card: &Card, choice: Option<&Choice>, case: &Case) -> Option<Undefined> {
     let (model, sizes, setup) = statement(card, choice, case, card.initial)?;
     let node: Vec<f64> = case.initial.iter().flatten().copied().collect();

@@ -1,9 +1,9 @@
-//! The values of names in expressions of a case. Takes an expression and what knows names; gives its value.
+//! The values of names in expressions of a case. Takes an expression and known names; gives its value.
 
 use clebsch_core::lattice::value::SiteData;
 use std::rc::Rc;
 
-/// What expressions hold.
+/// The names that an expression can read.
 pub(super) trait Names {
     /// The value of a name.
     fn number(&self, name: &str) -> Option<f64>;

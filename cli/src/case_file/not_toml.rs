@@ -1,5 +1,5 @@
-//! Values of other languages in a case that is no TOML: `2*pi**2`, `(3.0, 0.0)`, `None`. Takes the text and where TOML stopped;
-//! gives what to write.
+//! Values in the notation of other languages in a case that is not TOML: `2*pi**2`, `(3.0, 0.0)`, `None`.
+//! Takes the text and the position at which TOML stopped; gives the correct notation.
 
 use crate::words::plain::shown;
 use clebsch_core::lattice::value::translated;
@@ -9,7 +9,7 @@ use toml::de::DeValue;
 /// Words for no value at all.
 const NOTHING: [&str; 5] = ["None", "null", "nil", "NULL", "NaN"];
 
-/// What to write for the value at which TOML stopped; nothing if it is none of these.
+/// The correct notation for the value at which TOML stopped; `None` if the value is of none of these kinds.
 pub(super) fn instead(text: &str, span: &Range<usize>) -> Option<String> {
     let start = text.get(..span.start)?.rfind('\n').map_or(0, |at| at + 1);
     let line = text.get(start..)?.lines().next()?;
@@ -18,7 +18,7 @@ pub(super) fn instead(text: &str, span: &Range<usize>) -> Option<String> {
     if let Some(list) = list(whole) {
         return Some(format!("write {list}"));
     }
-    // An entry of a list by itself, else the whole value.
+    // First the entry of a list, then the whole value.
     let offset = start + key.len() + 1;
     let entry = span
         .start
@@ -33,7 +33,7 @@ fn one(value: &str) -> Option<String> {
         return Some(format!("expected a number, found `{value}`"));
     }
     let is_quoted = value.starts_with(['"', '\'']) || value.is_empty();
-    // Where the value itself is TOML, something else is wrong.
+    // If the value itself is TOML, the error has another cause.
     if is_quoted || DeValue::parse(value).is_ok() {
         return None;
     }
@@ -62,7 +62,7 @@ fn list(value: &str) -> Option<String> {
     is_list.then(|| format!("[{}]", shown(inside)))
 }
 
-/// The entry of a list that a place is in.
+/// The entry of a list that contains a position.
 fn entry(value: &str, at: usize) -> Option<&str> {
     let separators = ['[', ']', ','];
     let start = value.get(..at)?.rfind(separators).map_or(0, |at| at + 1);

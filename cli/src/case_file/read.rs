@@ -1,5 +1,5 @@
-//! Reads a case from a TOML file, for the model whose card is given.
-//! Takes the text; gives the case with the lines of its keys, or the first thing wrong with it.
+//! Reads a case from a TOML file, for the model of a card.
+//! Takes the text; gives the case with the lines of its keys, or the first error.
 
 use super::at_sites::AtSites;
 use super::fields::Fields;
@@ -33,8 +33,8 @@ const KEYS: [&str; 8] = [
 /// Reads the case in `text`, which came from the file `name`, for the model of `card`.
 ///
 /// # Errors
-/// Usage: no TOML, another model, an unknown, missing, mistyped or misshapen value. The message
-/// names file, line and key.
+/// Usage: the text is not TOML or names another model, or a value is unknown, missing, mistyped or misshapen.
+/// The message has file, line and key.
 pub fn read(name: &str, text: &str, card: &Card) -> Result<Located, Failure> {
     let located = read_of(name, text, card, None)?;
     match located.case.steps {
@@ -49,7 +49,7 @@ pub(crate) fn no_steps(name: &str) -> Failure {
     Failure::Usage(format!("{}: {message}", shown(name)))
 }
 
-/// The same of a case that may leave the number of steps to an option, which is 0 then; with the statement of a model that has labels.
+/// Reads a case that may omit the number of steps, which is then 0. `stated` is the model, if it has labels.
 ///
 /// # Errors
 /// As [`read`].
@@ -69,7 +69,7 @@ pub(crate) fn read_of(
         known.extend(["labels", "domain", "ends"]);
     }
     let functions = super::functions::TABLE;
-    // The model is read again for those cases alone.
+    // Only such cases need the model to be parsed again.
     let model = top
         .contains_key(functions)
         .then(|| pipeline::parse_source(card.source));
@@ -142,7 +142,7 @@ pub(crate) fn read_of(
     })
 }
 
-/// Name of a case that states none: the file's, without folder and extension.
+/// The default name of a case: the name of its file, without folder and extension.
 fn stem(name: &str) -> String {
     let stem = std::path::Path::new(name).file_stem();
     stem.map_or_else(
@@ -201,7 +201,7 @@ fn steps(file: &File<'_>, scope: &Scope, value: &Spanned<DeValue<'_>>) -> Result
             let steps = u64::from_str_radix(text.as_str(), text.radix());
             (text.to_string(), steps.ok())
         }
-        // `1e6` is a whole number, too.
+        // `1e6` is an integer as well.
         DeValue::Float(text) => (text.to_string(), whole(text.as_str())),
         own @ DeValue::String(_) => {
             let found = scope.read(own).map_err(|message| wrong(&message))?;

@@ -1,10 +1,11 @@
-//! What a model's text says of its quantities: the `///` lines before their declarations.
+//! The descriptions of quantities in a model's text: the `///` lines before their declarations.
 //! Takes a model and the key of a case; gives the words.
 
 use clebsch_core::expr::symbol::ascii;
 use clebsch_core::syntax::ast::{Model, Name, Statement};
 
-/// The remark on the quantity that a key of a case gives: its own, or that of a momentum's configuration.
+/// The description of the quantity with this key. A momentum without one has the description of its
+/// configuration.
 pub(super) fn remark(model: &Model, key: &str) -> Option<String> {
     let of = |wanted: &str| {
         let mut all = model.statements.iter().zip(&model.remarks);

@@ -1,4 +1,5 @@
-//! The sample case of a fluid: its domain, particles on a lattice, a depth and velocities by expressions of the place.
+//! The sample case of a fluid: its domain, particles on a lattice, and expressions in the position for depth
+//! and velocities.
 //! Takes a card; gives the tables of a case file.
 
 use super::space::Space;
@@ -66,7 +67,7 @@ pub(super) fn tables(text: &mut String, card: &Card, stated: &Stated, space: &Sp
         if sited || of_space(field.ascii) || field.kind != FieldKind::Scalar {
             continue;
         }
-        // What functionals take beside places are lengths within the domain, and strengths.
+        // Besides positions, functionals take lengths within the domain, and strengths.
         let value = if of_meshes(field.ascii) { 0.1 } else { 1.0 };
         let _ = writeln!(text, "{} = {value:?}     # {}", field.ascii, field.doc);
     }
@@ -74,7 +75,7 @@ pub(super) fn tables(text: &mut String, card: &Card, stated: &Stated, space: &Sp
     for q in quantities.iter().filter(|q| q.kind == Kind::Configuration) {
         let name = ascii(&q.name.text);
         let (start, velocity) = match space.lengths.len() {
-            // What particles carry beside their places.
+            // Scalar configurations of the particles other than their positions.
             _ if q.domain.is_none() && q.shape.name.text == "Real" => ("0.0", "0.0"),
             1 => ("{ lattice = \"square\" }", "\"0.1*sin(2*pi*x/Lx)\""),
             _ => (

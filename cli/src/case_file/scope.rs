@@ -1,5 +1,5 @@
-//! The numbers that expressions of a case may hold: its step `h`, and its parameters that are one number. Takes the tables of a
-//! case; gives the values of names, whatever order they are given in.
+//! The numbers that expressions of a case can read: its step size `h`, and its parameters with a single value.
+//! Takes the tables of a case; gives the values of names, which may be given in any order.
 
 use super::names::{Nameless, Names};
 use super::value::number;
@@ -7,7 +7,7 @@ use clebsch_core::lattice::value::SiteData;
 use std::collections::{BTreeMap, HashMap};
 use toml::de::{DeTable, DeValue};
 
-/// Most names that a message lists.
+/// The largest number of names in a message.
 const LISTED: usize = 12;
 
 /// The numbers of a case by name.
@@ -27,7 +27,7 @@ impl Names for Scope {
 }
 
 impl Scope {
-    /// That of a case.
+    /// The scope of a case.
     pub(super) fn of(top: &DeTable<'_>) -> Self {
         let step = top.get("h").map(|v| ("h".to_owned(), v.get_ref()));
         let parameters = top.get("parameters").and_then(|t| t.get_ref().as_table());
@@ -49,7 +49,8 @@ impl Scope {
                 }
             }
         }
-        // Until none is found any more: others are of a site, and are read there.
+        // Repeat until no further value is found. The remaining expressions depend on a site and are read
+        // there.
         loop {
             let before = rest.len();
             rest.retain(|(key, data)| {
@@ -68,7 +69,7 @@ impl Scope {
         }
     }
 
-    /// What is wrong with an expression, with what a reader needs to mend it.
+    /// The error of an expression, followed by the help that its unknown name calls for.
     pub(super) fn explained(&self, why: String) -> String {
         let Some(name) = missing(&why) else {
             return why;
@@ -119,7 +120,7 @@ impl Scope {
         number(value, self).map_err(|why| self.explained(why))
     }
 
-    /// A whole number, or an expression that has one to rounding.
+    /// An integer, or an expression that is an integer up to rounding.
     pub(super) fn whole(&self, value: &DeValue<'_>) -> Result<Option<u64>, String> {
         match value {
             DeValue::Integer(n) => Ok(u64::from_str_radix(n.as_str(), n.radix()).ok()),
@@ -129,13 +130,13 @@ impl Scope {
     }
 }
 
-/// The name without a value that a message tells of.
+/// The name without a value in a message.
 fn missing(why: &str) -> Option<&str> {
     let before = why.strip_suffix("` has no value here")?;
     before.rsplit('`').next()
 }
 
-/// The whole number that a number is, but for the rounding of an expression.
+/// The integer nearest to `x`, if they agree up to the rounding of an expression.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 pub(super) fn rounded(x: f64) -> Option<u64> {
     const ROUNDING: f64 = 1e-9;

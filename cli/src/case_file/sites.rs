@@ -1,6 +1,5 @@
-//! Site data: what one value of a case says at one site. Numbers are the same at every site, texts
-//! are expressions in the label, the number of sites and the numbers of the case, and lists have an
-//! element for each site.
+//! Site data: the value of a case at one site. A number is the same at every site. A text is an expression in
+//! the label, the number of sites and the numbers of the case. A list has an element for each site.
 
 use super::attitude;
 use super::names;
@@ -9,18 +8,18 @@ use clebsch::card::{Field, Kind};
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// Of which field a value is asked, at which of its sites.
+/// A field at one of its sites, whose value is requested.
 pub(super) struct Site<'a> {
     pub field: &'a Field,
     /// Which of the sites, counted from 0.
     pub place: usize,
     /// How many sites there are.
     pub count: usize,
-    /// The same among the sites that move, where a list may leave the others out.
+    /// The index and count among the sites without a given value. A list may omit the other sites.
     pub moving: Option<(usize, usize)>,
 }
 
-/// Why an expression in a value has no value, or what is no number; nothing if all of it has one.
+/// The reason why a part of a value cannot be evaluated; `None` if all parts can.
 pub(super) fn unvalued(value: &DeValue<'_>, of: &Numbers<'_>) -> Option<String> {
     match value {
         // A number that is not finite belongs to its site.

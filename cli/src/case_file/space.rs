@@ -1,5 +1,5 @@
-//! Where the particles of a fluid live: the tables `[domain]` and `[labels]` of a case. Takes the tables; gives
-//! lengths, walls and cells, or what is wrong with them.
+//! The domain of a fluid: the tables `[domain]` and `[labels]` of a case. Takes the tables; gives lengths,
+//! walls and cells, or an error.
 
 use super::location::File;
 use super::scope::Scope;
@@ -17,12 +17,12 @@ pub(crate) struct Space {
     pub lengths: Vec<f64>,
     /// Whether each ends in walls.
     pub walls: Vec<bool>,
-    /// Cells of the grid, where the model has one.
+    /// Cells of the grid, if the model has a grid.
     pub cells: Option<Vec<usize>>,
 }
 
 impl Space {
-    /// How many dimensions a stated fluid has; nothing for other models.
+    /// The number of dimensions of a fluid; `None` for other models.
     pub(crate) fn dimensions(stated: &Stated) -> Option<usize> {
         let own = stated.lattice.places()?;
         own.shape.components().filter(|n| *n <= 2)
@@ -39,7 +39,7 @@ impl Space {
         })
     }
 
-    /// The name of the lengths of a torus; nothing of a box.
+    /// The name of the lengths of a torus; `None` for a box.
     pub(crate) fn torus(stated: &Stated) -> Option<&str> {
         match &stated.lattice.places()?.domain {
             Some(Extent::Torus(lengths)) => Some(lengths.text.as_str()),
@@ -47,7 +47,7 @@ impl Space {
         }
     }
 
-    /// That of a case; nothing for models that are no fluids.
+    /// Reads the domain of a case; `None` if the model is not a fluid.
     pub(super) fn read(
         file: &File<'_>,
         top: &DeTable<'_>,
@@ -112,7 +112,7 @@ impl Space {
         self.lengths.iter().product()
     }
 
-    /// The places of nodes and their weights in the trapezoid rule.
+    /// The positions of nodes and their weights in the trapezoid rule.
     pub(crate) fn nodes(&self) -> Result<(Vec<Vec<f64>>, Vec<f64>), String> {
         let wall = |solid: bool| match solid {
             true => Wall::Solid,
@@ -167,7 +167,7 @@ fn of_nodes<const D: usize>(setting: Setting<D>) -> Result<Placed, String> {
     Ok((places, nodes.weights()))
 }
 
-/// A list of so many, or one that stands for it in one dimension.
+/// A list with `d` elements. In one dimension a single value may replace the list.
 fn listed<V>(
     value: &DeValue<'_>,
     d: usize,

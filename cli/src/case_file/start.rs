@@ -1,5 +1,5 @@
-//! Where the particles of a fluid start: `{ lattice = "brick", jitter = 0.1, seed = 1 }`. Takes the table and the
-//! domain; gives so many places in it.
+//! The initial positions of the particles of a fluid: `{ lattice = "brick", jitter = 0.1, seed = 1 }`.
+//! Takes the table and the domain; gives `count` positions in it.
 
 use super::scope::Scope;
 use super::space::Space;
@@ -7,13 +7,13 @@ use clebsch::mesh::Domain;
 use clebsch::mesh::placement::{self, Jitter};
 use toml::de::DeTable;
 
-/// Times that places at random are moved to the centres of their cells, where no number is given.
+/// By default, the number of times that random positions are moved to the centres of their cells.
 const SWEEPS: u64 = 20;
 
-/// The longest side of a cell of a lattice whose columns are chosen here, in units of the other side.
+/// If clebsch chooses the columns of a lattice, the largest aspect ratio of its cells.
 const LONGEST: f64 = 2.0;
 
-/// The places of `count` particles, one after the other.
+/// The positions of `count` particles, one after the other.
 pub(super) fn places(
     table: &DeTable<'_>,
     space: &Space,
@@ -53,7 +53,7 @@ pub(super) fn places(
     let seed = whole(table, "seed", scope)?.unwrap_or(1);
     let jitter = Jitter { size, seed };
     let mut all = match space.lengths.as_slice() {
-        // A row: its height is what a particle takes of its length.
+        // A row of cells; its height is the length of a cell.
         [length] if kind == "square" => {
             #[allow(clippy::cast_precision_loss)]
             let domain = Domain::torus([*length, *length / count.max(1) as f64]);
@@ -123,7 +123,7 @@ fn whole(table: &DeTable<'_>, key: &str, scope: &Scope) -> Result<Option<u64>, S
     }
 }
 
-/// From a quarter of a column, where rows begin, to its middle.
+/// The offset from the start of a row, at a quarter of a column, to its centred position.
 #[allow(clippy::cast_precision_loss)]
 fn centred(width: f64, columns: usize) -> f64 {
     0.25 * width / columns.max(1) as f64
@@ -135,8 +135,8 @@ fn off([columns, rows]: [usize; 2], aspect: f64) -> f64 {
     (columns as f64 / rows as f64 / aspect).ln().abs()
 }
 
-/// The divisor of `count` whose lattice has cells that are most nearly squares, if none of their sides is more than [`LONGEST`]
-/// times the other.
+/// The divisor of `count` whose lattice has the most nearly square cells, if the longer side is at most
+/// [`LONGEST`] times the shorter.
 fn even(count: usize, aspect: f64, kind: &str) -> Result<usize, String> {
     let divisors = (1..=count).filter(|n| count.is_multiple_of(*n));
     let shapes = divisors.map(|columns| [columns, count / columns]);
@@ -193,7 +193,7 @@ fn uneven(count: usize, kind: &str, mut filling: Vec<usize>) -> String {
     )
 }
 
-/// Hexagons: only some numbers of them fill a domain.
+/// A hexagonal lattice. Only some numbers of hexagons fill a domain.
 #[allow(
     clippy::cast_precision_loss,
     clippy::cast_possible_truncation,

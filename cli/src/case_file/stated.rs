@@ -12,7 +12,7 @@ pub(crate) struct Stated {
 }
 
 impl Stated {
-    /// Reads the text of a model; `None` where it has no labels or is no model.
+    /// Reads the text of a model; `None` if the text is not a model or the model has no labels.
     pub(crate) fn read(source: &str) -> Option<Stated> {
         let model = pipeline::parse_source(source).ok()?;
         if !clebsch_core::lattice::has_labels(&model) {

@@ -1,4 +1,4 @@
-//! A table of a case, `[parameters]` or `[initial]`, and the keys by which it may give the fields of a card.
+//! A table of a case, `[parameters]` or `[initial]`, and the keys that give the fields of a card.
 
 use super::copies::Base;
 use super::inertia;
@@ -16,11 +16,12 @@ pub(super) struct Table<'t, 'i> {
     pub name: &'static str,
     pub fields: &'static [Field],
     pub values: Option<&'t DeTable<'i>>,
-    /// Where it stands.
+    /// The range of the table in the text.
     pub span: Option<Range<usize>>,
-    /// The initial values, which may give what an end holds.
+    /// The initial values, which may include values at an end.
     others: Option<&'t DeTable<'i>>,
-    /// The names of fields that a key of another field may be: without labels those of all.
+    /// The field names that could also be the key of another field, such as its inertia or its velocity.
+    /// Without labels these are all names.
     names: HashSet<&'static str>,
     /// Whether the model has labels.
     at_sites: bool,
@@ -30,12 +31,12 @@ pub(super) struct Table<'t, 'i> {
     pub elements: HashMap<usize, usize>,
 }
 
-/// A key by which a table may give a field.
+/// A key that gives a field.
 pub(super) struct Key<'k> {
     pub name: Cow<'k, str>,
-    /// Whether it is that of all sites.
+    /// Whether the key gives the values at all sites.
     pub of_sites: bool,
-    /// Whether it gives the inertia in the place of second moments.
+    /// Whether the key gives the inertia instead of second moments.
     pub inertia: bool,
 }
 
@@ -48,7 +49,7 @@ pub(super) struct Found<'k, 't, 'i> {
 }
 
 impl<'t, 'i> Table<'t, 'i> {
-    /// The table of this name; `held` if it may leave what an end holds to the initial values.
+    /// The table with this name. If `held` is true, values at an end may be among the initial values.
     pub(super) fn of(
         top: &'t DeTable<'i>,
         (name, fields): (&'static str, &'static [Field]),
@@ -129,12 +130,12 @@ impl<'t, 'i> Table<'t, 'i> {
         })
     }
 
-    /// The key of the inertia beside that of second moments, unless a field has it.
+    /// The key of the inertia that may replace second moments, unless a field has that name.
     pub(super) fn inertia(&self, field: &Field, name: &str) -> Option<String> {
         inertia::key_of(field, name).filter(|key| !self.names.contains(key.as_str()))
     }
 
-    /// The velocities that a momentum may be given by, and the keys of each.
+    /// The velocities that may replace a momentum, with the keys of each.
     pub(super) fn ways<'k>(
         &'k self,
         momentum: usize,
@@ -152,7 +153,7 @@ impl<'t, 'i> Table<'t, 'i> {
                 Some(base) => way.key(&base.key),
                 None => self.of_all_copies(&written).map(str::to_owned),
             };
-            // A field of the model may bear such a name.
+            // A field of the model may have such a name.
             let key = |name: Option<String>, of_sites: bool| {
                 let name = name.filter(|name| !self.names.contains(name.as_str()))?;
                 Some(Key {
@@ -176,7 +177,8 @@ impl<'t, 'i> Table<'t, 'i> {
         Some((self.fields.get(momentum)?, element))
     }
 
-    /// The name of all copies of a quantity whose names end in numbers: `x` of `x1`, `x_2`. None where a field has it.
+    /// The name of all copies of a quantity with numbered names: `x` for `x1`, `x_2`. `None` if a field has
+    /// this name.
     fn of_all_copies<'k>(&self, name: &'k str) -> Option<&'k str> {
         let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
         if self.at_sites || stem.len() == name.len() {
@@ -186,7 +188,7 @@ impl<'t, 'i> Table<'t, 'i> {
         (!stem.is_empty() && !self.names.contains(stem)).then_some(stem)
     }
 
-    /// Which keys a reader may write who looks for velocities.
+    /// The keys of velocities, for messages.
     pub(super) fn how_to_move(&self) -> Option<String> {
         let mut keys: Vec<String> = Vec::new();
         for index in 0..self.fields.len() {

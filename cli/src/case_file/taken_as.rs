@@ -1,12 +1,13 @@
-//! What a value under the key of a field gives: the field itself, the inertia of a body in the place of its second moments, or a
-//! velocity. Takes a value of a case, or numbers of an array; gives the numbers of the field.
+//! The meaning of a value under the key of a field: the field itself, the inertia of a body instead of its
+//! second moments, or a velocity.
+//! Takes a value of a case, or numbers of an array; gives the numbers of the field.
 
 use super::inertia;
 use super::value::{self, Numbers};
 use clebsch::card::{Field, Kind};
 use toml::de::DeValue;
 
-/// What a value gives.
+/// The meaning of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TakenAs {
     Itself,
@@ -37,7 +38,7 @@ impl TakenAs {
         }
     }
 
-    /// The same from numbers of an array, which has one of the shapes of [`TakenAs::of_array`].
+    /// Converts numbers of an array, which has one of the shapes of [`TakenAs::of_array`].
     pub(super) fn array(
         self,
         field: &Field,

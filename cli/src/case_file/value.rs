@@ -1,7 +1,7 @@
 //! One value of a case file: a number, a vector, a matrix or an element of a group.
-//! Takes a TOML value and the field it is for; gives its numbers row-major, or what is wrong with it.
+//! Takes a TOML value and its field; gives its numbers row-major, or an error.
 //! A number may be an expression in quotes.
-//! Shapes are checked here; symmetry, orthogonality and the like by the model that is opened with them.
+//! This module checks shapes. The model checks symmetry, orthogonality and the like when it is opened.
 
 use super::attitude;
 use super::names::evaluated;
@@ -10,7 +10,7 @@ use clebsch::card::{Field, Kind};
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// What to write for a field, in words.
+/// The accepted forms of a value of `field`, for messages.
 pub(super) fn expected(field: &Field) -> String {
     let Field { rows, cols, .. } = *field;
     match field.kind {
@@ -40,7 +40,8 @@ pub(super) fn numbers(
     }
 }
 
-/// The numbers of `field` from those of an array, which has one of the shapes that it may have there.
+/// Converts the numbers of an array, which has one of the shapes accepted for `field`, to the numbers of
+/// `field`.
 pub(super) fn of_array(
     field: &Field,
     numbers: &[f64],
@@ -61,7 +62,7 @@ pub(super) fn is_element(field: &Field) -> bool {
     )
 }
 
-/// The same of a field that is given by its entries alone.
+/// The numbers of a field that is given by its entries.
 pub(super) fn entries(
     field: &Field,
     value: &DeValue<'_>,
@@ -124,7 +125,7 @@ pub(super) enum Shape {
     Other(&'static str),
 }
 
-/// How an array of a file is given.
+/// The form of an array of a file, for messages.
 pub(super) const OF_FILES: &str =
     "an array of a file is { npz = \"out/trajectory.npz\", key = \"q\" }, as numpy.savez writes it";
 

@@ -16,12 +16,12 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// What expressions read.
+/// The names that the expression of a site may read, for messages.
 const READS: &str = ": an expression of a site reads its label, the number of sites, and numbers of the case that are the same at \
                      all sites";
 
 impl<'a> Fields<'a> {
-    /// Numbers that were computed for all particles of a fluid, and the line of what gave them.
+    /// Numbers that were computed for all particles of a fluid, and the line of their key.
     pub(super) fn of_fluid(
         &self,
         name: &str,
@@ -30,7 +30,7 @@ impl<'a> Fields<'a> {
         self.sites?.fluid.as_ref()?.numbers(name, place)
     }
 
-    /// Numbers that are those of a field as they are.
+    /// Numbers that need no conversion to be the value of a field.
     pub(super) fn plain(
         &self,
         field: &Field,
@@ -98,7 +98,7 @@ impl<'a> Fields<'a> {
                 let Some(sites) = self.sites else {
                     return wrong(&format!("{own}{dot}"), &self.scope.explained(why), &span);
                 };
-                // What is wrong at every site alike is a matter of the key as it was written.
+                // A mistake that is the same at every site is reported for the key as the case writes it.
                 let other = |table: &DeTable<'_>| !table.contains_key("I");
                 let is_whole = is_element(field) || value.get_ref().as_table().is_some_and(other);
                 let unvalued = match is_whole {
@@ -125,7 +125,7 @@ impl<'a> Fields<'a> {
             })
     }
 
-    /// The value of a copy, or of what belongs to no site, from an array of a file.
+    /// The value of a copy, or of a quantity without sites, from an array of a file.
     fn of_array(
         &self,
         field: &Field,

@@ -1,5 +1,6 @@
-//! Velocities in the place of momenta: `velocity_x`, `angular_velocity_R`, `spatial_angular_velocity_R`. Takes the fields of a card;
-//! gives the keys under which a case may give the velocity of a configuration, what stands there, and the velocity itself.
+//! Velocities instead of momenta: `velocity_x`, `angular_velocity_R`, `spatial_angular_velocity_R`.
+//! Takes the fields of a card; gives the keys of the velocities of a configuration, the field of each, and the
+//! velocity itself.
 
 use clebsch::card::{Field, Kind};
 use clebsch_check::{Frame, Velocity};
@@ -16,7 +17,7 @@ pub(super) enum Way {
 }
 
 impl Way {
-    /// All of them.
+    /// All kinds of velocity.
     pub(super) const ALL: [Self; 3] = [Self::Rate, Self::Body, Self::Space];
 
     /// The beginning of its key.
@@ -28,7 +29,7 @@ impl Way {
         }
     }
 
-    /// Its key, of the configuration whose momentum has this one.
+    /// The key of the velocity that replaces the momentum with this key.
     pub(super) fn key(self, momentum: &str) -> Option<String> {
         Some(format!("{}{}", self.word(), suffix(momentum)?))
     }
@@ -43,7 +44,7 @@ impl Way {
         }
     }
 
-    /// What stands under its key.
+    /// The field that describes the velocity.
     pub(super) fn field(self, element: &Field, momentum: &Field) -> Field {
         let n = element.rows;
         let of = |kind: Kind, size: [usize; 2]| kind.field("velocity", size, "");
@@ -78,7 +79,7 @@ impl Way {
         };
         let n = element.rows;
         let components = match (element.kind, numbers) {
-            // The basis of the plane turns the other way: the entry above the diagonal is positive.
+            // In the plane the basis has the opposite orientation: the entry above the diagonal is positive.
             (Kind::Rotation, [w]) if n == 2 => vec![-w],
             (Kind::Rotation, all) if all.len() == n * n => {
                 let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| i * n + j));
@@ -90,7 +91,8 @@ impl Way {
     }
 }
 
-/// What the key of a momentum ends in: the name of its configuration, after an underscore, or nothing where there is one alone.
+/// The end of the key of a momentum: an underscore and the name of its configuration, or nothing if there is
+/// only one configuration.
 pub(super) fn suffix(momentum: &str) -> Option<&str> {
     let plain = momentum
         .strip_prefix("body_")
@@ -106,7 +108,7 @@ pub(super) fn momentum_of(element: &Field, momentum: &Field, components: &[f64])
     if element.kind != Kind::Rotation || momentum.count() == components.len() {
         return components.to_vec();
     }
-    // A skew matrix: of three dimensions the axial vector, of others the entries above the diagonal.
+    // A skew matrix: its axial vector in three dimensions, otherwise the entries above the diagonal.
     let mut out = vec![0.0; n * n];
     let pairs: Vec<(usize, usize)> = match n {
         3 => vec![(2, 1), (0, 2), (1, 0)],

@@ -10,8 +10,8 @@ use clebsch::card::{Card, Conserved, Field, Kind};
 use clebsch_core::pipeline;
 use std::fmt::Write as _;
 
-/// Drift allowed to an exactly conserved invariant when the case names no bound. Rounding adds up to
-/// some 1e-16 a step at worst, so this holds for about 1e4 steps of any stepper and 1e6 of a careful one.
+/// The default bound on the drift of an exactly conserved invariant. Rounding adds at most about 1e-16 per
+/// step, so the bound suffices for 1e4 steps of any stepper and 1e6 steps of a careful one.
 pub(crate) const DEFAULT_BOUND: f64 = 1e-12;
 
 /// The TOML text of `case`, of the model that is called `named` on the command line: its name, or a path.
@@ -77,7 +77,7 @@ fn table(text: &mut String, name: &str, fields: &[Field], values: &[Vec<f64>]) {
     }
 }
 
-/// The table of bounds: those that are given, and the others as comments.
+/// The table of bounds: the given ones, and the others as comments.
 pub(super) fn bounds(text: &mut String, card: &Card, given: &[(String, f64)]) {
     let _ = writeln!(text, "\n[bounds]");
     comment(
@@ -103,7 +103,7 @@ pub(super) fn bounds(text: &mut String, card: &Card, given: &[(String, f64)]) {
     }
 }
 
-/// The keys of velocities that may stand in the place of a momentum with this key.
+/// The keys of the velocities that may replace the momentum with this key.
 pub(super) fn instead(element: &Field, momentum: &Field, key: &str) -> String {
     let ways = Way::ALL
         .into_iter()

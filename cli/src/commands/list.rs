@@ -1,4 +1,4 @@
-//! `clebsch list`: all models, those of one family, or the cases of one model.
+//! `clebsch list`: all models, the models of one family, or the cases of one model.
 //! Takes the gallery; gives a table, or one JSON object.
 
 use crate::models::gallery::{Case, Entry, Family, Gallery, declared, family};
@@ -28,7 +28,7 @@ struct Row {
 /// Runs the command.
 ///
 /// # Errors
-/// Usage: neither a family nor a model; failed: those of writing.
+/// Usage: the argument names neither a family nor a model. Failed: the output cannot be written.
 pub fn list(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -90,7 +90,7 @@ fn documentation(text: &str) -> String {
     )
 }
 
-/// Lists the cases of one model with what each shows.
+/// Lists the cases of one model with their descriptions.
 fn cases(
     gallery: &Gallery,
     model: &str,

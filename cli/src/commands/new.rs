@@ -23,7 +23,8 @@ const TEMPLATE: [&str; 2] = [
 /// Runs the command.
 ///
 /// # Errors
-/// Usage: a name that no model can have, no such model, or a file that exists; failed: those of writing.
+/// Usage: the name is invalid, the model to copy is unknown, or the file exists. Failed: the file cannot be
+/// written.
 pub(crate) fn new(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -106,7 +107,7 @@ fn camel(name: &str) -> Result<String, Failure> {
     Ok(out)
 }
 
-/// Refuses names that the language or what it emits uses, such as `Self` and `Vec`.
+/// Rejects names that the language or the emitted code uses, such as `Self` and `Vec`.
 fn admitted(declared: &str) -> Result<(), Failure> {
     let text = renamed(TEMPLATE[0], declared);
     let Err(Refused::Model(errors)) = clebsch_interpret::card_and_warnings(&text) else {

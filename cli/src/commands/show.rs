@@ -1,5 +1,5 @@
-//! `clebsch show` and `clebsch case`: the statement of a model, and a case as TOML to start your own from.
-//! Takes what the command line names; gives the texts as they would be in files.
+//! `clebsch show` and `clebsch case`: the text of a model, and a case as TOML to start your own from.
+//! Takes the names on the command line; gives the texts as they would be in files.
 
 use crate::case_file::{self, stated::Stated};
 use crate::models::gallery::{self, Gallery};
@@ -12,7 +12,7 @@ use clap::ArgMatches;
 /// Prints a case.
 ///
 /// # Errors
-/// Usage: no such model or case.
+/// Usage: the model or the case is unknown.
 pub(crate) fn case(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -24,10 +24,10 @@ pub(crate) fn case(
     Ok(())
 }
 
-/// Prints the statement and a case.
+/// Prints the text of a model and a case.
 ///
 /// # Errors
-/// Usage: no such model or case.
+/// Usage: the model or the case is unknown.
 pub(crate) fn show(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -47,10 +47,11 @@ pub(crate) fn statement<'n>(named: &'n Named<'_>) -> &'n str {
     }
 }
 
-/// A case of a model as TOML. Without a name it is the first case of the gallery's model, and placeholder values for a file.
+/// A case of a model as TOML. Without a name it is the first case of a model of the gallery, or placeholder
+/// values for a file.
 ///
 /// # Errors
-/// Usage: no such case, or a text that does not derive.
+/// Usage: the case is unknown, or the text does not derive.
 pub(crate) fn case_text(
     named: &Named<'_>,
     case: Option<&str>,

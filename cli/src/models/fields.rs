@@ -1,4 +1,4 @@
-//! What the fields of a card are: momenta, and admissible values without further meaning.
+//! The fields of a card: which are momenta, and sample values that every model accepts.
 
 use clebsch::card::{Card, Field, Kind};
 
@@ -21,7 +21,7 @@ pub(crate) fn sample_entry(field: &Field, turned: bool, i: usize, j: usize) -> f
     all.get(i * field.cols + j).copied().unwrap_or(0.0)
 }
 
-/// Sample values of a field; `turned` where momenta of square shape are skew.
+/// Sample values of a field. If `turned`, square momenta are skew.
 pub(crate) fn sample_values(field: &Field, turned: bool) -> Vec<f64> {
     let (rows, cols) = (field.rows, field.cols);
     let square = rows == cols && rows > 1;

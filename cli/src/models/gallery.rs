@@ -37,7 +37,7 @@ impl Gallery {
     /// The compiled model called `name`: `heavy-top`, or `HeavyTop` as in the model's text.
     ///
     /// # Errors
-    /// Usage: no such model; the message suggests the nearest.
+    /// Usage: the model is unknown; the message suggests the nearest name.
     pub fn find(&self, name: &str) -> Result<&Entry, Failure> {
         match self.get(name) {
             Some(Known::Compiled(entry)) => Ok(entry),
@@ -72,13 +72,13 @@ impl Gallery {
     }
 }
 
-/// The name that a model's text declares; none if the text does not parse.
+/// The name that a model's text declares; `None` if the text does not parse.
 pub(crate) fn declared(text: &str) -> Option<String> {
     let model = pipeline::parse_source(text).ok()?;
     Some(model.name.text)
 }
 
-/// What a compiled model is about, by the kinds of its initial values.
+/// The family of a compiled model, from the kinds of its initial values.
 pub(crate) fn family(card: &Card) -> Family {
     let has = |kinds: &[Kind]| card.initial.iter().any(|field| kinds.contains(&field.kind));
     if has(&[Kind::Rotation, Kind::UnitQuaternion, Kind::RigidMotion]) {
@@ -93,7 +93,7 @@ pub(crate) fn family(card: &Card) -> Family {
 /// The case called `name`, or the model's first one.
 ///
 /// # Errors
-/// Usage: no such case, or no case at all.
+/// Usage: the case is unknown, or the model has none.
 pub fn case<'a>(entry: &'a Entry, name: Option<&str>) -> Result<&'a Case, Failure> {
     let found = match name {
         None => entry.cases.first(),

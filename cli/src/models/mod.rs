@@ -1,4 +1,4 @@
-//! The models that are offered, and what the fields of a model's card are.
+//! The models of the gallery, and the meaning of the fields of a card.
 
 pub(crate) mod fields;
 pub mod gallery;

@@ -1,4 +1,4 @@
-//! The cases of a model that is a text: `MODEL.toml` beside the file, then those of the folder `MODEL/`.
+//! The cases of a model given as text: `MODEL.toml` next to the file, then those of the folder `MODEL/`.
 //! Takes a model file or a shipped model; gives its cases by name, with their texts.
 
 use crate::models::gallery::ModelFile;
@@ -25,12 +25,13 @@ pub(crate) enum WhichCase {
     First,
     /// One of a compiled model, or `sample`: placeholder values of a model file.
     Named(String),
-    /// That of a file.
+    /// The case of a file.
     Text(CaseText),
 }
 
 impl WhichCase {
-    /// The same with values of the step and of parameters in the text of the case, so that its expressions follow.
+    /// The same case with values of the step size and of parameters inserted into its text, so that its
+    /// expressions follow.
     #[must_use]
     pub fn with(self, values: &[(String, String)]) -> Self {
         match self {
@@ -51,7 +52,7 @@ impl WhichCase {
     }
 }
 
-/// A case ends in .toml if it is a file; anything else is the name of a case.
+/// A name that ends in .toml is a file; any other name is a case.
 pub(crate) fn is_file(name: &str) -> bool {
     let extension = Path::new(name).extension();
     extension.is_some_and(|extension| extension == "toml")
@@ -69,7 +70,7 @@ pub(crate) fn read(file: &Path) -> Result<CaseText, Failure> {
     })
 }
 
-/// Where a case is kept.
+/// The location of a case.
 #[derive(Clone, Debug)]
 enum Kept {
     At(PathBuf),
@@ -83,12 +84,13 @@ pub(crate) struct NamedCases {
 }
 
 impl NamedCases {
-    /// Those beside a model file. The case called as the model is known by the name that it states.
+    /// The cases next to a model file. The case with the name of the model file is known by the name in its
+    /// text.
     pub fn beside(model: &Path) -> Self {
         let own = model.with_extension("toml");
         let mut cases = Vec::new();
         if own.is_file() {
-            // A case that cannot be read is refused where it is asked for.
+            // A case that cannot be read is listed here and fails when it is requested.
             let name = read(&own).ok().and_then(|case| stated(&case.text));
             cases.push((name.unwrap_or_else(|| stem(&own)), Kept::At(own)));
         }
@@ -105,7 +107,7 @@ impl NamedCases {
         Self { cases }
     }
 
-    /// Those of a shipped model.
+    /// The cases of a shipped model.
     pub fn shipped(model: &ModelFile) -> Self {
         let cases = model.cases.iter().map(|case| {
             let own = stated(case.text).filter(|_| case.stem == model.name);
@@ -127,10 +129,10 @@ impl NamedCases {
         self.cases.iter().map(|(name, _)| name.as_str())
     }
 
-    /// The case with a name, or the first one; none if the model has no such case.
+    /// The case with this name, or the first case if no name is given. `None` if the model has no such case.
     ///
     /// # Errors
-    /// Usage: its file cannot be read.
+    /// Usage: the file of the case cannot be read.
     pub fn get(&self, name: Option<&str>) -> Result<Option<CaseText>, Failure> {
         let found = match name {
             None => self.cases.first(),
@@ -143,7 +145,7 @@ impl NamedCases {
         }
     }
 
-    /// What each case shows, by name.
+    /// The names of the cases, each with its description.
     pub fn described(&self) -> Vec<(String, String)> {
         let each = self.cases.iter().map(|(name, kept)| {
             let text = match kept {

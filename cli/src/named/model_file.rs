@@ -47,7 +47,7 @@ pub(crate) fn read(
         other => Failure::Usage(format!("{name}: {other}")),
     })?;
     for warning in warnings {
-        // What cannot be written there stands in the derivation too.
+        // A warning that cannot be written is not lost: the derivation contains it.
         let _ = write!(err, "{}", warning.diagnostic.render("warning", text, &name));
     }
     let cases = match (case, stated.zip(choice)) {
@@ -65,7 +65,7 @@ pub(crate) fn read(
     })
 }
 
-/// How many sites there are and how the line ends: as the case says, if one is given by a file.
+/// The number of sites and the ends of the chain, from the case file if there is one.
 fn chosen(stated: &Stated, case: Option<(&str, &str)>) -> Result<Option<Choice>, Failure> {
     match case {
         None => Ok(case_file::default_choice(stated)),
@@ -104,7 +104,7 @@ fn sample(card: &Card, file: &str) -> Case {
     case
 }
 
-/// Moves fields of one shape apart: many Lagrangians are singular where two positions are the same.
+/// Moves fields of one shape apart, since many Lagrangians are singular if two positions coincide.
 fn apart(model: &Model, card: &Card, case: &mut Case) {
     let is_field = |name: &str| {
         model.statements.iter().any(|s| match s {

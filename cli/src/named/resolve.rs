@@ -31,7 +31,7 @@ pub(crate) struct ModelText {
     pub is_path: bool,
 }
 
-/// What a name on the command line stands for.
+/// The model that a name on the command line refers to.
 pub(crate) enum Named<'a> {
     Compiled(&'a Entry),
     Text(ModelText),
@@ -47,10 +47,11 @@ pub(crate) struct Resolved<'a> {
     pub compiled: bool,
 }
 
-/// The model and the case of a command's arguments `model` and `case`. Warnings on the model's text go to `streams.err`.
+/// The model and the case of a command's arguments `model` and `case`. Warnings on the model's text go to
+/// `streams.err`.
 ///
 /// # Errors
-/// Usage: no such model or case, a text that does not derive, or an unreadable file.
+/// Usage: the model or the case is unknown, a text does not derive, or a file cannot be read.
 pub(crate) fn resolved<'a>(
     gallery: &'a Gallery,
     matches: &ArgMatches,
@@ -78,7 +79,7 @@ pub(crate) fn resolved<'a>(
             let case = match case_of(&text, case) {
                 Ok(case) => case,
                 Err(no_case) => {
-                    // What is wrong with the model comes first.
+                    // An error in the model is reported first.
                     entry(&text, &WhichCase::First, streams)?;
                     return Err(no_case);
                 }
@@ -103,10 +104,10 @@ fn written(entry: &Entry, name: Option<&str>) -> Result<CaseText, Failure> {
     })
 }
 
-/// What a command's arguments `model` and `case` name: MODEL and `--case`, or MODEL:CASE.
+/// The model and case that the arguments `model` and `case` name: MODEL and `--case`, or MODEL:CASE.
 ///
 /// # Errors
-/// Usage: no such model, an unreadable file, or two cases.
+/// Usage: the model is unknown, a file cannot be read, or the arguments name two cases.
 pub(crate) fn asked<'a, 'm>(
     gallery: &'a Gallery,
     matches: &'m ArgMatches,
@@ -130,7 +131,7 @@ pub(crate) fn entry(
         let _told = Waiting::told("deriving the equations".to_owned(), streams.progress);
         model_file::read(&text.name, &text.text, case, &mut warnings)
     };
-    // What cannot be written there is in the derivation too.
+    // A warning that cannot be written is not lost: the derivation contains it.
     let _ = streams.err.write_all(&warnings);
     read
 }
@@ -163,10 +164,11 @@ fn is_name(text: &str) -> bool {
             .all(|c| c.is_alphanumeric() || "-_.".contains(c))
 }
 
-/// What a name stands for: a model of the gallery, else a file. `but` ends the message for a case file.
+/// The model that a name refers to: a model of the gallery, else a file. `but` ends the message for a case
+/// file.
 ///
 /// # Errors
-/// Usage: neither; or an unreadable file.
+/// Usage: there is neither, or the file cannot be read.
 pub(crate) fn named<'a>(gallery: &'a Gallery, name: &str, but: &str) -> Result<Named<'a>, Failure> {
     let path = Path::new(name);
     match gallery.get(name) {
@@ -213,7 +215,7 @@ pub(crate) fn named<'a>(gallery: &'a Gallery, name: &str, but: &str) -> Result<N
 /// The case of a model's text that is to run.
 ///
 /// # Errors
-/// Usage: there is none of this name, or none at all.
+/// Usage: there is no case with this name, or no case at all.
 pub(crate) fn case_of(text: &ModelText, case: Option<&str>) -> Result<WhichCase, Failure> {
     if let Some(file) = case.filter(|case| is_file(case)) {
         return cases::read(Path::new(file)).map(WhichCase::Text);
@@ -226,7 +228,7 @@ pub(crate) fn case_of(text: &ModelText, case: Option<&str>) -> Result<WhichCase,
     }
 }
 
-/// The message for a case file where a model is asked for.
+/// The message if a case file is given instead of a model.
 fn is_a_case(gallery: &Gallery, name: &str, but: &str) -> Failure {
     let case = cases::read(Path::new(name)).ok();
     let table = case

@@ -1,5 +1,5 @@
-//! Sample places that obey what is held. Takes a model and sample values; gives fields moved onto the constraints by the least
-//! change, so that the sample runs.
+//! Sample positions that satisfy the constraints. Takes a model and sample values; gives fields moved onto the
+//! constraints by the least change, so that the sample runs.
 
 use crate::models::gallery::Case;
 use clebsch::card::{Card, Kind};
@@ -8,14 +8,15 @@ use clebsch_core::check::{self, spec::Spec};
 use clebsch_core::interpret::{Assignment, evaluate};
 use clebsch_core::syntax::ast::Model;
 
-/// Most steps of Newton's method: those from afar halve the distance at least, the last ones square it.
+/// The largest number of Newton steps. Far from a solution a step at least halves the distance; near it the
+/// convergence is quadratic.
 const MOST: usize = 60;
 
-/// What is left of a constraint, beside terms of size one, where its rounding begins.
+/// The rounding error of a constraint whose terms have size one.
 const ROUNDING: f64 = 4e-16;
 
-/// Moves the fields of a case onto the constraints of a model; leaves them where that fails, and where nothing but bodies that
-/// turn is held.
+/// Moves the fields of a case onto the constraints of a model. If that fails, or if only rotations are
+/// constrained, the fields are unchanged.
 pub(crate) fn onto_constraints(model: &Model, card: &Card, case: &mut Case) {
     let Ok(spec) = check::check(model) else {
         return;
@@ -32,7 +33,7 @@ struct Held<'a> {
 }
 
 impl Held<'_> {
-    /// Places of the entries that may move: those of fields, by field and entry.
+    /// The entries that may move, each as a field and an entry of it.
     fn free(&self) -> Vec<(usize, usize)> {
         let symbols = &self.spec.symbols;
         let is_field = |name: &str| {
@@ -47,13 +48,13 @@ impl Held<'_> {
             .collect()
     }
 
-    /// Whether it is an entry of its own: off the diagonal of a diagonal matrix there is none.
+    /// Whether an entry is independent: a diagonal matrix has only its diagonal.
     fn is_entry(&self, i: usize, entry: usize) -> bool {
         let f = &self.card.initial[i];
         f.kind != Kind::Diagonal || entry / f.cols == entry % f.cols
     }
 
-    /// What the constraints leave.
+    /// The residuals of the constraints.
     fn left(&self, case: &Case, initial: &[Vec<f64>]) -> Option<DVector<f64>> {
         let mut values = Assignment::new();
         let parameters = self.card.parameters.iter().zip(&case.parameters);
@@ -83,7 +84,7 @@ impl Held<'_> {
                 return Some(at);
             }
             let columns = free.iter().map(|&(i, entry)| {
-                // Central differences are good to ten digits, and the method squares what is left.
+                // Central differences are accurate to ten digits, and Newton's method squares the residual.
                 let d = 1e-5 * at[i][entry].abs().max(1.0);
                 let beside = |by: f64| {
                     let mut other = at.clone();
@@ -107,7 +108,8 @@ impl Held<'_> {
                         at[i][entry] -= by;
                     }
                 }
-                // Two places that are the same have no distance that could change.
+                // The constraints have no independent derivatives, as for the distance of two equal positions:
+                // move the entries apart.
                 None => {
                     for (n, &(i, entry)) in free.iter().enumerate() {
                         at[i][entry] += 0.1 * (1 + n + round) as f64;

@@ -1,4 +1,4 @@
-//! Which arrays a run's npz has: those of the card, the copies of one quantity at the sites of a label as one array.
+//! The arrays in the npz file of a run. The copies of a quantity at the sites of a label form one array.
 //! Takes a card and a number of samples; gives the arrays, whose words are columns of the rows.
 
 use super::sites::at_sites;
@@ -7,10 +7,10 @@ use clebsch::record::npz::{self, Array};
 use clebsch_core::expr::symbol::ascii;
 use std::collections::HashSet;
 
-/// Where the observables begin in a row, after node and time.
+/// The first column of the observables in a row, after node and time.
 const OFFSET: usize = 2;
 
-/// All arrays of a run: those of the card, quantities at sites with the site as their second index in the place of their
+/// All arrays of a run. A quantity at sites is one array with the site as second index, and replaces its
 /// copies.
 pub(crate) fn arrays(card: &Card, samples: u64) -> Vec<Array> {
     let at_sites = at_sites(card);
@@ -31,12 +31,12 @@ pub(crate) fn arrays(card: &Card, samples: u64) -> Vec<Array> {
         shape.extend((rows * cols > 1).then_some(rows));
         shape.extend((cols > 1).then_some(cols));
         let mut members = q.members.iter().enumerate();
-        // What the last end holds is a parameter.
+        // A value given at the last end is a parameter.
         let behind = format!("{}_{}", ascii(&q.name), q.members.len());
         let whole = members.all(|(i, (site, _))| i == *site)
             && card.parameters.iter().all(|f| f.ascii != behind);
         if !whole {
-            // Some site has its value given.
+            // The value at some site is given.
             let numbers = q.members.iter().map(|(site, _)| *site as u64);
             let name = format!("sites_of_{}", q.key);
             arrays.push(Array::of_numbers(&name, numbers.collect()));

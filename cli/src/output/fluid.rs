@@ -1,4 +1,5 @@
-//! Fluids among the runs: where their particles live, and what colours them. Takes a card and a plan.
+//! Fluids among the runs: the domain of their particles, and the field that colours them. Takes a card and a
+//! plan.
 
 use super::sites::AtSites;
 use crate::case_file::space::Space;
@@ -9,24 +10,26 @@ use clebsch_core::expr::symbol::ascii;
 use clebsch_core::lattice::Source;
 use clebsch_core::syntax::ast::Statement;
 
-/// What colours a fluid.
+/// The field whose values colour the particles of a fluid.
 pub(crate) struct Coloured<'a> {
     pub(crate) space: Space,
-    /// The places of its particles.
+    /// The positions of its particles.
     pub(crate) places: &'a AtSites<'a>,
     /// Its functional, at the particles or at the nodes of a grid.
     pub(crate) shown: &'a AtSites<'a>,
-    /// What it is: `S = smooth(H, α)`.
+    /// Its definition: `S = smooth(H, α)`.
     pub(crate) what: String,
 }
 
 impl<'a> Coloured<'a> {
-    /// The functional of a fluid that no other one is made of, or its depth; nothing for models that are no fluids.
+    /// The functional of a fluid that is not the argument of another functional. `None` if the model is not a
+    /// fluid.
     pub(crate) fn of(card: &Card, plan: &Plan, all: &'a [AtSites<'a>]) -> Option<Self> {
         let (space, stated) = space(card, plan)?;
         let own = ascii(&stated.lattice.places()?.name.text);
         let places = all.iter().find(|s| s.key == own)?;
-        // A depth that is smoothed moves the fluid, not the one that it is made of.
+        // If the depth is smoothed, the smoothed depth drives the fluid, not the depth from which it is
+        // computed.
         let meshes = &stated.lattice.meshes;
         let taken = |at: usize| meshes.iter().any(|m| m.of == Source::Functional(at));
         let last = meshes.iter().enumerate().filter(|(at, _)| !taken(*at));
@@ -56,7 +59,7 @@ impl<'a> Coloured<'a> {
     }
 }
 
-/// Where the particles of a run live.
+/// The domain of the particles of a run.
 pub(crate) fn space(card: &Card, plan: &Plan) -> Option<(Space, Stated)> {
     let stated = Stated::read(card.source)?;
     let sample = Space::sample(&stated)?;

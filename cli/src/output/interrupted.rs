@@ -1,7 +1,7 @@
-//! Runs that are interrupted, by SIGINT (Ctrl-C) or SIGTERM.
-//! Takes the folders in the making. While a run computes, the first signal only asks it to stop, and it writes what
-//! there is. At any other time, and at the second signal, what was begun is removed before the process ends, but for
-//! what a checkpoint makes worth keeping; then the signal does what it does.
+//! Handles the interruption of runs by SIGINT (Ctrl-C) or SIGTERM.
+//! Takes the folders in the making. While a run computes, the first signal only requests a stop, and the run
+//! writes its results so far. At any other time, and at the second signal, unfinished folders are removed,
+//! except those with a checkpoint. The process then ends with the default action of the signal.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,13 +15,13 @@ struct Begun {
     kept: bool,
 }
 
-/// What this process is writing.
+/// The folders that this process is writing.
 static BEGUN: Mutex<Vec<Begun>> = Mutex::new(Vec::new());
 
-/// How many runs stop by themselves when they are asked to.
+/// The number of runs that stop by themselves at a signal.
 static LISTENING: AtomicUsize = AtomicUsize::new(0);
 
-/// The signal that asked them to; 0 for none.
+/// The signal that requested the stop; 0 for none.
 static ASKED: AtomicI32 = AtomicI32::new(0);
 
 fn with_begun<R>(then: impl FnOnce(&mut Vec<Begun>) -> R) -> R {
@@ -40,7 +40,7 @@ pub(super) fn begin(hidden: &Path, created: &[PathBuf]) {
     });
 }
 
-/// From here on it is left as it is: a checkpoint in it can be gone on from.
+/// Keeps the folder from now on, since a checkpoint in it can be resumed.
 pub(super) fn keep(hidden: &Path) {
     with_begun(|all| {
         let own = all.iter_mut().filter(|begun| begun.hidden == hidden);
@@ -64,7 +64,7 @@ pub(super) fn remove(hidden: &Path, created: &[PathBuf]) {
     }
 }
 
-/// A run that stops by itself when it is asked to, as long as this lives.
+/// While this value exists, a run stops by itself when a signal requests it.
 pub(crate) struct Listening(());
 
 impl Listening {
@@ -75,7 +75,7 @@ impl Listening {
         Self(())
     }
 
-    /// The signal that asked it to, if any.
+    /// The signal that requested the stop, if any.
     pub(crate) fn asked(&self) -> Option<u8> {
         u8::try_from(ASKED.load(Ordering::SeqCst))
             .ok()
@@ -109,7 +109,7 @@ fn watch() {
                 if first && LISTENING.load(Ordering::SeqCst) > 0 {
                     continue;
                 }
-                // Held to the end: no other folder is begun, and none is completed while it is removed.
+                // Locked to the end: no other folder is begun, and none is completed while it is removed.
                 with_begun(|all| {
                     for begun in all.iter().filter(|begun| !begun.kept) {
                         remove(&begun.hidden, &begun.created);

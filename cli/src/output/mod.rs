@@ -1,5 +1,5 @@
-//! What a run leaves behind in one new folder, and how it is read there: samples, arrays, run.json, files for ParaView. Takes a run,
-//! finished or stopped in the middle.
+//! The results of a run in one new folder, and how to read them: samples, arrays, run.json, files for ParaView.
+//! Takes a run that is finished or stopped early.
 
 pub(crate) mod arrays;
 pub(crate) mod attitude;
@@ -39,25 +39,25 @@ pub struct Stopped {
     pub why: String,
 }
 
-/// A run that has come to its end, or stopped after at least one step.
+/// A run that is complete, or that stopped after at least one step.
 pub struct Finished<'a> {
     /// The model.
     pub card: &'a Card,
-    /// What was asked for.
+    /// The plan of the run.
     pub plan: &'a Plan,
-    /// What was conserved.
+    /// The drift of each invariant.
     pub outcomes: &'a [Outcome],
     /// Number of samples taken.
     pub samples: u64,
-    /// Steps that were made by parts; none where a refused step ends a run.
+    /// Steps that were subdivided; `None` without `--halve`.
     pub halvings: Option<Halvings>,
-    /// What the action as stated says of the judged steps; none where none was to be judged.
+    /// The check of steps against the action as stated; `None` if no steps were checked.
     pub stated: Option<Verdict>,
-    /// Where it stopped; none for a run that has come to its end.
+    /// The node at which the run stopped; `None` if it is complete.
     pub stopped: Option<Stopped>,
 }
 
-/// Every file name a run can write, so that a folder with anything else is never replaced.
+/// The names of all files that a run can write. A folder with any other file is never replaced.
 pub const FILES: [&str; 26] = [
     "trajectory.csv",
     "trajectory.npz",
@@ -73,11 +73,11 @@ pub const FILES: [&str; 26] = [
     "snapshots.svg",
     "run.html",
     vtk::FOLDER,
-    // While it runs, and where it can be gone on with.
+    // Present while the run computes, and while it can be resumed.
     samples::NAME,
     checkpoint::NAME,
     checkpoint::UNFINISHED,
-    // Of pictures for a paper.
+    // Pictures for papers.
     "momentum.pdf",
     "invariants.pdf",
     "advected.pdf",
@@ -89,9 +89,9 @@ pub const FILES: [&str; 26] = [
     "snapshots.pdf",
 ];
 
-/// Removes what a run that has come to its end, or cannot be gone on with, needs no longer.
+/// Removes the files that only a resumed run needs.
 pub(crate) fn remove_what_resumes(folder: &Path) {
-    // The checkpoint first: without it the samples are nothing.
+    // The checkpoint goes first: without it the samples are useless.
     for name in [checkpoint::NAME, checkpoint::UNFINISHED, samples::NAME] {
         let _ = std::fs::remove_file(folder.join(name));
     }

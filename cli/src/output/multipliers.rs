@@ -1,7 +1,9 @@
-//! Which outputs of a run are multipliers of held constraints. Takes names; every multiplier has invariants of its own.
+//! Finds the outputs of a run that are multipliers of constraints. Takes names; every multiplier has its own
+//! invariants.
 
-/// Whether a quantity is a multiplier, or its copy at a site: a run says of each how far the start and the steps are off its
-/// constraint, and how fast. The names of a run's invariants are told by `said`.
+/// Whether a quantity is a multiplier, or the copy of one at a site. For each multiplier a run has two
+/// invariants: the residual of its constraint, and the rate of change. `said` tells whether a name is the name
+/// of an invariant.
 pub(crate) fn is_multiplier(name: &str, said: impl Fn(&str) -> bool) -> bool {
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
     let copy = name.rsplit_once('_').filter(|(_, site)| is_number(site));

@@ -1,5 +1,5 @@
-//! Where bodies at the sites of a line are drawn: at the point of their node, or midway between the nodes of their
-//! segment, those that an end holds and those once around a ring among them.
+//! The positions at which bodies at the sites of a chain are drawn: the point of their node, or the midpoint of
+//! their segment. They include points given at an end, and the first point of a ring repeated at the end.
 
 use crate::output::sites::{AtSites, at_sites};
 use crate::plan::Plan;
@@ -11,14 +11,14 @@ use std::ops::Range;
 /// A point that a body is drawn at.
 #[derive(Clone)]
 pub(crate) enum Point {
-    /// One that moves, in these columns, and what is added to it once around a ring.
+    /// A point that moves, in these columns, with the offset added once around a ring.
     Moving(Range<usize>, Vec<f64>),
     /// One that an end holds.
     Held(Vec<f64>),
 }
 
 impl Point {
-    /// The columns that it is read from; of one that is held none.
+    /// The columns of the point; `None` if the point is given.
     pub(crate) fn columns(&self) -> Option<Range<usize>> {
         match self {
             Point::Held(_) => None,
@@ -26,7 +26,7 @@ impl Point {
         }
     }
 
-    /// Its place in a sample.
+    /// Its position in a sample.
     pub(crate) fn at(&self, row: &[f64]) -> Vec<f64> {
         match self {
             Point::Held(place) => place.clone(),
@@ -39,19 +39,19 @@ impl Point {
     }
 }
 
-/// The points that bodies at sites are drawn at: a field of places of the same label.
+/// The points at which bodies at sites are drawn: a field of positions with the same label.
 pub(crate) struct Places<'a> {
     card: &'a Card,
     plan: &'a Plan,
     points: &'a AtSites<'a>,
-    /// From the site of a body to those of the points next to it.
+    /// Offsets from the site of a body to the sites of the points next to it.
     next: [isize; 2],
-    /// Sites of the points, those that ends hold left out.
+    /// The number of points, without the points given at an end.
     count: usize,
 }
 
 impl<'a> Places<'a> {
-    /// The points of these bodies; `None` where there are none, or none that stand beside them.
+    /// The points of these bodies; `None` if no points are at or next to the sites of the bodies.
     pub(crate) fn of(
         (card, plan): (&'a Card, &'a Plan),
         sites: &'a [AtSites<'_>],
@@ -61,7 +61,7 @@ impl<'a> Places<'a> {
             let all = sites.iter().filter(|q| q.moves && q.field.count() == 3);
             all.filter(|q| q.index == bodies.index)
         };
-        // Rather those of the same sites than those beside them.
+        // Points at the sites of the bodies are preferred to points next to them.
         let points = points().find(|q| q.at == bodies.at).or(points().next())?;
         let next = match (bodies.at, points.at) {
             (a, b) if a == b => [0, 0],
@@ -86,7 +86,8 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The points beside a site, twice the only one; `None` where there is none.
+    /// The points next to a site. At an end of a chain only one exists and is given twice. `None` if there is
+    /// none.
     pub(crate) fn at(&self, site: usize) -> Option<(Point, Point)> {
         let beside = self.next.map(|by| {
             let wanted = isize::try_from(site).ok()? + by;
@@ -94,7 +95,7 @@ impl<'a> Places<'a> {
         });
         match beside {
             [Some(a), Some(b)] => Some((a, b)),
-            // Before the first segment and behind the last one there is none.
+            // There is no segment before the first and after the last one.
             [Some(only), None] | [None, Some(only)] if self.next == [-1, 0] => {
                 Some((only.clone(), only))
             }
@@ -102,10 +103,11 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The point of a site, of a ring also beyond the last one.
+    /// The point at a site. On a ring the site may be beyond the last one.
     pub(crate) fn point(&self, wanted: isize) -> Option<Point> {
         let found = |site: usize| {
-            // They stand in the order of their sites, a hundred thousand of them.
+            // There may be a hundred thousand points. They are in the order of their sites, so a binary search
+            // finds one.
             let members = &self.points.members;
             let at = members.binary_search_by_key(&site, |(s, _)| *s).ok()?;
             members.get(at).map(|(_, c)| c.clone())
@@ -119,7 +121,7 @@ impl<'a> Places<'a> {
         {
             return Some(Point::Held(held));
         }
-        // Once around a ring, which has the site 0 and no end that holds anything.
+        // On a ring the index wraps around. A ring starts at site 0 and has no end.
         let count = isize::try_from(self.count).ok()?;
         let around = usize::try_from(wanted.rem_euclid(count)).ok()?;
         let ring = self.is_ring() && !(0..count).contains(&wanted);
@@ -141,7 +143,7 @@ impl<'a> Places<'a> {
         Some(value.clone())
     }
 
-    /// On an open line one node more than segments; places given there are found before.
+    /// An open chain has one node more than segments. Positions given at its ends are found before.
     fn is_ring(&self) -> bool {
         if let Some(choice) = &self.plan.choice {
             return choice.periodic;

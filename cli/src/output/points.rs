@@ -8,7 +8,7 @@ use std::collections::HashSet;
 pub(crate) struct Diagonals(HashSet<&'static str>);
 
 impl Diagonals {
-    /// As the model is stated.
+    /// Reads the text of the model.
     pub(crate) fn of(card: &Card) -> Self {
         // The source of a card states them as vectors, and them themselves as `diag(D)`.
         let text: String = card.source.split_whitespace().collect();
@@ -17,7 +17,7 @@ impl Diagonals {
         Self(fields.map(|f| f.ascii).collect())
     }
 
-    /// Whether it is one of them.
+    /// Whether a field belongs to them.
     pub(crate) fn have(&self, field: &Field) -> bool {
         self.0.contains(field.ascii)
     }
@@ -35,7 +35,7 @@ impl Diagonals {
 pub(crate) struct Linear(HashSet<&'static str>);
 
 impl Linear {
-    /// As the model is stated.
+    /// Reads the text of the model.
     pub(crate) fn of(card: &Card) -> Self {
         let text: String = card.source.split_whitespace().collect();
         let stated = |name: &str| text.contains(&format!("group{name}:GL<"));
@@ -43,7 +43,7 @@ impl Linear {
         Self(fields.map(|f| f.ascii).collect())
     }
 
-    /// Whether it is one of them.
+    /// Whether a field belongs to them.
     pub(crate) fn have(&self, field: &Field) -> bool {
         self.0.contains(field.ascii)
     }

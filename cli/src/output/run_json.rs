@@ -1,5 +1,6 @@
-//! run.json: everything needed to repeat a run, and what came out.
-//! Takes a finished run; gives a JSON object with sorted keys and no trace of when or where it ran.
+//! run.json: everything needed to repeat a run, and its results.
+//! Takes a finished run; gives a JSON object with sorted keys. The object does not depend on the time or the
+//! machine.
 
 use super::Finished;
 use crate::plan::Plan;
@@ -7,7 +8,7 @@ use crate::trajectory::verdict::{Outcome, Verdict};
 use clebsch::card::{Card, Field, Kind};
 use serde_json::{Map, Value, json};
 
-/// The object written as run.json and printed by `--json`; `files` are the names beside it.
+/// The object written as run.json and printed by `--json`; `files` are the names of the files next to it.
 #[must_use]
 pub fn run_json(run: &Finished<'_>, files: &[String]) -> Value {
     let Finished {
@@ -43,7 +44,7 @@ pub fn run_json(run: &Finished<'_>, files: &[String]) -> Value {
     object
 }
 
-/// What was asked for, and of which model: the part that is known before a run.
+/// The request and the model: the part that is known before the run.
 pub(crate) fn plan_json(card: &Card, plan: &Plan) -> Value {
     let case = &plan.case;
     let bounds = case.bounds.iter();

@@ -1,5 +1,6 @@
-//! The samples of a run on disk: rows of eight bytes a number, appended while it runs, read row by row for its files.
-//! Takes what the integration loop shows; gives rows, whose number the memory does not depend on.
+//! The samples of a run on disk: rows of eight-byte numbers, appended while it runs, read row by row for its
+//! files.
+//! Takes the samples of the integration loop; gives rows. Memory does not grow with their number.
 
 use clebsch::card::Card;
 use std::fs::{File, OpenOptions};
@@ -27,7 +28,7 @@ pub(crate) struct Stream {
     row: Vec<u8>,
     rows: u64,
     sum: crc32fast::Hasher,
-    /// The first error: what came after it was not written.
+    /// The first error. Nothing was written after it.
     failed: Option<io::Error>,
 }
 
@@ -47,8 +48,8 @@ impl Stream {
         })
     }
 
-    /// The file of a run that is resumed after `rows` rows, whose checksum must be `sum`: what was written
-    /// after them is dropped. `Ok(None)` when it is shorter or not what it was.
+    /// The file of a run that is resumed after `rows` rows with checksum `sum`. Later rows are dropped.
+    /// `Ok(None)` if the file is too short or the checksum differs.
     pub(crate) fn again(
         folder: &Path,
         card: &Card,
@@ -114,7 +115,7 @@ impl Stream {
         Ok((self.rows, self.sum.clone().finalize()))
     }
 
-    /// The error met so far, if any.
+    /// The first error so far, if any.
     pub(crate) fn check(&mut self) -> io::Result<()> {
         self.failed.take().map_or(Ok(()), Err)
     }
@@ -140,7 +141,7 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
-    /// Those of a file with so many of so many words.
+    /// The rows of a file: `count` rows of `width` words.
     pub(crate) fn of(path: &Path, width: usize, count: u64) -> Self {
         Self {
             path: path.to_owned(),

@@ -1,4 +1,4 @@
-//! Which observables are copies of one quantity, at the sites of a label.
+//! Finds the observables that are copies of one quantity, at the sites of a label.
 //! Takes a card; gives each such quantity with the columns of its sites.
 
 use crate::case_file::stated::Stated;
@@ -16,9 +16,9 @@ pub(crate) struct AtSites<'a> {
     pub name: String,
     /// The letter of its index.
     pub index: String,
-    /// The observable at its first site, which tells its shape.
+    /// The observable at its first site, which determines the shape.
     pub field: &'a Field,
-    /// Whether a momentum of its own shape stands behind it: it is a field.
+    /// Whether the quantity is a field: its observable is followed by a momentum of the same shape.
     pub moves: bool,
     /// Whether its sites have neighbours.
     pub on_line: bool,
@@ -32,7 +32,7 @@ pub(crate) struct AtSites<'a> {
     pub members: Vec<(usize, Range<usize>)>,
 }
 
-/// The quantities at sites in the order of their first copies; none for a model without labels.
+/// The quantities at sites in the order of their first copies; empty for a model without labels.
 pub(crate) fn at_sites(card: &Card) -> Vec<AtSites<'_>> {
     let Some(stated) = Stated::read(card.source) else {
         return Vec::new();
@@ -74,7 +74,8 @@ pub(crate) fn at_sites(card: &Card) -> Vec<AtSites<'_>> {
     out
 }
 
-/// The key of a field with the number of a site in its name, its site, and the quantity that it is or whose momentum it is.
+/// The key of a field with the number of a site in its name, its site, and its quantity. For a momentum that is
+/// the configuration.
 fn copy_of<'a>(field: &Field, quantities: &'a [Quantity]) -> Option<(String, usize, &'a Quantity)> {
     let (key, digits) = field.ascii.rsplit_once('_')?;
     let site = digits.parse().ok()?;
@@ -96,7 +97,7 @@ fn the_only_one<'a>(card: &Card, quantities: &'a [Quantity]) -> Option<(usize, &
     copies.next().filter(|_| copies.next().is_none())
 }
 
-/// The same of a momentum that is named without the configuration, because nothing else moves.
+/// The same for a momentum whose name omits the configuration, because nothing else moves.
 fn of_the_only_one<'a>(
     field: &Field,
     (site, own): &(usize, &'a Quantity),

@@ -1,14 +1,14 @@
-//! A folder that appears complete or not at all, and in place of nothing else.
-//! Takes the folder's final name; gives a hidden sibling to write into, which takes the name at the end
-//! if nobody else has, and another one beside it otherwise.
+//! A folder that appears complete or not at all, and never replaces anything else.
+//! Takes the folder's final name; gives a hidden sibling to write into. At the end the sibling takes the final
+//! name if that name is free, and another name next to it otherwise.
 //!
-//! What stands under the name is looked at twice: at the start, so that a run that could not be written
-//! is refused before it computes, and at the end, when only the file system's own operations decide: a
-//! folder is made only if it is not there ([`fs::create_dir`]), and renamed only over an empty one. So
-//! of any number of runs into one folder one takes the name, and each of the others keeps its results.
+//! The final name is checked twice. The check at the start rejects a run that could not be written before it
+//! computes. At the end only atomic operations of the file system decide: a folder is made only if it does not
+//! exist ([`fs::create_dir`]), and renamed only over an empty one. If several runs write into one folder, one
+//! takes the name, and each of the others keeps its results.
 //!
-//! A run holds a lock on its hidden folder, which the system takes back however the run ends. The next run into the same
-//! place removes what runs that were killed left behind, unless it can be gone on with: see [`resumed`].
+//! A run locks its hidden folder, and the system releases the lock however the run ends. The next run into the
+//! same folder removes the remains of killed runs, unless they can be resumed: see [`resumed`].
 
 mod resumed;
 
@@ -23,10 +23,10 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
-/// Names tried before giving up; each attempt goes on only where a name is taken.
+/// The number of names tried. The next name is tried only if a name is taken.
 const ATTEMPTS: u32 = 10_000;
 
-/// What hidden folders of runs are called, between their target's name and numbers.
+/// The middle part of the name of a hidden folder, between the name of the target and numbers.
 const PARTIAL: &str = "partial";
 
 /// The folder in the making. Dropping it uncommitted removes all traces.
@@ -34,16 +34,16 @@ const PARTIAL: &str = "partial";
 pub struct Staging {
     target: PathBuf,
     hidden: PathBuf,
-    /// The hidden folder, locked; nothing where the file system locks no folders.
+    /// The hidden folder, locked; `None` if the file system does not lock folders.
     held: Option<File>,
-    /// What `--force` is to replace, as it stood at the start.
+    /// The results that `--force` is to replace, as they were at the start.
     standing: Option<Standing>,
     known: Vec<&'static str>,
     /// Parents of the target that did not exist, innermost first.
     created: Vec<PathBuf>,
-    /// Whether it stays when the run ends before its results are complete: it can be gone on with.
+    /// Whether the folder stays if the run ends before its results are complete, since it can be resumed.
     kept: bool,
-    /// Where it stood before it was taken up, until the run goes on.
+    /// The path of the folder before it was resumed; cleared when the run continues.
     taken_from: Option<PathBuf>,
     committed: bool,
 }
@@ -52,8 +52,8 @@ impl Staging {
     /// Checks that `target` may be written and makes the hidden sibling.
     ///
     /// # Errors
-    /// Usage: it exists and `force` is not given, or it is not the folder of an earlier run (empty, or
-    /// nothing but the files `known` of a run): such a folder is never replaced. Failed: no permission.
+    /// Usage: `target` exists and `force` is not given, or it is not the folder of an earlier run. Such a
+    /// folder is empty or contains only `known` files; other folders are never replaced. Failed: no permission.
     pub fn new(target: &Path, force: bool, known: &[&'static str]) -> Result<Self, Failure> {
         if target.file_name().is_none() {
             return Err(Failure::Usage(format!(
@@ -100,7 +100,7 @@ impl Staging {
         loop {
             let hidden = self.fresh(PARTIAL)?;
             self.held = File::open(&hidden).and_then(|f| f.lock().map(|()| f)).ok();
-            // Before it was locked, another run may have taken it for an abandoned one.
+            // Before the folder was locked, another run may have removed it as abandoned.
             left -= 1;
             if hidden.exists() || left == 0 {
                 self.hidden = hidden;
@@ -109,8 +109,8 @@ impl Staging {
         }
     }
 
-    /// Removes hidden folders of runs that were killed: nobody holds them, and they hold nothing but files
-    /// of a run. What cannot be removed is left, and none of it concerns this run.
+    /// Removes the hidden folders of killed runs: folders that are not locked and contain only files of a run.
+    /// Errors are ignored, since these folders do not affect this run.
     fn remove_abandoned(&self) {
         for folder in Self::abandoned(&self.target) {
             let _ = self.remove_if_abandoned(&folder);
@@ -156,10 +156,10 @@ impl Staging {
         interrupted::keep(&self.hidden);
     }
 
-    /// Makes a folder within, into which files are written by names that begin with its own.
+    /// Makes an inner folder. The names of its files start with its name.
     ///
     /// # Errors
-    /// Failed: the file system refuses.
+    /// Failed: the folder cannot be made.
     pub(crate) fn make_folder(&self, name: &str) -> Result<(), Failure> {
         fs::create_dir(self.hidden.join(name)).map_err(|error| {
             let path = self.target.join(name);
@@ -167,10 +167,10 @@ impl Staging {
         })
     }
 
-    /// Writes one file and sees it to the disk.
+    /// Writes one file and flushes it to disk.
     ///
     /// # Errors
-    /// Failed: the file system refuses.
+    /// Failed: the file cannot be written.
     pub fn write(
         &self,
         name: &str,
@@ -187,13 +187,12 @@ impl Staging {
         })
     }
 
-    /// Gives the folder its name, in place of what stood there at the start, which is removed once that
-    /// is done.
+    /// Gives the folder its final name. The results that were there at the start are removed afterwards.
     ///
     /// # Errors
-    /// Failed: the name was taken meanwhile, what stood there has changed, or the file system refuses.
-    /// What stands there is then left as it is, and the results are kept beside it; the message says
-    /// where.
+    /// Failed: the name was taken meanwhile, the earlier results have changed, or a file operation fails. The
+    /// existing folder is then left unchanged, and the results are kept next to it. The message gives their
+    /// path.
     pub fn commit(mut self) -> Result<(), Failure> {
         // From here on the results are complete: whatever happens, they are not removed.
         self.complete();
@@ -226,8 +225,8 @@ impl Staging {
         })
     }
 
-    /// As [`Staging::commit`], for results of a run that stopped in the middle: what `--force` was to
-    /// replace is whole, and stays. Says where the results are.
+    /// As [`Staging::commit`], for results of a run that stopped early. The results that `--force` was to
+    /// replace are complete, so they stay. Gives the path of the new results.
     ///
     /// # Errors
     /// As [`Staging::commit`].
@@ -246,8 +245,8 @@ impl Staging {
         interrupted::end(&self.hidden);
     }
 
-    /// Moves what is to be replaced aside, if it is still what it was at the start. Gives where to, or
-    /// nothing when there is nothing to replace.
+    /// Moves the results to be replaced aside, if they are unchanged since the start. Gives their new path, or
+    /// `None` if there is nothing to replace.
     fn set_aside(&self) -> Result<Option<PathBuf>, String> {
         let Some(standing) = &self.standing else {
             return Ok(None);
@@ -255,7 +254,7 @@ impl Staging {
         let why = |error: io::Error| format!("cannot move what stands there aside: {error}");
         let aside = self.fresh("replaced").map_err(why)?;
         if let Err(error) = rename(&self.target, &aside) {
-            // It is empty and ours; when it cannot be removed, nothing is lost.
+            // The folder is empty and was made here, so it does not matter if it cannot be removed.
             let _ = fs::remove_dir(&aside);
             return match error.kind() {
                 io::ErrorKind::NotFound => Ok(None),
@@ -265,7 +264,7 @@ impl Staging {
         // Looked at after the move, so that no run can exchange it between the look and the move.
         match standing::look(&aside, &self.known) {
             Ok(Ok(now)) if now == *standing => Ok(Some(aside)),
-            // An empty folder holds nothing to lose: a run that ends at this moment takes the name by it.
+            // An empty folder contains no results: another run has just made it to take the name.
             _ if fs::remove_dir(&aside).is_ok() => Ok(None),
             _ => Err(format!(
                 "what stands there changed during the run, and is not replaced{}",
@@ -274,10 +273,10 @@ impl Staging {
         }
     }
 
-    /// Moves what was set aside back where it was, or beside it when the place is taken; what to say
-    /// then.
+    /// Moves the earlier results back, or next to their path if it is taken. Gives the sentence for the
+    /// message.
     fn give_back(&self, aside: &Path) -> String {
-        // An empty folder put back could take the place of results that another run has just set aside.
+        // An empty folder moved back could occupy the path of results that another run has just set aside.
         if fs::remove_dir(aside).is_ok() {
             return String::new();
         }
@@ -287,14 +286,14 @@ impl Staging {
         }
     }
 
-    /// Gives the results a name of their own beside the target, and says so.
+    /// Gives the results a free name next to the target, and reports it.
     fn keep_beside(&self, why: &str) -> Failure {
         let target = shown(&self.target);
         let place = self.beside(&self.hidden);
         Failure::Failed(format!("--out {target}: {why}; the results are in {place}"))
     }
 
-    /// Renames a folder to the first free of `target-2`, `target-3` and so on; says where it is now.
+    /// Renames a folder to the first free name of `target-2`, `target-3` and so on, and gives its path.
     fn beside(&self, folder: &Path) -> Shown {
         let kept = first_free(|count| {
             let path = self.sibling("", &format!("-{}", count + 2));
@@ -321,10 +320,10 @@ fn taken(error: &io::Error) -> bool {
     matches!(error.kind(), AlreadyExists | DirectoryNotEmpty)
 }
 
-/// Renames the folder `from`, if nothing is called `to`.
+/// Renames the folder `from` to `to`, if `to` does not exist.
 fn place(from: &Path, to: &Path) -> io::Result<()> {
-    // Only one of all who try makes the empty folder, and a rename replaces no other one: should
-    // someone put a file into it before, the rename is refused.
+    // Only one process succeeds in making the empty folder, and a rename replaces only an empty folder. If
+    // another process puts a file into it first, the rename fails.
     fs::create_dir(to)?;
     rename(from, to).inspect_err(|_| {
         let _ = fs::remove_dir(to);
@@ -334,7 +333,7 @@ fn place(from: &Path, to: &Path) -> io::Result<()> {
 /// Renames the folder `from` over the empty folder `to`.
 fn rename(from: &Path, to: &Path) -> io::Result<()> {
     if cfg!(windows) {
-        // A folder is renamed over no other one there; this removes it only while it is empty.
+        // Here a rename cannot replace a folder; this removes the folder only while it is empty.
         fs::remove_dir(to)?;
     }
     fs::rename(from, to)

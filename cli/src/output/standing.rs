@@ -1,5 +1,5 @@
-//! What stands where results are to go: nothing, the folder of an earlier run, or something else.
-//! Takes a path; gives what `--force` may replace, or why nothing may be.
+//! The state of the output folder: absent, the folder of an earlier run, or something else.
+//! Takes a path; gives the results that `--force` may replace, or the reason why nothing may be replaced.
 
 use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
@@ -9,25 +9,27 @@ use std::io;
 use std::path::Path;
 use std::time::SystemTime;
 
-/// What tells a picture of `clebsch plot` from any other file.
+/// The text by which a picture of `clebsch plot` is recognised.
 pub(crate) const MARK: &str = "clebsch plot: time ";
 
 /// The endings of files for ParaView.
 const ENDINGS: [&str; 3] = ["pvd", "vtp", "vti"];
 
-/// One file as it stood: name, size, time of its last change.
+/// One file: name, size, time of its last change.
 type Entry = (OsString, u64, Option<SystemTime>);
 
-/// The files of an earlier run, by name, those of a folder within before it. Two folders are told apart by it: no run
-/// changes a file.
+/// The files of an earlier run, sorted by name. The name of a file in an inner folder starts with the name of
+/// that folder. Comparing two such lists shows whether the results have changed, since a run never changes a
+/// finished file.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Standing(Vec<Entry>);
 
-/// Whether results may go to `target`: `None` where nothing stands, else what is to be replaced.
+/// Whether results may be written to `target`: `None` if it does not exist, else the results to replace.
 ///
 /// # Errors
-/// Usage: something stands there and `force` is not given, or it is no folder with nothing but files
-/// that are `known` to be of a run. Failed: no permission to look.
+/// Usage: `target` exists and `force` is not given, or it is not a folder, or it contains a file that is not
+/// `known`.
+/// Failed: no permission to look.
 pub(super) fn at(target: &Path, force: bool, known: &[&str]) -> Result<Option<Standing>, Failure> {
     let wrong = |words: String| Failure::Usage(format!("--out {}: {words}", shown(target)));
     let found = match fs::symlink_metadata(target) {
@@ -59,8 +61,8 @@ pub(super) fn at(target: &Path, force: bool, known: &[&str]) -> Result<Option<St
     }
 }
 
-/// The files in `folder`, or the name of one that no run wrote. A name that ends in a stroke is that of a folder within,
-/// which holds files with the endings of pictures in space alone.
+/// The files in `folder`, or the name of a file that no run wrote. A name with a trailing slash means an inner
+/// folder, whose files must have the endings of files for ParaView.
 pub(super) fn look(folder: &Path, known: &[&str]) -> io::Result<Result<Standing, OsString>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {
@@ -84,7 +86,7 @@ pub(super) fn look(folder: &Path, known: &[&str]) -> io::Result<Result<Standing,
     Ok(Ok(Standing(files)))
 }
 
-/// The files of a folder within, by their names with its own.
+/// The files of an inner folder. Their names start with the name of that folder.
 fn within(path: &Path, name: &OsString) -> io::Result<Result<Vec<Entry>, OsString>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(path)? {
@@ -106,7 +108,7 @@ pub(crate) fn is_drawn(file: &Path) -> bool {
     is_svg && fs::read_to_string(file).is_ok_and(|text| text.contains(MARK))
 }
 
-/// Removes a folder within and what a run has written into it.
+/// Removes an inner folder and the files that a run wrote into it.
 pub(super) fn remove_folder(path: &Path) -> io::Result<()> {
     let name = path.file_name().unwrap_or_default().to_owned();
     if let Ok(files) = within(path, &name)? {
@@ -119,12 +121,12 @@ pub(super) fn remove_folder(path: &Path) -> io::Result<()> {
 }
 
 impl Standing {
-    /// Removes these files from `folder`, and the folder when nothing else is in it.
+    /// Removes these files from `folder`, and then the folder if it is empty.
     pub(super) fn remove(&self, folder: &Path) -> io::Result<()> {
         for (name, ..) in &self.0 {
             fs::remove_file(folder.join(name))?;
         }
-        // What they stood in, which is empty now.
+        // The inner folders are empty now.
         let own = fs::read_dir(folder)?.collect::<io::Result<Vec<DirEntry>>>()?;
         for entry in own {
             fs::remove_dir(entry.path())?;

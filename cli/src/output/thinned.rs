@@ -6,18 +6,18 @@ use clebsch::card::Card;
 use clebsch::record::{Record, Rows as _, Table};
 use std::io;
 
-/// Numbers of a record beyond which stretches of samples are drawn by their extremes.
+/// If a record has more numbers than this, stretches of samples are drawn by their extremes.
 const MOST: u64 = 1 << 22;
 
 /// Fewer samples are always kept: a picture has about as many columns of pixels, drawn four times finer.
 const FEWEST: u64 = 20_000;
 
-/// The rows as a record; each stretch of a long run as two rows, every number of which takes its extremes
-/// there in the order in which they occur.
+/// The rows as a record. Each stretch of a long run becomes two rows, which contain the two extremes of every
+/// number in the order in which they occur.
 pub(crate) fn record(card: &Card, rows: &Rows) -> io::Result<Record> {
     let [observables, invariants] = [card.observable_count(), card.invariant_count()];
     let most = (MOST / (2 + observables + invariants) as u64).max(FEWEST);
-    // A stretch gives two rows; one of one or two samples gives them as they are.
+    // A stretch gives two rows; a stretch of one or two samples gives its samples.
     let stretch = (rows.count().saturating_mul(2)).div_ceil(most).max(1);
     let stretch = if rows.count() <= most { 1 } else { stretch };
     let table = |width| Table {
@@ -47,7 +47,8 @@ pub(crate) fn record(card: &Card, rows: &Rows) -> io::Result<Record> {
         };
         let numbers = || bits.iter().map(|x| f64::from_bits(*x));
         met += 1;
-        // The first and the last sample stand for themselves: drifts begin at one, and runs end at the other.
+        // The first and the last sample are kept unchanged: drifts are measured from the first, and the run
+        // ends at the last.
         if stretch == 1 || met == 1 || met == rows.count() {
             if let Some(done) = here.take() {
                 done.tell(&mut push);
@@ -67,11 +68,11 @@ pub(crate) fn record(card: &Card, rows: &Rows) -> io::Result<Record> {
     Ok(out)
 }
 
-/// Samples one after the other.
+/// Consecutive samples.
 struct Stretch {
     count: u64,
     nodes: [u64; 2],
-    /// Of every number the least and where it was met, the greatest and where.
+    /// For every number the least value with its node, and the greatest value with its node.
     least: Vec<(f64, u64)>,
     greatest: Vec<(f64, u64)>,
 }

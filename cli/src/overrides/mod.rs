@@ -14,7 +14,7 @@ use crate::words::plain::shown;
 use clap::ArgMatches;
 use clebsch::card::Card;
 
-/// Most steps of a run, up to which a number of steps is exact as f64.
+/// The largest number of steps of a run. Up to this number an f64 is exact.
 const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
 
 /// Puts the options into a case, which was read from this text if it has one. Gives the names that `--set` set.
@@ -29,7 +29,7 @@ pub(crate) fn apply(
     matches: &ArgMatches,
 ) -> Result<Vec<String>, Failure> {
     let mut names = Vec::new();
-    // Lists, tables and their entries were put into the text of the case.
+    // Lists, tables and their entries are already in the text of the case.
     let is_read = |set: &&String| match (text, set.split_once('=')) {
         (Some(text), Some((name, value))) => replaces(text, name.trim(), value),
         _ => false,
@@ -85,7 +85,8 @@ pub(crate) fn by_name(matches: &ArgMatches) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Whether a value of `--set` is a list or a table, or the inertia of a body: it is read as that of a case file is.
+/// Whether a value of `--set` is a list, a table, or the inertia of a body. Such a value is read like a value
+/// in a case file.
 pub(crate) fn needs_a_text(matches: &ArgMatches, card: &Card) -> bool {
     let is_own = |name: &str| {
         let mut all = card.parameters.iter().chain(card.initial);
@@ -104,7 +105,7 @@ pub(crate) fn until(matches: &ArgMatches) -> Option<f64> {
     matches.try_get_one::<f64>("until").ok().flatten().copied()
 }
 
-/// How many steps of `h` end nearest to a time: at least one; none if they are too many to count.
+/// The number of steps of `h` that ends nearest to a time, at least one. `None` if it is too large to count.
 pub(crate) fn steps_to(time: f64, h: f64) -> Option<u64> {
     let steps = (time / h).abs().round().max(1.0);
     // Whole, positive, and exact.
@@ -112,8 +113,8 @@ pub(crate) fn steps_to(time: f64, h: f64) -> Option<u64> {
     (steps <= MOST_STEPS).then_some(steps as u64)
 }
 
-/// The name and the numbers of `NAME=VALUE` or `NAME=VALUE,VALUE,...`. Expressions may hold the step and the parameters of the
-/// case that are one number.
+/// The name and the numbers of `NAME=VALUE` or `NAME=VALUE,VALUE,...`. Expressions may use the step size and
+/// the parameters of the case with a single value.
 fn parts(text: &str, case: &Case, card: &Card) -> Result<(String, Vec<f64>), String> {
     let Some((name, values)) = text.split_once('=') else {
         return Err("give NAME=VALUE, such as gU.z=0.5".to_owned());
@@ -138,7 +139,7 @@ fn parts(text: &str, case: &Case, card: &Card) -> Result<(String, Vec<f64>), Str
     Ok((name.trim().to_owned(), numbers.collect::<Result<_, _>>()?))
 }
 
-/// The quantities that a name stands for, with their numbers: a number, or the components of a vector.
+/// The quantities that a name refers to, each with its number: one number, or the components of a vector.
 fn read(
     name: &str,
     numbers: &[f64],
@@ -158,7 +159,7 @@ fn read(
             each.len(),
             numbers.len()
         )),
-        // The message names what the model has, or the components.
+        // The message lists the names of the model, or the components.
         None => Err(match Quantity::read(name, card, motion) {
             Err(why) => why,
             Ok(_) => format!("`{}` takes one number", shown(name)),

@@ -1,5 +1,5 @@
 //! A number of a case by its name on the command line: `gU.z`, `q_3`, `h`.
-//! Takes a name and a card; gives the entries of parameters, initial values or the step that the name stands for.
+//! Takes a name and a card; gives the entries of parameters or initial values with this name, or the step size.
 
 use crate::case_file::stated::Stated;
 use crate::case_file::{Motion, at_site, is_key_of_rotation, is_velocity};
@@ -10,16 +10,17 @@ use clebsch::card::{Card, Field, Kind};
 /// A quantity that can be set.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Quantity {
-    /// As it was written, such as `gU.z`.
+    /// The name as the user typed it, such as `gU.z`.
     pub name: String,
     place: Place,
 }
 
-/// What takes the value.
+/// The destination of a value.
 #[derive(Clone, Debug, PartialEq)]
 enum Place {
     Step,
-    /// Entries of a parameter, each with the sign that its kind asks for; along a line those of several sites.
+    /// Fields and entries of a parameter, each entry with the sign that its kind requires. On a chain there may
+    /// be a field per site.
     Parameter(Vec<usize>, Vec<(usize, f64)>),
     Initial(Vec<usize>, Vec<(usize, f64)>),
     /// An entry of a table of the case, which is read again with the value in its text.
@@ -32,7 +33,7 @@ impl Quantity {
     /// The quantity called `name`.
     ///
     /// # Errors
-    /// What is wrong with the name, and what the model has.
+    /// The mistake in the name, and the names of the model.
     pub fn read(name: &str, card: &Card, motion: &Motion) -> Result<Self, String> {
         let name = name.trim();
         let place = place(name, card, motion)?;
@@ -42,7 +43,8 @@ impl Quantity {
         })
     }
 
-    /// The same of a case that is read from a text, or an entry of a table in it, such as the angle of a rotation.
+    /// The quantity of a case that is read from a text, or an entry of a table in it, such as the angle of a
+    /// rotation.
     ///
     /// # Errors
     /// As [`Quantity::read`].
@@ -91,7 +93,7 @@ impl Quantity {
         }
     }
 
-    /// Whether both set a number that is the same one.
+    /// Whether both quantities set a common number.
     pub fn meets(&self, other: &Self) -> bool {
         match (&self.place, &other.place) {
             (Place::Step, Place::Step) => true,
@@ -100,7 +102,7 @@ impl Quantity {
             | (Place::Initial(a, own), Place::Initial(b, others))
             | (Place::Velocity(a, own), Place::Velocity(b, others)) => {
                 let is_other = |at: usize| others.iter().any(|(other, _)| *other == at);
-                // Fields stand in their order, along a line a hundred thousand of them.
+                // Fields are sorted; a chain may have a hundred thousand of them, so this is a binary search.
                 own.iter().any(|(at, _)| is_other(*at))
                     && a.iter().any(|field| b.binary_search(field).is_ok())
             }
@@ -173,7 +175,7 @@ fn place(name: &str, card: &Card, motion: &Motion) -> Result<Place, String> {
     for fields in [card.parameters, card.initial] {
         for own in fields {
             let stem = at_site(own.ascii).map(|(stem, _)| stem);
-            // Of a hundred thousand sites the first one tells it.
+            // There may be a hundred thousand sites; only the first copy of a quantity is looked up.
             if stem.is_some_and(|stem| names.contains(&stem)) {
                 continue;
             }
@@ -199,8 +201,8 @@ fn label(name: &str, card: &Card) -> Option<String> {
     Some(own.index.text.clone())
 }
 
-/// The fields of a name, and the first of them. Along a line a name is that of a case file: without the number of a site it is that of
-/// all sites or of both ends, with `N` that of the last end.
+/// The fields with a name, and the first of them. A chain has the names of a case file: a name without the
+/// number of a site means all sites or both ends, and `_N` means the last end.
 fn found(name: &str, fields: &'static [Field], card: &Card) -> Option<(Vec<usize>, Field)> {
     let all = card.parameters.iter().chain(card.initial);
     let last = all.filter_map(|f| Some(at_site(f.ascii)?.1)).max();
@@ -230,7 +232,8 @@ fn found(name: &str, fields: &'static [Field], card: &Card) -> Option<(Vec<usize
     Some((own, first))
 }
 
-/// The entries of a field that a component names: with its mirror image where the kind has one.
+/// The entries of a field that a component names. If the kind is symmetric or skew, the mirrored entry is
+/// included.
 fn entries(
     field: &Field,
     name: &str,

@@ -1,5 +1,5 @@
-//! Values of options in the text of a case, so that expressions that hold them follow.
-//! Takes the text and names with values; gives the text with the values in their places.
+//! Inserts values of options into the text of a case, so that expressions in them follow.
+//! Takes the text and names with values; gives the new text.
 
 mod entry;
 
@@ -8,8 +8,9 @@ pub(crate) use entry::{is_within_a_table, replaces};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The text with these values: of the step `h`, of parameters that are one number, lists and tables, and of what stands within a
-/// table. What it does not give under these names is left for later, and so is what is not an expression in its parameters.
+/// The text with these values. A name may be the step size `h`, a parameter with a single value, a list, a
+/// table, or an entry of a table. A value is skipped, for later, if the text does not give the name or if the
+/// value is not an expression in the parameters.
 pub(crate) fn substituted(text: &str, values: &[(String, String)]) -> String {
     let mut out = text.to_owned();
     for (name, value) in values {
@@ -50,7 +51,7 @@ fn one(text: &str, name: &str, value: &str) -> Option<String> {
     ))
 }
 
-/// Whether an expression of the case holds one of these names.
+/// Whether an expression of the case uses one of these names.
 pub(crate) fn follow(text: &str, names: &[&str]) -> bool {
     let Ok(table) = DeTable::parse(text) else {
         return false;
@@ -91,7 +92,7 @@ mod tests {
             CASE.replace("k = 2", "k = \"c*3\"")
                 .replace("h = 0.1", "h = \"1/4\"")
         );
-        // Not one number, not given, no expression, another name.
+        // Not a single number, not given, not an expression, another name.
         for (name, value) in [
             ("g", "1"),
             ("m", "1"),

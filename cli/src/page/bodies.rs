@@ -1,5 +1,6 @@
-//! Bodies that a page shows by their axes, and where each is: at its own place, about the origin, or in a row beside what has
-//! places. Takes a card with its model as stated; gives their columns, and their axes and places in a sample.
+//! Bodies that a page draws by their axes, and the position of each: its own position, the origin, or a row
+//! next to the other objects. Takes a card with its model; gives their columns, and their axes and positions in
+//! a sample.
 
 use super::ties::{Tied, Ties};
 use super::value::Stated;
@@ -19,9 +20,9 @@ pub(super) struct Body {
     pub(super) place: Place,
 }
 
-/// Where a body is drawn.
+/// The position at which a body is drawn.
 pub(super) enum Place {
-    /// Where no place is known: in a row, by its number.
+    /// The position is unknown: in a row, by its number.
     Row(usize),
     /// About the origin.
     Origin,
@@ -31,7 +32,7 @@ pub(super) enum Place {
     At(Point, Point),
 }
 
-/// The bodies of a run, and what tells where those are that are not at sites.
+/// The bodies of a run, with the positions of bodies that are not at sites.
 pub(super) fn bodies(run: &Finished<'_>, stated: Option<&Stated<'_>>, ties: &Ties) -> Vec<Body> {
     let carried = carried(stated);
     let sites = stated.map_or(&[][..], |s| &s.sites);
@@ -87,7 +88,7 @@ pub(super) fn bodies(run: &Finished<'_>, stated: Option<&Stated<'_>>, ties: &Tie
     out
 }
 
-/// What is carried along by other motions, such as one body seen from another: no body.
+/// The names of advected quantities, such as one body seen from another. They are not drawn as bodies.
 pub(super) fn carried<'a>(stated: Option<&'a Stated<'_>>) -> HashSet<&'a str> {
     let statements = stated.map_or(&[][..], |s| &s.model.statements);
     let names = statements.iter().filter_map(|s| match s {
@@ -97,12 +98,12 @@ pub(super) fn carried<'a>(stated: Option<&'a Stated<'_>>) -> HashSet<&'a str> {
     names.flatten().map(|n| n.text.as_str()).collect()
 }
 
-/// Whether it is an attitude, with its place or without.
+/// Whether the field is an attitude, with or without a position.
 fn is_body(field: &Field) -> bool {
     turns(field) || is_placed(field)
 }
 
-/// Whether it is an attitude with its place, in space or in the plane.
+/// Whether the field is an attitude with a position, in space or in the plane.
 pub(super) fn is_placed(field: &Field) -> bool {
     field.kind == Kind::RigidMotion && [9, 16].contains(&field.count())
 }
@@ -131,12 +132,12 @@ impl Body {
         }
     }
 
-    /// Whether it is seen at a place of its own.
+    /// Whether the body has its own position.
     pub(super) fn has_place(&self) -> bool {
         matches!(self.place, Place::Within | Place::At(..))
     }
 
-    /// The columns that it is read from.
+    /// The columns of its attitude and position.
     pub(super) fn columns(&self) -> Vec<Range<usize>> {
         let mut all = vec![self.turn.clone()];
         if let Place::At(a, b) = &self.place {
@@ -162,7 +163,7 @@ impl Body {
         }
     }
 
-    /// Its place; of those that have none, the origin.
+    /// Its position, or the origin if it has none.
     pub(super) fn at(&self, row: &[f64]) -> [f64; 3] {
         match &self.place {
             Place::Row(_) | Place::Origin => [0.0; 3],
@@ -183,7 +184,7 @@ impl Body {
     }
 }
 
-/// A sentence on where the bodies are drawn whose places a reader cannot see in the names.
+/// A sentence that states where bodies are drawn, if their names do not make it clear.
 pub(super) fn said(bodies: &[Body], ties: &Ties) -> String {
     let mut at: Vec<String> = Vec::new();
     let (mut origin, mut rows) = (Vec::new(), Vec::new());

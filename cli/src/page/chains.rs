@@ -1,5 +1,5 @@
-//! Points that a page shows: a line of them, single ones, particles, or numbers along a line as a profile.
-//! Takes the fields of a card; gives their places in a sample, those that ends hold among them.
+//! Points that a page draws: a chain, single points, particles, or the profile of numbers along a chain.
+//! Takes the fields of a card; gives their positions in a sample, including points given at an end.
 
 use super::tints::Tints;
 use super::value::Stated;
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use std::collections::HashSet;
 use std::ops::Range;
 
-/// Most points that leave trails.
+/// The largest number of points that leave trails.
 const TRAILS: usize = 12;
 
 /// Points with a name.
@@ -67,7 +67,7 @@ fn of_sites_of<'a>(
     tints: Option<&'a Tints<'a>>,
 ) -> Option<Chain<'a>> {
     let dim = q.field.count();
-    // Numbers of sites without neighbours are no profile.
+    // Scalars at sites without neighbours do not form a profile.
     let tints = tints.filter(|t| t.have(q));
     let seen = dim > 1 || q.on_line || tints.is_some();
     let known = q.moves && q.field.cols == 1 && (1..=3).contains(&dim) && seen;
@@ -88,7 +88,8 @@ fn of_sites_of<'a>(
 }
 
 impl Chain<'_> {
-    /// Whether it is a profile of numbers. Particles on a line are none: they are shown at the height of their depth.
+    /// Whether it is a profile of numbers. Particles in one dimension are drawn at the height of their depth
+    /// instead.
     pub(super) fn is_profile(&self) -> bool {
         self.dim == 1 && self.line
     }
@@ -103,7 +104,7 @@ impl Chain<'_> {
         self.dim < 3
     }
 
-    /// The columns that its places are read from.
+    /// The columns of its positions.
     pub(super) fn columns(&self) -> impl Iterator<Item = Range<usize>> {
         self.points.iter().filter_map(Point::columns)
     }
@@ -114,7 +115,7 @@ impl Chain<'_> {
         tints + self.dim * self.points.len()
     }
 
-    /// Points that ends hold; of a profile none.
+    /// The points given at ends; empty for a profile.
     pub(super) fn held(&self) -> Vec<[f64; 3]> {
         let own = self.points.iter().filter(|_| !self.is_profile());
         let held = own.filter_map(|p| match p {
@@ -125,7 +126,7 @@ impl Chain<'_> {
             .collect()
     }
 
-    /// The numbers of all points in a sample; particles that have left a domain that closes on itself are put back into it.
+    /// The numbers of all points in a sample. Particles outside a periodic domain are mapped back into it.
     pub(super) fn numbers(&self, row: &[f64], space: Option<&Space>) -> Vec<f64> {
         let all = self.points.iter().flat_map(|p| p.at(row));
         let all = all.map(|x| if x.is_finite() { x } else { 0.0 });

@@ -1,20 +1,21 @@
-//! What constraints join: lines between places, or between a place and a point that stays. Takes the `hold` statements of a
-//! model and frames of a run; gives a path in every frame, and the points that stay.
+//! Draws constraints as lines between two positions, or between a position and a fixed point. Takes the `hold`
+//! statements of a model and frames of a run; gives a path in every frame, and the fixed points.
 //!
-//! A length is held as `dot(u, u)`, a joint as an equation of vectors: both have a difference of two points, `u = a - b`,
-//! each of them a place, or a place with an arm of its body. A point that does not move in any frame is a support.
+//! A fixed length has the form `dot(u, u)`, and a joint is an equation of vectors. Both contain a difference of
+//! two points, `u = a - b`. Each point is a position, or a position plus an arm of its body. A point that is
+//! the same in every frame is a support.
 
 use super::ties::{Ties, place_of};
 use super::value::{At, Stated, Value, scalar};
 use clebsch_core::syntax::ast::{Expression, Kind, Statement};
 
-/// Most lines of a page.
+/// The largest number of lines on a page.
 const MOST: usize = 200;
 
 /// Part of the size of a picture within which a point stays.
 const STAYS: f64 = 1e-6;
 
-/// Part of a length within which it is held.
+/// Relative tolerance within which a length counts as fixed.
 const HELD: f64 = 1e-4;
 
 /// A line through points that are joined.
@@ -32,13 +33,13 @@ type Term = (bool, Expression);
 struct Difference {
     /// Terms of the first point.
     first: Vec<Term>,
-    /// Of the second one, with the signs that it has by itself.
+    /// Terms of the second point, with its own signs.
     second: Vec<Term>,
-    /// The places of the bodies that both are points of.
+    /// The positions of the two bodies.
     places: [Option<Term>; 2],
 }
 
-/// The frames that a page shows, and the names of places.
+/// The frames that a page shows, and the names of positions.
 #[derive(Clone, Copy)]
 pub(super) struct Shown<'a> {
     pub(super) frames: &'a [&'a [f64]],
@@ -46,7 +47,7 @@ pub(super) struct Shown<'a> {
     pub(super) ties: &'a Ties,
 }
 
-/// All of a model, the first ones only where there are too many.
+/// The links of a model. If there are too many, only the first ones.
 pub(super) fn links(stated: &Stated<'_>, shown: Shown<'_>) -> Vec<Link> {
     let mut out = Vec::new();
     for statement in &stated.model.statements {
@@ -65,8 +66,8 @@ pub(super) fn links(stated: &Stated<'_>, shown: Shown<'_>) -> Vec<Link> {
     out
 }
 
-/// The sites that a constraint holds at; one without a number where it is of no site. Neighbours along a line are drawn as a
-/// line already.
+/// The sites at which a constraint applies, or a single `None` if it belongs to no site. Constraints on a chain
+/// are omitted, since the chain is drawn already.
 fn sites_of(stated: &Stated<'_>, sides: [&Expression; 2]) -> Vec<Option<isize>> {
     let named = |name: &str| {
         let of_it = |e: &&Expression| stated.names(e, &|n| n == name);
@@ -112,7 +113,7 @@ fn differences(
     found
 }
 
-/// Of an equation of vectors.
+/// The difference of points in an equation of vectors.
 fn joint(
     stated: &Stated<'_>,
     [left, right]: [Vec<Term>; 2],
@@ -134,7 +135,7 @@ fn joint(
         }
     };
     match (of(&left).as_slice(), of(&right).as_slice()) {
-        // Each side is a point, or one of them stays.
+        // Each side is a point, or one side is fixed.
         ([a], [b]) if a.0 == b.0 => Some(difference([left, right], a, Some(b))),
         ([a], []) if !moves(&right) => Some(difference([left, right], a, None)),
         ([], [b]) if !moves(&left) => Some(difference([right, left], b, None)),
@@ -155,7 +156,8 @@ fn signed(terms: Vec<Term>, turned: bool) -> Vec<Term> {
     terms.into_iter().map(turn).collect()
 }
 
-/// A sum of terms as a difference of two points: nothing where it has no place, or more than one of a sign.
+/// Splits a sum of terms into a difference of two points. `None` if it contains no position, or several of the
+/// same sign.
 fn parted(stated: &Stated<'_>, all: Vec<Term>, shown: Shown<'_>) -> Option<Difference> {
     let own = |all: &[Term]| -> Vec<Term> {
         let places = all
@@ -171,7 +173,7 @@ fn parted(stated: &Stated<'_>, all: Vec<Term>, shown: Shown<'_>) -> Option<Diffe
     let all = signed(all, first.0);
     let name = place_of(&first.1, shown.places)?;
     let other = second.as_ref().and_then(|t| place_of(&t.1, shown.places));
-    // Another site of the same places has its own arms.
+    // Another site of the same field has its own arms.
     let same = other == Some(name);
     let of_first = |(minus, e): &Term| match place_of(e, shown.places) {
         Some(_) => !minus,
@@ -194,7 +196,7 @@ fn lengths(
     found: &mut Vec<Difference>,
     deep: usize,
 ) {
-    // Abbreviations are not within one another without end.
+    // The depth of nested abbreviations is limited.
     if deep > 40 {
         return;
     }
@@ -228,8 +230,8 @@ fn lengths(
     }
 }
 
-/// A length that is held by its components, `x[1]^2 + x[2]^2`: of one place, from the origin or from a parameter, whichever
-/// it keeps a distance from while it moves.
+/// A length given by components, `x[1]^2 + x[2]^2`: the distance of one position from the origin or from a
+/// parameter, whichever stays constant while the position moves.
 fn by_components(
     stated: &Stated<'_>,
     sides: [&Expression; 2],
@@ -306,7 +308,8 @@ fn by_components(
     })
 }
 
-/// The path of a difference, from the place of one body over its point and that of the other one to its place.
+/// The path of a difference: the position of one body, its point, the point of the other body, and the position
+/// of that body.
 fn link(
     stated: &Stated<'_>,
     difference: &Difference,
@@ -339,7 +342,7 @@ fn link(
         most <= STAYS * size
     };
     let start = paths.first()?;
-    // A point that is another one in every frame is drawn once.
+    // A point that coincides with its predecessor in every frame is drawn once.
     let mut kept: Vec<usize> = Vec::new();
     for k in 0..start.len() {
         let same = |j: usize| {

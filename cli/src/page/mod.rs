@@ -1,5 +1,6 @@
-//! One page per run, in a single file that needs no other: a view in space that can be turned and played, the table of
-//! invariants, all pictures. Takes a run and its pictures; gives HTML.
+//! One page per run, in a single self-contained file: an interactive view in space, the table of invariants,
+//! all pictures.
+//! Takes a run and its pictures; gives HTML.
 
 mod bodies;
 mod chains;
@@ -55,7 +56,7 @@ pub(crate) fn page(run: &Finished<'_>, samples: &Samples, pictures: &[(&str, Str
         out.push_str("<h2>Pictures</h2>\n");
     }
     for (name, svg) in pictures {
-        // Without the declaration of a file of its own.
+        // Omits the XML declaration of a separate file.
         let svg = svg.find("<svg").and_then(|at| svg.get(at..)).unwrap_or(svg);
         let _ = writeln!(out, "<figure id=\"{}\">\n{svg}\n</figure>", escaped(name));
     }

@@ -1,5 +1,6 @@
-//! What of a run is seen in space: bodies by their attitude and place, points and chains, profiles of numbers along a
-//! line, what constraints join and where the ground is. Takes the samples of a run; gives data for the view, at most
+//! The view of a run in space: bodies with their attitudes and positions, points and chains, profiles of
+//! scalars along a chain, constraints, and the ground. Takes the samples of a run; gives data for the view, at
+//! most
 //! [`FRAMES`] frames.
 
 use super::bodies::{Body, Place, bodies, carried, is_placed, said, turns};
@@ -21,28 +22,28 @@ use serde_json::{Value, json};
 use std::collections::HashSet;
 use std::ops::Range;
 
-/// Most frames of a page, the last one besides.
+/// The largest number of frames of a page, besides the last one.
 pub(super) const FRAMES: usize = 600;
 
-/// Most numbers of all frames together: about two megabytes.
+/// The largest number of values in all frames together: about two megabytes.
 const NUMBERS: usize = 200_000;
 
-/// Bodies that are no more are drawn large.
+/// Up to this number, bodies are drawn large.
 const FEW: usize = 3;
 
-/// Most bodies without a place in a single row.
+/// The largest number of bodies without a position in a single row.
 const ROW: usize = 12;
 
-/// From one body without a place to the next, in lengths of their axes.
+/// The distance between bodies without a position, in lengths of their axes.
 const APART: f64 = 2.6;
 
-/// The scene as data, and what is said below it.
+/// The scene as data, and the text below it.
 pub(super) struct Scene {
     pub(super) data: Value,
     pub(super) said: String,
 }
 
-/// The scene; nothing where a model has nothing in space.
+/// The scene; `None` if a model has nothing to draw in space.
 pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Scene> {
     let stated = Stated::of(run.card, run.plan);
     let stated = stated.as_ref();
@@ -68,7 +69,7 @@ pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Scene> {
     let width = 12 * bodies.len() + chains.iter().map(Chain::width).sum::<usize>();
     let most = (NUMBERS / width.max(1)).clamp(2, FRAMES);
     let stride = shown.count.div_ceil(most).max(1);
-    // The end of the run is seen, whatever the stride.
+    // The end of the run is always drawn.
     let last = shown.count.saturating_sub(1);
     let is_shown = |i: usize| i.is_multiple_of(stride) || i == last;
     let rows = shown.record.observables.rows().take(shown.count);
@@ -112,7 +113,7 @@ pub(super) fn scene(run: &Finished<'_>, samples: &Samples) -> Option<Scene> {
     Some(Scene { data, said })
 }
 
-/// The attitudes without a place of their own and the places, none of them at sites.
+/// The attitudes without their own position, and the positions, both without sites.
 fn names(
     run: &Finished<'_>,
     stated: Option<&Stated<'_>>,
@@ -139,7 +140,7 @@ fn names(
     )
 }
 
-/// What else has a place: rigid motions, and points at sites.
+/// The names of the other quantities with a position: rigid motions, and points at sites.
 fn others<'a>(run: &Finished<'_>, stated: Option<&'a Stated<'_>>) -> Vec<&'a str> {
     let rigid = placed(run.card.observables).filter(|(f, _)| is_placed(f));
     let sites = stated.into_iter().flat_map(|s| &s.sites);
@@ -148,11 +149,11 @@ fn others<'a>(run: &Finished<'_>, stated: Option<&'a Stated<'_>>) -> Vec<&'a str
     rigid.map(|(f, _)| f.name).chain(points).collect()
 }
 
-/// How large the axes of bodies are drawn, and where those stand that have no place.
+/// The size of the axes of bodies, and the location of bodies without a position.
 struct Size {
     arm: f64,
     row: [f64; 3],
-    /// How many stand in a row.
+    /// The number of bodies in a row.
     beside: usize,
 }
 

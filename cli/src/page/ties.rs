@@ -1,40 +1,41 @@
-//! At which place vector a body is whose attitude is another configuration. Takes a model as it is stated; gives for each
-//! attitude the vector that is the place of the same body.
+//! Finds the position of a body whose attitude is a separate configuration. Takes the text of a model; gives
+//! for each attitude the position vector of the same body.
 //!
-//! A point of a body stands in a model as a sum, `x + A*a`: the place of the body and an arm that turns with it. Where a sum
-//! takes both with opposite signs, `X - A*p`, it compares two points, and the second one is of a body about the origin. What
-//! no sum says is told by names with the same number or mark, as `x1` and `A1`; and by the order in which as many places and
-//! attitudes are declared, unless some body is about the origin: then a place may be one of a mere point.
+//! A model writes a point of a body as a sum, `x + A*a`: the position of the body, plus an arm that rotates
+//! with it. A sum with opposite signs, `X - A*p`, compares two points; the second point belongs to a body about
+//! the origin. If no sum decides, names with the same number or mark belong together, such as `x1` and `A1`.
+//! Otherwise the order of declaration decides, if there are as many positions as attitudes. It decides nothing
+//! if some body is about the origin, since a position may then belong to a mere point.
 
 use super::value::Stated;
 use clebsch_core::syntax::ast::{Expression, Kind, Statement};
 use std::collections::{HashMap, HashSet};
 
-/// Where the body of an attitude is.
+/// The position of the body of an attitude.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) enum Tied {
-    /// At the place vector of this name.
+    /// At the position vector with this name.
     To(String),
     /// About the origin.
     Origin,
 }
 
-/// Attitudes with where their bodies are.
+/// Attitudes with the positions of their bodies.
 #[derive(Default)]
 pub(super) struct Ties(HashMap<String, Tied>);
 
-/// How much a pair of a place and an attitude has for it.
+/// The evidence that a position and an attitude belong to one body.
 #[derive(Default)]
 struct Evidence {
     for_pair: HashMap<(String, String), usize>,
     apart: HashSet<String>,
 }
 
-/// A side of an equation says more than a sum within a function.
+/// The weight of a side of an equation; a sum within a function has weight one.
 const SIDE: usize = 1000;
 
 impl Ties {
-    /// Of the attitudes and the places of a model, in the order of their declarations.
+    /// Pairs the attitudes and the positions of a model, both in the order of their declarations.
     pub(super) fn of(stated: &Stated<'_>, attitudes: &[&str], places: &[&str]) -> Self {
         let mut evidence = Evidence::default();
         for statement in &stated.model.statements {
@@ -55,7 +56,7 @@ impl Ties {
         let mut free: Vec<&str> = places.to_vec();
         let mut left: Vec<&str> = attitudes.to_vec();
         let mut said: Vec<((String, String), usize)> = evidence.for_pair.into_iter().collect();
-        // The strongest first; equal ones by name, so that every run gives the same page.
+        // Strongest evidence first, then by name, so that every run gives the same page.
         said.sort_by(|(a, n), (b, m)| m.cmp(n).then_with(|| a.cmp(b)));
         for ((attitude, place), _) in said {
             if left.contains(&attitude.as_str()) && free.contains(&place.as_str()) {
@@ -92,12 +93,12 @@ impl Ties {
         Self(ties)
     }
 
-    /// Where the body of this attitude is, if the model tells.
+    /// The position of the body with this attitude, if it is known.
     pub(super) fn place(&self, attitude: &str) -> Option<&Tied> {
         self.0.get(attitude)
     }
 
-    /// Whether a body is at this place whose attitude is named in the expression.
+    /// Whether an expression names this position, or the attitude of the body at this position.
     pub(super) fn joins(&self, stated: &Stated<'_>, e: &Expression, place: &str) -> bool {
         stated.names(e, &|name| {
             name == place || matches!(self.0.get(name), Some(Tied::To(own)) if own == place)
@@ -114,7 +115,7 @@ fn mark(name: &str) -> &str {
     name.get(word.len()..).unwrap_or_default()
 }
 
-/// The place that a term is: `x`, `next(x)`, `pos(G)`.
+/// The position in a term: `x`, `next(x)`, `pos(G)`.
 pub(super) fn place_of<'e>(e: &'e Expression, places: &[&str]) -> Option<&'e str> {
     match &e.kind {
         Kind::Name(n) => places.contains(&n.as_str()).then_some(n),
@@ -126,7 +127,7 @@ pub(super) fn place_of<'e>(e: &'e Expression, places: &[&str]) -> Option<&'e str
 }
 
 impl Evidence {
-    /// A whole side of an equation with one place is a point of its body, whatever the signs.
+    /// If a side of an equation contains one position, the side is a point of its body, whatever the signs.
     fn side(&mut self, stated: &Stated<'_>, e: &Expression, (attitudes, places): Names<'_>) {
         let terms = stated.terms(e);
         let mut own = terms.iter().filter_map(|(_, t)| place_of(t, places));
@@ -167,10 +168,10 @@ impl Evidence {
     }
 }
 
-/// Attitudes and places by name.
+/// Attitudes and positions by name.
 type Names<'n> = (&'n [&'n str], &'n [&'n str]);
 
-/// The attitude that a term turns with, if it is an arm: a product of one attitude and what is no place.
+/// The attitude that rotates a term, if the term is an arm: a product with one attitude and without a position.
 fn arm<'n>(
     stated: &Stated<'_>,
     term: &Expression,
@@ -190,7 +191,8 @@ fn arm<'n>(
     own.next().copied().filter(|_| own.next().is_none())
 }
 
-/// Whether a product has a factor that is no arm of a body: a number made of matrices, or what is seen from a body.
+/// Whether a product has a factor that excludes an arm of a body: a scalar function of matrices, or a
+/// transpose.
 fn is_number(term: &Expression) -> bool {
     let factors: Vec<&Expression> = match &term.kind {
         Kind::Product(list) => list.iter().collect(),

@@ -1,5 +1,6 @@
-//! What colours the particles of a fluid on its page: the functional that its picture shows, at the particles or on a grid,
-//! between whose nodes it is interpolated. Takes a run; gives a number for each particle of a sample.
+//! The values that colour the particles of a fluid on its page. They come from the functional in its picture,
+//! at the particles or interpolated between the nodes of a grid. Takes a run; gives a number for each particle
+//! of a sample.
 
 use crate::case_file::space::Space;
 use crate::output::fluid::Coloured;
@@ -14,7 +15,7 @@ pub(super) struct Tints<'a> {
 }
 
 impl<'a> Tints<'a> {
-    /// Those of a fluid.
+    /// The values of a fluid.
     pub(super) fn of(own: &'a Coloured<'a>) -> Self {
         let nodes = match own.shown.index == own.places.index {
             true => HashMap::new(),
@@ -23,17 +24,17 @@ impl<'a> Tints<'a> {
         Tints { own, nodes }
     }
 
-    /// The name of what is shown.
+    /// The name of the functional.
     pub(super) fn name(&self) -> &str {
         &self.own.shown.name
     }
 
-    /// Of the particles whose places these are.
+    /// Whether the values belong to the particles with these positions.
     pub(super) fn have(&self, places: &AtSites<'_>) -> bool {
         self.own.places.key == places.key
     }
 
-    /// A number for each particle; none where a grid cannot be read.
+    /// A number for each particle; empty if a grid cannot be read.
     pub(super) fn values(&self, row: &[f64]) -> Vec<f64> {
         let entry = |at: usize| row.get(at).copied().unwrap_or(f64::NAN);
         let (own, shown) = (&self.own.places.members, &self.own.shown.members);
@@ -49,7 +50,7 @@ impl<'a> Tints<'a> {
         places.map(|place| self.between(place, &entry)).collect()
     }
 
-    /// Between the nodes of the cell in which a place lies.
+    /// Interpolates between the nodes of the cell that contains a position.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     fn between(&self, place: &[f64], entry: &dyn Fn(usize) -> f64) -> f64 {
         let space = &self.own.space;

@@ -1,5 +1,6 @@
-//! Expressions of a model in a sample: vectors, matrices and numbers, from the parameters and what is observed. Takes an
-//! expression as it is stated, a sample and a site; gives its entries, nothing where it has what a picture needs not.
+//! Evaluates expressions of a model in a sample: vectors, matrices and numbers, from the parameters and the
+//! observables. Takes an expression, a sample and a site; gives its entries. `None` if it uses a function that
+//! pictures do not need.
 
 use crate::output::attitude::{matrix, placed};
 use crate::output::places::{Places, Point};
@@ -17,16 +18,16 @@ use std::ops::Range;
 /// A number is a matrix of one entry, a vector one of one column.
 pub(super) type Value = DMatrix<f64>;
 
-/// Most abbreviations within one another.
+/// The largest depth of nested abbreviations.
 const DEEP: usize = 40;
 
-/// A model as it is stated, with the numbers of a run.
+/// The text of a model, with the numbers of a run.
 pub(super) struct Stated<'a> {
     card: &'a Card,
     plan: &'a Plan,
     pub(super) model: Model,
     pub(super) sites: Vec<AtSites<'a>>,
-    /// How many components a place has: unit vectors are of this length.
+    /// The number of components of a position, which is the length of unit vectors.
     space: usize,
     lets: HashMap<String, Expression>,
     observed: HashMap<&'static str, (&'static Field, Range<usize>)>,
@@ -43,7 +44,7 @@ pub(super) struct At<'a> {
 }
 
 impl<'a> Stated<'a> {
-    /// The model of a card; `None` where its text is not one.
+    /// The model of a card; `None` if its text does not parse.
     pub(super) fn of(card: &'a Card, plan: &'a Plan) -> Option<Self> {
         let model = pipeline::parse_source(card.source).ok()?;
         let lets = model.statements.iter().filter_map(|s| match s {
@@ -71,7 +72,7 @@ impl<'a> Stated<'a> {
         })
     }
 
-    /// What an abbreviation stands for.
+    /// The expression that `let` gives this name.
     pub(super) fn abbreviated(&self, name: &str) -> Option<&Expression> {
         self.lets.get(name)
     }
@@ -84,7 +85,7 @@ impl<'a> Stated<'a> {
         })
     }
 
-    /// Whether an expression has such a name, by itself or within an abbreviation.
+    /// Whether an expression contains such a name, directly or within an abbreviation.
     pub(super) fn names(&self, e: &Expression, is: &dyn Fn(&str) -> bool) -> bool {
         self.names_within(e, is, DEEP)
     }
@@ -105,7 +106,7 @@ impl<'a> Stated<'a> {
         }
     }
 
-    /// The terms of a sum with their signs, those of abbreviations and brackets among them.
+    /// The terms of a sum with their signs. Abbreviations and brackets are expanded.
     pub(super) fn terms(&self, e: &Expression) -> Vec<(bool, Expression)> {
         let mut out = Vec::new();
         self.put_terms(e, false, DEEP, &mut out);
@@ -139,7 +140,7 @@ impl<'a> Stated<'a> {
         }
     }
 
-    /// The sum of these terms; a sum of none is nothing.
+    /// The sum of these terms; `None` without terms.
     pub(super) fn sum(&self, terms: &[(bool, Expression)], at: At<'_>) -> Option<Value> {
         self.sum_within(terms.iter(), at, DEEP)
     }
@@ -275,17 +276,19 @@ impl<'a> Stated<'a> {
         }))
     }
 
-    /// The places of these points, also those that ends hold.
+    /// The positions of these points, including points given at an end.
     pub(super) fn places<'b>(&'b self, points: &'b AtSites<'b>) -> Places<'b> {
         Places::themselves((self.card, self.plan), points)
     }
 
-    /// Where points of a line stand in order, those that ends hold and the one once around a ring among them.
+    /// The points of a chain in order. They include points given at an end, and for a ring its first node again
+    /// at the end.
     pub(super) fn along(&self, points: &AtSites<'_>) -> Vec<Point> {
         let sites = || points.members.iter().map(|(site, _)| *site);
         let (first, last) = (sites().min().unwrap_or(0), sites().max().unwrap_or(0));
         let places = self.places(points);
-        // Before the first and behind the last one there is what ends hold; behind the last node of a ring the first one.
+        // Points given at an end are before the first and after the last site. On a ring the first node follows
+        // the last.
         let first = isize::try_from(first).unwrap_or(0);
         let last = isize::try_from(last).unwrap_or(0);
         let beyond = match points.at {

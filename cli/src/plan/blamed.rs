@@ -1,5 +1,5 @@
-//! A value that a model computes from parameters and cannot work with, told by the parameters that make it: their sites, lines
-//! and what the case gives. Takes the formula of the value; gives the beginning of a message.
+//! Reports an invalid value that a model computes from parameters, by naming these parameters with their sites,
+//! lines and values. Takes the formula of the value; gives the beginning of a message.
 
 use crate::case_file::stated::Stated;
 use crate::case_file::{at_site, line_of, quantity_of};
@@ -11,14 +11,14 @@ use clebsch_core::expr::symbol::ascii;
 use std::collections::BTreeMap;
 use toml::de::{DeTable, DeValue};
 
-/// Most letters of a value that is given.
+/// The largest number of letters of a printed value.
 const LETTERS: usize = 60;
 
-/// Where a case comes from.
+/// The file of a case, and the lines of its keys.
 pub(crate) type Origin = (String, BTreeMap<String, usize>);
 
-/// `rod.toml:16: parameters.s = 0.1 and parameters.A = 0 at i = 5 (given by `1 - 0.2*i`) make s A₅`; nothing for a formula
-/// without parameters of the card.
+/// `rod.toml:16: parameters.s = 0.1 and parameters.A = 0 at i = 5 (given by `1 - 0.2*i`) make s A₅`; `None` if
+/// the formula contains no parameters of the card.
 pub(crate) fn blamed(
     card: &Card,
     case: &Case,
@@ -60,7 +60,7 @@ pub(crate) fn blamed(
         true => last,
         false => format!("{} and {last}", told.join(", ")),
     };
-    // The line of a number that is not positive, else of an expression, else of the first.
+    // The line of a number that is not positive, else of an expression, else of the first parameter.
     let line = lines
         .into_iter()
         .min_by_key(|(number, expression, _)| (*number, *expression));
@@ -73,7 +73,8 @@ pub(crate) fn blamed(
     Some(format!("{place}: {list} {verb} {formula}"))
 }
 
-/// The names in a formula in ASCII, with digits for subscripts: `J5` of `J₅`, as `A1` and `J_5` are printed alike.
+/// The names in a formula in ASCII, with digits for subscripts: `J5` for `J₅`. `A1` and `J_5` are printed in
+/// the same way.
 fn words(formula: &str) -> impl Iterator<Item = String> {
     let words = formula.split(|c: char| !c.is_alphanumeric());
     words.filter(|word| !word.is_empty()).map(|word| {
@@ -85,7 +86,7 @@ fn words(formula: &str) -> impl Iterator<Item = String> {
     })
 }
 
-/// The letter and the number of the site of which this is the value, if it has one.
+/// The letter of the sites and the number of the site, if the field is a value at a site.
 fn site_of(stated: Option<&Stated>, field: &Field) -> Option<(String, usize)> {
     let lattice = &stated?.lattice;
     let (quantity, site) = at_site(field.ascii)?;
@@ -95,7 +96,8 @@ fn site_of(stated: Option<&Stated>, field: &Field) -> Option<(String, usize)> {
     Some((index, site))
 }
 
-/// The expressions in the value of a parameter in a file, each once; it stands there under one of these names.
+/// The distinct expressions in the value of a parameter in a file. The file gives the parameter under one of
+/// these names.
 fn expressions(text: &str, names: [&str; 3]) -> Option<Vec<String>> {
     let table = DeTable::parse(text).ok()?;
     let parameters = table.get_ref().get("parameters")?.get_ref().as_table()?;

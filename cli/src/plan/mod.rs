@@ -1,4 +1,4 @@
-//! What is to be run: a case of the gallery or of a file, with the options that override it.
+//! The plan of a run: a case of the gallery or of a file, with the options that override it.
 //! Takes the matches of `clebsch run`; gives the plan, and places error messages in its file.
 
 mod blamed;
@@ -20,7 +20,8 @@ use clebsch::{ParameterError, StartError};
 use clebsch_core::lattice::Choice;
 use serde_json::{Value, json};
 
-/// Most nodes written by default: a plot shows no more, and the files stay at a few megabytes.
+/// By default, the largest number of nodes written: a plot shows no more, and the files stay at a few
+/// megabytes.
 const SAMPLES: u64 = 10_000;
 
 /// The time at the last node, for print.
@@ -34,17 +35,17 @@ pub(crate) fn end(h: f64, steps: u64) -> f64 {
 pub struct Plan {
     /// The case, options applied.
     pub case: Case,
-    /// The order of a step, where one was asked for.
+    /// The order of a step, if one is requested.
     pub order: Option<u32>,
     /// Every how many nodes the trajectory is written.
     pub every: u64,
-    /// The options that determine the results, as given; `null` where not given.
+    /// The options that determine the results, as given; `null` if not given.
     pub arguments: Value,
-    /// The solver asked for.
+    /// The requested solver.
     pub solver: Option<Method>,
     /// Whether steps with modified moments are compensated.
     pub compensated: bool,
-    /// Whether refused steps are made by parts.
+    /// Whether failed steps are subdivided.
     pub halve: bool,
     /// Whether pictures are drawn for a column of a paper.
     pub paper: bool,
@@ -52,13 +53,13 @@ pub struct Plan {
     pub csv: bool,
     /// How many sites a model with labels has, and how its line ends.
     pub choice: Option<Choice>,
-    /// Whether another step size keeps the time to which the case runs, rather than the number of steps.
+    /// Whether another step size keeps the end time of the case, rather than the number of steps.
     pub keeps_time: bool,
     /// The names of the quantities that `--set` set.
     set: Vec<String>,
     /// For a case read from a file: its name, and the line of each key.
     origin: Option<Origin>,
-    /// How what is not given by momenta starts.
+    /// The velocities of the start, and the configurations at rest.
     pub(crate) motion: Motion,
 }
 
@@ -149,10 +150,10 @@ impl Plan {
         })
     }
 
-    /// The case of a text, without options; `has_sites` says whether the model has labels.
+    /// The case of a text, without options. `has_sites` is true if the model has labels.
     ///
     /// # Errors
-    /// Usage: what is wrong with the case.
+    /// Usage: a mistake in the case.
     pub(crate) fn of_text(
         entry: &Entry,
         case: &CaseText,
@@ -172,7 +173,7 @@ impl Plan {
         steps.div_ceil(SAMPLES).max(1)
     }
 
-    /// The case with another step size, up to the same time unless the number of steps was asked for.
+    /// The case with another step size, up to the same time unless the number of steps is requested.
     #[must_use]
     pub fn with_step(mut self, h: f64) -> Self {
         let time = end(self.case.h, self.case.steps);
@@ -183,7 +184,7 @@ impl Plan {
         self
     }
 
-    /// The case as it is, every `every`-th node kept.
+    /// The case without options, with every `every`-th node kept.
     #[must_use]
     pub fn of(case: &Case, every: u64) -> Self {
         Self {
@@ -204,15 +205,15 @@ impl Plan {
         }
     }
 
-    /// Puts the momenta of velocities into the case again, where its parameters or its configuration are others now.
+    /// Computes momenta from velocities again, after a change of parameters or of the configuration.
     ///
     /// # Errors
-    /// Usage: the velocities have no momenta there.
+    /// Usage: there are no momenta for these velocities.
     pub(crate) fn start_anew(&mut self, card: &Card) -> Result<(), Failure> {
         start(&mut self.motion, card, self.choice.as_ref(), &mut self.case)
     }
 
-    /// What a reader is told of momenta that were made of velocities.
+    /// The lines about momenta that were computed from velocities.
     pub(crate) fn starts(&self, card: &Card) -> Vec<String> {
         self.motion.told(card, &self.case)
     }
@@ -220,8 +221,8 @@ impl Plan {
     /// Starts the trajectory.
     ///
     /// # Errors
-    /// Usage for data that the model cannot work with, with file and line where they come from one;
-    /// failed when the data are fine and the solver refuses the first step.
+    /// Usage: the model rejects the data; the message has their file and line, if any. Failed: the data are
+    /// valid, but the solver fails in the first step.
     pub fn open(&self, card: &Card) -> Result<Box<dyn Trajectory>, Failure> {
         let Case {
             parameters,
@@ -271,7 +272,7 @@ impl Plan {
         })
     }
 
-    /// How to give other values than the samples with which a model in a file runs.
+    /// If a model file runs with sample values, the advice on how to give other values.
     fn sample(&self) -> Option<String> {
         let model = self.arguments.get("model")?.as_str()?;
         let is_sample = self.origin.is_none() && self.case.name == "sample";
@@ -284,7 +285,8 @@ impl Plan {
         })
     }
 
-    /// Where the value that is wrong was given: `top.toml:7: parameters.J`; what is made of parameters is told by them.
+    /// Where the wrong value was given: `top.toml:7: parameters.J`. A value computed from parameters is
+    /// reported by these parameters.
     fn place(&self, card: &Card, wrong: &ParameterError) -> String {
         if wrong.field == "h" && self.arguments.get("h").is_some_and(Value::is_number) {
             return "--h".to_owned();
@@ -298,7 +300,7 @@ impl Plan {
             let field = fields.iter().find(named)?;
             Some(format!("{table}.{}", field.ascii))
         };
-        // What an end holds may stand among the initial values.
+        // A case may give the value at an end among the initial values.
         let lines = self.origin.as_ref().map(|(_, lines)| lines);
         let among_initial = |key: &String| lines.is_some_and(|l| l.contains_key(key));
         let held = of("initial", card.parameters).filter(among_initial);
@@ -310,7 +312,7 @@ impl Plan {
             return place;
         }
         let key = key.unwrap_or_else(|| wrong.field.to_owned());
-        // A momentum that was made of a velocity is named by that.
+        // A momentum that was computed from a velocity is reported under the key of the velocity.
         let momentum = key.strip_prefix("initial.");
         let at = momentum.and_then(|own| card.initial.iter().position(|f| f.ascii == own));
         let velocity = at.and_then(|at| self.motion.key_of(at));
@@ -336,8 +338,8 @@ fn start(
     put.map_err(|wrong| Failure::Usage(format!("initial.{}: {}", wrong.key, wrong.why)))
 }
 
-/// The case of a file, by the first card whose fields it fits; the message is that of the first. If the model has labels,
-/// `may_have_sites` is true and its text is read again.
+/// Reads the case of a file with the first card whose fields it fits. If no card fits, the error for the first
+/// card is returned. If `may_have_sites` is true, the labels of the model are read from its text.
 fn read(case: &CaseText, cards: &[Card], may_have_sites: bool) -> Result<Located, Failure> {
     let CaseText { file, text } = case;
     let mut first = None;
@@ -352,7 +354,7 @@ fn read(case: &CaseText, cards: &[Card], may_have_sites: bool) -> Result<Located
     Err(first.unwrap_or_else(|| Failure::Usage(format!("{}: the model has no card", shown(file)))))
 }
 
-/// The cards of the model, all or those of one size.
+/// The cards of the model: all cards, or the cards with this size.
 fn of_size(entry: &Entry, size: Option<u64>) -> Result<Vec<Card>, Failure> {
     let cards = entry.cards();
     let Some(size) = size else { return Ok(cards) };
@@ -372,7 +374,7 @@ fn of_size(entry: &Entry, size: Option<u64>) -> Result<Vec<Card>, Failure> {
     Ok(fitting)
 }
 
-/// The case asked for; without a name the first one of the size asked for.
+/// The requested case; without a name, the first case of the requested size.
 fn case_of_size<'a>(
     entry: &'a Entry,
     asked: Option<&str>,

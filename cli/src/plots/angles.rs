@@ -13,7 +13,7 @@ use crate::trajectory::record::Samples;
 use clebsch::nalgebra::Matrix3;
 use std::ops::Range;
 
-/// Most sites with two charts of their own, one above the other.
+/// The largest number of sites that have two charts each.
 const FEW: usize = 3;
 
 /// Sine of the nutation below which rounding shows in precession and spin.
@@ -22,12 +22,12 @@ const UPRIGHT: f64 = 1e-6;
 /// Sine of the nutation below which a body is near the vertical: there precession and spin turn far for small motions.
 const NEAR: f64 = 0.05;
 
-/// Most times that a body comes near the vertical, and the largest part of the samples that it is near, while its precession
-/// and spin still tell how it moves.
+/// If a body is near the vertical more often than this, or in more than this part of the samples, precession
+/// and spin do not describe its motion.
 const PASSAGES: usize = 2;
 const STAY: f64 = 0.1;
 
-/// Part of a turn within which half a turn one way is as near as the other.
+/// Half turns in both directions are equally near, up to this part of a turn.
 const HALF: f64 = 1e-3;
 
 /// Euler angles of each rotation, Λ = R₃(φ) R₁(θ) R₃(ψ) about space and body axes: precession and spin followed continuously, and nutation.
@@ -47,7 +47,7 @@ pub(crate) fn angles(run: &Finished<'_>, samples: &Samples) -> Plot {
                     panels.extend(curves(own, shown, meaning(own)));
                 }
             }
-            // One site where they mean nothing spoils the map of all.
+            // The maps show only angles that are meaningful at every site.
             _ => {
                 let all = kin.members.iter().map(|(_, own)| meaning(own));
                 panels.extend(maps(&kin, shown, all.fold(Meaning::All, Meaning::least)));
@@ -60,11 +60,12 @@ pub(crate) fn angles(run: &Finished<'_>, samples: &Samples) -> Plot {
     figure(run, shown, "Euler angles", panels)
 }
 
-/// Which of the angles tell how a body moves. Where its third axis passes the vertical, precession and spin jump by half a turn
-/// in a motion without a jump, so that curves of them show the chart and not the body. Upwards their sum is still known.
+/// Which angles describe how a body moves. When its third axis passes the vertical, precession and spin jump by
+/// half a turn although the motion does not. Their curves then show the chart, not the body. Near the upward
+/// vertical their sum remains defined.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 enum Meaning {
-    /// None: it passes the downward vertical again and again, where no sum of them is known.
+    /// None: the body passes the downward vertical repeatedly, where no sum of the angles is defined.
     Nothing,
     /// Nutation and the sum: it passes the upward vertical again and again, or stays near.
     Sum,
@@ -77,7 +78,7 @@ impl Meaning {
         self.min(other)
     }
 
-    /// Of the attitudes at the samples.
+    /// Classifies the attitudes at the samples.
     fn of(turns: impl Iterator<Item = Matrix3<f64>>) -> Self {
         let mut up = Passages::default();
         let mut down = Passages::default();
@@ -85,7 +86,8 @@ impl Meaning {
         let mut before: Option<Matrix3<f64>> = None;
         for turn in turns {
             count += 1;
-            // The vertical is passed between samples where the horizontal part of the axis turns round while the body turns little.
+            // The body passed the vertical between two samples if the horizontal part of the axis is reversed
+            // by a small rotation.
             let across = |r: &Matrix3<f64>| [r[(0, 2)], r[(1, 2)]];
             let round = before.is_some_and(|b| {
                 let ([x, y], [u, v]) = (across(&b), across(&turn));
@@ -127,7 +129,7 @@ impl Passages {
     }
 }
 
-/// Of one rotation against time.
+/// The angles of one rotation against time.
 fn curves((field, columns): &Placed, shown: Window<'_>, meaning: Meaning) -> Vec<Panel> {
     let times = shown.record.times.get(..shown.count).unwrap_or_default();
     let (mut precession, mut nutation, mut spin) = (Vec::new(), Vec::new(), Vec::new());
@@ -174,7 +176,8 @@ fn curves((field, columns): &Placed, shown: Window<'_>, meaning: Meaning) -> Vec
     vec![first, panel(format!("{name}: nutation"), nutation)]
 }
 
-/// Of the rotations at many sites over sites and time, with the turn φ + ψ, which alone is known where a body is upright.
+/// The angles of the rotations at many sites, over sites and time. The sum φ + ψ is included: for an upright
+/// body only the sum is defined.
 fn maps(kin: &Kin, shown: Window<'_>, meaning: Meaning) -> Vec<Panel> {
     let times = shown.record.times.get(..shown.count).unwrap_or_default();
     let mut all = [const { Rows::new() }; 4];
@@ -224,8 +227,8 @@ fn maps(kin: &Kin, shown: Window<'_>, meaning: Meaning) -> Vec<Panel> {
 /// Sites with an angle at each sample.
 type Rows = Vec<(usize, Vec<f64>)>;
 
-/// The angles followed over the turns; nothing where one is not determined at some sample or has turned so far from one sample
-/// to the next that its turns cannot be counted, as where a body comes past the vertical.
+/// The angles without jumps of 2π. `None` if an angle is undefined at some sample, or changes by more than π/2
+/// from one sample to the next. Full turns cannot be counted then, for example if a body passes the vertical.
 fn continued(rows: &Rows) -> Option<Rows> {
     let follow = |row: &Vec<f64>| {
         let mut out: Vec<f64> = Vec::with_capacity(row.len());
@@ -241,7 +244,7 @@ fn continued(rows: &Rows) -> Option<Rows> {
     each.collect()
 }
 
-/// θ, φ, ψ and φ + ψ; no numbers where they are not determined.
+/// θ, φ, ψ and φ + ψ; NaN if an angle is undefined.
 fn determined(r: &Matrix3<f64>) -> [f64; 4] {
     let [phi, theta, psi] = euler(r);
     // (1 + cos θ) times sine and cosine of the sum: accurate at small θ, where φ and ψ are not.
@@ -253,7 +256,7 @@ fn determined(r: &Matrix3<f64>) -> [f64; 4] {
     }
 }
 
-/// φ, θ, ψ; θ from its sine and cosine, since the cosine alone loses half of the digits near 0 and π.
+/// φ, θ, ψ. θ is computed from its sine and cosine, since the cosine loses half of the digits near 0 and π.
 fn euler(r: &Matrix3<f64>) -> [f64; 3] {
     let sine = r[(0, 2)].hypot(r[(1, 2)]);
     // Upright, only the sum of both turns about the axis is known: the first has it.

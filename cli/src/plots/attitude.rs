@@ -1,5 +1,5 @@
-//! Attitudes: the axes of bodies and the vectors they carry on spheres; of many sites some.
-//! Takes the samples of a run; gives what is drawn of each rotation, of each vector and of each body momentum.
+//! Attitudes: the axes of bodies and their vectors on spheres, for a selection of sites.
+//! Takes the samples of a run; gives a drawing of each rotation, of each vector and of each body momentum.
 
 use super::sphere::{Course, Sphere, sheet};
 use super::window::{Window, window};
@@ -14,28 +14,28 @@ use clebsch::nalgebra::{Matrix3, Vector3};
 use clebsch::scalar::largest;
 use std::ops::Range;
 
-/// Most spheres of a picture.
+/// The largest number of spheres in a picture.
 const MOST: usize = 9;
 
-/// A momentum whose length changes by less than this part of it stays on its sphere.
+/// A momentum stays on its sphere if the relative change of its length is below this.
 const SAME_LENGTH: f64 = 1e-9;
 
 /// An observable with its columns.
 pub(super) type Placed = (&'static Field, Range<usize>);
 
-/// One quantity: at its sites, or alone.
+/// One quantity, with or without sites.
 pub(super) struct Kin {
     /// Its name without its site.
     pub(super) name: String,
-    /// Its letter in print: its name, or that of momenta.
+    /// Its symbol in print: its name, or the symbol for momenta.
     pub(super) letter: String,
     /// The letter of its sites.
     pub(super) index: String,
-    /// What is observed of it, with the site; alone it has none.
+    /// Its observables, each with its site. `None` if the quantity has only one copy.
     pub(super) members: Vec<(Option<usize>, Placed)>,
 }
 
-/// These observables with those of one quantity together, in the order of the first of each.
+/// Groups observables by quantity, in the order in which each quantity occurs first.
 pub(super) fn grouped(run: &Finished<'_>, all: Vec<Placed>) -> Vec<Kin> {
     let at_sites = at_sites(run.card);
     let mut keys: Vec<&str> = Vec::new();
@@ -69,8 +69,8 @@ pub(super) fn grouped(run: &Finished<'_>, all: Vec<Placed>) -> Vec<Kin> {
     kin
 }
 
-/// As many of each quantity as there is room for in all, from its first site to its last at equal distances, and the
-/// sentence that says so where some are left out.
+/// Selects as many copies of each quantity as fit into `room` together, evenly spaced from its first to its
+/// last site. If some are omitted, a sentence lists the copies that are shown.
 fn chosen(kin: Vec<Kin>, room: usize) -> (Vec<Kin>, Option<String>) {
     let taken = |each: usize| kin.iter().map(|k| k.members.len().min(each)).sum::<usize>();
     let all = taken(usize::MAX);
@@ -135,8 +135,9 @@ pub(super) fn rows<'a>(
     rows.filter_map(move |row| row.get(columns.clone()))
 }
 
-/// Spheres: of each rotation the body axis e₃ seen from space, of each vector of three components its direction, of each
-/// body momentum its place on the sphere of its length, with lines of equal kinetic energy where those are known.
+/// Draws spheres. A rotation is shown by its body axis e₃ in space, and a vector of three components by its
+/// direction. A body momentum is shown on the sphere of its length, with lines of equal kinetic energy if these
+/// are known.
 pub(crate) fn attitude(run: &Finished<'_>, samples: &Samples) -> Plot {
     let turning = rotations(run);
     if turning.is_empty() {
@@ -145,14 +146,15 @@ pub(crate) fn attitude(run: &Finished<'_>, samples: &Samples) -> Plot {
     let moves = |field: &Field| {
         [Kind::Vector, Kind::BodyMomentum].contains(&field.kind) && field.count() == 3
     };
-    // Places along a line are no directions: their picture is its shape.
+    // Positions along a chain are not directions; a picture of its shape shows them.
     let at_sites = at_sites(run.card);
     let places: Vec<&Range<usize>> = at_sites
         .iter()
         .filter(|q| q.moves)
         .flat_map(|q| q.members.iter().map(|(_, columns)| columns))
         .collect();
-    // Nor are positions of bodies, which have a momentum behind them: a picture of an orbit is its own.
+    // Positions of bodies, which are followed by a momentum, are not directions either; an orbit has its own
+    // picture.
     let all = run.card.observables;
     let positions = all.windows(2).filter(|pair| {
         pair.last()
@@ -168,7 +170,7 @@ pub(crate) fn attitude(run: &Finished<'_>, samples: &Samples) -> Plot {
     let all = turning.iter().chain(&moving);
     let all: Vec<Range<usize>> = all.map(|(_, columns)| columns.clone()).collect();
     let shown = window(samples, &all);
-    // What is zero throughout, or no number, has no sphere.
+    // A vector that is zero or not finite at all samples cannot be drawn on a sphere.
     let has_length = |(_, columns): &Placed| {
         let lengths = rows(shown, columns).map(|row| Vector3::from_row_slice(row).norm());
         largest(lengths.filter(|x| x.is_finite())) > 0.0
@@ -203,7 +205,7 @@ pub(crate) fn attitude(run: &Finished<'_>, samples: &Samples) -> Plot {
     Ok(Some(sheet(&spheres, words, run.plan.paper)))
 }
 
-/// The sphere of the body axis e₃ of a rotation, seen from space.
+/// The sphere of the body axis e₃ of a rotation, in space.
 fn of_axis(
     field: &Field,
     turns: impl Iterator<Item = Matrix3<f64>>,
@@ -221,7 +223,8 @@ fn of_axis(
     }
 }
 
-/// The sphere of a vector or a body momentum that is not zero throughout, by its name and what tells it from others of that name.
+/// The sphere of a vector or a body momentum that is not zero throughout. Its caption has the name, and a word
+/// that distinguishes vectors with the same name.
 fn of_vectors(
     run: &Finished<'_>,
     field: &Field,
@@ -260,7 +263,7 @@ fn rounded(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }
 
-/// The inverse of the inertia `tr(J) Id - J`, where the model has one such J only.
+/// The inverse of the inertia `tr(J) Id - J`, if the model has exactly one such J.
 fn inverse_inertia(run: &Finished<'_>) -> Option<Matrix3<f64>> {
     let card = run.card;
     let pairs = card.parameters.iter().zip(&run.plan.case.parameters);

@@ -18,18 +18,19 @@ pub struct Axis {
     ticks: Vec<(f64, String)>,
     /// Power of ten taken out of the labels.
     factor: Option<String>,
-    /// What all numbers have in common, taken out of the labels.
+    /// The common part of all numbers, removed from the labels.
     offset: Option<String>,
 }
 
-/// Decades between the numbers of an axis and its ticks from which on labels say what differs alone.
+/// If the numbers of an axis exceed the distance of its ticks by this many decades, labels show only the
+/// differences.
 const DECADES: f64 = 5.0;
 
-/// Values that agree to so much of their size are drawn as a flat line: the rest is rounding.
+/// Values that agree to this relative accuracy are drawn as a flat line, since their differences are rounding.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
 impl Axis {
-    /// From `low` to `high` as they are, with about `count` ticks.
+    /// The range from `low` to `high` without rounding, with about `count` ticks.
     pub fn linear(low: f64, high: f64, count: u32) -> Self {
         let (low, high) = if high > low {
             (low, high)
@@ -66,10 +67,11 @@ impl Axis {
         }
     }
 
-    /// Of numbers that agree in many digits: their common ones are said beside the axis, the others at its ticks.
+    /// An axis for numbers that agree in many digits. The common digits are next to the axis, the others at its
+    /// ticks.
     fn beside_an_offset(low: f64, high: f64, step: f64) -> Self {
         let decade = step.log10().floor();
-        // Ten or more ticks from one number of these digits to the next.
+        // Numbers with these digits are at least ten ticks apart.
         let unit = 10_f64.powf(decade + 1.0);
         let common = (0.5 * (low + high) / unit).floor();
         let digits = (-(decade + 1.0)).clamp(0.0, 17.0) as usize;
@@ -94,7 +96,7 @@ impl Axis {
         }
     }
 
-    /// What the axis shows, with what was taken out of its labels.
+    /// The label of the axis, followed by the part that was removed from the tick labels.
     pub fn described(&self, label: &str) -> String {
         match (&self.offset, &self.factor) {
             (None, None) => label.to_owned(),
@@ -104,7 +106,7 @@ impl Axis {
         }
     }
 
-    /// From `low` to `high` with ticks at whole numbers only: sites.
+    /// The range from `low` to `high` with ticks only at integers, for sites.
     pub fn whole(low: f64, high: f64, count: u32) -> Self {
         let mut axis = Self::linear(low, high, count);
         axis.ticks.retain(|(at, _)| (at - at.round()).abs() < 1e-9);
@@ -121,7 +123,7 @@ impl Axis {
         Self::around_parts(curves, 0.0)
     }
 
-    /// The same of parts of a quantity of this `size`: what is rounding beside it is flat too.
+    /// The axis for parts of a quantity of this `size`. Curves that vary only by its rounding are flat.
     pub fn around_parts(curves: &[Curve], size: f64) -> Self {
         let values = curves
             .iter()
@@ -138,7 +140,7 @@ impl Axis {
         let margin = if high - low > ROUNDING * size {
             0.06 * (high - low)
         } else if largest > ROUNDING * size {
-            // So wide that the rounding is not seen.
+            // So wide that rounding is invisible.
             (0.2 * largest).max(200.0 * (high - low))
         } else if size > 0.0 {
             0.2 * size
@@ -148,7 +150,7 @@ impl Axis {
         Self::linear(low - margin, high + margin, 5)
     }
 
-    /// Decimal logarithms around these positive places, with a tick at each of them.
+    /// A logarithmic axis around these positive values, with a tick at each of them.
     pub fn logarithmic(places: &[f64]) -> Self {
         let logarithms = || places.iter().map(|place| place.log10());
         let low = logarithms().fold(f64::INFINITY, f64::min);
@@ -327,7 +329,8 @@ mod tests {
         };
         let axis = Axis::around(&[curve]);
         assert!(axis.low < 0.9 && axis.high > 1.1);
-        // Beside other parts of its quantity: noise about zero, and a small number with the noise of a large one.
+        // Compared with other parts of the quantity: noise about zero, and a small number with the noise of a
+        // large one.
         for (first, second) in [(1e-17, -3e-17), (1e-8, 1e-8 + 1e-14), (2e-12, 3e-12)] {
             let curve = Curve {
                 label: String::new(),

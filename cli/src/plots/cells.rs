@@ -1,5 +1,5 @@
-//! Cells of a fluid as polygons: those of its Voronoi mesh, and those around the nodes of a grid. Takes a run and a sample;
-//! gives corners and values.
+//! Cells of a fluid as polygons: the cells of its Voronoi mesh, and the cells around the nodes of a grid.
+//! Takes a run and a sample; gives corners and values.
 
 use super::particles::Snapshot;
 use crate::case_file::space::Space;
@@ -7,7 +7,7 @@ use crate::output::Finished;
 use crate::output::vtk::fluid::cells;
 use clebsch::record::Record;
 
-/// Cells at two samples with one of their values; nothing where a fluid has no cells, or no such value.
+/// The cells at two samples with one of their values. `None` if the fluid has no cells or lacks this value.
 pub(super) fn cells_of(
     run: &Finished<'_>,
     record: &Record,
@@ -52,7 +52,7 @@ pub(super) fn around(space: &Space, node: &[f64]) -> Option<Vec<[f64; 2]>> {
     Some(vec![[left, down], [right, down], [right, up], [left, up]])
 }
 
-/// The range in which all but one in a hundred values lie, half of them on either side.
+/// The range that contains all but one in a hundred values, with equal parts excluded at both ends.
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -68,7 +68,7 @@ pub(super) fn most_of(mut values: Vec<f64>) -> (f64, f64) {
     (low.unwrap_or(-0.5), high.unwrap_or(0.5))
 }
 
-/// A convex polygon within the unit square, cut at one side after the other (Sutherland and Hodgman, 1974).
+/// A convex polygon clipped to the unit square, one side after the other (Sutherland and Hodgman, 1974).
 pub(super) fn clipped(mut corners: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     for (d, upper) in [(0, false), (0, true), (1, false), (1, true)] {
         let depth = |c: &[f64; 2]| if upper { 1.0 - c[d] } else { c[d] };

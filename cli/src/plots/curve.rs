@@ -35,7 +35,7 @@ pub struct Stroke {
     pub color: RGBColor,
     /// Lengths of dash and gap in pixels; `None` for a full line.
     pub dash: Option<(u32, u32)>,
-    /// How points are marked, where a curve joins measurements.
+    /// The marks of the points, if a curve joins measurements.
     pub marks: Marks,
 }
 
@@ -77,7 +77,7 @@ impl Stroke {
     /// Member `index` of a family of `count` curves: shades of one blue, the last one darkest.
     pub fn shade(index: usize, count: usize) -> Self {
         let part = index as f64 / count.saturating_sub(1).max(1) as f64;
-        // From a blue that is still seen on white to one that is nearly black.
+        // From a blue that is visible on white to one that is nearly black.
         let mix = |light: f64, dark: f64| (light + (dark - light) * part.min(1.0)) as u8;
         Self {
             color: RGBColor(mix(150.0, 0.0), mix(196.0, 34.0), mix(232.0, 92.0)),

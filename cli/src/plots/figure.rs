@@ -1,4 +1,4 @@
-//! Draws panels one above the other, each with its legend beside it, where it hides no data.
+//! Draws panels one above the other, each with its legend next to it, so that it hides no data.
 //! Takes curves and axes; gives an SVG.
 
 use super::axis::Axis;
@@ -12,7 +12,7 @@ use plotters::prelude::{
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{IntoFont, TextStyle};
 
-/// The backend rounds to whole pixels; drawn this much larger, the rounding is not seen.
+/// The backend rounds to whole pixels. At this magnification the rounding is invisible.
 const FINE: u32 = 4;
 const WIDTH: u32 = 860;
 const INK: RGBColor = RGBColor(30, 30, 30);
@@ -25,9 +25,9 @@ const EDGE: u32 = 4;
 const LEFT: u32 = 24;
 /// Width of a column of a paper.
 const COLUMN: u32 = 430;
-/// Of it, for a scale of colours beside a chart.
+/// The part of this width for a colour scale next to a chart.
 const SCALE: u32 = 88;
-/// Most letters of a caption there.
+/// The largest number of letters of a caption there.
 const CAPTION: usize = 60;
 
 /// Panels that share the axis of time.
@@ -39,7 +39,7 @@ pub struct Figure {
     pub subtitle: String,
     /// The axis that all panels share.
     pub x: Axis,
-    /// What it shows, and in which unit.
+    /// The quantity on this axis, with its unit.
     pub x_label: String,
     /// From above.
     pub panels: Vec<Panel>,
@@ -52,11 +52,11 @@ pub struct Figure {
 pub struct Panel {
     /// Above the chart.
     pub caption: String,
-    /// What the axis shows, and in which unit.
+    /// The quantity on the vertical axis, with its unit.
     pub y_label: String,
     /// The vertical axis.
     pub y: Axis,
-    /// What is drawn, the last on top.
+    /// The curves, drawn in this order.
     pub curves: Vec<Curve>,
     /// Colours over time and sites, below the curves.
     pub map: Option<Map>,
@@ -82,7 +82,7 @@ impl Figure {
     /// The figure as SVG.
     ///
     /// # Errors
-    /// What the drawing library says.
+    /// The message of the drawing library.
     pub fn svg(&self) -> Result<String, String> {
         let head = if self.paper { EDGE } else { HEAD };
         let below = |panel: &Panel| if self.paper { panel.legend_height() } else { 0 };
@@ -125,7 +125,7 @@ impl Figure {
             .map(Panel::legend_width)
             .max()
             .unwrap_or(0);
-        // Charts of one figure share their axis of time: all leave room where one has a scale of colours.
+        // Charts of one figure share their time axis, so all leave room if one has a colour scale.
         let scale = match self.panels.iter().any(Panel::has_scale) {
             true => SCALE,
             false => 0,
@@ -228,12 +228,12 @@ impl Panel {
         Ok(())
     }
 
-    /// Whether a scale of colours stands beside it.
+    /// Whether a colour scale is drawn next to the chart.
     fn has_scale(&self) -> bool {
         self.map.as_ref().is_some_and(|map| map.said.is_none())
     }
 
-    /// Its height: on paper that of its chart alone, with no legend beside it.
+    /// The height of the panel. On paper the legend is below the chart, so the height is limited.
     fn height(&self, paper: bool) -> u32 {
         match paper {
             true => self.height.min(230),
@@ -260,7 +260,7 @@ impl Panel {
         all
     }
 
-    /// Of such a legend; the scale of a map stands beside its chart.
+    /// The height of a legend below the chart. A map has its colour scale next to the chart instead.
     fn legend_height(&self) -> u32 {
         match self.lines().last() {
             Some((line, ..)) => 18 * (line + 1) + 8,
@@ -306,7 +306,7 @@ impl Panel {
     }
 }
 
-/// What marks a place where something was measured: a disc, or a circle on a white one.
+/// The mark of a data point: a disc, or a circle on a white disc.
 fn mark<P: Copy>(place: P, stroke: Stroke) -> Vec<Circle<P, i32>> {
     let disc = |color: RGBColor| Circle::new(place, 3 * fine(1).cast_signed(), color.filled());
     match stroke.marks {
@@ -319,7 +319,7 @@ fn mark<P: Copy>(place: P, stroke: Stroke) -> Vec<Circle<P, i32>> {
     }
 }
 
-/// A short piece of the curve, beside its label.
+/// A short piece of the curve, next to its label.
 fn sample(
     area: &Area<'_>,
     stroke: Stroke,
@@ -374,7 +374,7 @@ fn style(size: u32, color: RGBColor) -> TextStyle<'static> {
     }
 }
 
-/// The same in the middle of its place.
+/// The same style, centred at its position.
 pub(super) fn centred(size: u32) -> TextStyle<'static> {
     TextStyle {
         pos: Pos::new(HPos::Center, VPos::Center),
@@ -395,7 +395,7 @@ pub(super) const fn fine(pixels: u32) -> u32 {
 mod tests {
     use super::width_of;
 
-    /// Advances of letters at 12 pixels in DejaVu Sans, the wider one of Verdana where that is more.
+    /// Advances of letters at 12 pixels in DejaVu Sans, or in Verdana if that is wider.
     #[test]
     fn legends_have_room_for_their_texts() {
         for (text, wide) in [

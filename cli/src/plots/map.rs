@@ -1,4 +1,4 @@
-//! A map: values over time and sites as colours, with their scale beside it.
+//! A map: values over time and sites as colours, with a colour scale.
 
 use super::figure::{Area, centred, fine, text};
 use crate::words::number;
@@ -12,16 +12,16 @@ use plotters::prelude::{Color, RGBColor, Rectangle, SVGBackend, Text, WHITE};
 pub struct Map {
     /// Times of the columns.
     pub times: Vec<f64>,
-    /// Where the last column ends.
+    /// The end of the last column.
     pub end: f64,
     /// The sites with a value at each time.
     pub rows: Vec<(usize, Vec<f64>)>,
-    /// What is said instead of drawn, where one sentence holds at all sites and times: `zero throughout`.
+    /// A sentence that replaces the map if it holds at all sites and times: `zero throughout`.
     pub said: Option<String>,
 }
 
-/// From low to high: five colours of the scale "viridis", which readers with any colour vision order
-/// alike. Source: N. Smith and S. van der Walt, matplotlib (2015).
+/// The colour scale from low to high: five colours of "viridis", whose order is clear with any colour vision.
+/// Source: N. Smith and S. van der Walt, matplotlib (2015).
 const SCALE: [(u8, u8, u8); 5] = [
     (68, 1, 84),
     (59, 82, 139),
@@ -41,7 +41,7 @@ pub(super) fn color(part: f64) -> RGBColor {
 }
 
 impl Map {
-    /// The smallest and the largest value; a range of one around values that are all alike.
+    /// The smallest and the largest value. If all values are equal, a range of length one around them.
     pub(super) fn range(&self) -> (f64, f64) {
         let values = self.rows.iter().flat_map(|(_, row)| row);
         let finite = values.copied().filter(|v| v.is_finite());
@@ -75,7 +75,7 @@ impl Map {
         let top = self.rows.last().map_or(0.5, |(site, _)| *site as f64 + 0.5);
         for (site, row) in &self.rows {
             let at = *site as f64;
-            // Each cell reaches to the end and to the top, and is covered by those after it: no seams.
+            // Each cell extends to the end and to the top, and the later cells cover it. This avoids seams.
             let cells = row.iter().enumerate().map(|(i, v)| {
                 let from = self.times.get(i).copied().unwrap_or(self.end);
                 let fill = match v.is_finite() {
@@ -89,7 +89,7 @@ impl Map {
         Ok(())
     }
 
-    /// The scale of colours, from high to low, with three numbers; none where nothing is coloured.
+    /// The colour scale, from high to low, with three numbers. Nothing is drawn if a sentence replaces the map.
     pub(super) fn legend(&self, area: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {
         if self.said.is_some() {
             return Ok(());
@@ -125,7 +125,7 @@ impl Map {
 fn rounded(value: f64, range: f64) -> f64 {
     let unit = 10_f64.powf((range.abs().max(f64::MIN_POSITIVE)).log10().floor() - 2.0);
     let whole = (value / unit).round() * unit;
-    // The product of a whole number and a power of ten has digits of its own.
+    // The product of an integer and a power of ten has rounding errors in its digits.
     let value: f64 = format!("{whole:.12e}").parse().unwrap_or(whole);
     // Adding zero turns -0 into 0.
     value + 0.0

@@ -1,5 +1,5 @@
 //! Plots of a run as SVG: momenta, drift of the invariants, advected vectors, fields.
-//! Takes a finished run and its samples; gives SVG text, or nothing when there is nothing to show.
+//! Takes a finished run and its samples; gives SVG text, or `None` if there is nothing to draw.
 
 mod angles;
 pub(crate) mod attitude;
@@ -37,13 +37,13 @@ use figure::{Figure, Panel};
 use std::ops::Range;
 use window::{Window, window};
 
-/// Most panels of invariants that are bounded only.
+/// The largest number of panels for invariants whose error is only bounded.
 const CHANGES: usize = 4;
 
-/// A drawn plot; `None` when the model has nothing of the kind.
+/// A drawn plot; `None` if the model has nothing of this kind.
 pub(crate) type Plot = Result<Option<String>, String>;
 
-/// Momentum components against time, one panel per momentum; none of particles in the plane.
+/// Momentum components against time, one panel per momentum; `None` for particles in the plane.
 pub(crate) fn momentum(run: &Finished<'_>, samples: &Samples) -> Plot {
     if particles::in_plane(run) {
         return Ok(None);
@@ -65,7 +65,7 @@ pub(crate) fn advected(run: &Finished<'_>, samples: &Samples) -> Plot {
     })
 }
 
-/// Components of the fields against time, one panel per field; none of particles in the plane.
+/// Components of the fields against time, one panel per field; `None` for particles in the plane.
 pub(crate) fn fields(run: &Finished<'_>, samples: &Samples) -> Plot {
     if particles::in_plane(run) {
         return Ok(None);
@@ -88,7 +88,7 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
     for (index, outcome) in run.outcomes.iter().enumerate() {
         let drift = reduce::drift(record, from, &outcome.components);
         from += outcome.components.len();
-        // What is zero for every motion has no drift to show.
+        // An invariant that is zero for every motion has no drift to draw.
         if !outcome.zero_by.is_empty() {
             curves.push(Curve {
                 label: outcome.invariant.name.to_owned(),
@@ -163,8 +163,9 @@ pub(crate) fn invariants(run: &Finished<'_>, record: &Record) -> Plot {
     figure(run, shown, "drift of the invariants", panels)
 }
 
-/// A panel for each invariant that is bounded only, as the energy: its change since time 0 over the step to the order of the
-/// scheme, which is about the same for every step. At most [`CHANGES`].
+/// A panel for each invariant whose error is only bounded, such as the energy. It shows the change since time
+/// 0, divided by the step size to the power of the order. This quotient is about the same for every step size.
+/// At most [`CHANGES`] panels.
 fn changes(run: &Finished<'_>, record: &Record) -> Vec<Panel> {
     let order = run.plan.order.unwrap_or(run.card.order);
     let unit = run.plan.case.h.abs().powi(order.cast_signed());
@@ -224,7 +225,7 @@ fn figure(run: &Finished<'_>, shown: Window<'_>, what: &str, panels: Vec<Panel>)
     figure.svg().map(Some)
 }
 
-/// What stands above a picture: model, case and quantity; step, length and order.
+/// The title and subtitle of a picture: model, case and quantity; step size, duration and order.
 fn titles(run: &Finished<'_>, shown: Window<'_>, what: &str) -> (String, String) {
     let case = &run.plan.case;
     let times = shown.record.times.get(..shown.count).unwrap_or_default();
@@ -253,8 +254,8 @@ fn titles(run: &Finished<'_>, shown: Window<'_>, what: &str) -> (String, String)
     (title, subtitle)
 }
 
-/// A figure with one panel for each observable that `wanted` accepts, which is also told whether it is a field:
-/// what has a momentum of its own shape behind it.
+/// A figure with one panel for each observable that `wanted` accepts. The second argument of `wanted` is true
+/// for a field, which is followed by a momentum of its own shape.
 fn observables(
     run: &Finished<'_>,
     samples: &Samples,
@@ -291,7 +292,7 @@ fn observables(
     figure(run, shown, what, panels)
 }
 
-/// The determinant of a placement, by which volumes change; nothing of other fields and of momenta.
+/// The determinant of a placement, which is the volume ratio. `None` for other fields and for momenta.
 fn volume(
     field: &Field,
     columns: &Range<usize>,
@@ -329,13 +330,14 @@ fn volume(
     })
 }
 
-/// Whether the first sample of an observable tells nothing: it is a multiplier, which no step has found at node 0.
+/// Whether the first sample of an observable is undefined: a multiplier has no value at node 0, before any
+/// step.
 fn begins_undetermined(card: &Card, name: &str, record: &Record) -> bool {
     let said = |invariant: &str| card.invariants.iter().any(|own| own.name == invariant);
     record.nodes.first() == Some(&0) && is_multiplier(name, said)
 }
 
-/// The components of one observable, which are the given columns of the record, from this sample on.
+/// The components of one observable, in the given columns of the record, from sample `from` on.
 fn panel(field: &Field, columns: Range<usize>, from: usize, shown: Window<'_>) -> Panel {
     let letter = letter(field);
     let times = shown.record.times.get(from..shown.count);
@@ -394,8 +396,8 @@ fn is_skew<I: Iterator<Item = f64>>(field: &Field, column: &impl Fn(usize) -> I)
         })
 }
 
-/// Curves that cannot be seen: each with the later one that covers it, by their numbers. Nearer than a line is wide,
-/// at every sample.
+/// Hidden curves: each with the later curve that covers it, by their numbers. At every sample their distance is
+/// less than the width of a line.
 fn coincident<I: Iterator<Item = f64>>(
     drawn: &[usize],
     column: &impl Fn(usize) -> I,
@@ -434,7 +436,7 @@ fn letter(field: &Field) -> &str {
     }
 }
 
-/// What stands beside the axis: `body momentum μ`.
+/// The label of the axis: `body momentum μ`.
 fn quantity(field: &Field) -> String {
     let letter = letter(field);
     match field.kind {
@@ -456,7 +458,7 @@ fn caption(field: &Field) -> String {
     }
 }
 
-/// The place of a component: `₂`, of a matrix `₂₁`; a number has none.
+/// The index of a component: `₂`, or `₂₁` for a matrix. Empty for a number.
 fn place(field: &Field, component: usize) -> String {
     match field.cols {
         _ if field.count() == 1 => String::new(),

@@ -32,29 +32,30 @@ const LEAST: i32 = 170;
 const INK: RGBColor = RGBColor(30, 30, 30);
 const FAINT: RGBColor = RGBColor(110, 110, 110);
 
-/// A colour at a place.
+/// A colour at a position.
 pub(super) struct Mark {
     place: [f64; 2],
     value: f64,
 }
 
-/// The state at one sample: what is coloured, and particles above it.
+/// The state at one sample: coloured marks or cells, and particles above them.
 pub(super) struct Snapshot {
     pub(super) time: f64,
     pub(super) marks: Vec<Mark>,
-    /// Cells in the place of marks, by their corners.
+    /// Cells instead of marks, by their corners.
     pub(super) cells: Vec<(Vec<[f64; 2]>, f64)>,
     pub(super) dots: Vec<[f64; 2]>,
-    /// Of a mark, in pixels.
+    /// Radius of a mark, in pixels.
     pub(super) radius: f64,
 }
 
-/// Whether a run is of a fluid in the plane: its particles have no order along a line, and are shown where they are.
+/// Whether a run is a fluid in the plane. Its particles have no order along a chain, so they are drawn at their
+/// positions.
 pub(super) fn in_plane(run: &Finished<'_>) -> bool {
     space(run.card, run.plan).is_some_and(|(space, _)| space.lengths.len() > 1)
 }
 
-/// The picture; nothing for models that are no fluids.
+/// The picture; `None` if the model is not a fluid.
 pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
     let all = at_sites(run.card);
     let Some(Coloured {
@@ -77,7 +78,7 @@ pub(crate) fn particles(run: &Finished<'_>, record: &Record) -> Plot {
     titled(run, record, names, (&space, &shots, side))
 }
 
-/// The vorticity of a fluid of cells; nothing for other models.
+/// The vorticity of a fluid with cells; `None` for other models.
 pub(crate) fn vorticity(run: &Finished<'_>, record: &Record) -> Plot {
     let Some((space, stated)) = space(run.card, run.plan) else {
         return Ok(None);
@@ -99,7 +100,8 @@ pub(crate) fn vorticity(run: &Finished<'_>, record: &Record) -> Plot {
     }
 }
 
-/// Two samples below the titles of a run: what they show, its name above the colours, and that of places beside the axes.
+/// Two samples below the titles of a run: the quantity, its name above the colours, and the name of positions
+/// at the axes.
 fn titled(
     run: &Finished<'_>,
     record: &Record,
@@ -183,7 +185,7 @@ fn snapshot(
         false => (marks, Vec::new()),
     };
     let dots: Vec<[f64; 2]> = dots.collect();
-    // So many that they would hide what they stand on are left out.
+    // If the dots would cover the colours, they are omitted.
     let dots = if ROOM * dots.len() as f64 > room {
         Vec::new()
     } else {
@@ -207,7 +209,7 @@ struct Frame {
 }
 
 impl Frame {
-    /// What of a cell of a periodic domain lies in the panel, on either side of its seams.
+    /// The parts of a cell inside the panel. A cell across a periodic seam has parts on both sides.
     #[allow(clippy::cast_possible_truncation)]
     fn within(&self, corners: &[[f64; 2]]) -> Vec<Vec<(i32, i32)>> {
         let length = |d: usize| self.high[d] - self.low[d];
@@ -219,7 +221,7 @@ impl Frame {
                 [part(0, i), part(1, j)]
             };
             let inside = clipped(corners.iter().map(moved).collect());
-            // What only touches the edge has no area.
+            // A part that only touches the edge has zero area.
             if area(&inside) > 1e-12 {
                 let at =
                     |d: usize, p: f64| ((self.corner[d] + p * self.side[d]) * unit).round() as i32;
@@ -318,7 +320,8 @@ fn draw(
     Ok(svg.replacen(&large, &printed, 1))
 }
 
-/// What stands at the axes of a panel: components of the place, or the only one and the value.
+/// The labels at the axes of a panel: the components of the position, or in one dimension the position and the
+/// value.
 #[allow(clippy::cast_possible_truncation)]
 fn axes(
     root: &Area<'_>,

@@ -12,7 +12,7 @@ const STRETCHES: usize = 1000;
 /// Points of an envelope: a smooth line rather than a band.
 const ENVELOPE: usize = 150;
 
-/// Least and greatest value of each stretch, in the order in which they occur. What is no number is left out.
+/// The least and the greatest value of each stretch, in the order in which they occur. NaNs are omitted.
 pub(crate) fn extremes(times: &[f64], values: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
     let points = times.iter().copied().zip(values);
     let points: Vec<(f64, f64)> = points.filter(|point| !point.1.is_nan()).collect();
@@ -41,8 +41,8 @@ pub(crate) fn extremes(times: &[f64], values: impl Iterator<Item = f64>) -> Vec<
     kept
 }
 
-/// Largest drift of the components that begin at column `from`, at every sample after the
-/// first, where it is zero by definition.
+/// Largest drift of the components that begin at column `from`, at every sample after the first, at which the
+/// drift is zero by definition.
 pub(super) fn drift(record: &Record, from: usize, components: &[Drift]) -> Vec<(f64, f64)> {
     let rows = || record.invariants.rows().map(|row| row.iter().skip(from));
     let start: Vec<f64> = rows()
@@ -63,8 +63,8 @@ pub(super) fn group(samples: usize) -> usize {
     samples.div_ceil(ENVELOPE).max(1)
 }
 
-/// The largest value of each group of samples, at the time where it occurs. Groups are of equal size
-/// up to one: a last one of few samples would look like a fall.
+/// The largest value of each group of samples, with its time. The sizes of the groups differ by at most one,
+/// since a small last group would look like a decrease.
 pub(crate) fn envelope(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let count = points.len().div_ceil(group(points.len()));
     let groups = (0..count).filter_map(|index| {

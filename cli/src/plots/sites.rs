@@ -1,4 +1,4 @@
-//! Space-time maps of what a model has at the sites of a label.
+//! Space-time maps of the quantities at the sites of a label.
 //! Takes the samples of a run; gives one map for each component of each quantity.
 
 use super::axis::Axis;
@@ -16,19 +16,20 @@ use clebsch::record::Record;
 use clebsch::scalar::largest;
 use std::ops::Range;
 
-/// Most columns of a map: more are not told apart across a page.
+/// The largest number of columns of a map. More columns could not be distinguished on a page.
 const COLUMNS: usize = 160;
 
-/// Most sites that have rows of their own: of more, some are shown.
+/// The largest number of sites with rows in a map. If there are more, a selection is drawn.
 const ROWS: usize = 240;
 
 /// Height of a panel with a sentence.
 const SENTENCE: u32 = 84;
 
-/// Most components that have maps of their own: the entries of a rotation are no picture of it.
+/// The largest number of components that are drawn as maps. Maps of the entries of a rotation would be hard to
+/// read.
 const COMPONENTS: usize = 3;
 
-/// Maps of the quantities that are wanted; `None` where the model has no sites.
+/// Maps of the wanted quantities; `None` if the model has no sites.
 pub(super) fn maps(
     run: &Finished<'_>,
     samples: &Samples,
@@ -55,7 +56,7 @@ pub(super) fn maps(
 }
 
 fn of_quantity(q: &AtSites<'_>, record: &Record) -> Vec<Panel> {
-    // Components of one quantity have one unit: what is rounding beside another one is zero.
+    // Components of one quantity have one unit, so a component within the rounding error of another is zero.
     let columns = q.members.iter().flat_map(|(_, columns)| columns.clone());
     let values = columns.flat_map(|c| record.observables.column(c));
     let size = largest(values.filter(|v| v.is_finite()).map(f64::abs));
@@ -70,7 +71,7 @@ fn panel(q: &AtSites<'_>, component: usize, record: &Record, size: f64) -> Panel
         Kind::FieldMomentum => Some(""),
         _ => None,
     };
-    // Of a place what is seen is how far it has moved.
+    // A position is drawn as its change since the start.
     let change = q.moves && frame.is_none() && (q.grows || q.field.count() > 1);
     let column = |columns: &Range<usize>| -> Vec<f64> {
         let all = record.observables.column(columns.start + component);
@@ -96,13 +97,13 @@ fn panel(q: &AtSites<'_>, component: usize, record: &Record, size: f64) -> Panel
     mapped(caption, &q.index, &record.times, rows.collect(), size)
 }
 
-/// Those sites that have rows of their own.
+/// The sites that have rows in the map.
 pub(super) fn shown<T>(members: &[T]) -> impl Iterator<Item = &T> {
     members.iter().step_by(members.len().div_ceil(ROWS).max(1))
 }
 
-/// A map of values at these sites and times, rows in the order of their sites. Where the values are the same throughout, up
-/// to rounding in quantities of this `size`, a sentence stands in its place.
+/// A map of values at these sites and times, with rows in the order of the sites. If all values are equal, up
+/// to rounding in quantities of this `size`, a sentence replaces the map.
 pub(super) fn mapped(
     caption: String,
     index: &str,
@@ -132,7 +133,8 @@ pub(super) fn mapped(
     }
 }
 
-/// What is said of values that are all the same, up to rounding in quantities of this size; nothing where they differ.
+/// The sentence about values that are all equal, up to rounding in quantities of this size; `None` if they
+/// differ.
 fn same<'a>(values: impl Iterator<Item = &'a f64>, size: f64) -> Option<String> {
     let mut values = values.copied().filter(|v| v.is_finite()).peekable();
     if values.peek().is_none() {
@@ -146,7 +148,7 @@ fn same<'a>(values: impl Iterator<Item = &'a f64>, size: f64) -> Option<String> 
     if most == 0.0 {
         return Some("zero throughout".to_owned());
     }
-    // A thousand rounding errors: those of many steps.
+    // The tolerance exceeds a single rounding error, since errors accumulate over many steps.
     let rounding = 1e-12 * size.max(most);
     if most <= rounding {
         return Some(format!(
@@ -177,7 +179,7 @@ mod tests {
             said(&[1e-17, -3e-17], 1.0).as_deref(),
             Some("zero throughout, up to rounding: 3e−17 at most")
         );
-        // Small beside nothing else: values of their own.
+        // Small compared with nothing else: the values are significant.
         assert_eq!(said(&[1e-17, -3e-17], 3e-17), None);
         assert_eq!(said(&[1.0, 2.0, f64::NAN], 1.0), None);
     }

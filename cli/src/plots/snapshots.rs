@@ -1,5 +1,6 @@
-//! The shape of a line at eight times: its places in the planes of their largest components, or a field over its sites.
-//! Takes a run; gives an SVG of two rows of panels a plane, nothing for models without a line.
+//! The shape of a chain at eight times: its positions in the planes of their largest components, or a field
+//! over its sites.
+//! Takes a run; gives an SVG with two rows of panels per plane, or `None` for a model without a chain.
 
 use super::figure::{Area, fine, text};
 use super::sphere::{COLUMN, WIDE, printed_size};
@@ -18,11 +19,11 @@ use plotters::prelude::{
 
 const SHOTS: usize = 8;
 const COLUMNS: usize = 4;
-/// Most points of a curve: more are not told apart in a panel.
+/// The largest number of points of a curve. More points could not be distinguished in a panel.
 const POINTS: usize = 400;
 const GAP: f64 = 14.0;
 const LEFT: f64 = 32.0;
-/// Room beside the last panel.
+/// Margin to the right of the last panel.
 const RIGHT: f64 = 16.0;
 /// Where panels begin, below the title if there is one.
 const TOP: f64 = 58.0;
@@ -30,13 +31,13 @@ const BARE: f64 = 8.0;
 /// Above each panel for its time, below all for the scale.
 const ABOVE: f64 = 26.0;
 const BELOW: f64 = 52.0;
-/// Part of the largest extent from which on the third one has a plane of its own.
+/// If the third extent exceeds this part of the largest, it has its own plane.
 const DEEP: f64 = 0.1;
 const INK: RGBColor = RGBColor(30, 30, 30);
 const FAINT: RGBColor = RGBColor(150, 150, 150);
 const CURVE: RGBColor = RGBColor(0, 90, 156);
 
-/// The picture; nothing for models that have no field on a line.
+/// The picture; `None` if the model has no field on a chain.
 pub(crate) fn snapshots(run: &Finished<'_>, record: &Record) -> Plot {
     let all = at_sites(run.card);
     let on_line = |d: usize| {
@@ -72,7 +73,7 @@ struct Shot {
     points: Vec<Vec<f64>>,
 }
 
-/// Eight samples from the first to the last, with those points that ends hold.
+/// Eight samples from the first to the last, including points given at an end.
 fn shots(run: &Finished<'_>, record: &Record, field: &AtSites<'_>) -> Vec<Shot> {
     let sites = field.members.iter().map(|(site, _)| *site);
     let (first, last) = (sites.clone().min().unwrap_or(0), sites.max().unwrap_or(0));
@@ -83,7 +84,7 @@ fn shots(run: &Finished<'_>, record: &Record, field: &AtSites<'_>) -> Vec<Shot> 
     if wanted.last() != Some(&last) {
         wanted.push(last);
     }
-    // What an end holds has no columns; once around a ring stands the first node again.
+    // A value given at an end has no column. On a ring, the first node is repeated at the end.
     if first > 0 {
         wanted.insert(0, first - 1);
     }
@@ -106,7 +107,7 @@ fn shots(run: &Finished<'_>, record: &Record, field: &AtSites<'_>) -> Vec<Shot> 
     picked.into_iter().map(shot).collect()
 }
 
-/// What the two directions of a panel are.
+/// The two axes of a panel.
 #[derive(Clone, Copy)]
 enum Seen {
     /// The coordinates with these numbers.
@@ -115,8 +116,8 @@ enum Seen {
     Graph,
 }
 
-/// The planes in which points of three coordinates are seen, from the range of each. The first holds the two largest; where the
-/// third is not small, the second holds it and the largest.
+/// The planes in which points with three coordinates are drawn, from the range of each. The first plane has the
+/// two largest ranges. If the third range is not small, a second plane has the third range and the largest.
 fn planes(extents: [f64; 3]) -> Vec<Seen> {
     let mut order = [0, 1, 2];
     order.sort_by(|a, b| extents[*b].total_cmp(&extents[*a]));
@@ -129,9 +130,9 @@ fn planes(extents: [f64; 3]) -> Vec<Seen> {
     all
 }
 
-/// Curves in panels of one scale, a block of them for each plane.
+/// Curves in panels with one scale, with a block of panels for each plane.
 struct Strip {
-    /// Of what is drawn, for the axes.
+    /// The name of the drawn quantity, for the axes.
     name: String,
     times: Vec<f64>,
     blocks: Vec<Block>,
@@ -146,7 +147,7 @@ struct Block {
 }
 
 impl Strip {
-    /// `None` where there is nothing that can be drawn.
+    /// `None` if nothing can be drawn.
     fn of(field: &AtSites<'_>, shots: &[Shot]) -> Option<Self> {
         let extent = |d: usize| {
             let all = shots.iter().flat_map(|s| &s.points);
@@ -181,7 +182,7 @@ impl Strip {
 }
 
 impl Block {
-    /// `None` where there is nothing that can be drawn.
+    /// `None` if nothing can be drawn.
     fn of(seen: Seen, shots: &[Shot]) -> Option<Self> {
         let put = |(k, p): (usize, &Vec<f64>)| {
             let at = |d: usize| p.get(d).copied().unwrap_or(f64::NAN);
@@ -209,7 +210,8 @@ impl Block {
         let graph = matches!(seen, Seen::Graph);
         for d in 0..2 {
             let own = high[d] - low[d];
-            // A graph fills its panel; a shape has one scale both ways, in panels not too flat to be seen.
+            // A graph fills its panel. A shape has one scale in both directions, in panels with a minimal
+            // height.
             let least = if graph { own.max(1e-300) } else { 0.4 * widest };
             let wide = 1.1 * own.max(least);
             let middle = 0.5 * (low[d] + high[d]);
@@ -333,7 +335,7 @@ impl Block {
         Ok(())
     }
 
-    /// The names of the components beside the first panel of the last row, which reaches over these heights.
+    /// The names of the components at the first panel of the last row, which extends between these heights.
     #[allow(clippy::cast_possible_truncation)]
     fn axes(
         &self,
@@ -352,7 +354,7 @@ impl Block {
         text(root, &up, 12, INK, (8, middle))
     }
 
-    /// A length of one digit below the first panel, and what the directions are.
+    /// A scale bar with a length of one digit below the first panel, and the names of the directions.
     fn scale(
         &self,
         root: &Area<'_>,
@@ -412,7 +414,7 @@ mod tests {
         assert_eq!(seen([1.0, 0.0, 0.8]), [[1, 3]]);
         assert_eq!(seen([0.5, 2.0, 0.1]), [[1, 2]]);
         assert_eq!(seen([0.05, 1.0, 3.0]), [[2, 3]]);
-        // A depth that is not small is seen beside the largest one.
+        // A depth that is not small is drawn in a second plane, with the largest component.
         assert_eq!(seen([1.0, 0.2, 0.8]), [[1, 3], [1, 2]]);
         assert_eq!(seen([0.2, 0.4, 1.0]), [[2, 3], [1, 3]]);
         // A straight line.

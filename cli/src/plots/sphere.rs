@@ -1,4 +1,4 @@
-//! Spheres with curves on them, seen from one side: what lies behind is drawn faint.
+//! Spheres with curves on them, seen from one side. The far side is drawn faint.
 //! Takes curves in space and functions on a sphere; gives SVG text.
 
 use clebsch::nalgebra::Vector3;
@@ -12,7 +12,7 @@ pub(super) const COLUMN: f64 = 430.0;
 /// Its width in print, in millimetres.
 const COLUMN_IN_PRINT: f64 = 86.0;
 
-/// Most points of a curve: far more than are seen.
+/// The largest number of points of a curve, far more than are visible.
 const MOST_POINTS: usize = 6000;
 
 /// Cells of the grid on which lines of equal value are looked for: in latitude, and twice as many in longitude.
@@ -26,7 +26,7 @@ const LEVELS: usize = 9;
 pub(super) struct Course(Vec<Vector>);
 
 impl Course {
-    /// The points that are numbers, no more than are seen.
+    /// The finite points, at most the largest number.
     pub(super) fn of(points: impl Iterator<Item = Vector>) -> Self {
         let all: Vec<Vector> = points.filter(|p| p.iter().all(|x| x.is_finite())).collect();
         let stride = all.len().div_ceil(MOST_POINTS).max(1);
@@ -47,7 +47,7 @@ pub(super) struct Sphere {
     pub(super) contours: Vec<[Vector; 2]>,
 }
 
-/// From where it is seen: right, up, and towards the reader.
+/// The view directions: right, up, and towards the reader.
 fn view() -> [Vector; 3] {
     let (azimuth, elevation) = (35.0_f64.to_radians(), 22.0_f64.to_radians());
     let towards = Vector::new(
@@ -76,7 +76,7 @@ pub(super) fn contours(radius: f64, f: &dyn Fn(&Vector) -> f64) -> Vec<[Vector; 
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
         (a.min(x), b.max(x))
     });
-    // A function that is constant but for rounding has none.
+    // A function that is constant up to rounding has no contours.
     let varies = high - low > 1e-9 * low.abs().max(high.abs());
     if !varies {
         return Vec::new();
@@ -107,7 +107,8 @@ pub(super) fn printed_size(width: f64, height: f64) -> String {
     format!("width=\"{COLUMN_IN_PRINT}mm\" height=\"{tall:.2}mm\"")
 }
 
-/// Several spheres on a sheet, for a paper in a column and without a title. A sentence may stand below them.
+/// Several spheres on a sheet. For a paper the sheet is one column wide and has no title. A sentence may follow
+/// below.
 pub(super) fn sheet(
     spheres: &[Sphere],
     [title, subtitle, sentence]: [&str; 3],
@@ -156,7 +157,7 @@ pub(super) fn sheet(
     svg
 }
 
-/// Words at a place, with what XML takes for its own written out.
+/// Text at a position, with the special characters of XML escaped.
 fn write_text(svg: &mut String, words: &str, [x, y]: [f64; 2], size: f64, ink: &str, anchor: &str) {
     let words = words.replace('&', "&amp;").replace('<', "&lt;");
     let _ = writeln!(
@@ -165,7 +166,7 @@ fn write_text(svg: &mut String, words: &str, [x, y]: [f64; 2], size: f64, ink: &
     );
 }
 
-/// A caption in lines of at most so many letters.
+/// A caption in lines of at most `letters` letters.
 fn folded(caption: &str, letters: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in caption.split(' ') {
@@ -258,7 +259,7 @@ impl Sphere {
             );
             write_text(svg, name, [tx, ty], 11.0, "#6E6E6E", "middle");
         }
-        // Where it begins and where it ends.
+        // The start and the end of the path.
         for course in &self.courses {
             for (point, fill) in [(course.0.first(), "#0072B2"), (course.0.last(), "#FFFFFF")] {
                 let Some([px, py]) = point.map(&seen) else {

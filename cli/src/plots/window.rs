@@ -1,11 +1,11 @@
-//! How much of a run a plot of oscillating quantities can show.
-//! Takes the samples of a run; gives those to draw: all, or a first stretch with every swing resolved.
+//! The part of a run that a plot of oscillating quantities can show.
+//! Takes the samples of a run; gives the samples to draw: all, or a first part with every oscillation resolved.
 
 use crate::trajectory::record::Samples;
 use clebsch::record::{Record, Table};
 use std::ops::Range;
 
-/// Most swings that can be told apart across the width of a plot.
+/// The largest number of oscillations that can be distinguished across the width of a plot.
 const SWINGS: usize = 60;
 
 /// Samples needed per swing for it to look like one.
@@ -15,12 +15,12 @@ const SAMPLES_PER_SWING: usize = 12;
 /// the last one; smaller ones are ripples.
 const RIPPLE: f64 = 0.05;
 
-/// The samples to draw: those of `record` with index below `count`.
+/// The samples to draw: the rows of `record` with index below `count`.
 #[derive(Clone, Copy)]
 pub(crate) struct Window<'a> {
     pub record: &'a Record,
     pub count: usize,
-    /// Whether the run goes on beyond.
+    /// Whether the run continues beyond.
     pub cut: bool,
 }
 
@@ -33,8 +33,8 @@ pub(crate) fn window<'a>(samples: &'a Samples, panels: &[Range<usize>]) -> Windo
         cut: false,
     };
     let start = samples.opening.as_ref().unwrap_or(record);
-    // The number of nodes from the start until some curve has made all the swings there is room for,
-    // and the shortest mean swing up to there.
+    // The number of nodes until some curve has completed the largest number of oscillations, and the shortest
+    // mean period up to that node.
     let turns = panels
         .iter()
         .flat_map(|panel| turns(&start.observables, panel));
@@ -55,7 +55,7 @@ pub(crate) fn window<'a>(samples: &'a Samples, panels: &[Range<usize>]) -> Windo
         swing < step.saturating_mul(SAMPLES_PER_SWING)
     };
     let crowded = match (full, turns.last()) {
-        // Judged by the whole run, should the opening end before the swings fill the plot.
+        // If the opening ends before the oscillations fill the plot, the whole run decides.
         (None, Some(last)) => {
             let run = record
                 .nodes
@@ -82,7 +82,7 @@ fn turns(table: &Table, panel: &Range<usize>) -> Vec<Vec<usize>> {
     let (low, high) = bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))
     });
-    // Rounding noise of a constant is no swing either.
+    // The rounding noise of a constant does not count as an oscillation.
     let ripple = (RIPPLE * (high - low)).max(1e-9 * low.abs().max(high.abs()));
     columns().map(|column| turns_of(column, ripple)).collect()
 }

@@ -1,21 +1,21 @@
-//! Values put into the text of a case, so that everything else stays as the case has it. Takes the text, a key and a value written
-//! as TOML; gives the text with the value in its place.
+//! Inserts values into the text of a case and leaves everything else unchanged. Takes the text, a key and a
+//! value written as TOML; gives the text with the value.
 
 use std::ops::Range;
 use toml::de::DeTable;
 
-/// A value that is put under a key of a table; at the top level if the table is empty.
+/// A value for a key of a table. If the table name is empty, the key is at the top level.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edit {
     /// The table.
     pub table: String,
     /// The key.
     pub key: String,
-    /// The value, written as TOML on one line; none to remove the key.
+    /// The value, written as TOML on one line; `None` to remove the key.
     pub value: Option<String>,
 }
 
-/// The places of a key and of its value.
+/// The ranges of a key and of its value.
 fn place(top: &DeTable<'_>, table: &str, key: &str) -> Option<(Range<usize>, Range<usize>)> {
     let own = match table {
         "" => top,
@@ -25,7 +25,7 @@ fn place(top: &DeTable<'_>, table: &str, key: &str) -> Option<(Range<usize>, Ran
     Some((key.span(), value.span()))
 }
 
-/// Where the line behind the head of a table begins; none if the text lacks that head.
+/// The start of the line after the head of a table; `None` if the text lacks that head.
 fn behind_head(text: &str, table: &str) -> Option<usize> {
     let mut at = 0;
     for line in text.split_inclusive('\n') {
@@ -57,14 +57,14 @@ pub fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
-/// The text with these values, of which none gives the same key twice. A text that is not TOML stays as it is, since its reader
-/// reports the mistake.
+/// The text with these values, which must have different keys. A text that is not TOML stays unchanged, since
+/// its reader reports the mistake.
 #[must_use]
 pub fn edited(text: &str, edits: &[Edit]) -> String {
     let Ok(document) = DeTable::parse(text) else {
         return text.to_owned();
     };
-    // Ranges of the text and the text in their place.
+    // Ranges of the text, each with its new text.
     let mut changes: Vec<(Range<usize>, String)> = Vec::new();
     let mut tables: Vec<(&str, String)> = Vec::new();
     for Edit { table, key, value } in edits {

@@ -22,9 +22,9 @@ pub enum Columns {
         /// How many blocks there are.
         count: usize,
     },
-    /// Columns in no such order.
+    /// Columns without such an order.
     Listed(Vec<usize>),
-    /// Numbers that belong to no sample: of which sites an array is.
+    /// Numbers that belong to no sample: the sites of an array.
     Sites(Vec<u64>),
 }
 
@@ -66,7 +66,7 @@ pub fn layout(card: &Card) -> Vec<Layout> {
     each.collect()
 }
 
-/// Ranges as blocks at equal distances, where they are such.
+/// Ranges as evenly spaced blocks, if they are.
 fn regular(ranges: &[std::ops::Range<usize>]) -> Columns {
     let own = |column: usize| column.saturating_sub(BEFORE);
     let listed = || {

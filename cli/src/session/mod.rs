@@ -1,5 +1,6 @@
-//! Cases that a program runs in place of a command, as the Python package does. Plan, steps, names of arrays and verdicts agree with
-//! `clebsch run`. Samples stay in memory, and the caller decides how long to wait.
+//! Cases that another program runs instead of a command, such as the Python package. Plan, steps, names of
+//! arrays and verdicts agree with `clebsch run`. Samples stay in memory, and the caller decides how long to
+//! wait.
 
 mod edit;
 mod layout;

@@ -21,9 +21,9 @@ use std::io;
 /// A model that a program runs.
 pub struct Model {
     text: ModelText,
-    /// Its card and cases, where the stepper is compiled.
+    /// Its card and cases, if the stepper is compiled.
     compiled: Option<Entry>,
-    /// Its card, where no case changes it: a model without labels and without functions that a case gives.
+    /// Its card, if no case changes it: the model has no labels, and no functions that a case gives.
     fixed: Option<Entry>,
     has_sites: bool,
     warnings: String,
@@ -53,10 +53,10 @@ impl Model {
         })
     }
 
-    /// The model of the gallery that has a name, or of the file that has a path.
+    /// The model of the gallery with this name, or of the file with this path.
     ///
     /// # Errors
-    /// Usage: no such model, an unreadable file, or a text that does not derive.
+    /// Usage: the model is unknown, a file cannot be read, or the text does not derive.
     pub fn named(gallery: &Gallery, name: &str) -> Result<Self, Failure> {
         match named(gallery, name, "here a model is named")? {
             Named::Text(text) if text.is_path => Self::read(text),
@@ -121,13 +121,13 @@ impl Model {
         &self.warnings
     }
 
-    /// Whether it has labels, so that its card depends on the number of sites.
+    /// Whether the model has labels. Its card then depends on the number of sites.
     #[must_use]
     pub fn has_sites(&self) -> bool {
         self.has_sites
     }
 
-    /// The names of its cases, the default one first, each with what it shows.
+    /// The names of its cases, the default one first, each with its description.
     #[must_use]
     pub fn cases(&self) -> Vec<(String, String)> {
         match &self.compiled {
@@ -139,10 +139,11 @@ impl Model {
         }
     }
 
-    /// The name of a case's file in messages, and its text. `sample` has placeholder values; a name that ends in .toml is a path.
+    /// The name of a case's file in messages, and its text. `sample` has placeholder values; a name that ends
+    /// in .toml is a path.
     ///
     /// # Errors
-    /// Usage: no such case, or an unreadable file.
+    /// Usage: the case is unknown, or a file cannot be read.
     pub fn case(&self, name: Option<&str>) -> Result<(String, String), Failure> {
         if let Some(entry) = &self.compiled
             && !name.is_some_and(crate::named::cases::is_file)
@@ -184,10 +185,10 @@ impl Model {
         }
     }
 
-    /// The plan of a case, given by the name of its file in messages and by its text.
+    /// The plan of a case. `file` is the file name for messages, `text` the case.
     ///
     /// # Errors
-    /// Usage: what is wrong with the case or the request.
+    /// Usage: a mistake in the case or the request.
     pub fn planned(&self, file: &str, text: &str, request: &Request) -> Result<Planned, Failure> {
         let case = CaseText {
             file: file.to_owned(),
@@ -215,8 +216,8 @@ impl Model {
         })
     }
 
-    /// The derivation in a form: `text`, `latex`, `markdown`, `rust` or `json`; with the proof behind it, or as a document that
-    /// compiles by itself.
+    /// The derivation in a form: `text`, `latex`, `markdown`, `rust` or `json`. It can include the proof, or be
+    /// a complete document.
     ///
     /// # Errors
     /// Usage: the text does not derive.

@@ -10,7 +10,7 @@ use clebsch_check::Which;
 /// The options of a run. A case gives the step size and the number of steps.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// The time to run to, in place of a number of steps.
+    /// The end time, instead of a number of steps.
     pub until: Option<f64>,
     /// Every how many nodes are sampled; by default at most ten thousand nodes. 0 samples the start and the end.
     pub every: Option<u64>,
@@ -22,7 +22,7 @@ pub struct Request {
     pub compensated: bool,
     /// Whether a failed step is retried as substeps.
     pub halve: bool,
-    /// Which steps the action as stated judges.
+    /// The steps to judge by the action as stated.
     pub judged: Which,
 }
 

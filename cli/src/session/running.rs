@@ -16,7 +16,7 @@ use clebsch_check::{Verdict, Which};
 use std::collections::TryReserveError;
 use std::time::{Duration, Instant};
 
-/// Steps are made for so long before the clock is looked at again.
+/// The duration of a batch of steps.
 const AT_A_TIME: Duration = Duration::from_millis(20);
 
 /// Samples of a run, each as one row of observables and invariants.
@@ -33,7 +33,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Room for so many samples, so that rows are never moved.
+    /// Allocates memory for `samples` samples, so that rows are never moved.
     fn with_room(samples: usize, width: usize) -> Result<Self, TryReserveError> {
         let mut rows = Self::default();
         rows.nodes.try_reserve_exact(samples)?;
@@ -73,7 +73,7 @@ pub struct StepLimits {
     pub step: Option<f64>,
     /// The frequency of the fastest small motion about the start.
     pub frequency: Option<f64>,
-    /// In words, if anything is to be said.
+    /// The limit in words, if it is to be reported.
     pub told: Option<String>,
     /// A warning on the step size of the case.
     pub warning: Option<String>,
@@ -93,7 +93,7 @@ impl Running {
     /// Starts a plan; its samples are kept if `sampled`.
     ///
     /// # Errors
-    /// Usage for data that the model cannot work with, failed where the first step is refused or memory does not suffice.
+    /// Usage: the model rejects the data. Failed: the first step fails, or memory does not suffice.
     pub fn start(planned: Planned, which: Which, sampled: bool) -> Result<Self, Failure> {
         let Planned { card, plan, .. } = planned;
         let opened = plan.open(&card)?;
@@ -203,7 +203,7 @@ impl Running {
         self.judged.then(|| self.trajectory.verdict())
     }
 
-    /// Steps that were made by parts.
+    /// Steps that were subdivided.
     #[must_use]
     pub fn halvings(&self) -> Option<Halvings> {
         self.trajectory.halvings()
@@ -226,7 +226,7 @@ impl Running {
         std::mem::take(&mut self.rows)
     }
 
-    /// Makes at most so many steps without sampling, for about so long; how many were made.
+    /// Makes at most `steps` steps without sampling, for about this `time`. Gives the number of steps made.
     ///
     /// # Errors
     /// The number of steps before the one that failed, and the reason.
@@ -261,7 +261,7 @@ impl Running {
         row
     }
 
-    /// The state as the bytes of a checkpoint; none where the trajectory cannot be written down.
+    /// The state as the bytes of a checkpoint; `None` if the trajectory cannot be saved.
     #[must_use]
     pub fn saved(&mut self) -> Option<Vec<u8>> {
         let mut words = Words::gathered();

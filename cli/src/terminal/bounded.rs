@@ -1,4 +1,4 @@
-//! Reads text files no larger than clebsch accepts, so that a device without end is refused.
+//! Reads text files up to a maximal size, so that an endless device is rejected.
 //! Takes a path or a stream; gives the text.
 
 use crate::terminal::failure::Failure;
@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Most bytes of a model or a case: 10 MB. The longest shipped file has 3 kB.
+/// The largest size of a model or a case in bytes: 10 MB. The longest shipped file has 3 kB.
 const MOST: u64 = 10_000_000;
 
 /// The text of a file; `what` names it in messages: "model file".

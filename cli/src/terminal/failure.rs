@@ -6,25 +6,25 @@ use std::io;
 
 /// Everything was done and every bounded invariant stayed within its bound.
 pub const DONE: u8 = 0;
-/// The solver or the file system failed. Of a run that stopped after its first step the results up to
-/// there are written.
+/// The solver or the file system failed. If the run stopped after its first step, the results so far are
+/// written.
 pub const FAILED: u8 = 1;
 /// The request cannot be understood: arguments, names, case files, values.
 pub const USAGE: u8 = 2;
-/// The run ended, its results are written, and an invariant left its bound, or steps are
-/// refuted by the action as stated.
+/// The run is complete and its results are written, but an invariant exceeded its bound, or a step contradicts
+/// the action as stated.
 pub const BOUND_LEFT: u8 = 3;
 /// Less than the codes of commands that a signal ended, by its number: 130 for SIGINT, 143 for SIGTERM.
 pub const BY_SIGNAL: u8 = 128;
 
-/// A command that did not come to its end.
+/// The reason why a command was not completed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
     /// The request is wrong; the message names the argument, or file, line and field.
     Usage(String),
     /// The request was fine, but the work failed.
     Failed(String),
-    /// Whoever read our output has gone, as `head` does. Not worth a message.
+    /// The reader of the output has closed it, as `head` does. There is no message.
     ReaderGone,
 }
 
@@ -38,13 +38,13 @@ impl Failure {
         }
     }
 
-    /// An input or output error, said of what was being done: `cannot write x/run.json`.
+    /// An input or output error with the action that failed: `cannot write x/run.json`.
     #[must_use]
     pub fn io(doing: &str, error: &io::Error) -> Self {
         Self::Failed(format!("{doing}: {error}"))
     }
 
-    /// The object that stands for what did not come to its end.
+    /// The JSON object that reports the failure.
     #[must_use]
     pub fn json(&self) -> serde_json::Value {
         serde_json::json!({"error": self.to_string(), "exit_code": self.code()})

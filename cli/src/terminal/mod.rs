@@ -1,4 +1,5 @@
-//! Where a command reads and writes: its streams, how it fails, what is waited for, and texts no larger than it accepts.
+//! The interface of a command to the outside: its streams, its failures, the progress of long computations, and
+//! bounded input.
 
 pub(crate) mod bounded;
 pub mod failure;
@@ -6,9 +7,9 @@ pub(crate) mod waiting;
 
 use std::io::{Read, Write};
 
-/// Where a command reads and writes.
+/// The streams that a command reads and writes.
 pub struct Streams<'a> {
-    /// What `-` stands for where a file is asked for.
+    /// The input that the file name `-` refers to.
     pub input: &'a mut dyn Read,
     /// Results.
     pub out: &'a mut dyn Write,
@@ -16,7 +17,6 @@ pub struct Streams<'a> {
     pub err: &'a mut dyn Write,
     /// Whether to draw progress on the process's standard error.
     pub progress: bool,
-    /// How many letters a line of help or of a table may have; `None` where nothing limits them, as in
-    /// a file.
+    /// The largest number of letters in a line of help or of a table; `None` if it is unlimited, as in a file.
     pub width: Option<usize>,
 }

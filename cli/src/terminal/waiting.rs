@@ -1,12 +1,12 @@
-//! What is done before the first step of a run is counted: a line on a terminal, where it takes longer than a second. Takes the words;
-//! nothing is shown of what is quick.
+//! Shows on a terminal what a run waits for before its first step, if that takes longer than a second.
+//! Takes the text.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How long nothing is shown.
+/// The time before anything is shown.
 const QUIET: Duration = Duration::from_secs(1);
 
 /// Something that is waited for until it is dropped.
@@ -17,7 +17,8 @@ pub(crate) struct Waiting {
 }
 
 impl Waiting {
-    /// Tells what is waited for; nothing where no terminal is.
+    /// Shows `what` on a terminal after a second, until the value is dropped. Without a terminal nothing is
+    /// shown.
     pub(crate) fn told(what: String, terminal: bool) -> Self {
         let (end, ended) = channel();
         let show = move || {
@@ -28,7 +29,7 @@ impl Waiting {
             line.set_message(what);
             line.set_style(style());
             line.enable_steady_tick(Duration::from_millis(250));
-            // Until the other end is dropped.
+            // Wait until the other end is dropped.
             let _ = ended.recv();
             line.finish_and_clear();
         };
@@ -39,7 +40,7 @@ impl Waiting {
     }
 }
 
-/// A bar on standard error with the time left, for so many `what`.
+/// A progress bar on standard error with the time left, counting in units of `what`.
 pub(crate) fn progress_bar(steps: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
     let template = format!("{{wide_bar}} {{human_pos}}/{{human_len}} {what}, {{eta}} left");
@@ -59,7 +60,7 @@ impl Drop for Waiting {
     fn drop(&mut self) {
         drop(self.end.take());
         if let Some(shown) = self.shown.take() {
-            // A thread that has failed has shown nothing worth telling.
+            // A failure of the display thread is ignored.
             let _ = shown.join();
         }
     }

@@ -1,10 +1,11 @@
-//! A run in the middle, on disk: everything that going on from there to the last bit needs.
-//! Takes the words of a trajectory and of what was seen of it; gives a file that is whole or not there, and refuses one
+//! A run in progress, on disk: everything needed to resume it with a bitwise identical result.
+//! Takes the words of a trajectory and of its observations; gives a file that is either complete or absent.
+//! Reading rejects a file
 //! that is damaged, of another version or of another run, with the reason.
 //!
-//! The file: a line with name and version; what run it is, as lines `key = value`, behind their length; the words
-//! behind their number; rows and checksum of the samples; a checksum of all that. Numbers have eight bytes, the lowest
-//! first.
+//! The file contains: a line with name and version; the identity of the run, as lines `key = value`, after
+//! their length; the words, after their number; rows and checksum of the samples; a checksum of everything
+//! before. Numbers have eight bytes, little-endian.
 
 use crate::case_file::quantity_of;
 use crate::plan::Plan;
@@ -29,15 +30,15 @@ const VERSION: &str = "3";
 /// Bytes written at once.
 const BUFFER: usize = 1 << 18;
 
-/// Most numbers that are told one by one.
+/// The largest number of values that are listed one by one.
 const TOLD: usize = 100;
 
-/// Which run it is: what must be the same for one to go on from the other.
+/// The identity of a run: the values that must agree for one run to resume another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Identity(Vec<(String, String)>);
 
 impl Identity {
-    /// That of a plan.
+    /// The identity of a plan.
     pub(crate) fn of(card: &Card, plan: &Plan) -> Self {
         let text = |x: &dyn std::fmt::Debug| format!("{x:?}");
         let case = &plan.case;
@@ -67,7 +68,7 @@ impl Identity {
         Self(all)
     }
 
-    /// The same, with one more that must be the same.
+    /// The identity with one more value that must agree.
     pub(crate) fn with(mut self, key: &str, value: String) -> Self {
         self.0.push((key.to_owned(), value));
         self
@@ -80,7 +81,7 @@ impl Identity {
             .collect()
     }
 
-    /// How another run differs, if it does.
+    /// The difference to another run, if any.
     fn unlike(&self, found: &str) -> Option<String> {
         let own = self.text();
         if own == found {
@@ -94,7 +95,7 @@ impl Identity {
     }
 }
 
-/// The values of a table as they are told apart: field by field, those of one quantity at many sites together.
+/// The values of a table as they are compared: field by field. A quantity at many sites forms one entry.
 fn told(table: &str, fields: &[Field], values: &[Vec<f64>]) -> Vec<(String, String)> {
     let mut sites: BTreeMap<&str, usize> = BTreeMap::new();
     for quantity in fields.iter().filter_map(|f| quantity_of(f.ascii)) {
@@ -115,7 +116,7 @@ fn told(table: &str, fields: &[Field], values: &[Vec<f64>]) -> Vec<(String, Stri
     all
 }
 
-/// Numbers as they are told apart: those of a million particles by how many they are and a checksum.
+/// Numbers as they are compared. A long list is represented by its length and a checksum.
 fn listed(values: &[f64]) -> String {
     if values.len() <= TOLD {
         return format!("{values:?}");
@@ -126,12 +127,12 @@ fn listed(values: &[f64]) -> String {
     format!("{count} numbers with the checksum {sum:08x}")
 }
 
-/// What a checkpoint holds.
+/// The content of a checkpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Checkpoint {
-    /// Of the trajectory.
+    /// The state of the trajectory.
     pub(crate) trajectory: Vec<u64>,
-    /// Of what was seen of it.
+    /// The state of the observations.
     pub(crate) watch: Vec<u64>,
     /// Rows of the samples.
     pub(crate) rows: u64,
@@ -140,7 +141,8 @@ pub(crate) struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Its bytes, a few at a time: those of a million particles are not held twice.
+    /// Writes the checkpoint in small pieces, so that the numbers of a million particles are not copied in
+    /// memory.
     pub(crate) fn put(&self, identity: &Identity, out: impl Write) -> io::Result<()> {
         let mut out = Summed {
             out: BufWriter::with_capacity(BUFFER, out),
@@ -164,15 +166,15 @@ impl Checkpoint {
         out.flush()
     }
 
-    /// Writes the file beside its name, sees it to the disk, and gives it the name in one step: whenever the
-    /// machine stops, the last checkpoint or the one before is there.
+    /// Writes the file under a temporary name, flushes it to disk, and renames it atomically. Whenever the
+    /// machine stops, the last checkpoint or the one before is present.
     pub(crate) fn write(&self, folder: &Path, identity: &Identity) -> io::Result<()> {
         let unfinished = folder.join(UNFINISHED);
         let file = File::create(&unfinished)?;
         self.put(identity, &file)?;
         file.sync_all()?;
         fs::rename(&unfinished, folder.join(NAME))?;
-        // The name as well, where folders can be synchronised.
+        // Flushes the name as well, if the system can flush folders.
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
         Ok(())
     }
@@ -180,13 +182,13 @@ impl Checkpoint {
     /// Reads the file in `folder`, of the run `identity`.
     ///
     /// # Errors
-    /// Why it cannot be gone on from, in words.
+    /// The reason why the run cannot be resumed, in words.
     pub(crate) fn read(folder: &Path, identity: &Identity) -> Result<Self, String> {
         let bytes = fs::read(folder.join(NAME)).map_err(|e| format!("it cannot be read: {e}"))?;
         Self::of_bytes(&bytes, identity)
     }
 
-    /// The same of bytes.
+    /// Reads a checkpoint from bytes.
     pub(crate) fn of_bytes(bytes: &[u8], identity: &Identity) -> Result<Self, String> {
         let Some(rest) = bytes.strip_prefix(MAGIC.as_bytes()) else {
             return Err("it is no checkpoint".to_owned());
@@ -229,7 +231,7 @@ impl Checkpoint {
     }
 }
 
-/// A writer that sums up what it writes.
+/// A writer that computes the checksum of its output.
 struct Summed<W> {
     out: W,
     sum: crc32fast::Hasher,
@@ -242,7 +244,7 @@ impl<W: Write> Summed<W> {
     }
 }
 
-/// What is left to read.
+/// The bytes that remain to be read.
 struct Rest<'a>(&'a [u8]);
 
 impl<'a> Rest<'a> {
@@ -300,7 +302,7 @@ mod tests {
         }
     }
 
-    /// Places and momenta of so many sites, side by side as on the card of a line, and a number of the whole.
+    /// Positions and momenta of `sites` sites, as on the card of a chain, and a number without a site.
     fn fields(sites: usize) -> (Vec<Field>, Vec<Vec<f64>>) {
         let field = |name: &str| {
             let name: &'static str = Box::leak(name.to_owned().into_boxed_str());
@@ -326,7 +328,7 @@ mod tests {
         let all = told("initial", &many, &values);
         let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(names, ["initial.c0", "initial.X", "initial.momentum_X"]);
-        // Each of them counts, and where it stands.
+        // Every value and its position count.
         for (site, other) in [(57, 0.5), (399, -1.0), (400, 2.0)] {
             let mut changed = values.clone();
             changed[site] = vec![other];

@@ -1,4 +1,4 @@
-//! A trajectory on its way: its samples, the words of its checkpoints, and what is judged of it.
+//! A trajectory in progress: its samples, its checkpoints, and the checks of its steps and invariants.
 
 pub(crate) mod checkpoint;
 pub(crate) mod record;

@@ -1,5 +1,5 @@
 //! The samples of a run, kept in memory until they are written, and the progress bar.
-//! Takes what the integration loop shows; gives tables with one row per sample.
+//! Takes the samples of the integration loop; gives tables with one row per sample.
 
 use crate::terminal::waiting::progress_bar;
 use clebsch::card::Card;
@@ -7,10 +7,10 @@ use clebsch::integrate::Observer;
 use clebsch::record::Record;
 use indicatif::ProgressBar;
 
-/// Most numbers a record may hold: 2 GiB, which also keeps an npz within the classic zip format.
+/// The largest number of values in a record: 2 GiB, which also keeps an npz within the classic zip format.
 pub const LARGEST: u64 = 1 << 28;
 
-/// What is kept of a run for its files.
+/// The part of a run that is kept for its files.
 #[derive(Clone, Debug, Default)]
 pub struct Samples {
     /// The samples to write.
@@ -19,7 +19,7 @@ pub struct Samples {
     pub opening: Option<Record>,
 }
 
-/// What watches a run: it keeps the samples if they are wanted, and draws the bar if there is one.
+/// Observes a run: keeps the samples if they are wanted, and draws the progress bar if there is one.
 pub struct Recorder {
     record: Option<Record>,
     bar: Option<ProgressBar>,

@@ -1,5 +1,6 @@
-//! The verdict by the action as stated: a trajectory whose chosen steps are judged by `clebsch-check`, which shares nothing with
-//! derivation and emission but the text. Takes a card, a plan and a trajectory; gives the same trajectory, watched.
+//! The verdict by the action as stated. `clebsch-check` judges chosen steps of a trajectory; it shares only the
+//! text of the model with derivation and emission. Takes a card, a plan and a trajectory; gives the same
+//! trajectory, observed.
 
 use crate::case_file::statement;
 use crate::plan::Plan;
@@ -20,14 +21,14 @@ pub(crate) struct JudgedTrajectory {
 }
 
 impl JudgedTrajectory {
-    /// Of the run that is planned.
+    /// The trajectory `inner` of the planned run, with its steps judged.
     pub(crate) fn new(card: &Card, plan: &Plan, which: Which, inner: Box<dyn Trajectory>) -> Self {
         let judge = match which {
             Which::None => Err("not asked for".to_owned()),
             _ => judge(card, plan),
         };
         let verdict = Verdict {
-            // Of steps that were judged before an interruption the verdict is told.
+            // If steps were judged before an interruption, the restored state contains their verdict.
             not_judged: judge
                 .as_ref()
                 .err()
@@ -43,13 +44,13 @@ impl JudgedTrajectory {
         }
     }
 
-    /// What came out.
+    /// The verdict on the judged steps.
     pub(crate) fn verdict(&self) -> &Verdict {
         &self.verdict
     }
 }
 
-/// What judges steps of this case.
+/// The judge for the steps of this case.
 fn judge(card: &Card, plan: &Plan) -> Result<Judge, String> {
     let modified = plan
         .order
@@ -88,7 +89,7 @@ impl Trajectory for JudgedTrajectory {
             judged =
                 Some(all.and_then(|all| Ok(all.and(judge.part(number, share, before, after)?))));
         })?;
-        // A step that is made by halves shows none.
+        // A subdivided step has no parts to judge.
         if let Some(judged) = judged {
             self.verdict.take(number, judged);
         }
@@ -119,7 +120,7 @@ impl Trajectory for JudgedTrajectory {
         self.inner.scales(out);
     }
 
-    /// The verdict so far is kept with the trajectory, so that a run that is gone on with tells of all its steps.
+    /// The verdict so far is saved with the trajectory, so that a resumed run reports all its steps.
     fn words(&mut self, words: &mut Words) {
         self.inner.words(words);
         let mut numbers = self.verdict.numbers();

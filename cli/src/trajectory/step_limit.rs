@@ -1,5 +1,6 @@
-//! What small motions about the start ask of a step, told before it is taken.
-//! Takes a card with its plan; gives the frequency of the fastest motion and the longest step, or why there is none.
+//! The stability limit of the step size, found before the first step.
+//! Takes a card with its plan; gives the highest frequency of small motions about the start and the stability
+//! limit, or why there is none.
 
 use crate::models::held;
 use crate::plan::Plan;
@@ -10,37 +11,40 @@ use clebsch::integrate::{Effort, LongestStep, Unknown};
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
-/// Most numbers of initial values of which the longest step is sought: each of some sixty openings reads them all.
+/// The largest number of initial values for which the limit is searched for: each of about sixty openings reads
+/// all of them.
 const SOUGHT: usize = 20_000;
 
-/// The same where constraints are held, whose steps are searches and of which twice as many are taken.
+/// The largest number with constraints. Their steps are iterative, and the search takes twice as many.
 const SOUGHT_HELD: usize = 5_000;
 
-/// The option that says how long is searched.
+/// The option that bounds the time of the search.
 const OPTION: &str = "--stability-limit";
 
 /// For how long the stability limit is searched; zero for no search.
 pub(crate) fn patience(matches: &ArgMatches) -> Duration {
     let seconds = matches.get_one::<f64>("stability-limit").copied();
-    // A number of seconds that no clock counts to is no bound.
+    // A number of seconds too large for a duration means no time limit.
     Duration::try_from_secs_f64(seconds.unwrap_or(1.0)).unwrap_or(Duration::MAX)
 }
 
-/// What is known of the longest step before a run.
+/// The stability limit as far as it is known before a run.
 #[derive(Clone, Debug)]
 pub(crate) enum StepLimit {
-    /// It is told: where sites move one another, or the step is not far below what is too long.
+    /// The limit is known. It is reported if the model has sites, if the step size is more than half of it, or
+    /// if a warning applies.
     Known(LongestStep),
-    /// Of a line it would be told, but is not sought.
+    /// The model has sites, but the limit was not searched for or not found, with the reason.
     NotSought(String),
-    /// The search was given up after so long.
+    /// The search reached its time limit.
     Cut(Duration),
-    /// Nothing is to be said.
+    /// Nothing is reported.
     Silent,
 }
 
 impl StepLimit {
-    /// Of a plain step, which the others are made of, where it is found within this time. No step of a run depends on it.
+    /// Searches for the limit of a plain step, of which compositions consist, for at most this time. The result
+    /// does not change the run.
     pub(crate) fn of(card: &Card, plan: &Plan, patience: Duration) -> Self {
         if patience.is_zero() {
             return Self::Silent;
@@ -59,7 +63,7 @@ impl StepLimit {
             let begun = Instant::now();
             let effort = Effort {
                 ended: &|| begun.elapsed() >= patience,
-                // Of one that is far above the step nothing is told where there are no sites.
+                // Without sites, a limit far above the step size is not reported, so it need not be found.
                 far: has_sites,
             };
             let found = LongestStep::by(effort, card, &case.parameters, &case.initial, case.h);
@@ -79,7 +83,7 @@ impl StepLimit {
         }
     }
 
-    /// What is wrong with steps of `h`, if anything.
+    /// A warning if steps of `h` exceed the stability limit, or if small motions grow.
     pub(crate) fn warning(&self, h: f64) -> Option<String> {
         match self {
             Self::Known(limit) => limit.warning(h),
@@ -108,7 +112,7 @@ impl StepLimit {
         }
     }
 
-    /// The same numbers for programs; null where there are none.
+    /// The limit as JSON; null if it is unknown.
     pub(crate) fn json(&self, h: f64) -> Value {
         match self {
             Self::Known(limit) if limit.step.is_finite() => json!({

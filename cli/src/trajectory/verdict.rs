@@ -1,4 +1,4 @@
-//! What a run conserved: each invariant's drift against the bound of the case.
+//! The conservation of invariants in a run: the drift of each against the bound of the case.
 //! Takes the drifts of all components; gives one outcome per invariant and the table to print.
 
 use crate::case_file::DEFAULT_BOUND;
@@ -44,14 +44,15 @@ pub struct Outcome {
     pub scale: f64,
     /// Largest drift of a component at any node that was looked at, relative to its scale or absolute without one.
     pub worst: f64,
-    /// Drift at the last node of the component that moved most, measured alike, with its sign.
+    /// Drift at the last node of the component that changed most, with its sign, in the same units as `worst`.
     pub last: f64,
     /// Bound on the drift, if there is one.
     pub bound: Option<f64>,
     /// Whether the bound was kept.
     pub verdict: Verdict,
-    /// The parameters that are zero in this case and stand in the formula, where that makes it zero in every term at every
-    /// node, as the momentum across a vertical that is no direction: nothing is tested then. Else none.
+    /// The parameters that are zero in this case and make every term of the formula zero at every node. An
+    /// example is the momentum about a vertical given as a zero vector. The invariant then tests nothing. Empty
+    /// otherwise.
     pub zero_by: Vec<&'static str>,
 }
 
@@ -87,7 +88,7 @@ pub fn judge(card: &Card, case: &Case, drifts: &[Drift]) -> Vec<Outcome> {
     card.invariants.iter().map(one).collect()
 }
 
-/// The parameters of which the formula has one and that are zero.
+/// The parameters in the formula that are zero.
 fn zero_parameters(card: &Card, case: &Case, formula: &str) -> Vec<&'static str> {
     let words: Vec<&str> = formula.split(|c: char| !c.is_alphanumeric()).collect();
     let all = card.parameters.iter().zip(&case.parameters);
@@ -146,7 +147,7 @@ impl Outcome {
         })
     }
 
-    /// The word of its verdict, or that it is zero for every motion.
+    /// The word for its verdict, or `zero` if the invariant is zero for every motion.
     #[must_use]
     pub const fn word(&self) -> &'static str {
         match self.zero_by.is_empty() {
@@ -155,7 +156,8 @@ impl Outcome {
         }
     }
 
-    /// The name, with the components where only some have no scale, if drift and bound are absolute.
+    /// The name, if drift and bound are absolute. If only some components have zero scale, their numbers
+    /// follow.
     fn absolute(&self) -> Option<String> {
         if !self.zero_by.is_empty() {
             return None;
@@ -187,7 +189,7 @@ impl Outcome {
     }
 }
 
-/// A number with four digits, without an exponent where it is as short.
+/// A number with four digits, without an exponent if it is of moderate size.
 fn number(x: f64) -> String {
     match x.abs() {
         size if size == 0.0 || (1e-3..1e5).contains(&size) => short(x),
@@ -195,10 +197,10 @@ fn number(x: f64) -> String {
     }
 }
 
-/// Longest formula in a table: others are printed in the derivation only.
+/// The longest formula that a table prints in full. The derivation prints all formulas in full.
 const LONGEST: usize = 240;
 
-/// A formula for a table, as far as it is read there.
+/// A formula for a table, shortened if it is too long.
 fn shortened(formula: &str) -> String {
     if formula.chars().count() <= LONGEST {
         return formula.to_owned();
@@ -210,7 +212,7 @@ fn shortened(formula: &str) -> String {
     format!("{whole_words} ...: see `clebsch derive`")
 }
 
-/// Sentences on invariants that left their scale at the start, without a bound that says so.
+/// Sentences on invariants without a bound that changed by more than their terms at the start.
 #[must_use]
 pub fn lost(outcomes: &[Outcome], h: f64) -> Vec<String> {
     let free = outcomes.iter().filter(|o| o.verdict == Verdict::Bounded);
@@ -227,7 +229,7 @@ pub fn lost(outcomes: &[Outcome], h: f64) -> Vec<String> {
     each.collect()
 }
 
-/// Sentences on what is zero for every motion of this case, one for each list of parameters that are zero.
+/// Sentences on invariants that are zero for every motion of this case, one for each list of zero parameters.
 #[must_use]
 pub fn zeros(outcomes: &[Outcome]) -> Vec<String> {
     let mut all: Vec<(&[&str], Vec<&str>)> = Vec::new();
@@ -249,8 +251,8 @@ pub fn zeros(outcomes: &[Outcome]) -> Vec<String> {
     all.into_iter().map(sentence).collect()
 }
 
-/// The table of all outcomes, and a line on those that are measured absolutely; drifts are relative to
-/// the natural scale where there is one.
+/// The table of all outcomes, and a line on those that are measured absolutely. Drifts are relative to the
+/// natural scale if it is not zero.
 #[must_use]
 pub fn table(outcomes: &[Outcome], width: Option<usize>) -> String {
     let head = [
@@ -260,7 +262,7 @@ pub fn table(outcomes: &[Outcome], width: Option<usize>) -> String {
         "final drift",
         "bound",
         "verdict",
-        // Last: on a narrow terminal it continues below, and the verdict stays beside the numbers.
+        // Last, since on a narrow terminal it continues below, and the verdict stays next to the numbers.
         "formula",
     ];
     let mut rows = vec![head.map(str::to_owned).to_vec()];

@@ -1,18 +1,17 @@
 //! Text in aligned columns, for tables on a terminal.
-//! Takes rows of cells, the first of which is the head; gives lines, each ended by a newline, no longer
-//! than the terminal is wide: texts are wrapped, and what is still too wide continues below.
+//! Takes rows of cells, the first of which is the head; gives lines, each ended by a newline, no wider than the
+//! terminal. Texts are wrapped, and columns that are still too wide continue below.
 
 use crate::words::width::wrapped;
 
 /// Between columns.
 const GAP: usize = 2;
 
-/// A column of texts is made no narrower than this, unless a table of two columns asks for it.
+/// The smallest width of a column of texts, unless a table of two columns requires less.
 const LEAST: usize = 14;
 
-/// Aligns `rows`; the columns listed in `right` are numbers, flushed right and never wrapped. Widths
-/// count letters. Columns that do not fit beside the others follow in a table below, each with the first
-/// column again.
+/// Aligns `rows`. The columns listed in `right` are numbers, flushed right and never wrapped. Widths count
+/// letters. Columns that do not fit next to the others follow in a table below, which repeats the first column.
 #[must_use]
 pub fn aligned(rows: &[Vec<String>], right: &[usize], width: Option<usize>) -> String {
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);
@@ -37,7 +36,7 @@ pub fn aligned(rows: &[Vec<String>], right: &[usize], width: Option<usize>) -> S
         };
         match blocks.last_mut() {
             None => blocks.push(vec![column]),
-            // The first column alone is no table.
+            // A block needs at least one column besides the first.
             Some(block) if block.len() == 1 || room(block) => block.push(column),
             Some(_) => blocks.push(vec![0, column]),
         }
@@ -49,13 +48,13 @@ pub fn aligned(rows: &[Vec<String>], right: &[usize], width: Option<usize>) -> S
     tables.collect::<Vec<_>>().join("\n")
 }
 
-/// Letters of the longest cell.
+/// The number of letters of the longest cell.
 fn natural(rows: &[Vec<String>], column: usize) -> usize {
     let cells = rows.iter().filter_map(|row| row.get(column));
     cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
 }
 
-/// The width below which a column is made no narrower as long as another one can be.
+/// The width down to which a column shrinks only after all others.
 fn least(rows: &[Vec<String>], right: &[usize], column: usize) -> usize {
     let natural = natural(rows, column);
     match right.contains(&column) {
@@ -64,7 +63,7 @@ fn least(rows: &[Vec<String>], right: &[usize], column: usize) -> usize {
     }
 }
 
-/// Letters of the longest piece that is not cut in wrapping.
+/// The number of letters of the longest piece that wrapping does not cut.
 fn longest_piece(rows: &[Vec<String>], column: usize) -> usize {
     let cells = rows.iter().filter_map(|row| row.get(column));
     let pieces = cells.flat_map(|cell| cell.split_inclusive([' ', '_']));
@@ -80,7 +79,7 @@ fn fitted(rows: &[Vec<String>], right: &[usize], block: &[usize], width: usize) 
     let gaps = GAP * block.len().saturating_sub(1);
     while widths.iter().sum::<usize>() + gaps > width {
         let texts = block.iter().zip(&mut widths);
-        // Whole words and names first; they are cut only where nothing else is left.
+        // First keep whole words and names; cut them only if nothing else can shrink.
         let widest = texts
             .filter(|(column, _)| !right.contains(column))
             .map(|(column, width)| (*width > least(rows, right, *column), width))

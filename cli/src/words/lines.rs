@@ -1,14 +1,14 @@
-//! Lines that are wider than the terminal: formulas, models and examples, which are no prose.
-//! Takes text in lines; gives it in lines of at most so many letters, broken before the signs of sums
-//! where there are any, least deep in brackets first, what goes on indented.
+//! Lines that are wider than the terminal: formulas, models and examples, which are not prose.
+//! Takes text in lines; gives lines of at most a given number of letters. A line is broken before the signs of
+//! a sum if it has any, at the least depth of brackets, and its continuation is indented.
 
-/// What a line that goes on is indented more than its first.
+/// The additional indentation of a continuation line.
 const INDENT: usize = 4;
 
-/// What one bracket more is worth in empty line, in percent of a line.
+/// The cost of breaking one bracket deeper, as empty space in percent of a line.
 const DEPTH_COST: usize = 60;
 
-/// What it is worth to break before a sign and not between other words, alike.
+/// The cost of breaking between words instead of before a sign, as empty space in percent of a line.
 const SIGN_GAIN: usize = 50;
 
 /// The first line of a text that is not empty.
@@ -35,7 +35,7 @@ fn broken(line: &str, width: usize, out: &mut String) {
         letters.truncate(width);
     }
     let own = letters.iter().take_while(|letter| **letter == ' ').count();
-    // On a narrow terminal half of the line is left for words.
+    // On a narrow terminal half of the line remains for words.
     let indent = (own + INDENT).min(width / 2);
     let mut depth = 0;
     while letters.len() > width {
@@ -73,7 +73,7 @@ fn cut(letters: &[char], start: usize, width: usize, depth: usize) -> (usize, us
                 let behind = begins_line(last.rsplit(|l| *l == ' ').next().unwrap_or_default());
                 let words = if sign { 0 } else { SIGN_GAIN * width / 100 };
                 let cost = (width - at) + DEPTH_COST * width / 100 * deep + words;
-                // Of equal ones the later.
+                // If costs are equal, the later position is taken.
                 if !behind && best.is_none_or(|(least, ..)| cost <= least) {
                     best = Some((cost, at, deep));
                 }
@@ -100,7 +100,7 @@ mod tests {
             fitted("  x = a + (b + c) - d\nshort\n", 15),
             "  x = a\n      + (b + c)\n      - d\nshort\n"
         );
-        // In brackets only where it must be.
+        // Inside brackets only if necessary.
         assert_eq!(
             fitted("f(a + b + c + d + e)", 12),
             "f(a + b + c\n    + d + e)".to_owned() + "\n"

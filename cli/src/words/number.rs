@@ -1,5 +1,6 @@
-//! Numbers as they are typed, `0.5`, `1e-3`, `2*pi/3`, and as they are printed. Takes a text; gives its value, whose expressions are
-//! those of case files. Takes a number; gives a text as short as a reader needs.
+//! Numbers as they are typed, `0.5`, `1e-3`, `2*pi/3`, and as they are printed. Takes a text and gives its
+//! value; the text may be an expression as in a case file. Takes a number and gives a text that is as short as
+//! a reader needs.
 
 use crate::words::plain::shown;
 use clebsch_core::lattice::value::SiteData;
@@ -7,7 +8,7 @@ use clebsch_core::lattice::value::SiteData;
 /// The value of a number, or of an expression in numbers, `pi`, functions, and names that `of` knows.
 ///
 /// # Errors
-/// Why it has no finite value.
+/// The reason why the text has no finite value.
 pub(crate) fn value(text: &str, of: &dyn Fn(&str) -> Option<f64>) -> Result<f64, String> {
     let text = text.trim();
     let found = match text.parse::<f64>() {
@@ -24,16 +25,16 @@ pub(crate) fn value(text: &str, of: &dyn Fn(&str) -> Option<f64>) -> Result<f64,
     }
 }
 
-/// Above this a number of type f64 may stand for another whole one.
+/// Above this not every whole number is an f64.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// A whole number in digits, or as `2e4` and `1.5e3`, up to where that is exact.
+/// A whole number in digits, or as `2e4` and `1.5e3` if an f64 represents it exactly.
 pub(crate) fn whole(text: &str) -> Option<u64> {
     if let Ok(count) = text.parse::<u64>() {
         return Some(count);
     }
     let number = text.parse::<f64>().ok()?;
-    // A whole number of this size is converted without loss.
+    // An integer of this size is converted exactly.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     ((0.0..=EXACT).contains(&number) && number.fract() == 0.0).then_some(number as u64)
 }
@@ -44,12 +45,12 @@ pub(crate) fn plain(number: f64) -> String {
     if rounded == 0.0 || (1e-4..1e15).contains(&rounded.abs()) {
         return rounded.to_string();
     }
-    // Four digits are enough beside an exponent.
+    // Four digits suffice with an exponent.
     let short: f64 = format!("{rounded:.3e}").parse().unwrap_or(rounded);
     format!("{short:e}")
 }
 
-/// A number with at most four digits, enough beside a picture.
+/// A number with at most four digits, for pictures.
 pub(crate) fn short(number: f64) -> String {
     plain(format!("{number:.3e}").parse().unwrap_or(number))
 }

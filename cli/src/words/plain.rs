@@ -1,13 +1,13 @@
-//! Text that a terminal shows and does not obey: control characters written out.
-//! A name may hold escape sequences, and what prints it must neither move the cursor nor fake a line.
+//! Text that a terminal shows and does not execute: control characters are escaped. A name may contain escape
+//! sequences. Printing it must neither move the cursor nor fake a line.
 
 use std::ffi::OsStr;
 use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Whether a terminal would act on the letter rather than show it: control characters (C0, DEL, C1)
-/// and those that turn the direction of writing round.
+/// Whether a terminal would execute the letter rather than show it: control characters (C0, DEL, C1) and
+/// characters that change the direction of writing.
 fn acts(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
@@ -30,9 +30,9 @@ pub(crate) fn shown(name: impl Named) -> Shown {
     Shown(name.text())
 }
 
-/// What messages name: texts, and files, whose names need not be text.
+/// A name that messages print: a text, or a file, whose name need not be valid text.
 pub(crate) trait Named {
-    /// The name; what is no text is replaced by a mark.
+    /// The name, with a replacement character for every invalid part.
     fn text(&self) -> String;
 }
 
@@ -75,8 +75,8 @@ impl fmt::Display for Shown {
     }
 }
 
-/// A stream on which nothing but new lines and tabs is left to act: everything else is written as
-/// JSON and TOML write it, `\u001b`, which is also the same string to whoever reads them.
+/// A stream that passes only newlines and tabs as control characters. It escapes all others as JSON and TOML
+/// do, `\u001b`, so that a parser of these formats reads the same string.
 pub(crate) struct Plain<'a>(pub &'a mut dyn Write);
 
 impl Write for Plain<'_> {

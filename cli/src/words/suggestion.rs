@@ -1,5 +1,5 @@
 //! "Did you mean": the known name nearest to a mistyped one.
-//! Takes what was typed and what exists; gives the sentence to append to a message.
+//! Takes the typed name and the known names; gives the sentence to append to a message.
 
 /// Jaro-Winkler similarity above which a name is worth suggesting. One slip in a name of five letters
 /// or more scores above 0.8; unrelated names of this project's vocabulary score below 0.65.
@@ -8,7 +8,8 @@ const LIKE: f64 = 0.75;
 /// More names than anybody reads; every model of the gallery, and the keys of a case, are fewer.
 const MOST: usize = 40;
 
-/// The known name most similar to what was typed, if one is similar. Case is ignored; of equally similar names the first is taken.
+/// The known name most similar to the typed name, if one is similar. Case is ignored. If several are equally
+/// similar, the first is taken.
 #[must_use]
 pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let typed = typed.to_lowercase();
@@ -22,7 +23,8 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     best.map(|(_, name)| name)
 }
 
-/// The only known name that differs from what was typed by one letter, or by two letters in the other order.
+/// The only known name that differs from the typed name by one letter, or by two adjacent letters in the other
+/// order.
 #[must_use]
 pub fn slip<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
     let is_near = |name: &&&str| strsim::damerau_levenshtein(typed, name) == 1;
@@ -33,7 +35,7 @@ pub fn slip<'a>(typed: &str, known: &[&'a str]) -> Option<&'a str> {
     }
 }
 
-/// Gives `; did you mean ...?` for the [`nearest`] name, else `; known: ...`, else nothing.
+/// Gives `; did you mean ...?` for the [`nearest`] name, else `; known: ...`, else an empty text.
 #[must_use]
 pub fn did_you_mean<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.into_iter().collect();

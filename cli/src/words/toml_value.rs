@@ -1,7 +1,8 @@
-//! Values of options as a case file would have them: `[1, 2, pi/2]`, `{axis = [0, 0, 1], angle = pi/4}`. Takes what was typed, where
-//! a shell may have taken the quotes; gives TOML.
+//! Values of options as a case file would have them: `[1, 2, pi/2]`, `{axis = [0, 0, 1], angle = pi/4}`.
+//! Takes the typed text, from which a shell may have removed the quotes; gives TOML.
 
-/// The TOML of a value: expressions without quotes get them. What is wrong with it the reader of the case says.
+/// The TOML of a value: expressions without quotes get quotes. Mistakes in the value are left to the reader of
+/// the case.
 pub(crate) fn quoted(text: &str) -> String {
     let mut out = String::new();
     let mut word = String::new();
@@ -32,7 +33,7 @@ pub(crate) fn quoted(text: &str) -> String {
     out
 }
 
-/// A key, a number or a string as it is; an expression in quotes.
+/// A key, a number or a string unchanged; an expression in quotes.
 fn entry(word: &str, is_key: bool) -> String {
     let own = word.trim();
     let is_plain = own.is_empty() || is_key || own.starts_with(['"', '\'']);

@@ -1,13 +1,13 @@
-//! How wide the terminal is, and text that fits it.
-//! Takes the process's terminal; gives a number of letters, and paragraphs of at most so many a line.
+//! The width of the terminal, and text that fits it.
+//! Takes the process's terminal; gives a number of letters, and paragraphs with lines of at most this length.
 
 use std::io::{self, IsTerminal};
 
-/// Narrower than this nothing is made to fit: a line of numbers needs some room.
+/// A narrower terminal counts as this wide: a line of numbers needs some room.
 const LEAST: usize = 20;
 
-/// Letters in a line of the terminal that standard output is; `None` where it is none. The variable
-/// COLUMNS, as shells set it, decides for both.
+/// The number of letters in a line of the terminal, or `None` if standard output is not a terminal. The
+/// variable COLUMNS, as shells set it, takes precedence.
 pub(crate) fn of_the_terminal() -> Option<usize> {
     let columns = std::env::var("COLUMNS").ok();
     let stated = columns.and_then(|columns| columns.trim().parse::<usize>().ok());
@@ -23,8 +23,8 @@ pub(crate) fn of_the_terminal() -> Option<usize> {
         .map(|width| width.max(LEAST))
 }
 
-/// The words of `text` in lines of at most `width` letters, without line ends; a word that is longer is
-/// cut, behind an underscore where it has one. One line, possibly empty, at least.
+/// The words of `text` in lines of at most `width` letters, without line ends. A longer word is cut, after an
+/// underscore if it contains one. At least one line, possibly empty.
 pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let width = width.max(1);
     let mut lines = vec![String::new()];
@@ -40,7 +40,7 @@ pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
             used += 1;
         }
         while letters.len() > width {
-            // A long name is cut behind an underscore, as long as one is left.
+            // A long name is cut after an underscore, if it contains one.
             let score = letters
                 .iter()
                 .take(width)
@@ -69,7 +69,7 @@ pub(crate) fn paragraph(text: &str, width: Option<usize>, indent: usize) -> Stri
     };
     let mut lines = wrapped(text, width).into_iter();
     let mut all = lines.next().unwrap_or_default();
-    // What follows goes on in shorter lines: wrapped again from where the first ended.
+    // The lines after the first are shorter by the indentation, so the rest of the text is wrapped again.
     let taken = all.chars().count();
     let rest: String = text.chars().skip(taken).collect();
     all.push('\n');

@@ -1,5 +1,5 @@
-//! The book, chapter by chapter, as a reader follows it: files are written, commands run in order, what is shown of their
-//! output is in it, and models that are said to be refused are.
+//! The book, chapter by chapter, as a reader follows it: files are written, commands run in order, their output
+//! contains the quoted lines, and models that the book calls rejected are rejected.
 
 use crate::common::{Folder, runs};
 use std::path::Path;

@@ -234,7 +234,7 @@ fn shipped_with(model: &str, key: &str, line: &str) -> Result<Vec<Vec<f64>>, Str
 
 #[test]
 fn the_inertia_may_stand_where_second_moments_are_asked_for() {
-    // I = tr(J) Id - J: moments (2, 3, 4) are those of J = (2.5, 1.5, 0.5).
+    // I = tr(J) Id - J: J = (2.5, 1.5, 0.5) has the moments (2, 3, 4).
     let expected = vec![2.5, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 0.5];
     let forms = [
         "I = [2, 3, 4]",
@@ -254,7 +254,7 @@ fn the_inertia_may_stand_where_second_moments_are_asked_for() {
             assert!(values.contains(&expected), "{model}, {form}: {values:?}");
         }
     }
-    // Of several bodies each has its own.
+    // If there are several bodies, each has its own key.
     let values = shipped_with("coupled-bodies", "J2", "I2 = [2, 3, 4]").expect("I2");
     assert!(values.contains(&expected), "{values:?}");
     // Products of inertia change their sign.

@@ -85,7 +85,7 @@ fn a_case_is_printed_and_a_wrong_name_told() {
     ] {
         clebsch(&format!("run {own} --case {name}")).refuses(told);
     }
-    // Without any beside it a name can only be that of the sample values.
+    // Without any case next to the model, the only valid name is `sample`.
     let folder = Folder::new("cases-alone");
     let text = fs::read_to_string(model("elastic/neo-hooke")).expect("is shipped");
     folder.write("alone.clebsch", &text);
@@ -142,8 +142,8 @@ fn the_data_of_the_figures_give_the_stretches_of_the_reference_run() {
     }
 }
 
-/// Behind the encounter solitons of parameters κ₁ > κ₂ are where they would be alone but for -log(A)/(2 κ₁) ahead and
-/// -log(A)/(2 κ₂) behind, with √A the quotient of sinh((κ₁ - κ₂)/2) and sinh((κ₁ + κ₂)/2).
+/// Solitons with parameters κ₁ > κ₂ are displaced by their encounter: the first by -log(A)/(2 κ₁) forwards and
+/// the second by -log(A)/(2 κ₂) backwards. √A is the quotient of sinh((κ₁ - κ₂)/2) and sinh((κ₁ + κ₂)/2).
 #[test]
 fn solitons_are_displaced_by_their_encounter() {
     let rows = trajectory("lattices/toda-chain", "two-solitons", "1600", "momentum_q_");
@@ -174,7 +174,7 @@ fn solitons_are_displaced_by_their_encounter() {
     }
 }
 
-/// The largest part of its own size by which the deflection of a node along a rod leaves that of the start.
+/// The largest absolute difference between the first column of a row and `at` of its index.
 fn wandered(rows: &[Vec<f64>], at: impl Fn(usize) -> f64) -> f64 {
     let rows = rows.iter().enumerate();
     let off = rows.map(|(k, row)| (row[0] - at(k)).abs());

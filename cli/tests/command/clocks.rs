@@ -2,7 +2,8 @@
 
 use crate::common::Folder;
 
-/// What is carried by another rule than a motion's is judged by that rule: each of these steps is right, and the check says so.
+/// A number advected by another rule than the motion is checked against that rule. All of these steps satisfy
+/// their rule.
 #[test]
 fn numbers_carried_by_any_rule_are_judged_by_it() {
     let folder = Folder::new("clocks-rules");

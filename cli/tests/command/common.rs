@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 pub use crate::folder::{Folder, Samples, models, names_in, text_of};
 
-/// Words of a command line: those of a text, or one by one.
+/// Words of a command line: a text to split, or a list of words.
 pub trait Words {
     fn words(&self) -> Vec<String>;
 }
@@ -95,7 +95,7 @@ impl<P: Parts + ?Sized> Parts for &P {
     }
 }
 
-/// What a command did.
+/// The result of a command.
 #[derive(Debug)]
 pub struct Done {
     pub words: Vec<String>,

@@ -33,8 +33,8 @@ fn every_model_has_a_row_for_itself_and_for_its_reference() {
 }
 
 /// Long, since every case of the gallery is compared twice with references of thirteen digits.
-/// The scheme is of second order against references that know nothing of it: the equations written by
-/// hand are those of the model, for every model that has some.
+/// The scheme is of second order against independent references. This verifies the hand-written equations
+/// against the model, for every model that has some.
 #[test]
 fn generated_steppers_tend_to_the_hand_written_equations() {
     for entry in Gallery::shipped().entries {
@@ -86,8 +86,8 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Long, since every case of the gallery is compared with all its methods.
-/// What was written by hand is the generated scheme: it is as far from the truth, but for the rounding of 200 steps.
-/// Errors of the scheme are above 1e-6, and other schemes of second order have other errors.
+/// The hand-written stepper implements the generated scheme, so both have the same errors up to the rounding of
+/// 200 steps. Errors of the scheme exceed 1e-6, and other schemes of second order have other errors.
 #[test]
 fn steppers_by_hand_have_the_errors_of_the_generated_ones() {
     let compared = |model: &str, case: &str| {
@@ -100,7 +100,7 @@ fn steppers_by_hand_have_the_errors_of_the_generated_ones() {
         for case in &entry.cases {
             let object = compared(model, &case.name);
             let methods = object["methods"].as_array().expect("methods");
-            // A factor that is not symmetric has no stepper by hand.
+            // There is no hand-written stepper if a factor is not symmetric.
             let by_hand = methods.iter().find(|method| method["name"] == "by-hand");
             if by_hand.is_some_and(|method| method["stopped"].is_null()) {
                 let off = apart(&errors(&object, "generated"), &errors(&object, "by-hand"));

@@ -1,5 +1,6 @@
-//! Chains whose velocities stand in terms of neighbours alone, as with the consistent mass matrix of linear elements: the
-//! recorded momenta of a step against the derivatives of the action by hand.
+//! Chains whose kinetic energy couples the velocities of neighbours, such as the consistent mass matrix of
+//! linear elements. The recorded momenta of a step are compared with derivatives of the action computed by
+//! hand.
 
 use crate::common::Folder;
 

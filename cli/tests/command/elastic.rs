@@ -33,8 +33,9 @@ fn every_model_is_derived_and_runs_its_case() {
     }
 }
 
-/// The shipped rod at rest ends where fifty segments of a program of its own end (the equation of the rod by
-/// Newton's method, each frame turned by the one before), to the rounding of fifty products.
+/// The end of the shipped rod in equilibrium agrees with an independent program for fifty segments, up to the
+/// rounding of fifty products. That program solves the equation of the rod by Newton's method and rotates each
+/// frame by the one before.
 #[test]
 fn a_rod_at_rest_ends_where_the_reference_does() {
     let folder = Folder::new("rod-at-rest");
@@ -55,9 +56,9 @@ fn a_rod_at_rest_ends_where_the_reference_does() {
     }
 }
 
-/// A section under a moment m about one axis alone turns by the angle whose sine is h m/K, K the stiffness about that axis:
-/// there is no step where h m exceeds K, of which the message has the share. Of a moment about several axes the bound is
-/// the general one, here that of the axis between them.
+/// A section under a moment m about one axis rotates by the angle with sine h m/K, where K is the stiffness
+/// about that axis. If h m exceeds K, there is no step, and the message gives the ratio. For a moment about
+/// several axes the general bound applies, here the bound for the axis between them.
 #[test]
 fn a_section_of_a_rod_turns_by_less_than_a_right_angle() {
     let folder = Folder::new("rod-bound");
@@ -124,7 +125,8 @@ fn samples_of_held_models_lie_on_their_constraints() {
     }
 }
 
-/// A chain that hangs at rest moves by its rounding, of which the rate of change of what is held is a part: it is no drift.
+/// A hanging chain in equilibrium moves by rounding only. The rate of change of its constraints is within that
+/// rounding, and does not count as drift.
 #[test]
 fn a_chain_at_rest_is_within_its_bounds() {
     let folder = Folder::new("chain-at-rest");
@@ -197,7 +199,7 @@ fn the_pseudo_rigid_body_of_the_thesis_is_that_of_the_reference_run() {
     assert!((rows[10][3] + 0.0008340017458855056).abs() < 1e-10);
 }
 
-/// A Maclaurin spheroid stands still in its own frame up to the square of the step.
+/// A Maclaurin spheroid is stationary in its own frame, up to the square of the step size.
 #[test]
 fn a_maclaurin_spheroid_is_steady() {
     let off = |h: &str, steps: &str| {
@@ -235,7 +237,8 @@ fn the_printed_sign_of_the_force_in_3_62_explodes() {
     done.says("no step from node 8");
 }
 
-/// Multipliers are observables, constraints at both levels invariants, and wrong data are told with the way out.
+/// Multipliers are observables, and constraints at both levels are invariants. The message for inconsistent
+/// data says what to do.
 #[test]
 fn multipliers_and_constraints_are_seen() {
     let rows = trajectory(

@@ -88,7 +88,7 @@ fn labels_and_domains_are_counted_by_expressions() {
     done.says(said);
 }
 
-/// A particle that a case puts beyond a wall is no one that a step reflects.
+/// A particle that starts beyond a wall is rejected, not reflected.
 #[test]
 fn particles_start_between_the_walls() {
     let model = "model Row {

@@ -1,5 +1,6 @@
-//! Starts of fluids that are stated by the meshes of the model: values and slopes at the particles. They are in balance with the force
-//! of the model to rounding; equal cases start alike to the last byte; what has no value there is told with what to write.
+//! Initial values of fluids from the meshes of the model: values and slopes at the particles. They balance the
+//! force of the model up to rounding. Equal cases have identical initial values, byte for byte. If a mesh is
+//! undefined there, the message says what to write.
 
 use crate::common::{Folder, table};
 use crate::ran::{Ran, run};
@@ -281,7 +282,8 @@ fn what_has_no_value_is_told_with_what_to_write() {
     }
 }
 
-/// Beside particles another field may be given, and each is started by velocities where no other stands in its momenta.
+/// A case may give particles and another field. Each can start from velocities, if its momenta do not depend on
+/// the other's velocity.
 #[test]
 fn particles_beside_another_field_start_by_velocities() {
     let model = MODEL.replace("param m: Real at a;", "param m, b: Real at a;");

@@ -59,7 +59,7 @@ fn arrays_are_by_sample_particle_and_component_and_particles_are_mapped() {
     for shape in ["(5, 1800, 2,)", "(5, 528,)", "momentum_X.npy", "H.npy"] {
         assert!(has(shape), "{shape}");
     }
-    // Particles have no order along a line.
+    // Particles are not ordered along a chain, so these pictures are absent.
     for name in ["fields.svg", "momentum.svg"] {
         assert!(
             std::fs::metadata(format!("{out}/{name}")).is_err(),

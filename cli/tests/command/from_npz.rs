@@ -1,5 +1,5 @@
-//! Site data from arrays of a file: the end of one run is the start of another, files as numpy writes them are read, and what is
-//! wrong is told where it stands.
+//! Site data from arrays of a file: a run starts from the end of another, files written by numpy can be read,
+//! and errors are reported with their position.
 
 use crate::common::{Folder, clebsch, models, runs, table, text_of};
 
@@ -129,7 +129,7 @@ fn the_end_of_a_run_is_the_start_of_another() {
     let ring = "q = NPZ\nmomentum_q = NPZ";
     let toda = text_of("lattices/toda-chain.toml");
     let model = models("lattices/toda-chain.clebsch");
-    // Of a written out ring, and in loops over sites.
+    // A ring that is expanded site by site, and one with loops over sites.
     let long = toda.replace("i = 32", "i = 40");
     for (name, case) in [("ring", toda), ("long-ring", long)] {
         let [start, end] = restarted(name, &model, &case, ring);
@@ -137,8 +137,9 @@ fn the_end_of_a_run_is_the_start_of_another() {
     }
 }
 
-/// Long, since two models are derived body by body and as lines, and each is run twice.
-/// Attitudes are read as matrices or quaternions; of what an end holds a run has no values, and its array says at which sites.
+/// Long, since two models are derived body by body and as chains, and each is run twice.
+/// Attitudes are read as matrices or quaternions. A run has no values at sites given by an end, and a second
+/// array lists its sites.
 #[test]
 fn rods_go_on_from_what_a_run_has_written() {
     for (sites, name) in [(8, "rod"), (40, "long-rod")] {
@@ -352,13 +353,13 @@ fn what_is_wrong_is_told_where_it_stands() {
             &ring(&format!("q = {{ {table} }}\nmomentum_q = 0.0")),
             expected,
         );
-        // Keys of the table stand in lines of their own, too.
+        // The keys of the table may also be on separate lines.
         wrong(
             &ring(&format!("momentum_q = 0.0\nq = {{ {table} }}")),
             ":23: initial.q: ",
         );
     }
-    // Of a parameter, and of what belongs to no site.
+    // A parameter at sites, and one without sites.
     let case = ring("q = 0.0\nmomentum_q = 0.0");
     let of = |key: &str| {
         case.replace(
@@ -454,7 +455,7 @@ fn a_parameter_of_an_end_asks_which_ends_there_are() {
     ) {
         let done = run(extra, "").exits(2);
         done.says([":8: parameters.", owner, example, ends]);
-        // Of ends that are chosen the case may keep what belongs to others.
+        // If ends are chosen, the case may keep parameters of other ends.
         run(extra, "[ends]\ni = \"free\"\n").succeeds();
     }
     let (default, free) = (run("", ""), run("", "[ends]\ni = \"free\"\n"));

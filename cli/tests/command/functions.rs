@@ -1,5 +1,5 @@
-//! Functions that a case gives: a run is that of the model with the expression typed in its place, and what is wrong of a
-//! function is told by file and line.
+//! Functions that a case gives: the run is identical to a run of the model with the expression typed in its
+//! place. An error in a function is reported with file and line.
 
 use crate::common::{Folder, runs, table};
 

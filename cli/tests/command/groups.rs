@@ -61,7 +61,7 @@ fn what_a_clamped_rod_of_frames_carries_is_written() {
     assert!(!held.is_empty());
 }
 
-/// A force that is no number beyond det = 0 does not hide why.
+/// If the force beyond det = 0 is not a number, the message still gives the cause.
 #[test]
 fn a_step_through_a_singular_matrix_says_so_where_the_force_there_is_no_number() {
     let folder = Folder::new("through-singular");
@@ -82,8 +82,8 @@ fn a_step_through_a_singular_matrix_says_so_where_the_force_there_is_no_number()
     done.says(["the motion meets det = 0", "was tried and can be made"]);
 }
 
-/// `det(Q^T*C*Q)` is that of `C` times a square: a step that carries `Q` through a singular one is refused, though the
-/// argument of the logarithm is positive at either end.
+/// `det(Q^T*C*Q)` is `det(C)` times a square. A step that moves `Q` through a singular matrix fails, even
+/// though the argument of the logarithm is positive at both ends.
 #[test]
 fn a_body_is_not_turned_inside_out_by_a_step() {
     let folder = Folder::new("inside-out");
@@ -106,8 +106,8 @@ fn a_body_is_not_turned_inside_out_by_a_step() {
     done.says("`Q` loses its inverse");
 }
 
-/// The solver taken without being named serves every group of a model: beside a rotation of space with a factor known
-/// at each node there are others, for which there is no 4 x 4 matrix.
+/// The default solver works for every group of a model: besides a rotation of space with a factor known at each
+/// node, there are groups without a 4 x 4 matrix.
 #[test]
 fn rotations_of_other_dimensions_run_beside_bodies_seen_from_space() {
     let folder = Folder::new("rotations-beside");

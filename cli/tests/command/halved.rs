@@ -18,7 +18,7 @@ fn a_run_with_steps_made_by_parts_says_that_it_is_not_symplectic() {
         (&20.into(), &false.into())
     );
     assert_eq!(object["arguments"]["halve"], true);
-    // Where every step can be made nothing is said.
+    // If every step succeeds, there is no note.
     clebsch("run free-body --steps 20 --halve").never_prints("made by parts");
 }
 

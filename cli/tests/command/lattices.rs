@@ -18,8 +18,8 @@ const SHIPPED: [&str; 11] = [
     "uniform-tension-rod",
 ];
 
-/// What is made of parameters and cannot be an inertia is told by them, with line, site and expression: of a short line, which is
-/// written out site by site, and of a program with loops over sites.
+/// If parameters give an invalid inertia, the message names these parameters with line, site and expression.
+/// This holds for a short chain, which is expanded site by site, and for a program with loops over sites.
 #[test]
 fn an_inertia_at_a_site_is_told_by_the_parameters_that_make_it() {
     let folder = Folder::new("inertia-at-a-site");
@@ -87,7 +87,7 @@ fn every_model_is_derived_and_runs_its_case() {
             "run models/lattices/{name}.clebsch --case models/lattices/{name}.toml --steps 200 --verbose"
         ));
         done.prints("lattice              N = ");
-        // The case that is printed for it reads back, and so does that of every other end.
+        // The printed case can be read, and so can the printed case of every other end.
         let folder = Folder::new(&format!("lattices-{name}"));
         let sample = runs(&format!("case models/lattices/{name}.clebsch"));
         let own = folder.write("own.toml", &sample.out);
@@ -101,7 +101,8 @@ fn every_model_is_derived_and_runs_its_case() {
             "--case",
         ];
         let done = clebsch(&[&run[..], &[&own]].concat());
-        // Sample attitudes are those of a straight line, whose ends no motion brings nearer: it says what to give.
+        // Sample attitudes form a straight rod, whose ends cannot approach each other. The message says what to
+        // give.
         if text_of(&format!("lattices/{name}.clebsch")).contains("sum(") {
             done.ended(2);
             done.says("off the constraint");
@@ -246,7 +247,7 @@ fn lists_hold_what_is_given_at_an_end_too() {
     };
     let by_list = run("u = [0.0, 0.1, 0.2, 0.3]\nmomentum_u = [0.0, 0.1, 0.2, 0.0]");
     by_list.ended(0).says_nothing();
-    // What is given has no momentum.
+    // A site with a given value has no momentum.
     let moving = run("u = [0.0, 0.1, 0.2, 0.3]\nmomentum_u = [0.1, 0.2]");
     assert_eq!(by_list.out, moving.out);
     run("u = \"i/10\"\nmomentum_u = [0.0, 0.1, 0.2, 0.0]").succeeds();
@@ -278,7 +279,7 @@ fn lists_hold_what_is_given_at_an_end_too() {
     .refuses("nothing moves");
 }
 
-/// What is wrong in a model is told with its place in the model, not in the case that it is run with.
+/// An error in a model is reported with its position in the model, not in the case.
 #[test]
 fn a_wrong_sum_is_told_in_the_model_where_a_case_is_given() {
     let folder = Folder::new("wrong-sum");

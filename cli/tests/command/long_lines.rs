@@ -105,8 +105,8 @@ fn bodies_that_hardly_turn_are_stepped_at_any_step() {
     }
 }
 
-/// A held sum over all sites brings their number into combinations of momenta. Those of the short lattice that is derived are
-/// no invariants of a longer one.
+/// A constraint on a sum over all sites brings the number of sites into combinations of momenta. The
+/// combinations of the short chain that is derived are not invariants of a longer chain.
 #[test]
 fn totals_that_depend_on_the_number_of_sites_are_left_out() {
     let folder = Folder::new("lattices-sum-held");

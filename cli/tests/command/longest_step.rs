@@ -25,7 +25,8 @@ fn printed(model: &str, case: &str) -> f64 {
     step
 }
 
-/// Of a straight rod, uniform and unloaded, shear and bending swing together: 2/sqrt of the larger eigenvalue of a pair.
+/// In a straight rod, uniform and unloaded, shear and bending are coupled. The limit is 2/sqrt of the larger
+/// eigenvalue of a pair.
 #[test]
 fn a_straight_rod_has_the_limit_of_its_coupled_modes() {
     let model = models("lattices/circular-rod.clebsch");
@@ -112,8 +113,9 @@ fn a_wrong_sign_between_neighbours_is_warned_of() {
 }
 
 /// Long, since rows are derived in four groups.
-/// Of a field, of rotations of the plane, of rigid motions and of linear maps in rows of springs: ω is that of the row of beads,
-/// 2 sqrt(k/m) sin(π n/(2n + 2)) of n + 1 free ones, whatever the unit of mass and however short the step that is asked for.
+/// Fields, rotations of the plane, rigid motions and linear maps in rows of springs have the frequency of a row
+/// of n + 1 free beads, ω = 2 sqrt(k/m) sin(π n/(2n + 2)). It depends neither on the unit of mass nor on the
+/// step size of the case.
 #[test]
 fn rows_of_springs_have_one_limit_in_all_groups() {
     let folder = Folder::new("rows-of-springs");
@@ -188,7 +190,8 @@ fn a_bent_start_has_the_limit_of_the_symmetric_part() {
         );
         let case = folder.write("case.toml", &case);
         let found = 2.0 / printed(&model, &case);
-        // Of 18 freedoms to the digits that are printed; of 123, in the space of 60 vectors, to a hundredth beside that.
+        // With 18 degrees of freedom the result has the printed digits. With 123, in the space of 60 vectors,
+        // it is within a hundredth.
         assert!(
             (found / frequency - 1.0).abs() < 0.02,
             "{n}: {found} {frequency}"
@@ -199,8 +202,8 @@ fn a_bent_start_has_the_limit_of_the_symmetric_part() {
     }
 }
 
-/// Where steps are of another kind nothing is said: a charge that a magnetic field turns, a potential in the middle of the
-/// step, a kink, all of which long steps leave as they are.
+/// No limit is reported for other kinds of steps: a charge in a magnetic field, a potential in the middle of
+/// the step, a kink. Large steps do not make them unstable.
 #[test]
 fn of_steps_of_another_kind_nothing_is_said() {
     let folder = Folder::new("other-steps");
@@ -227,8 +230,8 @@ fn of_steps_of_another_kind_nothing_is_said() {
     silent(of("node", "h*(k/2)*q^2", "0.5"));
 }
 
-/// A rod that is read along its length is unstable by right, as a body on its head: its sign is not doubted, and the length of
-/// segments that resolves it is told.
+/// A rod along its arc length is physically unstable, like a body balanced on its head. The warning does not
+/// question a sign; it reports the step size that resolves the growth.
 #[test]
 fn of_one_body_that_is_unstable_no_sign_is_doubted() {
     let run = |h: &str| {
@@ -248,8 +251,8 @@ fn of_one_body_that_is_unstable_no_sign_is_doubted() {
     assert!(short.err.is_empty(), "{}", short.err);
 }
 
-/// Long, since the limit of two rods is sought at five steps.
-/// However much too long a step is, it is told how long it may be, a first one that is refused as well.
+/// Long, since the limit of two rods is searched for at five step sizes.
+/// The limit is reported however far the step size exceeds it, and also if the first step fails.
 #[test]
 fn of_a_step_that_is_far_too_long_the_limit_is_told() {
     let run = |h: &str| {
@@ -277,9 +280,9 @@ fn of_a_step_that_is_far_too_long_the_limit_is_told() {
     assert!((number("share") * number("step") - 0.0005).abs() < 1e-15);
 }
 
-/// Long, since chains of up to forty links are derived, and run at two steps.
-/// Of chains of equal links that hang straight the squares of the frequencies are g/a times the roots of Laguerre's
-/// polynomials. A step beyond the limit loses what one below it keeps; data and model as they are given.
+/// Long, since chains of up to forty links are derived, and run at two step sizes.
+/// In a straight hanging chain of equal links, the squared frequencies are g/a times the roots of Laguerre
+/// polynomials. A run with a step size above the limit fails, and a run below it succeeds.
 #[test]
 fn chains_that_hang_have_the_limits_of_laguerre() {
     let folder = Folder::new("hanging-straight");
@@ -347,8 +350,8 @@ fn chains_that_lean_have_the_limits_along_their_constraints() {
     }
 }
 
-/// What a constraint on a sum leaves swings: in a ring of springs the waves of the shortest length, of uniform mass, but not
-/// what moves all sites alike, which a stiff potential at each site would make the fastest.
+/// A constraint on a sum leaves the other modes. In a ring of springs with uniform mass the fastest are the
+/// shortest waves; the constraint excludes the uniform mode.
 #[test]
 fn under_a_sum_that_is_held_the_others_swing() {
     let folder = Folder::new("held-sum");
@@ -358,7 +361,7 @@ fn under_a_sum_that_is_held_the_others_swing() {
     let model = folder.write("shared.clebsch", text);
     for (n, spring, site, square) in [
         (6, 2.0, 1.0, 9.0),
-        // Of one more at an odd number: 4 sin^2(2π/5) k.
+        // With 5 sites the springs contribute 4 sin^2(2π/5) k.
         (
             5,
             3.0,
@@ -377,7 +380,7 @@ fn under_a_sum_that_is_held_the_others_swing() {
     }
 }
 
-/// Where nothing is known of a held line, the reason is said and no number.
+/// If the limit of a chain with constraints is unknown, the reason is reported without a number.
 #[test]
 fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
     let folder = Folder::new("held-unknown");
@@ -414,9 +417,10 @@ fn where_nothing_is_known_of_a_held_line_the_reason_is_said() {
     );
 }
 
-/// Long, since the limit of chains of links is sought with every force.
-/// Links that hang in a rotating plane swing along their constraints, where the force of Coriolis is none: neither it nor the
-/// origin from which its potential is measured changes their limit. At rest momenta are those of that potential.
+/// Long, since the limit of chains of links is searched for with every force.
+/// Links that hang in a rotating plane oscillate along their constraints, where the Coriolis force vanishes.
+/// Neither this force nor the origin of its potential changes the limit. At rest the momenta are those of this
+/// potential.
 #[test]
 fn terms_linear_in_velocities_leave_the_limit_along_constraints() {
     let folder = Folder::new("coriolis");

@@ -1,4 +1,5 @@
-//! What a run says of a start or of numbers that a model does not have, and of Lagrangians that look like a mistake and are none.
+//! The messages about a start or numbers outside a model's domain, and about Lagrangians that look like a
+//! mistake but are valid.
 
 use crate::common::{Done, Folder, has, process_in, table};
 use crate::ran;
@@ -124,7 +125,8 @@ fn rates_and_degrees_in_a_model_are_answered() {
     }
 }
 
-/// Energies near the end of the range of numbers: what overflows is named, and no function is said to have left its domain.
+/// Energies near the largest f64: the message names the term that overflows, and reports no function outside
+/// its domain.
 #[test]
 fn an_energy_beyond_the_range_of_numbers_is_named() {
     let model = "model Chain {

@@ -11,7 +11,7 @@ fn text(model: &str) -> &'static str {
         .source
 }
 
-/// A top that stands nowhere: another energy than any model of the gallery.
+/// A top whose energy differs from every model of the gallery.
 const OTHER: &str = "model Beam {
     param J: Sym<3>;
     param a: Vec<3>;
@@ -81,7 +81,7 @@ fn what_a_run_writes_is_the_same_as_of_the_built_model() {
         let bytes = |folder: &str| std::fs::read(format!("{folder}/{name}")).expect(name);
         assert!(bytes(&built) == bytes(&read), "{name}");
     }
-    // Two models may have one name: what was run is told by the path.
+    // Two models may have one name, so run.json records the path.
     let told = std::fs::read_to_string(format!("{read}/run.json")).expect("run.json");
     let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
     assert_eq!(told["arguments"]["model"], serde_json::json!(file));
@@ -253,7 +253,7 @@ fn a_long_line_is_quoted_around_the_mistake() {
     let quoted = quoted.unwrap_or_else(|| panic!("{}", done.err));
     let (line, marks) = (lines[quoted], lines[quoted + 1]);
     assert!(line.chars().count() < 230, "{line}");
-    // The mark stands under the name that is not known.
+    // The mark is below the unknown name.
     let at = marks.chars().position(|c| c == '^').expect("a mark");
     assert_eq!(line.chars().nth(at), Some('y'), "{line}\n{marks}");
 }

@@ -110,8 +110,9 @@ fn the_multiplier_of_a_sum_is_that_of_the_printed_equations() {
     }
 }
 
-/// Two bodies on a hinge in units in which masses are 1e-8: the same motion, whose rates along the constraints vanish to the same
-/// rounding. Momenta were projected with the entries of the masses lost beside those of the constraints.
+/// Two bodies on a hinge in units in which masses are 1e-8. The motion is the same, and rates along the
+/// constraints vanish to the same rounding. In the past, the projection of momenta lost the masses next to the
+/// larger entries of the constraints.
 #[test]
 fn light_bodies_on_a_hinge_stay_on_it() {
     let folder = Folder::new("light-hinge");
@@ -149,7 +150,8 @@ fn light_bodies_on_a_hinge_stay_on_it() {
     folder.runs("run @joint.clebsch --case @joint.toml");
 }
 
-/// Of one segment there is no pair of neighbouring sections to bend against one another: a sum of no terms, which is a number.
+/// One segment has no pair of neighbouring sections and hence no bending energy: an empty sum, which must be a
+/// number.
 #[test]
 fn a_held_rod_of_one_segment_has_an_energy() {
     let folder = Folder::new("one-segment");
@@ -170,7 +172,8 @@ fn a_held_rod_of_one_segment_has_an_energy() {
     assert!((scale - 4.905).abs() < 1e-14, "{energy}");
 }
 
-/// Of a line that ends hold but for one site the momentum is that of this site: it moves, and one off the constraint is refused.
+/// If the ends give all sites but one, the momentum belongs to this site. It moves, and a momentum off the
+/// constraint is rejected.
 #[test]
 fn the_one_site_that_moves_has_its_momentum() {
     let folder = Folder::new("one-site");
@@ -252,7 +255,8 @@ body_momentum = [[-0.01110885263621708, 0.04994609090395395, -0.1353340905761882
 
 #[test]
 fn constraints_hold_where_a_velocity_that_rested_begins_to_move() {
-    // The second mass hangs straight above the first: its horizontal equation has no terms in the first steps.
+    // The second mass is straight above the first: the terms of its horizontal equation vanish in the first
+    // steps.
     let folder = Folder::new("double-pendulum");
     let model = "model Double {
         param m, l, g: Real;

@@ -54,7 +54,7 @@ fn arguments() {
             done.says(SHOWN);
         }
     }
-    // What clap says of arguments it does not know, new lines apart.
+    // The message of clap for unknown arguments, apart from newlines.
     let wrong = NAME.replace('\n', "");
     for arguments in [
         &["run", model, "--order", &wrong][..],
@@ -81,7 +81,7 @@ fn arguments() {
 fn case_files() {
     let folder = Folder::new("names_in_files");
     let quoted = serde_json::to_string(NAME).expect("a string");
-    // TOML has no raw DEL in strings.
+    // TOML does not allow a raw DEL in strings.
     let quoted = quoted.replace('\u{7f}', "\\u007f");
     let text = rotor("case harmonic-rotor").out;
     let changes = [
@@ -139,8 +139,8 @@ fn case_files() {
     }
 }
 
-/// The copies of a quantity at sites are not written in a model: where one would print as another name or as a sign of
-/// derivations, its site stands in brackets.
+/// The names of copies at sites are not written in a model. If such a name would print as another name or as a
+/// symbol of the derivation, its site is printed in brackets.
 #[test]
 fn copies_at_sites_take_no_name_of_the_model() {
     let folder = Folder::new("names-of-copies");
@@ -180,7 +180,7 @@ model ElasticString {
         let case = folder.write(&format!("{name}.toml"), &rotor(&format!("case {file}")).out);
         rotor(&format!("run {file} --case {case} --steps 20")).succeeds();
     }
-    // What the model writes twice is refused as before.
+    // A name that the model declares twice is still rejected.
     let twice = inertia.replace("J0", "J_0");
     let file = folder.write("twice.clebsch", &twice);
     rotor(&format!("derive {file}")).ended(2);

@@ -1,5 +1,6 @@
-//! Starts whose digits were typed: as near to their constraints as ten digits are, they are moved onto them, which is said; the check
-//! of the action as stated then holds. Starts farther off are rejected with the number.
+//! Starts with typed digits. If they satisfy their constraints to ten digits, they are moved onto them, with a
+//! note; the check of the action as stated then succeeds. Other starts are rejected, and the message has the
+//! distance.
 
 use crate::common::Folder;
 use crate::ran::run;

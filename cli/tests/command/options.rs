@@ -44,7 +44,7 @@ fn quantities_are_set_by_name_and_component() {
     ) {
         clebsch(&format!("run kepler --set {set}")).refuses(words);
     }
-    // A value that the model refuses is told by the option, and not by a line of the case.
+    // If the model rejects a value, the message names the option, not a line of the case.
     clebsch("run heavy-top --set J.11=-5").refuses("--set J.11: negative second moment");
 }
 

@@ -1,6 +1,6 @@
 //! A command line of one's own: the example that the README shows, compiled here and run.
 
-// What users write in their own crate has no documentation to check.
+// Users need not document the code in their own crate.
 #![allow(missing_docs)]
 
 #[allow(dead_code)]

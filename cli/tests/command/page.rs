@@ -31,7 +31,7 @@ fn a_body_is_shown_by_its_axes() {
     let square: f64 = (0..3).map(|i| entry(i) * entry(i)).sum();
     assert!((square - 1.0).abs() < 1e-12, "{square}");
     assert!((entry(0) * entry(3) + entry(1) * entry(4) + entry(2) * entry(5)).abs() < 1e-12);
-    // Of quick motions a part is shown, and the page says which.
+    // For fast motions the page shows only a part, and states its length.
     assert!(
         page.contains("The view shows the run up to time "),
         "{page:.3000}"
@@ -80,7 +80,7 @@ fn rod(statements: &str, bodies: &str) -> String {
     )
 }
 
-/// The first frame: the places of bodies, and those of points, three numbers each.
+/// The first frame: the positions of bodies and of points, three numbers each.
 fn first(scene: &serde_json::Value) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
     let numbers = |v: &serde_json::Value| -> Vec<f64> {
         let list = v.as_array().expect("a list").iter();

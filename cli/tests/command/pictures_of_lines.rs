@@ -29,7 +29,7 @@ fn cantilever() -> String {
     short.replace("i = 16", "i = 5")
 }
 
-/// Of a picture, in pixels; for a paper 430 of them are 86 mm.
+/// The height of a picture in pixels. On paper 430 pixels are 86 mm.
 fn height(svg: &str) -> f64 {
     let own = svg.split("height=\"").nth(1).expect("a height");
     let own = own.split('"').next().expect("its end");
@@ -61,7 +61,8 @@ fn rods_have_maps_of_their_angles_and_some_of_their_spheres() {
     assert!(attitude.contains("Λ₄ e₃: the body axis e₃ in space"));
     assert!(!attitude.contains("Λ₁ e₃") && !attitude.contains("φ in the ball"));
 
-    // In a plane: what stays zero is said, and the frames of momenta with the same letter otherwise are told.
+    // In a plane, components that stay zero are noted. Momenta with the same symbol are distinguished by their
+    // frames.
     let momentum = wide("momentum");
     assert_eq!(momentum.matches("zero throughout").count(), 5);
     has(
@@ -74,7 +75,7 @@ fn rods_have_maps_of_their_angles_and_some_of_their_spheres() {
     let numbers: Vec<&str> = momentum.split('>').map(str::trim).collect();
     assert!(!numbers.iter().any(|own| own.starts_with("−0.5")));
 
-    // For a paper scales of colours stand beside their charts, and take no height of their own.
+    // On paper colour scales are next to their charts, and do not add to the height.
     let paper = drawn(
         &folder,
         "geometrically-exact-rod",

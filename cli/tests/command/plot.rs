@@ -66,7 +66,7 @@ fn sites_are_counted_from_zero() {
     folder.runs("run toda-chain --steps 5 --quiet --out @run");
     folder.clebsch("plot @run").prints("  q_0 to q_31\n");
     folder.runs("plot @run --x momentum_q_31 --y q_0");
-    // A first site that an end holds is no column, and the others keep their numbers.
+    // If an end gives the first site, it is not a column, and the other sites keep their numbers.
     let held = folder.path("held");
     folder.runs("run hanging-chain:swing --steps 5 --quiet --out @held");
     folder.clebsch("plot @held").prints("  x_1.1 to x_");
@@ -77,7 +77,7 @@ fn sites_are_counted_from_zero() {
     folder
         .clebsch("plot @held --y lambda")
         .says("give a site, lambda_0 to lambda_19");
-    // Of a vector at a site all components; lists and brackets.
+    // All components of a vector at a site; lists and brackets.
     for (name, labels) in [
         ("x_10", &["x_10.1", "x_10.2", "x_10.3"][..]),
         ("x_10.1,x_9.3", &["x_10.1", "x_9.3"]),
@@ -147,7 +147,7 @@ fn what_is_constant_to_rounding_is_drawn_flat() {
     ] {
         let (svg, lines) = curves(&out, &folder, &[name]);
         assert!(svg.contains("constant to rounding"), "{name}");
-        // Of a chart nearly a thousand units high.
+        // The chart is nearly a thousand units high.
         assert!(lines.iter().all(|line| height(line) < 10.0), "{name}");
     }
     let (svg, lines) = curves(&out, &folder, &["X.1"]);
@@ -155,7 +155,8 @@ fn what_is_constant_to_rounding_is_drawn_flat() {
     assert!(lines.iter().any(|line| height(line) > 300.0));
 }
 
-/// Names of the table that hold sites in their middle, as those of relative attitudes, are found too.
+/// Columns can be named as in the table, also if the site is in the middle of the name, as for relative
+/// attitudes.
 #[test]
 fn columns_are_found_as_the_table_names_them() {
     let folder = Folder::new("plot-names");

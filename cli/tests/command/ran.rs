@@ -14,7 +14,7 @@ pub fn run(folder: &Folder, model: &str, case: &str, more: &str) -> Done {
 /// The numbers of a run: the rows of `trajectory.csv`, and parameters.
 #[derive(Debug)]
 pub struct Ran {
-    /// What the command printed.
+    /// The standard output of the command.
     pub out: String,
     samples: Samples,
     parameters: Value,

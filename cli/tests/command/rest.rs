@@ -1,5 +1,5 @@
-//! Starts without size: at rest, or without forces. What has no scale is measured absolutely, and what
-//! is no number stops the run at its node.
+//! Starts without a scale: at rest, or without forces. The drift of such an invariant is absolute, and a number
+//! that is not finite stops the run at its node.
 
 use crate::common::{Folder, clebsch, on, rotor};
 use clebsch::card::Kind;
@@ -8,7 +8,7 @@ use clebsch_cli::gallery::Gallery;
 /// Steps of each run: enough for forces to set a body at rest in motion.
 const STEPS: &str = "100";
 
-/// Numbers without which there is no kinetic energy.
+/// Parameters that remove the kinetic energy if they are zero.
 const INERTIA: [(&str, &str); 4] = [
     ("charged-particle", "m"),
     ("kepler", "m"),
@@ -168,8 +168,8 @@ fn a_held_rod_at_rest_falls() {
         .succeeds();
 }
 
-/// A ring in a plane that stands still, forces of neighbours and the reaction of a sum in balance: what rounding leaves of momenta
-/// is measured by these forces, whether loops over sites run or bodies.
+/// A ring at rest in a plane: the forces of neighbours balance the reaction of a constraint on a sum. The scale
+/// of the rounded momenta comes from these forces, both for loops over sites and for single bodies.
 #[test]
 fn totals_of_a_line_at_rest_are_measured_by_the_impulses_that_cancel() {
     let folder = Folder::new("line-at-rest");

@@ -1,4 +1,4 @@
-//! What a run leaves behind: complete, repeatable, readable files, or nothing.
+//! The results of a run: complete, repeatable, readable files, or nothing.
 
 use crate::common::{Folder, has, on, rotor};
 use clebsch_cli::gallery::Gallery;
@@ -175,7 +175,7 @@ fn plots_are_plain_svg() {
     }
 }
 
-/// What moves by itself is no advected vector, and has a plot of its own.
+/// A field is not an advected vector, and has its own plot.
 #[test]
 fn fields_are_plotted_as_fields() {
     let folder = Folder::new("fields");

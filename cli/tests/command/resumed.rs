@@ -1,5 +1,5 @@
-//! Runs that are killed or interrupted at any moment and gone on with: their results are those of a run that was left
-//! alone, to the last byte. The program itself is run, killed and run again.
+//! Runs that are killed or interrupted at any moment and then resumed. Their results are identical to an
+//! uninterrupted run, byte for byte. The program itself is run, killed and run again.
 #![cfg(unix)]
 
 use crate::common::{Done, Folder, process_in};
@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::process::{Child, Stdio};
 
-/// What is run: a free body whose solver keeps constants of its own, a forced one, one solved by Newton's method, steps
-/// that are composed, one whose factor is seen from the body, and a lattice read from its file.
+/// The runs: a free body whose solver keeps its own constants, a forced body, a body solved by Newton's method,
+/// composed steps, a body with a factor in its own frame, and a chain read from its file.
 const RUNS: [&str; 6] = [
     "free-body --steps 300000 --every 100 --order 6",
     "heavy-top --steps 100000 --every 7",
@@ -220,7 +220,7 @@ fn a_killed_run_is_not_begun_anew_by_mistake() {
     // By force it is, and the hidden folder goes.
     run(short, &out, "--force").ended(0);
     assert_eq!(folder.names(), ["out"]);
-    // A run that is complete is left as it is, and another one is told apart.
+    // A complete run stays unchanged, and a different run is detected.
     let before = contents(&out);
     run(short, &out, "--resume").ended(0);
     run("heavy-top --steps 11", &out, "--resume").refuses([

@@ -30,9 +30,10 @@ fn a_twisted_ring_leaves_its_plane_beyond_the_threshold() {
     assert!(bent > 0.1, "{bent}");
 }
 
-/// Long, since the band of the energy is seen over 2000 steps of 50 sections.
-/// The rod of the thesis's figures 3.4 to 3.6 with consistent data: its energy after one step is that of the reference run to
-/// rounding and stays in its band; the linear momentum, zero, stays rounding, the angular one is not kept across the axis.
+/// Long, since the energy is observed over 2000 steps of 50 sections.
+/// The rod of the thesis's figures 3.4 to 3.6 with consistent data. Its energy after one step agrees with the
+/// reference run to rounding and stays in its band. The linear momentum is zero to rounding; the angular
+/// momentum across the axis is not conserved.
 #[test]
 fn the_periodic_rod_of_the_thesis_is_that_of_the_reference_run() {
     let folder = Folder::new("periodic-rod");

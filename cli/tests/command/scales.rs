@@ -1,5 +1,5 @@
-//! The natural scale of an invariant: the sum of the absolute values of its terms, the largest along the run. What is
-//! only rounding of the terms exceeds no bound, whatever the terms were at the start.
+//! The natural scale of an invariant: the sum of the absolute values of its terms, the largest along the run.
+//! Rounding of the terms never exceeds a bound, whatever the terms were at the start.
 
 use crate::common::{Folder, on, runs};
 use clebsch_cli::gallery::Gallery;
@@ -134,7 +134,7 @@ fn the_energy_of_a_top_released_from_rest_has_the_scale_of_its_swing() {
     // It falls by the length of its axis, from 0 to -1, and the kinetic energy is then 1.
     let scale = number(&energy["scale"]);
     assert!((scale - 2.0).abs() < 1e-3, "{energy}");
-    // A relative drift of order h squared: that of the largest swing, not of the first node.
+    // A relative drift of order h squared, with the scale of the largest amplitude, not of the first node.
     assert!(number(&energy["worst_drift"]) < 1e-4, "{energy}");
 }
 

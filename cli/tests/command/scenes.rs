@@ -1,5 +1,5 @@
-//! What the page of a run shows: bodies where they are, what constraints join, the ground, the colours of particles; and how
-//! its script draws them, on a canvas that writes SVG, where Node is there to run it.
+//! The page of a run: positions of bodies, links of constraints, the ground, the colours of particles. If Node
+//! is installed, its script also draws them, on a canvas that writes SVG.
 
 use crate::common::{Folder, runs};
 use serde_json::Value;
@@ -126,7 +126,7 @@ fn a_body_is_shown_at_its_place() {
 
 #[test]
 fn a_body_without_a_place_is_beside_the_others() {
-    // `x - A*p` compares a point with one of a body about the origin; nothing is said of B.
+    // `x - A*p` compares a point with a point of a body about the origin. The position of B remains unknown.
     let folder = Folder::new("scene-beside");
     let model = bodies("x", &["A", "B"], "dot(x - A*p, x - A*p) + dot(A*p, B*s)");
     let page = page(&folder, &model, "");
@@ -315,7 +315,7 @@ fn many_bodies_without_places_stand_in_rows() {
     assert_eq!(places.len(), count);
 }
 
-/// A frame of a page as its script draws it; nothing where there is no Node.
+/// A frame of a page as its script draws it; `None` without Node.
 fn drawn(folder: &Folder, frame: &str) -> Option<String> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/command/canvas.js");
     let page = folder.path("out/run.html");

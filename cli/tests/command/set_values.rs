@@ -71,7 +71,7 @@ fn inertias_and_matrices_are_set() {
             assert_eq!(parameters["J"][i][i], x, "{value}: {parameters}");
         }
     }
-    // The cases of compiled models have no text.
+    // The cases of compiled models are not texts.
     let done = clebsch(&[
         "run",
         "heavy-top",

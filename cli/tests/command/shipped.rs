@@ -71,10 +71,10 @@ fn a_file_without_a_case_is_not_run_with_made_up_numbers() {
     done.ended(2).prints_nothing();
     let way = format!("clebsch case {file} > {}", folder.path("free.toml"));
     done.says(&way);
-    // What the message says to do does it.
+    // The advice in the message works.
     folder.write("free.toml", &folder.clebsch("case @free.clebsch").out);
     folder.runs("run @free.clebsch");
-    // What is wrong with the model comes before what is missing.
+    // An error in the model is reported before a missing case.
     folder.write("wrong.clebsch", text.replace("(2*h)", "(2*k)"));
     let done = folder.clebsch("run @wrong.clebsch");
     assert!(

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::Barrier;
 
 thread_local! {
-    /// What happens in the middle of a run on this thread.
+    /// An action in the middle of a run on this thread.
     static MEANWHILE: RefCell<Option<Box<dyn FnOnce()>>> = const { RefCell::new(None) };
 }
 
@@ -56,7 +56,7 @@ fn open(
     Ok(Box::new(Interrupted(own)))
 }
 
-/// Runs with `event` in the middle; 20 steps, so that the results are told from those of other runs.
+/// Runs with `event` in the middle. The 20 steps distinguish its results from other runs.
 fn run_while(event: impl FnOnce() + 'static, out: &str, more: &[&str]) -> Done {
     let mut card = crate::rotor::CARD;
     card.open = &open;
@@ -363,12 +363,12 @@ fn what_a_killed_run_left_behind_is_removed_by_the_next() {
     let folder = Folder::new("abandoned");
     let out = folder.path("run");
     let sibling = |name: &str| folder.path(name);
-    // As a run that was killed leaves it, whose process is no more or has the number of another one.
+    // The remains of a killed run, whose process has ended or whose number belongs to another process.
     for name in [".run.partial-1-0", ".run.partial-4194000-3"] {
         fs::create_dir(sibling(name)).expect("made");
         fs::write(format!("{}/trajectory.csv", sibling(name)), "1,2").expect("written");
     }
-    // What is none of a run, or of a run into another place, stays.
+    // Folders that belong to no run, or to a run into another target, stay.
     for name in [
         ".other.partial-1-0",
         ".run.partial-notes",
@@ -379,7 +379,7 @@ fn what_a_killed_run_left_behind_is_removed_by_the_next() {
         fs::create_dir(sibling(name)).expect("made");
     }
     fs::write(format!("{}/notes.txt", sibling(".run.partial-2-0")), "mine").expect("written");
-    // Neither does a run touch one that goes on, this one at its own.
+    // A run does not touch the folder of a run in progress, here its own.
     let inner = out.clone();
     let during = folder.path("");
     let done = run_while(

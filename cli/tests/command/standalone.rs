@@ -1,5 +1,5 @@
-//! `derive --standalone`: documents that compile by themselves. Every command in them is of LaTeX or of a package that
-//! they load, environments, brackets and dollar signs pair, what is cited stands in the bibliography, and every
+//! `derive --standalone`: complete documents. Every command in them belongs to LaTeX or to a package that they
+//! load. Environments, brackets and dollar signs pair, the bibliography contains every citation, and every
 //! reference has its label.
 
 use crate::common::{Folder, clebsch, runs};
@@ -22,7 +22,7 @@ const PACKAGES: &str = "operatorname text eqref lvert rvert lVert rVert notag tf
 const ENVIRONMENTS: &str = "document itemize flushleft thebibliography equation gather subequations aligned align align* \
     pmatrix";
 
-/// The arguments of a command, without what stands in square brackets before them.
+/// The arguments of a command, without the square brackets before them.
 fn arguments<'a>(text: &'a str, command: &str) -> Vec<&'a str> {
     let behind = text.split(command).skip(1);
     let braced = behind.filter_map(|rest| {
@@ -71,7 +71,7 @@ fn compiles(what: &str, text: &str) {
     for command in &commands {
         assert!(known.contains(command.as_str()), "{what}: \\{command}");
     }
-    // What is behind a percent sign would be lost.
+    // Text after a percent sign would be lost.
     assert!(!rest.contains('%'), "{what}");
     let strange = rest.chars().find(|c| !c.is_ascii() && *c > '\u{17f}');
     assert_eq!(strange, None, "{what}");

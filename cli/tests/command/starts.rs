@@ -1,6 +1,6 @@
-//! What is computed before the first step: values are judged first, the search for the stability limit is bounded and can be
-//! left out, and the first step is the one that the discrete equations have. Its numbers were solved for in forty digits
-//! by Newton's method on equations typed by hand.
+//! Computations before the first step: values are checked first, the search for the stability limit is bounded
+//! and can be skipped, and the first step satisfies the discrete equations. Its numbers were computed with
+//! forty digits by Newton's method on equations typed by hand.
 
 use crate::common::{Done, Folder, Samples, on, rotor};
 use crate::ran::run;
@@ -335,8 +335,9 @@ body_momentum_B = [[0.0, -0.9186103130116213], [0.9186103130116213, 0.0]]"#;
     );
 }
 
-/// A potential in the middle of the step adds nothing to the momenta of neighbours in the limit of small steps: from 9 segments on, where
-/// loops over sites are run, the energy was no number. The action is quadratic, so that the energy is conserved exactly.
+/// A potential in the middle of the step adds nothing to the momenta of neighbours in the limit of small steps.
+/// From 9 segments on, where loops over sites run, the energy was not a number. The action is quadratic, so
+/// that the energy is conserved exactly.
 #[test]
 fn a_potential_in_the_middle_of_the_step_runs_for_every_number_of_sites() {
     let model = r#"/// A line of masses on springs, the potential in the middle of the step: runs with N = 8, fails with N >= 9.

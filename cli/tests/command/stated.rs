@@ -1,5 +1,5 @@
-//! The verdict by the action as stated: every model file with its cases holds, what is not judged is said not to be, and the numbers
-//! stand in the object too.
+//! The verdict by the action as stated. It holds for every model file with its cases, skipped checks are
+//! reported, and the JSON object contains the numbers.
 
 use crate::common::{Folder, clebsch, models, runs};
 use serde_json::Value;
@@ -76,8 +76,8 @@ fn the_steps_that_are_judged_are_those_asked_for() {
         .prints("action as stated: not judged: a step of order 4 has modified moments");
 }
 
-/// Of a composed step each of the steps that it is made of is judged, by its own length: the same of bodies that are compiled,
-/// of bodies that are read, and of lines.
+/// Each part of a composed step is judged with its own step size, for compiled bodies, for bodies read from a
+/// file, and for chains.
 #[test]
 fn the_parts_of_a_composed_step_are_judged() {
     for (model, case) in [

@@ -125,7 +125,7 @@ fn a_run_refused_before_its_first_step_leaves_nothing() {
         .rotor("run harmonic-rotor --h 10 --out @new/out")
         .fails("cannot take the first step");
     assert!(folder.names().is_empty());
-    // What stood there stays.
+    // Existing results stay.
     folder.rotor("run harmonic-rotor --out @new/out").ended(0);
     let before = read(&out, "run.json");
     let run = [

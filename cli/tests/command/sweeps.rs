@@ -66,11 +66,12 @@ fn a_row_is_the_run_of_its_point() {
             "{name}"
         );
     }
-    // And it differs from that of its neighbour.
+    // It differs from the row of its neighbour.
     assert!(column(&out, "Lambda_11")[3] != column(&out, "Lambda_11")[0]);
 }
 
-/// As in a case file a name without the number of a site is that of all sites, and of an end that of its parameter.
+/// As in a case file, a name without the number of a site means all sites. For an end it means the parameter of
+/// the end.
 #[test]
 fn along_a_line_the_names_are_those_of_the_case_file() {
     let folder = Folder::new("sweep-line");
@@ -140,7 +141,7 @@ fn parts_are_joined_to_the_table_of_the_whole() {
     let [a, b, c, d] = [&parts[0], &parts[1], &parts[2], &parts[3]];
     collect(&[c, a, d, b], &joined).exits(1);
     same(&whole, &joined);
-    // What is not the whole, or not of one sweep, is said.
+    // Parts that are incomplete or from different sweeps are reported.
     let refused = |parts: &[&String], says: &str| {
         collect(parts, &folder.path("none")).refuses(says);
     };
@@ -149,7 +150,7 @@ fn parts_are_joined_to_the_table_of_the_whole() {
     refused(&[a, &whole], "not of a part");
     let other = folder.path("other");
     assert_eq!(sweep(&other, &["--shard", "4/4", "--order", "4"]).code, 1);
-    // Orders are no part of a case; the columns are the same, and so is what they hold not.
+    // The order does not belong to the case, and the columns do not contain it.
     let text = folder.read("other/sweep.json");
     assert!(text.contains("\"order\": 4"), "{text}");
     refused(&[a, b, c, &other], "of another sweep");
@@ -223,7 +224,7 @@ fn a_sweep_none_of_whose_points_starts_fails_with_the_reason() {
     assert_eq!(column(&out, "status"), [2.0, 2.0]);
 }
 
-/// As a run: a point beyond its bound is told by 3, all within theirs by 0.
+/// As for a run, the exit code is 3 if a point exceeds its bound, and 0 if all points are within their bounds.
 #[test]
 fn a_sweep_ends_with_the_code_of_a_run() {
     let folder = Folder::new("sweep-codes");

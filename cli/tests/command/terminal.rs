@@ -1,4 +1,4 @@
-//! What fits a terminal, what helps at it, and what is read from it.
+//! Output that fits a terminal, help on a terminal, and input from it.
 
 use crate::common::{Folder, on, rotor, with};
 use crate::rotor::gallery;
@@ -39,7 +39,7 @@ fn help_fits_and_has_examples() {
         }
         assert!(short.contains("Examples:\n"));
     }
-    // Without a terminal lines are those of a page.
+    // Without a terminal, lines have the width of a page.
     fits(&rotor("run --help").out, 100, "no terminal");
 }
 
@@ -85,7 +85,7 @@ fn derivations_fit() {
                 let what = format!("{arguments:?}, {width}");
                 let done = with(&gallery, arguments, "", Some(width)).succeeds();
                 fits(&done.out, width, &what);
-                // Headings are underlined by as many letters as they have: only what is no rule is compared.
+                // The underline of a heading has the width of the heading, so rules are not compared.
                 let lines = |text: &str| -> Vec<String> {
                     let rule =
                         |line: &&str| !line.is_empty() && line.chars().all(|c| "=-".contains(c));

@@ -1,5 +1,5 @@
-//! Initial values as velocities: their momenta are those of the discrete Legendre transform, compared with closed forms; what
-//! gives no momenta is told with what to write.
+//! Initial values as velocities: their momenta come from the discrete Legendre transform, and are compared with
+//! closed forms. If there are no momenta, the message says what to write.
 
 use crate::common::Folder;
 use crate::ran::{Ran, run};
@@ -174,7 +174,7 @@ fn matrices_quaternions_and_rotations_of_the_plane_start_with_velocities() {
     );
 }
 
-/// A double pendulum: the momentum of the bob that rests is that of the other one's motion.
+/// A double pendulum: the bob at rest has a momentum due to the motion of the other bob.
 #[test]
 fn what_is_not_given_rests_and_has_the_momentum_of_coupled_velocities() {
     let model = "model DoublePendulum {
@@ -234,7 +234,7 @@ fn along_a_line_velocities_are_values_expressions_or_lists() {
     }
 }
 
-/// The printed case of a chain names the velocity that may stand in the place of a momentum.
+/// The printed case of a chain names the velocity that may replace a momentum.
 #[test]
 fn printed_cases_of_chains_name_velocities() {
     let folder = Folder::new("velocities-printed");
@@ -336,7 +336,7 @@ fn a_sweep_keeps_velocities_and_varies_them() {
             "sweep @kepler.clebsch --case @case.toml --vary {what} --out @out --force"
         ))
     };
-    // The energy m (v^2/2 - 1) at the start, and how far it is kept, are those of the momentum at each point.
+    // The energy m (v^2/2 - 1) at the start and its drift depend on the momentum at each point.
     let columns = |name: &str| folder.samples("out/sweep.csv").column(name);
     vary("m=1,2").succeeds();
     for (m, p) in [1.0, 2.0].into_iter().zip(columns("momentum_2")) {

@@ -175,7 +175,7 @@ fn a_fluid_on_a_torus_has_cells_that_fill_it() {
     let points = cells.numbers("Points", "Points");
     let ends = &cells.arrays[&("Polys".to_owned(), "offsets".to_owned())];
     assert_eq!(ends.last().copied(), Some(cells.count("Points") as u64));
-    // The areas of the polygons by their corners are those of the cells, and fill the square.
+    // The areas of the polygons, computed from their corners, equal the areas of the cells and fill the square.
     let areas = cells.numbers("CellData", "area");
     let mut first = 0;
     for (end, area) in ends.iter().zip(&areas) {
@@ -217,14 +217,14 @@ fn a_fluid_on_a_grid_has_an_image_of_its_nodes() {
     let (model, case) = shipped("fluids/particle-mesh-2d");
     run(&model, Some(&case), &["--steps", "2", "--every", "2"], &out);
     let text = fs::read_to_string(&members(&out, "grid")[1].1).expect("a file");
-    // Along the channel, where it is periodic, the first node stands at the seam once more.
+    // The channel is periodic along its length, so the first node is repeated at the seam.
     assert!(text.contains("Extent=\"0 32 0 16 0 0\""));
     assert!(text.contains("Spacing=\"0.0625 0.0625 1.0\""));
     let read = Read::of(&members(&out, "grid")[1].1);
     let depth = read.numbers("PointData", "H");
     assert_eq!(depth.len(), 33 * 17);
     assert_eq!(depth[..33], depth[33 * 16..]);
-    // The bump stands in the middle.
+    // The bump is in the middle.
     let smoothed = read.numbers("PointData", "S");
     let top = (0..33 * 17).max_by(|a, b| smoothed[*a].total_cmp(&smoothed[*b]));
     assert_eq!(top, Some(33 * 8 + 16));
@@ -290,7 +290,7 @@ fn the_folder_is_replaced_with_the_other_results_and_never_with_what_is_not_of_a
     rotor(&arguments).succeeds();
     assert!(!Path::new(&format!("{out}/vtk")).exists());
     assert_eq!(folder.names(), ["out"]);
-    // What was written without them has none to go on with.
+    // A run without these files cannot be resumed with them.
     folder
         .rotor("run harmonic-rotor --steps 10 --vtk --resume --out @out")
         .refuses("without --vtk");
@@ -326,7 +326,7 @@ fn what_is_not_seen_is_refused_before_it_runs() {
     rotor("run harmonic-rotor --vtk").ended(2);
 }
 
-/// Interrupted, a run leaves the files up to there; gone on with, those of a run that was left alone.
+/// An interrupted run leaves the files so far. A resumed run leaves the same files as an uninterrupted run.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_is_gone_on_with_to_the_same_files() {

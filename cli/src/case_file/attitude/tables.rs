@@ -8,7 +8,7 @@ use clebsch::card::Kind;
 use clebsch::nalgebra::{Matrix3, Vector3};
 use toml::de::{DeTable, DeValue};
 
-/// Two directions are opposite if their sum is no longer than this.
+/// Two unit directions are opposite if the length of their sum is at most this.
 const OPPOSITE: f64 = 1e-9;
 
 /// The tables that state a rotation: the keys of each.
@@ -79,7 +79,7 @@ fn other<'k>(keys: &[&'k str], key: &str) -> &'k str {
     others.next().copied().unwrap_or_default()
 }
 
-/// A vector of three numbers, made a unit one.
+/// A vector of three numbers, normalised.
 fn direction(key: &str, value: &DeValue<'_>, of: &Numbers<'_>) -> Result<Vector3<f64>, String> {
     let field = Kind::Vector.field("", [3, 1], "");
     let all = entries(&field, value, of).map_err(|why| format!("{key}: {why}"))?;
@@ -98,7 +98,8 @@ fn about(axis: Vector3<f64>, angle: f64) -> Matrix3<f64> {
     Matrix3::identity() * cosine + hat * sine + axis * axis.transpose() * (1.0 - cosine)
 }
 
-/// Sine and cosine, zero where they are zero but for the rounding of the angle: a quarter turn has zeros in its matrix.
+/// Sine and cosine. Values within the rounding error of the angle are set to zero, so that a quarter turn has
+/// exact zeros.
 pub(super) fn sine_and_cosine(angle: f64) -> (f64, f64) {
     let (sine, cosine) = angle.sin_cos();
     let rounding = f64::EPSILON * angle.abs().max(1.0);
@@ -132,7 +133,7 @@ fn euler(
     }))
 }
 
-/// The shortest turn from one direction to another.
+/// The smallest rotation from one direction to another.
 fn between(from: Vector3<f64>, to: Vector3<f64>) -> Result<Matrix3<f64>, String> {
     if (from + to).norm() <= OPPOSITE {
         return Err(

@@ -1,5 +1,5 @@
-//! Numbers and expressions at the sites of a fluid. Takes a value of a case; gives a number for each component at each site, or
-//! what is wrong with it and where that stands.
+//! Numbers and expressions at the sites of a fluid. Takes a value of a case; gives a number for each component
+//! at each site, or an error with its position.
 
 use super::meshes::Meshes;
 use super::{Reader, Wrong, size};
@@ -60,8 +60,8 @@ impl Reader<'_> {
         all.get(d).copied()
     }
 
-    /// Numbers, expressions, a list of either for each component, a list with an element for each site, or an array of a file,
-    /// that of this name where none is named.
+    /// Reads a number, an expression, a list, or an array of a file. A list has an element for each component,
+    /// or for each site. If the value names no array, the array is called `named`.
     pub(super) fn read(
         &self,
         q: &Quantity,
@@ -154,7 +154,7 @@ impl Reader<'_> {
         value_here.map_err(|why| told(text, value, &why))
     }
 
-    /// An expression, and the meshes that it takes.
+    /// An expression, and the meshes in it.
     fn expression(&self, q: &Quantity, text: &str) -> Result<(SiteData, Meshes), String> {
         let data = SiteData::read(text)?;
         let meshes = self.meshes_in(q, &data)?;
@@ -181,7 +181,7 @@ impl Reader<'_> {
     }
 }
 
-/// An error of an expression, where it stands.
+/// An error in an expression, with its position.
 fn told(text: &str, value: &Spanned<DeValue<'_>>, why: &str) -> Wrong {
     Wrong {
         why: format!("\"{text}\": {why}"),

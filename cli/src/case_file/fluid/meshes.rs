@@ -1,5 +1,6 @@
-//! Meshes of a model in the values of its start: `S`, interpolated at the particles, and `slope(S, 1)`. Takes an expression; gives the
-//! meshes in it at the particles where these start, by the model's own functionals, or says why one has no value there.
+//! Meshes of a model in initial values: `S`, interpolated at the particles, and `slope(S, 1)`.
+//! Takes an expression; gives its meshes at the initial positions of the particles, computed by the model's own
+//! functionals. Reports a mesh that is undefined there.
 
 use super::Reader;
 use crate::case_file::names::Names as _;
@@ -9,7 +10,7 @@ use clebsch_core::lattice::{Kind, Quantity};
 use clebsch_interpret::{AtParticles, Placed, Unvalued, at_particles};
 use std::rc::Rc;
 
-/// The meshes that an expression takes, by the names that it writes.
+/// The meshes in an expression, by the names in its text.
 pub(super) struct Meshes {
     each: Vec<(String, Rc<AtParticles>)>,
     /// How many directions the domain has.
@@ -37,7 +38,7 @@ impl Meshes {
 }
 
 impl Reader<'_> {
-    /// The numbers of what the case gives, by the name in the model: at all sites, of the domain, or one.
+    /// The numbers that the case gives for a name of the model: at all sites, of the domain, or a single one.
     pub(super) fn given(&self, name: &str) -> Option<Vec<f64>> {
         let key = ascii(name);
         let column = self.fluid.columns.get(&key).map(|c| c.numbers.clone());
@@ -46,7 +47,7 @@ impl Reader<'_> {
         column.or_else(whole).or_else(number)
     }
 
-    /// The meshes in an expression, where their values may stand.
+    /// The meshes in an expression, if they are allowed there.
     pub(super) fn meshes_in(&self, q: &Quantity, data: &SiteData) -> Result<Meshes, String> {
         let directions = self.space.lengths.len();
         for (name, along) in data.slopes()? {
@@ -68,7 +69,7 @@ impl Reader<'_> {
         }
         let mut each = Vec::new();
         for name in data.names() {
-            // What has a value otherwise keeps it.
+            // A name that already has a value keeps it.
             if let Some(mesh) = self.mesh(&name)
                 && self.number(q, &name, 0).is_none()
             {
@@ -92,7 +93,7 @@ impl Reader<'_> {
         own.is_some_and(|q| self.is_grid(q))
     }
 
-    /// The meshes whose slopes may be taken, in words.
+    /// The names of the meshes whose slopes are defined, for messages.
     fn on_grid(&self) -> String {
         let all = self.stated.lattice.meshes.iter().enumerate();
         let own = all.filter(|(at, _)| self.stands_on_grid(*at));
@@ -112,7 +113,7 @@ impl Reader<'_> {
         )
     }
 
-    /// A mesh at the particles where they start, for a value of a quantity.
+    /// A mesh at the initial positions of the particles, for a value of a quantity.
     fn at_start(&self, q: &Quantity, name: &str, mesh: usize) -> Result<Rc<AtParticles>, String> {
         let lattice = &self.stated.lattice;
         let Some(places) = lattice.places() else {
@@ -167,7 +168,7 @@ impl Reader<'_> {
         Ok(found)
     }
 
-    /// Where a mesh may stand, in words.
+    /// The message that states where a mesh may be used.
     fn instead(&self, name: &str, of: &str, mesh: usize) -> String {
         let example = match (self.stands_on_grid(mesh), self.space.lengths.len()) {
             (false, 1) => format!("\"{name}\""),

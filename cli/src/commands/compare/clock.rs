@@ -1,5 +1,5 @@
-//! Time per step. Takes what starts a method afresh; gives nanoseconds, the least over a few blocks of
-//! steps: whatever else the machine does only adds. For ratios worth quoting there are the benches.
+//! Time per step. Takes a function that starts a method; gives nanoseconds, the minimum over a few blocks of
+//! steps, since other load only adds time. For published ratios use the benches.
 
 use crate::plan::Plan;
 use clebsch::card::Card;
@@ -11,7 +11,7 @@ const BLOCKS: usize = 5;
 /// Steps of a block: some 20 microseconds at least, far above the resolution of the clock.
 const STEPS: u64 = 2_000;
 
-/// The generated stepper; `None` when it does not take the steps.
+/// The generated stepper; `None` if it does not complete the steps.
 pub(super) fn generated(card: &Card, plan: &Plan) -> Option<f64> {
     let steps = plan.case.steps.min(STEPS);
     least(steps, || {
@@ -24,7 +24,7 @@ pub(super) fn generated(card: &Card, plan: &Plan) -> Option<f64> {
     })
 }
 
-/// Another method; `None` when it does not take the steps.
+/// Another method; `None` if it does not complete the steps.
 pub(super) fn other(plan: &Plan, offer: &Offer) -> Option<f64> {
     let case = &plan.case;
     let steps = case.steps.min(STEPS);

@@ -1,6 +1,6 @@
-//! The courses that are compared: what each method says at the same nodes. Takes a plan; gives records
-//! of observables and invariants, those of other methods computed by the model itself from the state
-//! that the method shows.
+//! The runs that are compared: the results of each method at the same nodes.
+//! Takes a plan; gives records of observables and invariants. For other methods, the model itself computes them
+//! from the state of the method.
 
 use crate::plan::Plan;
 use crate::terminal::failure::Failure;
@@ -11,22 +11,22 @@ use clebsch::record::{Record, Table};
 use clebsch::scalar::largest;
 use clebsch_comparisons::gallery::{Offer, Problem};
 
-/// Steps of the extrapolated reference: h over each of these.
+/// The step sizes of the extrapolated reference are h divided by each of these.
 const PARTS: [u32; 6] = [1, 2, 3, 4, 6, 8];
 
-/// A method's samples, up to where it gave up.
+/// The samples of a method, up to the node where it stopped.
 #[derive(Clone, Debug)]
 pub(crate) struct Course {
-    /// The samples; fewer than asked for when the method gave up.
+    /// The samples. There are fewer than requested if the method stopped.
     pub record: Record,
     /// The node that was not reached, and why.
     pub stopped: Option<(u64, String)>,
 }
 
-/// The generated stepper's course, and the natural scale of each component of the invariants along it.
+/// The run of the generated stepper, and the natural scale of each component of the invariants along it.
 ///
 /// # Errors
-/// Usage or failed, as for a run; failed when it does not come to its end.
+/// Usage or failed, as for a run; failed if it is not completed.
 pub(crate) fn generated(
     card: &Card,
     plan: &Plan,
@@ -39,7 +39,7 @@ pub(crate) fn generated(
     }
 }
 
-/// The same as far as it goes.
+/// The run of the generated stepper up to the node where it stops.
 ///
 /// # Errors
 /// Usage or failed, as for a run that makes no step.
@@ -58,7 +58,7 @@ pub(crate) fn up_to_stop(
         if summary.steps == 0 {
             return Err(Failure::Failed(error.to_string()));
         }
-        // The last node that was reached is sampled too, where others have no sample.
+        // The last node that was reached is sampled as well. Other runs have no sample there.
         record.keep(|node| node.is_multiple_of(plan.every.max(1)));
     }
     let course = Course {
@@ -99,7 +99,7 @@ fn follow(
                 .map_err(|_| (node, "finds no solution".to_owned()))?;
         }
         if node.is_multiple_of(plan.every.max(1)) || node == case.steps {
-            // The model itself says what it would observe there.
+            // The model computes its observables from the state of the method.
             let here = (card.open)(&case.parameters, &method.shown(), Settings::step(case.h))
                 .map_err(|error| (node, format!("no state of the model: {error}")))?;
             push(record, node, case.h, here.as_ref()).map_err(|what| (node, what))?;
@@ -108,13 +108,12 @@ fn follow(
     Ok(())
 }
 
-/// A reference for any model: the generated stepper with shorter and shorter steps, extrapolated to
-/// step zero (Richardson; Neville's scheme). It measures the step, not the equations. Gives the
-/// course and the difference that the shortest step makes, relative to each observable's component of
-/// largest magnitude.
+/// A reference for any model: the generated stepper with smaller and smaller step sizes, extrapolated to step
+/// size zero (Richardson; Neville's scheme). It measures the error of the step, not of the equations. Gives the
+/// run and the change due to the smallest step size, relative to the largest component of each observable.
 ///
 /// # Errors
-/// Failed: a run with a shorter step does not come to its end.
+/// Failed: a run with a smaller step size is not completed.
 pub(crate) fn extrapolated(card: &Card, plan: &Plan) -> Result<(Course, f64), Failure> {
     let mut records = Vec::new();
     for part in PARTS {
@@ -139,8 +138,8 @@ pub(crate) fn extrapolated(card: &Card, plan: &Plan) -> Result<(Course, f64), Fa
     Ok((course, accuracy))
 }
 
-/// The values of runs with several step sizes, extrapolated to step zero: `places` are the powers of the steps that errors
-/// are made of.
+/// The values of runs with several step sizes, extrapolated to step size zero. `places` are the powers of the
+/// step size in the error.
 ///
 /// # Errors
 /// Failed: there is no run.
@@ -158,7 +157,7 @@ pub(crate) fn extrapolation(records: &[&Record], places: &[f64]) -> Result<Recor
     })
 }
 
-/// Values at step zero of the polynomial through all records, and the change by the last of them.
+/// Values at step size zero of the polynomial through all records, and the change due to the last record.
 fn neville(
     records: &[&Record],
     places: &[f64],
@@ -177,7 +176,7 @@ fn neville(
             .iter()
             .filter_map(|table| table.numbers.get(index).copied())
             .collect();
-        // In place, from the end: after pass `order` an entry is extrapolated from order + 1 records.
+        // Works in place, from the end: after pass `order` an entry is extrapolated from order + 1 records.
         for order in 1..column.len() {
             for row in (order..column.len()).rev() {
                 let pairs = (places.get(row), places.get(row - order));
@@ -194,7 +193,7 @@ fn neville(
             }
         }
         let last = column.pop().unwrap_or(f64::NAN);
-        // What is left before it does without the record of the shortest step.
+        // The extrapolation without the record of the smallest step size.
         let without = column.pop().unwrap_or(f64::NAN);
         values.push(last);
         changes.push(last - without);
@@ -215,7 +214,7 @@ fn empty(card: &Card) -> Record {
     }
 }
 
-/// Adds a sample, unless it holds what is no number.
+/// Adds a sample. Fails if a number in it is not finite.
 #[allow(clippy::cast_precision_loss)]
 fn push(record: &mut Record, node: u64, h: f64, here: &dyn Trajectory) -> Result<(), String> {
     let mut observables = vec![0.0; record.observables.width];

@@ -22,7 +22,7 @@ pub(super) fn comparison(card: &Card, plan: &Plan, done: &Comparison) -> Result<
         return Err("nothing was compared".to_owned());
     };
     for (index, curve) in first.errors.iter().enumerate() {
-        // The reference has no error against itself.
+        // The error of the reference is zero by definition, so it is not drawn.
         let others = done
             .scores
             .iter()
@@ -45,7 +45,8 @@ pub(super) fn comparison(card: &Card, plan: &Plan, done: &Comparison) -> Result<
                 .iter()
                 .enumerate()
                 .filter_map(|(stroke, score)| Some((stroke, score, score.drifts.get(index)?))),
-            // The reference has no curve among the errors.
+            // If there are error panels, their legend names all methods except the reference, so only the
+            // reference is named here.
             &|score| index == 0 && (!errors || score.role == Some(Role::Reference)),
         ));
     }
@@ -91,7 +92,7 @@ fn panel<'a>(
                 .into_iter()
                 .map(logarithm)
                 .collect(),
-            // It lies on the derived one: dashed, so that both are seen.
+            // The curve coincides with the generated one, so it is dashed to show both.
             stroke: match score.role {
                 Some(Role::ByHand) => Stroke::number(stroke).dashed(),
                 _ => Stroke::number(stroke),

@@ -1,4 +1,4 @@
-//! `clebsch compare`: the generated stepper beside the hand-written one and other methods. Takes a
+//! `clebsch compare`: the generated stepper, the hand-written one and other methods. Takes a
 //! model and a case; gives errors against a reference, drifts and times, as table, JSON, CSV and plot.
 
 mod clock;
@@ -32,9 +32,9 @@ use std::path::PathBuf;
 /// Files of a comparison.
 const FILES: [&str; 3] = ["comparison.csv", "comparison.json", "comparison.svg"];
 
-/// A comparison that has come to its end.
+/// A completed comparison.
 pub(crate) struct Comparison {
-    /// What the errors are measured against, and how good it is known to be.
+    /// The reference for the errors, and its accuracy as far as it is known.
     pub reference: String,
     /// How the model's own stepper came about.
     pub made: Made,
@@ -42,12 +42,11 @@ pub(crate) struct Comparison {
     pub scores: Vec<Score>,
 }
 
-/// Runs the command.
+/// Runs the command. If a method stops early, its row reports the part that it computed. If the generated
+/// stepper stops early, the exit code equals the exit code of a run that stopped.
 ///
 /// # Errors
-/// Usage for a wrong request; failed when the generated stepper makes no step, or the file system gives up.
-/// A method that gives up later is reported in its line with what it computed, and where it is the
-/// generated stepper, the exit code is that of a run that stopped.
+/// Usage: the request is wrong. Failed: the generated stepper makes no step, or a file cannot be written.
 pub fn compare(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -98,7 +97,7 @@ pub fn compare(
             write!(streams.out, "\n{written}")?;
         }
     }
-    // The exit code says the same; nothing is lost when this cannot be written.
+    // The exit code reports the stop as well, so a message that cannot be written is not lost.
     if let Some((_, why)) = &stopped {
         let _ = writeln!(streams.err, "clebsch: {why}");
     }
@@ -115,7 +114,7 @@ pub(crate) enum Made {
 }
 
 impl Made {
-    /// What tables and files call it.
+    /// The name in tables and files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Built => "generated",
@@ -124,17 +123,17 @@ impl Made {
     }
 }
 
-/// Compares everything there is for the model.
+/// Compares all methods that are available for the model.
 ///
 /// # Errors
-/// Those of the model's own stepper.
+/// As for the model's own stepper.
 pub(crate) fn against_all(
     card: &Card,
     plan: &Plan,
     made: Made,
     progress: bool,
 ) -> Result<Comparison, Failure> {
-    // Other methods are written for the equations of the gallery, which another model of that name has not.
+    // Other methods implement the equations of the gallery. A different model with the same name has none.
     let shipped = clebsch_models::find(card.kebab);
     let offers = match shipped.is_some_and(|e| e.card.fingerprint == card.fingerprint) {
         true => offers(card.kebab),
@@ -168,7 +167,7 @@ pub(crate) fn against_all(
             (offer.name, offer.doc.to_owned(), clock::other(plan, &offer)),
         ),
         None => {
-            // Of a motion that ends early, as far as it goes.
+            // If the run stops early, the reference ends at the same node.
             let mut reached = plan.clone();
             if let Some((node, _)) = &own.stopped {
                 reached.case.steps = node - 1;
@@ -225,7 +224,7 @@ pub(crate) fn against_all(
             course,
         ));
     }
-    // The first is what a model takes that was asked for none.
+    // If no solver is requested, the model takes its first solver.
     let own = plan
         .solver
         .map(Method::name)
@@ -254,8 +253,8 @@ pub(crate) fn against_all(
     })
 }
 
-/// The generated stepper otherwise than asked for. A case may be too stiff for the longest steps of a
-/// composition, or beyond a solver's reach: then its line says so.
+/// The generated stepper with another solver or order. A case may be too stiff for the largest steps of a
+/// composition, or beyond the reach of a solver. The row then gives the reason.
 fn course_or_why(card: &Card, plan: &Plan) -> Course {
     match course::up_to_stop(card, plan, false) {
         Ok((course, _)) => course,

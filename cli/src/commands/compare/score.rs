@@ -32,17 +32,17 @@ impl Curve {
     }
 }
 
-/// What a method did.
+/// The result of a method.
 #[derive(Clone, Debug)]
 pub(crate) struct Score {
     /// Name for tables and files.
     pub name: String,
-    /// What it is.
+    /// A description.
     pub doc: String,
-    /// What it is for; `None` for the generated stepper.
+    /// The role of the method; `None` for the generated stepper.
     pub role: Option<Role>,
-    /// Error of each state field: distance to the reference over the reference's largest norm, or
-    /// absolute where that is zero.
+    /// Error of each state field: distance to the reference, relative to the reference's largest norm. The
+    /// error is absolute if that norm is zero.
     pub errors: Vec<Curve>,
     /// Drift of each invariant over its natural scale.
     pub drifts: Vec<Curve>,
@@ -58,8 +58,8 @@ const MOST_FIELDS: usize = 8;
 /// A quantity of the state: its name, and its columns among the observables.
 type Quantity = (&'static str, Vec<Range<usize>>);
 
-/// The fields that make up the state. A model whose observables contain none of its initial values is compared by all
-/// of them. If there are many, those of all sites or copies, `q_0`, `q_1`, ..., are one quantity `q`.
+/// The fields that form the state. If no observable is an initial value, all observables form the state. Many
+/// copies of a quantity, `q_0`, `q_1`, ..., are combined to one quantity `q`.
 fn state(card: &Card) -> Vec<Quantity> {
     let mut from = 0;
     let placed: Vec<(&'static Field, Range<usize>)> = card
@@ -99,7 +99,7 @@ fn norm(values: impl Iterator<Item = f64>) -> f64 {
     values.map(|value| value * value).sum::<f64>().sqrt()
 }
 
-/// Errors of `record` against `truth`, one curve a field; absolute where the reference is zero.
+/// Errors of `record` against `truth`, one curve per field. The error is absolute if the reference is zero.
 pub(crate) fn errors(card: &Card, record: &Record, truth: &Record) -> Vec<Curve> {
     let part = |row: &[f64], columns: &[Range<usize>]| -> Vec<f64> {
         let each = columns.iter().filter_map(|own| row.get(own.clone()));
@@ -122,8 +122,8 @@ pub(crate) fn errors(card: &Card, record: &Record, truth: &Record) -> Vec<Curve>
     state(card).into_iter().map(curve).collect()
 }
 
-/// Drifts of the invariants of `record`, the largest component of each, over the natural scales;
-/// absolute where they are zero.
+/// Drifts of the invariants of `record`, the largest component of each, relative to the natural scales. A drift
+/// is absolute if its scale is zero.
 pub(crate) fn drifts(card: &Card, record: &Record, scales: &[f64]) -> Vec<Curve> {
     let mut from = 0;
     let curve = |invariant: &'static clebsch::card::Invariant| {
@@ -202,7 +202,7 @@ pub(crate) fn table(scores: &[Score], width: Option<usize>) -> String {
         let mut row = vec![score.name.clone(), time];
         let curves = score.errors.iter().chain(&score.drifts);
         row.extend(curves.map(|curve| match (score.role, &score.stopped) {
-            // The generated stepper as far as it went.
+            // The generated stepper up to the node where it stopped.
             (None, Some(_)) if !curve.points.is_empty() => number(curve.worst()),
             (_, Some(_)) => "-".to_owned(),
             _ => number(curve.worst()),

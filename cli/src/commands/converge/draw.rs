@@ -1,5 +1,6 @@
-//! The plot of `clebsch converge`: errors against the step size, both logarithmic, beside a line of the step's order.
-//! Takes what was measured; gives SVG.
+//! The plot of `clebsch converge`: errors against the step size, both logarithmic, with a line of the step's
+//! order.
+//! Takes the measured errors; gives SVG.
 
 use super::levels::Measured;
 use crate::plan::Plan;
@@ -58,7 +59,7 @@ pub(super) fn figure(card: &Card, plan: &Plan, done: &Measured) -> Result<String
     figure.svg()
 }
 
-/// A line of the order below the curves, as long as it stays above the floor.
+/// A line with the slope of the order below the curves, cut at the floor.
 fn slope(curves: &[Curve], steps: &[f64], order: f64) -> Option<Vec<(f64, f64)>> {
     let firsts = curves.iter().filter_map(|curve| curve.points.first());
     let lowest = firsts.map(|point| point.1).fold(f64::INFINITY, f64::min) - 0.3;

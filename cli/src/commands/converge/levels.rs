@@ -8,7 +8,7 @@ use crate::terminal::failure::Failure;
 use clebsch::card::Card;
 use clebsch::record::Record;
 
-/// Relative errors below this are rounding of some thousand steps, and have no order.
+/// Relative errors below this are the rounding errors of some thousand steps; no order is computed from them.
 pub(super) const ROUNDING: f64 = 1e-12;
 
 /// The errors of one step size.
@@ -20,26 +20,28 @@ pub(super) struct Level {
     pub steps: u64,
     /// The error of each quantity, relative to its largest size.
     pub errors: Vec<f64>,
-    /// The order between this step size and the one before; none where there is none, or where errors are rounding.
+    /// The order between the previous step size and this one. `None` for the first step size, and if the errors
+    /// are rounding.
     pub orders: Vec<Option<f64>>,
 }
 
-/// What was measured.
+/// The results of the measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Measured {
     /// The quantities, by the names of files.
     pub names: Vec<&'static str>,
     /// The largest step size first.
     pub levels: Vec<Level>,
-    /// The order of each quantity: the slope of a line fitted to the logarithms of its errors; none of fewer than two errors
-    /// above rounding.
+    /// The order of each quantity: the slope of a line fitted to the logarithms of its errors. `None` if fewer
+    /// than two errors exceed rounding.
     pub fitted: Vec<Option<f64>>,
 }
 
-/// Orders that differ by more are not yet those of small steps.
+/// If consecutive orders differ by more than this, the step sizes are not yet in the asymptotic range.
 const SETTLED: f64 = 0.2;
 
-/// Differences between runs that fall slower than this, with the step halved, have odd powers of it too.
+/// If the differences between runs decrease with a lower order than this, the error has odd powers of the step
+/// size too.
 const EVEN: f64 = 1.5;
 
 impl Measured {
@@ -56,13 +58,13 @@ impl Measured {
             let h = plan.case.h / parts as f64;
             finer.case.h = h;
             finer.case.steps = plan.case.steps.saturating_mul(parts);
-            // The start and the end alone.
+            // Only the start and the end are sampled.
             finer.every = finer.case.steps;
             let (course, _) =
                 generated(card, &finer, progress).map_err(|failure| at(h, failure))?;
             runs.push((h, finer.case.steps, course.record));
         }
-        // The error of a reversible step has even powers of h alone.
+        // The error of a reversible step has only even powers of h.
         let power = if card.reversible { 2 } else { 1 };
         let records: Vec<&Record> = runs.iter().map(|(_, _, record)| record).collect();
         let limit = |power: i32| {
@@ -76,7 +78,8 @@ impl Measured {
         for (h, steps, record) in &runs {
             let curves = errors(card, record, &by_step);
             names = curves.iter().map(|curve| curve.name).collect();
-            // What is seen at a node may be of lower order than the motion, as a momentum that is not projected.
+            // A quantity at a node may have a lower order than the motion, such as a momentum that is not
+            // projected.
             let odd = errors(card, record, &all_powers);
             let each = curves.iter().zip(&odd).zip(&is_even);
             let errors: Vec<f64> = each
@@ -101,7 +104,8 @@ impl Measured {
         })
     }
 
-    /// Whether the order of a quantity has stopped changing: its last three are alike. Four step sizes give three.
+    /// Whether the order of a quantity has converged: its last three values agree. They require four step
+    /// sizes.
     pub(super) fn is_settled(&self, at: usize) -> bool {
         let orders = self
             .levels
@@ -131,7 +135,7 @@ fn evens(card: &Card, records: &[&Record]) -> Vec<bool> {
             [coarse, fine] => order((&of(coarse), &of(fine))),
             _ => None,
         });
-        // The last one that is not rounding: the smaller the steps, the more the lowest power is left alone.
+        // The last difference above rounding: for small steps the lowest power dominates.
         each.next_back()
     };
     (0..count)

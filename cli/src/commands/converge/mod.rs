@@ -28,7 +28,7 @@ const FILES: [&str; 3] = ["convergence.csv", "convergence.json", "convergence.sv
 /// Runs the command.
 ///
 /// # Errors
-/// Usage for a wrong request; failed when a run does not reach the time, or the file system gives up.
+/// Usage: the request is wrong. Failed: a run does not reach the end time, or a file cannot be written.
 pub(crate) fn converge(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -89,7 +89,7 @@ pub(crate) fn converge(
     Ok(DONE)
 }
 
-/// What is told of quantities whose errors fall slower than the order of the step says.
+/// The message about quantities whose errors decrease more slowly than the order of the step predicts.
 fn lower(done: &Measured, order: u32) -> Option<String> {
     let all = || done.names.iter().zip(&done.fitted);
     let is_lower = |fitted: &Option<f64>| fitted.is_some_and(|p| p < f64::from(order) - LOWER);
@@ -123,7 +123,7 @@ fn lower(done: &Measured, order: u32) -> Option<String> {
     })
 }
 
-/// By how much a fitted order may be below that of the step.
+/// How far a fitted order may be below the order of the step.
 const LOWER: f64 = 0.4;
 
 fn table(done: &Measured, width: Option<usize>) -> String {

@@ -1,5 +1,6 @@
-//! The files of `generated/` for one model: its derivation as Markdown and LaTeX, with what is cited of it, and the emitted
-//! Rust. The same bytes on every machine; a test checks that the committed ones are these.
+//! The files of `generated/` for one model: its derivation as Markdown and LaTeX, with citations, and the
+//! emitted Rust. Their bytes are the same on every machine. A test checks that the committed files are up to
+//! date.
 
 mod calls;
 
@@ -53,8 +54,8 @@ pub fn formatted(tokens: TokenStream) -> Result<String, String> {
     Ok(calls::with_calls(&prettyplease::unparse(&file)))
 }
 
-/// What stands inside the module that is emitted, as the file of that module: its documentation and what it
-/// allows are those of the file.
+/// The content of the emitted module as a file. The attributes of the module, such as its documentation, become
+/// inner attributes of the file.
 fn of_module(emitted: TokenStream) -> TokenStream {
     let Ok(file) = syn::parse2::<syn::File>(emitted.clone()) else {
         return emitted;

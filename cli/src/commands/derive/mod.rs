@@ -50,17 +50,17 @@ pub fn derive(
     let (derivation, warnings) =
         derived(&name, &source, citations, format, proofs, width).map_err(Failure::Usage)?;
     streams.out.write_all(derivation.as_bytes())?;
-    // What cannot be written there is in the derivation too.
+    // A warning that cannot be written is not lost: the derivation contains it.
     let _ = streams.err.write_all(warnings.as_bytes());
     Ok(())
 }
 
-/// The second prover is left out of an ordinary build, which would take longer by a sixth.
+/// An ordinary build omits the second prover, which would add a sixth to its time.
 const WITHOUT_PROVER: &str = "this command was built without the second prover; build it with `cargo run --profile quick \
      -p clebsch-cli --features second-proof -- derive MODEL --second-proof`; `--explain` shows the first proof";
 
-/// The text of a model and what is cited of it: of the gallery when there is one of that name, else of the file, which
-/// cites nothing; `-` is standard input.
+/// The text of a model and its citations. A name of the gallery comes first, then a file, which has no
+/// citations; `-` is standard input.
 fn source(
     gallery: &Gallery,
     name: &str,
@@ -84,18 +84,18 @@ fn source(
     Ok((name, text, citations))
 }
 
-/// What is printed beside the equations, in all forms but rust and json.
+/// The proofs to print with the equations, in all formats except rust and json.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Proofs {
     /// The proof by normal forms.
     pub explain: bool,
-    /// What equality saturation makes of each step of it, which takes longer than all the rest.
+    /// The proof of each step by equality saturation. It takes longer than everything else.
     pub second: bool,
-    /// LaTeX is a document that compiles by itself.
+    /// Whether LaTeX is a complete document.
     pub standalone: bool,
 }
 
-/// The form that is asked for: a document by itself is of LaTeX.
+/// The requested format. `--standalone` implies LaTeX.
 fn format(matches: &ArgMatches) -> Result<&str, Failure> {
     let format = matches
         .get_one::<String>("format")
@@ -110,12 +110,13 @@ fn format(matches: &ArgMatches) -> Result<&str, Failure> {
     }
 }
 
-/// Columns of the plain text where the terminal has more.
+/// The largest width of plain text on a wider terminal.
 const PAGE: usize = 100;
 
-/// The derivation of the model text `source` (of the file or model `name`) in the form `format`: text, latex, markdown,
-/// rust or json, or the ending of such a file, with what is cited of it and the proofs asked for; plain text in lines of
-/// at most `width` letters. Beside it the warnings, with line, column and caret.
+/// The derivation of the model text `source`, from the file or model `name`, with its citations and the
+/// requested proofs. `format` is text, latex, markdown, rust or json, or the ending of such a file. Lines of
+/// plain text have at most `width` letters. The second value contains the warnings, with line, column and
+/// caret.
 pub(crate) fn derived(
     name: &str,
     source: &str,
@@ -155,7 +156,7 @@ pub(crate) fn derived(
     Ok((printed, warnings))
 }
 
-/// The same of a model with labels.
+/// The derivation of a model with labels.
 fn on_lattice(
     model: &Model,
     source: &str,
@@ -194,7 +195,7 @@ fn on_lattice(
     Ok((text, warnings.collect()))
 }
 
-/// The proof by normal form, and what equality saturation makes of each of its steps.
+/// The proof by normal form, and the proof of each of its steps by equality saturation.
 fn explanation(derivation: &Derivation, proofs: Proofs) -> String {
     let mut text = String::new();
     if proofs.explain {
@@ -209,7 +210,7 @@ fn explanation(derivation: &Derivation, proofs: Proofs) -> String {
     text
 }
 
-/// What equality saturation makes of each step.
+/// The proof of each step by equality saturation.
 #[cfg(feature = "second-proof")]
 fn second_proof(derivation: &Derivation) -> String {
     let mut text = "Second proof, by equality saturation (egg), step by step:\n".to_owned();
@@ -222,7 +223,7 @@ fn second_proof(derivation: &Derivation) -> String {
     text
 }
 
-/// Nothing: the request was refused.
+/// Empty: without the feature such a request is rejected earlier.
 #[cfg(not(feature = "second-proof"))]
 fn second_proof(_: &Derivation) -> String {
     String::new()
@@ -250,7 +251,7 @@ fn write_all(gallery: &Gallery, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes beside the old file and renames, so that a reader sees the old or the new one whole.
+/// Writes a temporary file and renames it, so that a reader sees either the old or the new file whole.
 fn replace_file(folder: &Path, file: &str, contents: &str) -> Result<(), Failure> {
     let (partial, target) = (folder.join(format!(".{file}.partial")), folder.join(file));
     std::fs::write(&partial, contents)

@@ -1,5 +1,6 @@
-//! The data of figures 3.1 to 3.3 by the bipolar form of the thesis, `Q = Rᵀ D S`, beside the placement: the first steps, since in
-//! the bipolar form a step near equal stretches takes long to be shown principal.
+//! The data of figures 3.1 to 3.3 with the bipolar form of the thesis, `Q = Rᵀ D S`, for comparison with the
+//! placement. Only the first steps are drawn: near equal stretches it takes long to prove that a step of the
+//! bipolar form is principal.
 //! Takes the gallery with both models; gives one sheet.
 
 use super::elastic::{self, Course};
@@ -17,7 +18,7 @@ const NAME: &str = "thesis-figure-3-1";
 /// Steps that are drawn.
 const STEPS: u64 = 500;
 
-/// What is drawn of the bipolar form, at every node.
+/// The quantities of the bipolar form that are drawn, at every node.
 struct Bipolar {
     /// Stretches, each followed through those equal to it.
     stretches: [Series; 3],
@@ -149,7 +150,8 @@ pub(super) fn beside(gallery: &Gallery) -> Result<String, Failure> {
 mod tests {
     use super::*;
 
-    /// A turn of both ends at equal rates moves nothing where the stretches agree: what (3.55) leaves is the fourth power of the angle.
+    /// If the stretches agree, rotating both ends at equal rates changes nothing. The error of (3.55) is the
+    /// fourth power of the angle.
     #[test]
     fn kinetic_energy_of_a_step() {
         let one = Vector3::new(1.0, 1.0, 1.0);
@@ -158,7 +160,7 @@ mod tests {
         let fourth = axis.norm_squared().powi(2);
         let left = kinetic([turn, turn], &one, &one) / fourth;
         assert!((left - 1.0).abs() < 0.05, "{left}");
-        // |Q' - Q|²/2 of Q = D S, where S alone turns: exact, for then nothing is left out of (3.55).
+        // |Q' - Q|²/2 for Q = D S, if only S rotates. (3.55) is then exact.
         let d = Vector3::new(1.1, 0.9, 1.4);
         let q = Matrix3::from_diagonal(&d);
         let moved = (q * turn - q).norm_squared() / 2.0;
@@ -166,8 +168,8 @@ mod tests {
         assert!((found - moved).abs() < 1e-14, "{found} {moved}");
     }
 
-    /// Both are the same motion to first order in the step: the volume of the placement is that of the bipolar form to 1e-4 (3e-4
-    /// after 200 steps), a thousandth of its swing, and h² times the energies to the part of the kinetic energy that turns.
+    /// Both forms agree to first order in the step size. Their volumes differ by less than 1e-4 (3e-4 after 200
+    /// steps), a thousandth of the amplitude. The changes of h² times the energy differ by less than 1e-5.
     #[test]
     fn both_forms_are_the_same_motion() {
         let gallery = elastic::with_files(&Gallery::default()).expect("are read");

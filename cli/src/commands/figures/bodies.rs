@@ -1,5 +1,5 @@
-//! Figures 2.5 to 2.8 (free body), 2.11 (heavy top), 2.12 to 2.14 (coupled bodies): momenta beside the
-//! exact ones or ode45's, Casimirs, energy, spatial momentum. Takes the gallery; gives SVG.
+//! Figures 2.5 to 2.8 (free body), 2.11 (heavy top), 2.12 to 2.14 (coupled bodies): momenta compared with exact
+//! ones or ode45, Casimirs, energy, spatial momentum. Takes the gallery; gives SVG.
 
 use super::sheet::{
     Series, Subject, change, dashed, difference, line, magnitudes, norm, panel, sheet,
@@ -139,7 +139,7 @@ fn drifts(gallery: &Gallery, title: &str, case: &str) -> Result<String, Failure>
             .collect()
     });
     let momentum = runs.each_ref().map(|(subject, record)| {
-        // Attitude times body momentum: what the attitude makes of it, not the stored constant.
+        // The product of attitude and body momentum depends on the attitude, unlike the stored constant.
         let r = subject.components(record, "Lambda");
         let mu = subject.components(record, "body_momentum");
         let turned: Vec<Series> = (0..3).map(|row| change(&product(&r, &mu, row))).collect();
@@ -252,7 +252,7 @@ pub(super) fn coupled_difference(gallery: &Gallery) -> Result<String, Failure> {
             vec![line("", 0, difference(&of(&own), &of(&ode45)))],
         ));
     }
-    // Equal bodies in equal states stay equal, until rounding has grown: the motion is unstable.
+    // Equal bodies in equal states stay equal until rounding has grown, since the motion is unstable.
     let apart = |record: &Record| {
         let one = pair.components(record, "body_momentum_Lambda1");
         let two = pair.components(record, "body_momentum_Lambda2");

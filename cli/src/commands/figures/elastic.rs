@@ -1,5 +1,6 @@
-//! Figures 3.1 to 3.3: the pulsating body of the thesis's section 3.2, by its placement, from a model file. Takes nothing of the
-//! gallery; gives SVG of stretches and volume, momenta along the stretches, energy and what is conserved.
+//! Figures 3.1 to 3.3: the pulsating body of the thesis's section 3.2, by its placement, from a model file.
+//! Takes nothing from the gallery; gives SVG of stretches and volume, momenta along the stretches, energy and
+//! invariants.
 
 use super::bipolar;
 use super::sheet::{Series, Subject, change, dashed, line, magnitudes, norm, panel, sheet};
@@ -17,7 +18,7 @@ pub(super) const NAME: &str = "thesis-figures";
 /// The gallery with the models of these figures.
 ///
 /// # Errors
-/// Usage: a model or case is not read.
+/// Usage: a model or case cannot be read.
 pub(super) fn with_files(gallery: &Gallery) -> Result<Gallery, Failure> {
     let mut gallery = gallery.clone();
     for (model, text, file, case) in [
@@ -41,7 +42,7 @@ pub(super) fn with_files(gallery: &Gallery) -> Result<Gallery, Failure> {
     Ok(gallery)
 }
 
-/// What is drawn, at every node.
+/// The quantities that are drawn, at every node.
 pub(super) struct Course {
     /// Stretches, the largest first.
     pub stretches: [Series; 3],
@@ -49,7 +50,7 @@ pub(super) struct Course {
     pub volume: Series,
     /// Angular momentum and circulation, by components along the axes of stretches in space and in the reference.
     pub along: [[Series; 3]; 2],
-    /// The same along fixed axes.
+    /// The same vectors along fixed axes.
     pub fixed: [[Series; 3]; 2],
     /// Kinetic energy of the edge that starts at the node, and the stored one at the node.
     pub forward: Series,
@@ -94,7 +95,7 @@ impl Course {
                 .zip(0..)
             {
                 let found = found.unwrap_or(*known);
-                // The sign of an axis is that of the node before.
+                // The sign of an axis follows the axis at the node before.
                 let signs = |c: usize| {
                     let (new, old) = (found.column(c), known.column(c));
                     if new.dot(&old) < 0.0 { -1.0 } else { 1.0 }
@@ -116,7 +117,7 @@ impl Course {
     }
 }
 
-/// The stored energy of these stretches, of the numbers of the case.
+/// The stored energy for these stretches and the parameters of the case.
 pub(super) fn stored(body: &Subject<'_>, s: &Vector3<f64>) -> f64 {
     let number = |name: &str| {
         let fields = body.card().parameters.iter().zip(&body.case.parameters);
@@ -247,8 +248,8 @@ mod tests {
         ]
     }
 
-    /// Ranges over ten thousand steps of the same data by another program. The motion is not regular: rounding decides the last
-    /// digits of what is reached late.
+    /// Ranges over ten thousand steps of the same data, computed by another program. The motion is not regular:
+    /// rounding affects the last digits of extremes that are reached late.
     #[test]
     fn ranges_are_those_of_the_reference_run() {
         let gallery = with_files(&Gallery::default()).expect("is read");

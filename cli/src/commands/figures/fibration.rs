@@ -1,6 +1,6 @@
-//! The momentum map of SU(2): for a fixed spatial momentum m the unit quaternions go to body momenta,
-//! q -> q* m q, and this is Hopf's fibration. Takes the gallery; gives the sphere of body momenta with
-//! the course of a case on it, and the fibres over its points, circles of the three-sphere projected
+//! The momentum map of SU(2): for a fixed spatial momentum m, q -> q* m q maps unit quaternions to body
+//! momenta. This is Hopf's fibration. Takes the gallery; gives the sphere of body momenta with the path of a
+//! case, and the fibres over its points. The fibres are circles of the three-sphere, projected
 //! stereographically to space.
 
 use super::sheet::Subject;
@@ -21,7 +21,7 @@ const PIECES: usize = 90;
 const WIDTH: f64 = 1000.0;
 const HEIGHT: f64 = 560.0;
 
-/// Direction from which both pictures are seen.
+/// The view direction of both pictures.
 const VIEW: [f64; 2] = [0.55, 0.95];
 
 /// Right, up, and towards the reader, with the spatial momentum upward.
@@ -73,8 +73,8 @@ fn projected(q: &Quaternion) -> Vector {
     [x * scale, y * scale, z * scale]
 }
 
-/// The quaternion after a turn by twice the angle about m in space, which leaves q* m q alone: the
-/// fibre through q.
+/// The quaternion after a rotation by twice the angle about m in space. The rotation leaves q* m q unchanged,
+/// so it follows the fibre through q.
 fn turned(q: &Quaternion, m: &Vector, angle: f64) -> Quaternion {
     let (s, c) = angle.sin_cos();
     Quaternion([c, s * m[0], s * m[1], s * m[2]]).times(q)
@@ -144,7 +144,7 @@ fn base(m: &Vector) -> impl Iterator<Item = (Vector, &'static str)> {
     })
 }
 
-/// The sphere, the points and the course of the case; what is behind is faint.
+/// The sphere, the points and the path of the case. The far side is drawn faint.
 fn sphere(svg: &mut String, m: &Vector, course: impl Iterator<Item = Vector>) {
     const CENTRE: [f64; 2] = [200.0, 310.0];
     const RADIUS: f64 = 160.0;
@@ -208,7 +208,7 @@ fn fibres(svg: &mut String, m: &Vector) {
     }
     pieces.sort_by(|a, b| a.depth.total_cmp(&b.depth));
     for piece in &pieces {
-        // A white rim parts a line from those behind it.
+        // A white rim separates a line from the lines behind it.
         stroke(svg, piece.ends, "white", 5.0);
         stroke(svg, piece.ends, piece.color, 2.2);
     }
@@ -226,7 +226,7 @@ mod tests {
     use super::*;
     use clebsch_comparisons::handwritten::attitude::apply_transposed;
 
-    /// Every point of a fibre goes to the same body momentum; a turn about another axis does not.
+    /// Every point of a fibre maps to the same body momentum. A rotation about another axis changes it.
     #[test]
     fn fibres_lie_over_their_points() {
         let m = [0.6, 0.0, 0.8];

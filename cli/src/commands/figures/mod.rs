@@ -1,6 +1,6 @@
-//! `clebsch figures`: the figures of the thesis's second chapter, each from a named case of the gallery, and 3.1 to 3.3 from a
-//! model file.
-//! Takes the gallery; gives one SVG per figure in a new folder. What each shows: docs/figures.md.
+//! `clebsch figures`: the figures of the thesis's second chapter from named cases of the gallery, and 3.1 to
+//! 3.3 from a model file.
+//! Takes the gallery; gives one SVG per figure in a new folder. docs/figures.md describes the figures.
 
 mod bipolar;
 mod bodies;
@@ -20,11 +20,11 @@ use serde_json::{Value, json};
 use std::io::Write;
 use std::path::PathBuf;
 
-/// A figure: its number in the thesis, its file, and what draws it.
+/// A figure: its number in the thesis, its file, and its drawing function.
 struct Figure {
     number: &'static str,
     file: &'static str,
-    /// The model whose cases it shows; left out when the gallery has no such model.
+    /// The model of the figure. If the gallery does not contain it, the figure is omitted.
     model: &'static str,
     draw: fn(&Gallery) -> Result<String, Failure>,
 }
@@ -144,7 +144,7 @@ const FIGURES: [Figure; 18] = [
 /// Runs the command.
 ///
 /// # Errors
-/// Usage: the folder exists, or the gallery lacks a case. Failed: a run or the file system gives up.
+/// Usage: the folder exists, or the gallery lacks a case. Failed: a run stops, or a file cannot be written.
 pub fn figures(
     gallery: &Gallery,
     matches: &ArgMatches,

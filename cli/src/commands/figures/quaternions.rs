@@ -1,5 +1,5 @@
 //! Figures 2.9 and 2.10: the symmetric body in unit quaternions. Takes the gallery; gives SVG of the
-//! quaternion's components, the body momentum, and what both conserve.
+//! quaternion's components, the body momentum, and their invariants.
 
 use super::sheet::{Series, Subject, change, line, magnitudes, norm, panel, sheet};
 use crate::models::gallery::Gallery;

@@ -1,4 +1,4 @@
-//! What the figures are put together from: courses of named cases, columns of their records, panels.
+//! The parts of the figures: runs of named cases, columns of their records, panels.
 //! Takes names of models, cases and fields; gives series of numbers and drawn sheets.
 
 use crate::commands::compare::course::{self, Course};
@@ -19,7 +19,7 @@ use clebsch_comparisons::gallery::{Offer, ode45, offers};
 /// A quantity at the nodes.
 pub(super) type Series = Vec<(f64, f64)>;
 
-/// A case of the gallery and what was computed for it.
+/// A case of the gallery.
 pub(super) struct Subject<'a> {
     entry: &'a Entry,
     pub case: &'a Case,
@@ -27,7 +27,7 @@ pub(super) struct Subject<'a> {
 
 impl<'a> Subject<'a> {
     /// # Errors
-    /// Usage: the gallery has no such model or case.
+    /// Usage: the gallery does not contain this model or case.
     pub fn new(gallery: &'a Gallery, model: &str, case: &str) -> Result<Self, Failure> {
         let entry = gallery.find(model)?;
         let case = gallery::case(entry, Some(case))?;
@@ -53,36 +53,36 @@ impl<'a> Subject<'a> {
         Plan::of(self.case, self.case.steps.div_ceil(10_000))
     }
 
-    /// What the generated stepper does.
+    /// The record of the generated stepper.
     ///
     /// # Errors
-    /// Failed: it gives up.
+    /// Failed: the stepper stops.
     pub fn generated(&self) -> Result<Record, Failure> {
         Ok(course::generated(self.card(), &self.plan(), false)?
             .0
             .record)
     }
 
-    /// What the reference of the model says.
+    /// The record of the model's reference method.
     ///
     /// # Errors
-    /// Failed: there is none, or it gives up.
+    /// Failed: the model has no reference, or the method stops.
     pub fn reference(&self) -> Result<Record, Failure> {
         self.follow(offers(self.card().kebab).into_iter().next())
     }
 
-    /// What ode45 makes of it.
+    /// The record of ode45.
     ///
     /// # Errors
-    /// Failed: it gives up.
+    /// Failed: the method stops.
     pub fn ode45(&self) -> Result<Record, Failure> {
         self.follow(ode45(self.card().kebab))
     }
 
-    /// What a method of this name makes of it.
+    /// The record of the method with this name.
     ///
     /// # Errors
-    /// Failed: there is none, or it gives up.
+    /// Failed: there is no such method, or it stops.
     pub fn by(&self, name: &str) -> Result<Record, Failure> {
         let mut found = offers(self.card().kebab).into_iter();
         self.follow(found.find(|offer| offer.name == name))
@@ -213,7 +213,7 @@ pub(super) fn line(label: &str, index: usize, values: Series) -> Line<'_> {
     }
 }
 
-/// The same, dashed, for what may lie on another line.
+/// A dashed line, for a curve that may coincide with another.
 pub(super) fn dashed(label: &str, index: usize, values: Series) -> Line<'_> {
     Line {
         label,

@@ -1,5 +1,5 @@
-//! Figures 2.15 to 2.17: the generated stepper of the free body beside McLachlan's splitting. Takes the
-//! gallery; gives SVG of energy against step length, time of computation, drift.
+//! Figures 2.15 to 2.17: the generated stepper of the free body and McLachlan's splitting. Takes the gallery;
+//! gives SVG of energy against step size, computing time, drift.
 
 use super::sheet::{Series, Subject, change, dashed, drawn, line, magnitudes, norm, sheet};
 
@@ -179,7 +179,7 @@ pub(super) fn time_against_steps(gallery: &Gallery) -> Result<String, Failure> {
     let mut draw = |label: &str, index: usize, time: &dyn Fn(u64) -> Result<f64, Failure>| {
         let mut points = Vec::new();
         for count in &counts {
-            // The least of three: whatever else the machine does only adds.
+            // The minimum of three times, since other load only adds time.
             let mut least = f64::INFINITY;
             for _ in 0..3 {
                 least = least.min(time(*count)?);

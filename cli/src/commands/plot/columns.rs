@@ -25,13 +25,14 @@ pub(super) struct Columns {
 /// A column within the range of time.
 #[derive(Clone, Debug)]
 pub(super) struct Series {
-    /// Its name as it was written.
+    /// The name as the user typed it.
     pub name: String,
-    /// The array that it is of.
+    /// The array that contains the column.
     pub of: String,
-    /// Its numbers, one a sample. A multiplier has none at node 0: no step has found it.
+    /// Its numbers, one per sample. A multiplier is undefined at node 0, before any step.
     pub values: Vec<f64>,
-    /// Of the largest number of the array at all samples, or the scale of the invariant: beside it numbers may be rounding.
+    /// The largest number of the array over all samples, or the scale of the invariant. Numbers far below it
+    /// may be rounding.
     pub size: f64,
 }
 
@@ -39,7 +40,7 @@ impl Columns {
     /// Opens the run in a folder.
     ///
     /// # Errors
-    /// Usage: there is none, or its trajectory cannot be read.
+    /// Usage: there is no run, or its trajectory cannot be read.
     pub fn open(folder: &Path) -> Result<Self, Failure> {
         let file = folder.join("trajectory.npz");
         if !file.is_file() {
@@ -103,7 +104,7 @@ impl Columns {
     /// The samples from one time to another.
     ///
     /// # Errors
-    /// Usage: fewer than two samples are left.
+    /// Usage: the range contains fewer than two samples.
     pub fn range(&self, from: Option<f64>, to: Option<f64>) -> Result<Range<usize>, Failure> {
         let (from, to) = (
             from.unwrap_or(f64::NEG_INFINITY),
@@ -124,10 +125,10 @@ impl Columns {
         }
     }
 
-    /// All columns that a name stands for: one component, or each of a vector or a matrix.
+    /// All columns with this name: one component, or each component of a vector or a matrix.
     ///
     /// # Errors
-    /// Usage: the run has no such column.
+    /// Usage: the run does not contain this column.
     pub fn all(&self, name: &str, range: &Range<usize>) -> Result<Vec<Series>, Failure> {
         let shape = match self.archive.has(name) && !self.has_sites(name) {
             true => Some(self.archive.array(name).map_err(Failure::Usage)?.shape),
@@ -148,7 +149,7 @@ impl Columns {
     /// One column.
     ///
     /// # Errors
-    /// Usage: the run has no such column.
+    /// Usage: the run does not contain this column.
     pub fn series(&self, name: &str, range: &Range<usize>) -> Result<Series, Failure> {
         let (of, array, entry) = self.found(name)?;
         let stride: usize = array.shape.iter().skip(1).product();
@@ -172,7 +173,7 @@ impl Columns {
         })
     }
 
-    /// The scale that the run gives to an invariant; 0 of other arrays.
+    /// The scale of an invariant in the run; 0 for other arrays.
     fn scale(&self, array: &str) -> f64 {
         let own = array.strip_prefix("invariant_");
         let invariants = self.run["results"]["invariants"].as_array();
@@ -181,7 +182,7 @@ impl Columns {
         found.and_then(|told| told["scale"].as_f64()).unwrap_or(0.0)
     }
 
-    /// Whether an array is of a multiplier: a run says how far each is off its constraint, and how fast.
+    /// Whether an array is a multiplier. A run has two invariants for each multiplier.
     fn is_multiplier(&self, array: &str) -> bool {
         is_multiplier(array, |name| self.archive.has(&format!("invariant_{name}")))
     }
@@ -197,7 +198,7 @@ impl Columns {
         Some(format!("{name}_{first} to {name}_{last}"))
     }
 
-    /// The shape of what an array has at one site, behind the number of samples: of a name such as `x_10`.
+    /// The shape of an array at one site, without the number of samples, for a name such as `x_10`.
     fn shape_at_site(&self, name: &str) -> Option<Vec<usize>> {
         let plain = plain(name);
         let (head, site) = plain.rsplit_once(['_', '.'])?;
@@ -274,8 +275,8 @@ impl Columns {
         )))
     }
 
-    /// Whether the first index behind the sample is a site: the array is that of a quantity with copies at sites, or what is
-    /// observed of one.
+    /// Whether the index after the sample is a site. This holds for a quantity with copies at sites, and for an
+    /// observable of such a quantity.
     fn has_sites(&self, array: &str) -> bool {
         let initial = self.run["initial"].as_object();
         let keys = || initial.into_iter().flat_map(|all| all.keys());
@@ -289,7 +290,7 @@ impl Columns {
         })
     }
 
-    /// The sites of an array, in its order. Those that an end gives are left out of it.
+    /// The sites of an array, in its order. Sites with a value given at an end are omitted.
     fn sites(&self, array: &str, inner: &[usize]) -> Vec<usize> {
         let count = inner.first().copied().unwrap_or(0);
         let stated = self.archive.array(&format!("sites_of_{array}")).ok();
@@ -313,7 +314,7 @@ fn plain(name: &str) -> String {
     points.replace([']', ' '], "")
 }
 
-/// The entry that a component names: none for a single number. Sites are named as they are counted along the chain.
+/// The entry that a component names; `None` for a single number. Sites have their numbers along the chain.
 fn entry(component: &str, inner: &[usize], sites: Option<&[usize]>) -> Option<usize> {
     let parts = component.split(['.', '_']);
     let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
@@ -351,7 +352,7 @@ fn entry(component: &str, inner: &[usize], sites: Option<&[usize]>) -> Option<us
     Some(before + own)
 }
 
-/// A column of an array, as it is written.
+/// An example of the name of a column of an array.
 fn example(name: &str, inner: &[usize], sites: Option<&[usize]>) -> String {
     let ends = sites.and_then(|sites| sites.first().zip(sites.last()));
     match (inner, ends) {

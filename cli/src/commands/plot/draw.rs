@@ -8,14 +8,14 @@ use crate::plots::figure::{Figure, Panel};
 use crate::plots::reduce;
 use crate::words::number::plain;
 
-/// Most points of a curve that is not a function of time.
+/// The largest number of points of a curve that is not a function of time.
 const MOST: usize = 20_000;
 
 /// Width over height of a chart of the size below.
 const SHAPE: f64 = 1.45;
 const HEIGHT: u32 = 520;
 
-/// Series against time, those of one array in one panel.
+/// Plots series against time, with one panel per array.
 pub(super) fn against_time(title: &str, time: &Series, all: &[Series]) -> Result<String, String> {
     let mut panels: Vec<(&Series, Vec<Curve>)> = Vec::new();
     for series in all {
@@ -49,7 +49,7 @@ pub(super) fn against_time(title: &str, time: &Series, all: &[Series]) -> Result
     figure.svg()
 }
 
-/// Series against others, each against its own. Components of one vector are drawn to one scale.
+/// Series against other series, in pairs. Components of one vector have the same scale.
 pub(super) fn against(
     title: &str,
     time: &Series,
@@ -113,7 +113,7 @@ fn curve(series: &Series, index: usize, points: Vec<(f64, f64)>) -> Curve {
     }
 }
 
-/// What is said of values that differ by no more than rounding in the numbers of their quantity.
+/// The note on values that differ only by the rounding of numbers of their size.
 fn rounding(series: &Series) -> Option<String> {
     let finite = series.values.iter().filter(|value| value.is_finite());
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
@@ -137,7 +137,7 @@ fn spread(values: impl Iterator<Item = f64>) -> (f64, f64) {
     if low > high {
         return (0.0, 1.0);
     }
-    // A constant is drawn in the middle of its own size.
+    // A constant is drawn in the middle of a range of its own size.
     let margin = match high > low {
         true => 0.05 * (high - low),
         false => (0.5 * high.abs()).max(0.5),
@@ -145,7 +145,7 @@ fn spread(values: impl Iterator<Item = f64>) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// The range about the same middle, of this length.
+/// The range with the same centre and this length.
 fn widened((low, high): (f64, f64), length: f64) -> (f64, f64) {
     let middle = 0.5 * (low + high);
     (middle - 0.5 * length, middle + 0.5 * length)

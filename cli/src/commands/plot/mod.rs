@@ -16,7 +16,8 @@ use std::path::{Path, PathBuf};
 /// Runs the command.
 ///
 /// # Errors
-/// Usage: no run in the folder, an unknown column, or an empty range of time; failed: the file system gives up.
+/// Usage: there is no run in the folder, a column is unknown, or the range of time is empty. Failed: a file
+/// cannot be read or written.
 pub(crate) fn plot(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result<u8, Failure> {
     let folder = matches
         .get_one::<PathBuf>("dir")
@@ -50,7 +51,7 @@ pub(crate) fn plot(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result<u8
     let title = columns.title();
     let drawn = match across.as_slice() {
         [] => draw::against_time(&title, &time, &up),
-        // Each against its own, or all against one.
+        // Pairs of columns, or all columns against one.
         own if own.len() == up.len() => draw::against(&title, &time, own, &up),
         [one] => draw::against(&title, &time, &vec![one.clone(); up.len()], &up),
         own => {
@@ -77,7 +78,7 @@ pub(crate) fn plot(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result<u8
     Ok(DONE)
 }
 
-/// The names of a list, between commas that stand in no brackets: `R[1,2],x` has two.
+/// Splits a list of names at commas outside brackets: `R[1,2],x` has two names.
 fn split(text: &str) -> Vec<&str> {
     let mut depth = 0_usize;
     let between = |letter: char| {
@@ -111,7 +112,7 @@ fn file_name(x: &[&str], y: &[&str]) -> String {
     format!("plot-{names}.svg")
 }
 
-/// Writes a picture whole, or not at all.
+/// Writes a picture completely, or not at all.
 fn written(name: &Path, text: &str, force: bool) -> Result<(), Failure> {
     if name.exists() && !force && !is_drawn(name) {
         return Err(Failure::Usage(format!(

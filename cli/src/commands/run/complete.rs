@@ -1,4 +1,4 @@
-//! A run that has come to its end already, where `--resume` goes on with it.
+//! `--resume` for a run that is already complete.
 
 use crate::output::{self, run_json};
 use crate::plan::Plan;
@@ -9,7 +9,7 @@ use clebsch::card::Card;
 use serde_json::json;
 use std::path::Path;
 
-/// Asked to go on with a run that has come to its end.
+/// Handles `--resume` for a run that is already complete.
 pub(super) fn already(
     card: &Card,
     plan: &Plan,
@@ -76,7 +76,7 @@ pub(super) fn already(
         true => writeln!(streams.out, "{there}")?,
         false => writeln!(streams.out, "complete already: {}", shown(target))?,
     }
-    // What was wrong with the run still is.
+    // The failures of the completed run are reported again.
     let results = &there["results"];
     let refuted = results["action_as_stated"]["holds"] == json!(false);
     if results["kept"] == json!(false) {

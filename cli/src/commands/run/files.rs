@@ -12,13 +12,13 @@ use crate::words::plain::shown;
 use clebsch::record::{Record, Rows as _, npz, write_csv};
 use std::io::Write;
 
-/// Most numbers that are written as text without being asked for: ten megabytes.
+/// By default, the largest number of values that are written as text: ten megabytes.
 const MOST_IN_CSV: u64 = 500_000;
 
 /// Writes all files into `staging`; gives their names.
 ///
 /// # Errors
-/// Failed: the file system refuses.
+/// Failed: a file cannot be written.
 pub(super) fn write(
     staging: &Staging,
     run: &Finished<'_>,

@@ -1,5 +1,6 @@
-//! A run on its way: so many steps at a time, in between signals, checkpoints and the bar.
-//! Takes a trajectory and what was seen of it; gives how it ended. How the steps are divided changes no result.
+//! The loop of a run: steps in batches, and between them signals, checkpoints and the progress bar.
+//! Takes a trajectory and its observations; gives how the run ended. The size of the batches does not affect
+//! the result.
 
 use crate::output::samples::Stream;
 use crate::output::{Listening, Staging};
@@ -14,14 +15,14 @@ use indicatif::ProgressBar;
 use std::io;
 use std::time::{Duration, Instant};
 
-/// Steps are made for so long before anything else is looked at.
+/// The duration of a batch of steps.
 const AT_A_TIME: Duration = Duration::from_millis(50);
 
 /// How a run ended.
 pub(crate) enum End {
     /// All steps are made.
     Whole,
-    /// One of them was not, or something is no number after it.
+    /// A step failed, or a number after it is not finite.
     Stopped(RunError),
     /// By this signal.
     Interrupted(u8),
@@ -29,9 +30,9 @@ pub(crate) enum End {
 
 /// A run on its way.
 pub(crate) struct Run<'a> {
-    /// What moves.
+    /// The motion.
     pub(crate) trajectory: &'a mut dyn Trajectory,
-    /// What was seen of it.
+    /// The observations of the motion so far.
     pub(crate) watch: Watch,
     /// Number of steps in all.
     pub(crate) steps: u64,
@@ -39,7 +40,7 @@ pub(crate) struct Run<'a> {
     pub(crate) progress: bool,
 }
 
-/// Where a run writes while it goes on.
+/// The output of a run while it computes.
 pub(crate) struct Kept<'a> {
     /// Its folder.
     pub(crate) staging: &'a mut Staging,
@@ -73,10 +74,11 @@ impl Run<'_> {
         }
     }
 
-    /// Makes the steps that are left.
+    /// Makes the remaining steps.
     ///
     /// # Errors
-    /// Failed: the file system refuses samples or checkpoints. What it took before can be gone on with.
+    /// Failed: samples or checkpoints cannot be written. The run can be resumed from the last checkpoint that
+    /// was written.
     pub(crate) fn follow(&mut self, kept: Option<&mut Kept<'_>>) -> Result<End, Failure> {
         let listening = Listening::begin();
         let bar = self.progress.then(|| progress_bar(self.steps, "steps"));
@@ -121,7 +123,7 @@ impl Run<'_> {
             let asked = listening.asked().filter(|_| !over);
             if let Some(kept) = &mut kept {
                 let due = last_checkpoint.elapsed().as_secs_f64() >= kept.seconds;
-                // At the end as well: writing the files may take as long, and be interrupted.
+                // Also at the end, since writing the files may take long and be interrupted.
                 let at_the_end = over && begun.elapsed() > AT_A_TIME;
                 if due || asked.is_some() || at_the_end {
                     self.checkpoint(kept)?;
@@ -187,7 +189,7 @@ impl Kept<'_> {
     }
 }
 
-/// Rows of the samples, where they are kept.
+/// The rows of the samples, if they are kept.
 struct Samples<'a>(Option<&'a mut Stream>);
 
 impl Observer for Samples<'_> {

@@ -1,4 +1,4 @@
-//! Standard output of a run, which may have no reader any more.
+//! Standard output of a run, whose reader may disconnect.
 
 use std::io::{self, Write};
 

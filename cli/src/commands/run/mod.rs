@@ -1,5 +1,5 @@
 //! `clebsch run`: from a case to a checked trajectory.
-//! Takes the gallery and the options; gives files, a table of what was conserved, and the exit code.
+//! Takes the gallery and the options; gives files, a table of the drift of invariants, and the exit code.
 
 mod complete;
 mod files;
@@ -40,15 +40,17 @@ use summary::Told;
 /// Steps whose every node is kept for the plots: all the swings there is room for, of 150 steps each.
 const OPENING: u64 = 10_000;
 
-/// Most numbers that are kept of them, a quarter of a gigabyte: of a fluid fewer steps.
+/// The largest number of values in these samples, a quarter of a gigabyte. For a fluid this limits the number
+/// of steps.
 const OPENING_NUMBERS: u64 = 1 << 25;
 
-/// Runs the command; the code is 0, 3 when an invariant exceeded its bound or the action as stated refutes a step, or 1 when a step after the
-/// first failed: what was computed before is shown and written then, marked as stopped.
+/// Runs the command. The exit code is 0 for a complete run, and 3 if an invariant exceeded its bound or a step
+/// contradicts the action as stated. It is 1 if a step after the first failed; the results so far are then
+/// shown and written, marked as stopped.
 ///
 /// # Errors
-/// Usage for a wrong request, failed when the solver refuses the first step or the file system gives
-/// up. Nothing is left behind then.
+/// Usage: the request is wrong. Failed: the solver fails in the first step, or a file cannot be written.
+/// Nothing is left behind.
 pub fn run(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -88,7 +90,7 @@ pub fn run(
             }
         }
     };
-    // With `--json` a warning stands in the object as well; nothing is lost when it cannot be written.
+    // With `--json` the object contains the warnings as well, so a warning that cannot be written is not lost.
     let mut warn = |warning: &str| {
         let _ = writeln!(streams.err, "clebsch: warning: {warning}");
     };
@@ -98,7 +100,7 @@ pub fn run(
         let _told = Waiting::told(what, streams.progress);
         plan.open(card)
     };
-    // Values that the model cannot work with are told before anything is searched for.
+    // Values that the model rejects are reported before the search for a stability limit.
     let started = match started {
         Err(wrong @ Failure::Usage(_)) => return Err(wrong),
         other => other,
@@ -109,7 +111,8 @@ pub fn run(
         StepLimit::of(card, &plan, step_limit::patience(matches))
     };
     let too_long = limit.warning(plan.case.h);
-    // Where the first step is refused, that it is too long is why, mostly.
+    // If the first step fails, the usual cause is a step size above the stability limit, so this warning comes
+    // first.
     let trajectory = started.inspect_err(|_| {
         too_long.iter().for_each(|warning| warn(warning));
     })?;
@@ -172,12 +175,12 @@ pub fn run(
     let end = following.follow(kept.as_mut())?;
     let summary = following.watch.summary();
     let halvings = following.trajectory.halvings();
-    // Steps before an interruption may have been judged as well.
+    // Steps before an interruption may have been judged.
     let stated = trajectory.verdict();
     let stated = (which != Which::None || stated.judged > 0).then(|| stated.clone());
     let why = match &end {
         End::Whole => None,
-        // A run without a step has no results.
+        // Without a step there are no results.
         End::Stopped(error) if summary.steps == 0 => {
             return Err(Failure::Failed(refused(error, &plan)));
         }
@@ -225,7 +228,7 @@ pub fn run(
                 }
             }
         };
-        // Of two things that went wrong both are said.
+        // If the run stopped and the files cannot be written, the message reports both.
         place = Some(write(&mut files).map_err(|failure| match &run.stopped {
             None => failure,
             Some(stopped) => Failure::Failed(format!("{}; {failure}", stopped.why)),
@@ -281,7 +284,7 @@ pub fn run(
     for warning in lost {
         let _ = writeln!(streams.err, "clebsch: warning: {warning}");
     }
-    // The exit code says the same; nothing is lost when these cannot be written.
+    // The exit code reports this as well, so a message that cannot be written is not lost.
     if !left.is_empty() {
         let message = format!("bound exceeded: {}", left.join(", "));
         let _ = writeln!(streams.err, "clebsch: {message}");
@@ -295,7 +298,7 @@ pub fn run(
     Ok(code)
 }
 
-/// Which steps are judged by the action as stated.
+/// The steps to judge by the action as stated.
 fn judged_steps(matches: &ArgMatches) -> Which {
     match matches.get_one::<String>("check").map(String::as_str) {
         Some("all") => Which::All,
@@ -304,7 +307,7 @@ fn judged_steps(matches: &ArgMatches) -> Which {
     }
 }
 
-/// The samples of a run that is gone on with.
+/// The samples of a run that is resumed.
 fn resumed(staging: &Staging, card: &Card, checkpoint: &Checkpoint) -> Result<Stream, Failure> {
     let (rows, sum) = (checkpoint.rows, checkpoint.sum);
     let again = Stream::again(staging.folder(), card, rows, sum);
@@ -323,7 +326,7 @@ fn cannot(staging: &Staging, error: &io::Error) -> Failure {
     Failure::io(&format!("cannot write {}", shown(&path)), error)
 }
 
-/// Why a step was refused. A run that halves steps has tried shorter ones, whichever is offered.
+/// The reason why a step failed. With `--halve`, smaller steps were tried as well.
 fn refused(error: &RunError, plan: &Plan) -> String {
     match (error, plan.halve) {
         (RunError::Step(_), true) => format!(
@@ -334,7 +337,7 @@ fn refused(error: &RunError, plan: &Plan) -> String {
     }
 }
 
-/// What a signal did.
+/// The message for a run that a signal interrupted.
 fn interrupted(signal: u8) -> String {
     let by = match signal {
         2 => "SIGINT".to_owned(),

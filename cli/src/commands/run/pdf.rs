@@ -1,10 +1,10 @@
-//! A picture for a paper as PDF, with its text set in a font of the machine. Built with the feature `pdf`
-//! alone: it is a hundred crates.
+//! A picture for a paper as PDF, with its text set in a font of the machine. It needs the feature `pdf`, which
+//! adds a hundred crates.
 
-/// The picture of an SVG in its own size; none where the command is built without the feature.
+/// The picture of an SVG in its own size; `None` if the command is built without the feature.
 ///
 /// # Errors
-/// Why it cannot be set, in a sentence.
+/// The reason why the picture cannot be converted, in a sentence.
 #[cfg(not(feature = "pdf"))]
 pub(super) fn pdf(_: &str) -> Option<Result<Vec<u8>, String>> {
     None
@@ -21,10 +21,10 @@ const FAMILIES: [&str; 6] = [
     "FreeSans",
 ];
 
-/// The picture of an SVG in its own size; none where the command is built without the feature.
+/// The picture of an SVG in its own size; `None` if the command is built without the feature.
 ///
 /// # Errors
-/// Why it cannot be set, in a sentence.
+/// The reason why the picture cannot be converted, in a sentence.
 #[cfg(feature = "pdf")]
 pub(super) fn pdf(svg: &str) -> Option<Result<Vec<u8>, String>> {
     Some(set(svg))

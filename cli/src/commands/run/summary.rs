@@ -1,4 +1,4 @@
-//! What `clebsch run` prints about a run: its title, and lines below the table of invariants.
+//! The text that `clebsch run` prints about a run: its title, and lines below the table of invariants.
 //! Takes a card, a plan and a finished run; gives text.
 
 use crate::output::Finished;
@@ -12,7 +12,7 @@ use crate::words::width::paragraph;
 use clebsch::card::Card;
 use std::io::Write;
 
-/// Where the texts of the derivation begin, behind their names.
+/// The column at which the texts of the derivation begin, after their names.
 const INDENT: usize = 21;
 
 /// How much a run prints.
@@ -20,16 +20,16 @@ const INDENT: usize = 21;
 pub(crate) enum Told {
     /// Warnings and errors only.
     Nothing,
-    /// The case and what was conserved.
+    /// The case and the drift of invariants.
     Result,
     /// The derivation and the solver as well.
     All,
 }
 
-/// Prints which case runs, and for [`Told::All`] what was derived for it and the `way` in which steps are made.
+/// Prints the case, and for [`Told::All`] also the derivation and the `way` in which steps are made.
 ///
 /// # Errors
-/// Those of writing.
+/// As for writing.
 pub(crate) fn title(
     out: &mut dyn Write,
     width: Option<usize>,
@@ -82,7 +82,7 @@ pub(crate) fn title(
     Ok(())
 }
 
-/// How well the steps are solved, and whether all were made.
+/// How well the steps are solved, and whether all steps were made.
 pub(crate) fn below_the_table(run: &Finished<'_>, made: u64) -> Vec<String> {
     let stopped = run.stopped.as_ref().map(|stopped| {
         let time = number::plain(stopped.time);

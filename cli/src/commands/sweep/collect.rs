@@ -1,5 +1,7 @@
-//! `clebsch collect`: the parts of a sweep joined, to the table of a sweep that was not divided, byte for byte.
-//! Takes the folders of all parts in any order; gives one, or says which part is missing or of another sweep.
+//! `clebsch collect`: joins the parts of a sweep. The table is identical to the table of an undivided sweep,
+//! byte for byte.
+//! Takes the folders of all parts in any order; gives one, or reports a part that is missing or belongs to
+//! another sweep.
 
 use super::points::Points;
 use super::table::{self, Columns};
@@ -22,7 +24,7 @@ pub(super) fn description(folder: &Path) -> Result<Value, String> {
         .map_err(|error| format!("{json} is damaged: {error}"))
 }
 
-/// A part: where it is, its first point and the one behind its last.
+/// A part: its folder, its first point, and the point after its last.
 struct Part<'a> {
     folder: &'a PathBuf,
     first: u64,
@@ -32,7 +34,8 @@ struct Part<'a> {
 /// Runs the command.
 ///
 /// # Errors
-/// Usage: a part is missing, given twice, damaged or of another sweep. Failed: the file system gives up.
+/// Usage: a part is missing, given twice, damaged or from another sweep. Failed: a file cannot be read or
+/// written.
 pub(crate) fn collect(matches: &ArgMatches, streams: &mut Streams<'_>) -> Result<u8, Failure> {
     let folders: Vec<&PathBuf> = matches
         .get_many::<PathBuf>("parts")

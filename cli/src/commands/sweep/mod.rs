@@ -1,6 +1,7 @@
-//! `clebsch sweep`: a case at every point of a grid of parameters, initial values and steps, on all cores.
-//! Takes the gallery and the options; gives one table with a row a point. A row is computed from its point alone, so that
-//! neither the number of cores, nor kills, nor a division into parts changes a bit of it.
+//! `clebsch sweep`: runs a case at every point of a grid of parameters, initial values and step sizes, on all
+//! cores.
+//! Takes the gallery and the options; gives one table with a row per point. A row depends only on its point.
+//! The number of cores, restarts, and a division into parts do not change a bit of it.
 
 mod collect;
 mod points;
@@ -37,14 +38,15 @@ struct Sweep<'a> {
     plan: &'a Plan,
     axes: &'a [Axis],
     columns: &'a Columns,
-    /// What a point is read from again, where expressions of the case hold what is varied.
+    /// The case and the arguments from which each point is read again, if expressions of the case contain a
+    /// varied quantity.
     again: Option<(&'a Resolved<'a>, &'a ArgMatches)>,
 }
 
-/// Runs the command. The exit code is that of a run: 0 if every point came to its end within its bounds.
+/// Runs the command. The exit code is 0 if every point completes its run within its bounds.
 ///
 /// # Errors
-/// Usage for a wrong request; failed when the file system gives up.
+/// Usage: the request is wrong. Failed: a file cannot be read or written.
 pub(crate) fn sweep(
     gallery: &Gallery,
     matches: &ArgMatches,
@@ -206,7 +208,7 @@ pub(crate) fn sweep(
     }
 }
 
-/// What came out; the exit code says it too.
+/// Prints the result and returns the exit code.
 fn tell(
     object: &Value,
     tally: &table::Tally,
@@ -231,7 +233,7 @@ fn tell(
     Ok(tally.code())
 }
 
-/// Asked to go on with a sweep that has come to its end.
+/// Handles `--resume` for a sweep that is already complete.
 fn already(
     target: &std::path::Path,
     own: &Value,

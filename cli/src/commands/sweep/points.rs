@@ -1,5 +1,6 @@
-//! The points of a sweep on disk: a row of eight-byte numbers each, at its place, with a checksum of its own.
-//! Takes rows in any order from several threads; knows after a kill which are there.
+//! The points of a sweep on disk: for each point a row of eight-byte numbers with its own checksum, at a fixed
+//! offset.
+//! Takes rows in any order from several threads; after a restart it finds the complete rows.
 
 use crate::output::samples::{self, Rows};
 use std::fs::{File, OpenOptions};
@@ -19,12 +20,12 @@ fn sum(words: &[u64]) -> u64 {
     words
         .iter()
         .for_each(|word| sum.update(&word.to_le_bytes()));
-    // A row of zeros, where nothing was written, has another one.
+    // A row of zeros, which was never written, has a different checksum.
     u64::from(sum.finalize()) | 1 << 32
 }
 
 impl Points {
-    /// Opens the file in a folder, or makes it, for `count` rows of `width` words beside the checksum.
+    /// Opens the file in a folder, or makes it, for `count` rows of `width` words plus the checksum.
     pub(super) fn open(folder: &Path, width: usize, count: u64) -> io::Result<Self> {
         let path = folder.join(samples::NAME);
         let options = &mut OpenOptions::new();
@@ -39,7 +40,7 @@ impl Points {
         Ok(Self { file, width, count })
     }
 
-    /// Which rows are there, whole: those of the points from `first` on.
+    /// For each point from `first` on, whether its row is complete.
     pub(super) fn there(&mut self, first: u64) -> io::Result<Vec<bool>> {
         self.file.seek(SeekFrom::Start(0))?;
         let mut file = BufReader::new(&self.file);
@@ -71,7 +72,7 @@ impl Points {
         self.file.write_all(&bytes)
     }
 
-    /// All rows, seen to the disk.
+    /// All rows, flushed to disk.
     pub(super) fn into_rows(self, folder: &Path) -> io::Result<Rows> {
         self.file.sync_all()?;
         Ok(Rows::of(

@@ -1,4 +1,4 @@
-//! One point of a sweep: what is run there, and its row of the table.
+//! One point of a sweep: its plan, and its row of the table.
 
 use super::{Sweep, table, vary};
 use crate::named::resolve::Resolved;
@@ -12,7 +12,8 @@ use std::borrow::Cow;
 const AT_A_TIME: u64 = 256;
 
 impl Sweep<'_> {
-    /// What is run at a point, and the values that are varied there. Velocities have the momenta of that point.
+    /// The plan of a point, and the varied values at that point. Momenta are computed from velocities at that
+    /// point.
     fn at(&self, point: u64) -> (Result<Plan, Failure>, Vec<f64>) {
         let values = vary::at(self.axes, point);
         let mut plan = match self.read_again(&values) {
@@ -29,7 +30,8 @@ impl Sweep<'_> {
         (started.map(|()| plan), values)
     }
 
-    /// The plan of a point before its values are put in: read again where expressions of the case follow them.
+    /// The plan of a point before its values are inserted. The case is read again if its expressions depend on
+    /// them.
     fn read_again(&self, values: &[f64]) -> Result<Plan, Failure> {
         let Some((resolved, matches)) = self.again else {
             return Ok(self.plan.clone());
@@ -43,12 +45,12 @@ impl Sweep<'_> {
             compiled: resolved.compiled,
         };
         let mut plan = Plan::new(&there, matches)?;
-        // How long a point runs is that of the case.
+        // The step size and the number of steps come from the plan of the sweep.
         (plan.case.h, plan.case.steps) = (self.plan.case.h, self.plan.case.steps);
         Ok(plan)
     }
 
-    /// Why a point is refused, in words.
+    /// The reason why a point cannot be started.
     pub(super) fn refusal(&self, point: u64) -> String {
         let (plan, _) = self.at(point);
         match plan.and_then(|plan| plan.open(self.card)) {
@@ -60,7 +62,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// Computes the row of a point; false when `asked` to stop before its end.
+    /// Computes the row of a point; false if `asked` stopped it before its end.
     pub(super) fn row(&self, point: u64, row: &mut [u64], asked: &dyn Fn() -> bool) -> bool {
         let (plan, values) = self.at(point);
         row.fill(f64::NAN.to_bits());

@@ -25,10 +25,10 @@ pub(super) const FILES: [&str; 6] = [
 pub(super) const DONE: f64 = 0.0;
 /// One that stopped before.
 pub(super) const STOPPED: f64 = 1.0;
-/// One whose first step is refused, or its values.
+/// The status of a point whose values are rejected or whose first step fails.
 pub(super) const REFUSED: f64 = 2.0;
 
-/// What stands in each column.
+/// The columns of the table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Columns {
     pub(super) names: Vec<String>,
@@ -37,7 +37,7 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// Those of a sweep.
+    /// The columns of a sweep.
     pub(super) fn of(card: &Card, axes: &[Axis]) -> Self {
         let mut all = vec!["point".to_owned()];
         all.extend(axes.iter().map(|axis| axis.quantity.name.clone()));
@@ -56,7 +56,7 @@ impl Columns {
         Self { names: all, status }
     }
 
-    /// Those that a file names.
+    /// The columns in the header of a file.
     pub(super) fn read(header: &str) -> Option<Self> {
         let names: Vec<String> = header.split(',').map(str::to_owned).collect();
         let status = names.iter().position(|name| name == "status")?;
@@ -84,7 +84,7 @@ impl Tally {
         )
     }
 
-    /// The exit code, as that of a run: failed if a point did not come to its end, else whether a bound was exceeded.
+    /// The exit code: failed if a point was not completed; otherwise it states whether a bound was exceeded.
     pub(super) fn code(&self) -> u8 {
         match (self.stopped + self.refused, self.beyond_bounds) {
             (0, 0) => crate::terminal::failure::DONE,

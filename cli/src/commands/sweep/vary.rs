@@ -1,4 +1,4 @@
-//! What a sweep varies: `gU.z=0:1:100`, `h=0.1,0.05`, `kappa=2`.
+//! The varied quantities of a sweep: `gU.z=0:1:100`, `h=0.1,0.05`, `kappa=2`.
 //! Takes texts and a card; gives quantities with their values, and the values of each point of the grid.
 
 use crate::case_file::Motion;
@@ -7,25 +7,25 @@ use crate::terminal::failure::Failure;
 use crate::words::plain::shown;
 use clebsch::card::Card;
 
-/// Most values of one quantity, so that a slip of the keyboard does not fill the memory.
+/// The largest number of values of one quantity, so that a typing error does not fill the memory.
 const MOST_VALUES: usize = 1_000_000;
 
-/// Most points of a sweep.
+/// The largest number of points of a sweep.
 pub(super) const MOST_POINTS: u64 = 1_000_000_000;
 
 /// A quantity and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Axis {
-    /// What takes the values; its name is that of a column.
+    /// The quantity that is varied. Its name is the name of a column.
     pub(super) quantity: Quantity,
     pub(super) values: Vec<f64>,
 }
 
 impl Axis {
-    /// Reads `NAME=FROM:TO:COUNT` or `NAME=VALUE,VALUE,...`, for a case that was read from this text if it has one.
+    /// Reads `NAME=FROM:TO:COUNT` or `NAME=VALUE,VALUE,...`. `case` is the text of the case, if it has one.
     ///
     /// # Errors
-    /// Usage: what is wrong with it, and what the model has.
+    /// Usage: the text is wrong; the message lists the names of the model.
     pub(super) fn read(
         text: &str,
         card: &Card,
@@ -60,7 +60,7 @@ fn read_values(text: &str) -> Result<Vec<f64>, String> {
             if count == 1 {
                 return Ok(vec![from]);
             }
-            // The ends are what was written, to the last bit.
+            // The first and the last value are exactly the given numbers.
             let last = count - 1;
             let value = |i: usize| match i {
                 _ if i == last => to,

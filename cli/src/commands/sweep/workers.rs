@@ -1,4 +1,4 @@
-//! The points of a sweep on all cores. Takes the rows that are left; gives them to whichever core is free.
+//! Computes the points of a sweep on all cores. Takes the missing rows; distributes them to free cores.
 
 use super::Sweep;
 use super::points::Points;
@@ -9,11 +9,12 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// A checkpoint, which makes a killed sweep worth keeping, is written when it has taken so long: the rows need none.
+/// After this time a checkpoint is written, so that a killed sweep is kept. The rows themselves need no
+/// checkpoint.
 const WORTH_KEEPING: Duration = Duration::from_millis(200);
 
 impl Sweep<'_> {
-    /// Computes the rows that are left, on all cores; the signal that ended it, if one did.
+    /// Computes the missing rows on all cores. Gives the signal that ended the computation, if any.
     pub(super) fn compute(
         &self,
         first: u64,

@@ -1,6 +1,6 @@
-//! Runs that are gone on with: what an interrupted or killed run left, taken up again.
-//! Takes the place where its results were to go; gives its folder, locked and hidden, with its checkpoint, or why there
-//! is nothing to go on with. What cannot be taken up is left as it is.
+//! Resumes interrupted or killed runs.
+//! Takes the folder for the results; gives its hidden folder, locked, with its checkpoint, or the reason why
+//! there is nothing to resume. A run that cannot be resumed is left unchanged.
 
 use super::{PARTIAL, Staging, first_free, interrupted, standing};
 use crate::output::samples;
@@ -10,7 +10,7 @@ use crate::words::plain::shown;
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
-/// What there is to go on with.
+/// The result of the search for a run to resume.
 pub enum Found {
     /// Nothing: the run begins.
     Nothing,
@@ -20,13 +20,13 @@ pub enum Found {
     Results,
 }
 
-/// Whether a folder holds a checkpoint.
+/// Whether a folder contains a checkpoint.
 fn has_checkpoint(folder: &Path) -> bool {
     folder.join(checkpoint::NAME).is_file()
 }
 
 impl Staging {
-    /// Hidden folders of other runs into the same place.
+    /// Hidden folders of other runs into the same target.
     fn partial_folders(target: &Path) -> Vec<PathBuf> {
         let parent = target.parent().filter(|p| !p.as_os_str().is_empty());
         let Ok(siblings) = fs::read_dir(parent.unwrap_or(Path::new("."))) else {
@@ -43,7 +43,8 @@ impl Staging {
             else {
                 continue;
             };
-            // Names with the number of this process may be of another run of its own, not yet locked.
+            // A name with the number of this process may belong to another run in this process that is not yet
+            // locked.
             let another: u32 = id;
             if another != own {
                 let parent = target.parent().unwrap_or(Path::new(""));
@@ -54,14 +55,14 @@ impl Staging {
         found
     }
 
-    /// The hidden folders of runs that are no more.
+    /// The hidden folders that no running process has locked.
     pub(super) fn abandoned(target: &Path) -> Vec<PathBuf> {
         let mut all = Self::partial_folders(target);
         all.retain(|folder| File::open(folder).is_ok_and(|file| file.try_lock().is_ok()));
         all
     }
 
-    /// Refuses to begin a run where a killed one could be gone on with.
+    /// Fails if a killed run into this target can be resumed.
     pub(super) fn nothing_to_resume(target: &Path) -> Result<(), Failure> {
         let mut left = Self::abandoned(target).into_iter();
         match left.find(|folder| has_checkpoint(folder)) {
@@ -74,11 +75,12 @@ impl Staging {
         }
     }
 
-    /// Looks for the run to go on with.
+    /// Looks for the run to resume.
     ///
     /// # Errors
-    /// Usage: a checkpoint is damaged or of another run, with the reason; what stands there is no run.
-    /// Failed: a run into the same folder goes on, or the file system gives up.
+    /// Usage: a checkpoint is damaged or belongs to another run, with the reason; or the target exists and is
+    /// not a run.
+    /// Failed: another process is writing a run into the same folder, or a file operation fails.
     pub(crate) fn resume(
         target: &Path,
         known: &[&'static str],
@@ -129,7 +131,8 @@ impl Staging {
         })
     }
 
-    /// Hides the folder of a run under the number of this process, and removes what is made anew.
+    /// Renames the folder of a run to a hidden name with the number of this process, and removes the remains of
+    /// other runs that cannot be resumed.
     fn take_up(
         target: &Path,
         known: &[&'static str],
@@ -162,7 +165,7 @@ impl Staging {
         }
         interrupted::begin(&staging.hidden, &[]);
         interrupted::keep(&staging.hidden);
-        // What others left that cannot be gone on with.
+        // The remains of other runs, which cannot be resumed.
         let mut others = Self::abandoned(target);
         others.retain(|folder| !has_checkpoint(folder));
         for folder in others {
@@ -171,8 +174,8 @@ impl Staging {
         Ok(staging)
     }
 
-    /// The run goes on: what is made anew at its end is removed. Before that, the folder goes back to where it
-    /// was taken from.
+    /// Continues the run: removes the files that are written anew at its end. Before this call, the folder can
+    /// return to its earlier path.
     pub(crate) fn go_on(&mut self) {
         self.taken_from = None;
         for name in &self.known {

@@ -1,4 +1,4 @@
-//! What belongs to no sites: bodies as points with the axes of their frames, and points that move by themselves.
+//! Bodies without sites: frames, drawn as points with axes, and points that move by themselves.
 //! Takes a card; gives a point for each.
 
 use super::columns::{axes, in_space, place};
@@ -11,23 +11,23 @@ use clebsch::record::vtk::{PolyData, Values};
 use std::collections::HashSet;
 use std::ops::Range;
 
-/// How far bodies without places are drawn from one another.
+/// The distance between bodies without positions.
 const APART: f64 = 2.6;
 
 struct Bodies {
     all: Vec<Body>,
-    /// Vectors that are drawn at bodies: momenta, of a single body also what it carries.
+    /// Vectors drawn at bodies: momenta, and other vectors if there is only one body.
     vectors: Vec<Vectors>,
 }
 
 struct Body {
     field: &'static Field,
     columns: Range<usize>,
-    /// Where it is drawn if it tells no place.
+    /// The position at which the body is drawn if it has none of its own.
     stands: [f64; 3],
 }
 
-/// One vector at each body, zero at those that have none.
+/// One vector per body; zero for bodies without this vector.
 struct Vectors {
     name: String,
     at: Vec<Option<Range<usize>>>,
@@ -51,7 +51,7 @@ pub(super) fn parts(card: &Card) -> Vec<(String, Box<dyn Part>)> {
         let starts = card.initial.iter().any(|f| f.ascii == field.ascii);
         let unknown = vec![f64::NAN; field.count()];
         let shape = [field.rows, field.cols];
-        // Of matrices those that move; others are carried along.
+        // A matrix is drawn only if it has its own momentum or an initial value; other matrices are advected.
         let turns = axes(field.kind, shape, &unknown).is_some()
             && (field.kind != Kind::Matrix || moves || starts);
         let is_point = diagonals.leave(field, behind);
@@ -73,7 +73,7 @@ pub(super) fn parts(card: &Card) -> Vec<(String, Box<dyn Part>)> {
     vec![("bodies".to_owned(), Box::new(Bodies { all, vectors }))]
 }
 
-/// Momenta by their names without those of the bodies; of a single body other vectors too.
+/// Momenta, by their names without the names of the bodies. If there is one body, other vectors as well.
 fn vectors(all: &[Body], alone: &[(&'static Field, Range<usize>)]) -> Vec<Vectors> {
     let mut out: Vec<Vectors> = Vec::new();
     let mut put = |name: String, body: usize, columns: Range<usize>| {
@@ -144,7 +144,7 @@ impl Part for Bodies {
         let frames: Vec<Option<[[f64; 3]; 3]>> = frames.collect();
         if frames.iter().any(Option::is_some) {
             for d in 0..3 {
-                // A point has no axes.
+                // The axes of a point are zero.
                 let each = frames.iter().map(|f| f.map_or([0.0; 3], |f| f[d]));
                 let each: Vec<[f64; 3]> = each.collect();
                 let name = format!("d{}", d + 1);

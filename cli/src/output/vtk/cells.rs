@@ -33,7 +33,7 @@ impl Cells {
         })
     }
 
-    /// The cells of a sample, with what stands at their particles; none where particles coincide.
+    /// The cells of a sample with the values at their particles. Empty if particles coincide.
     pub(crate) fn polygons(&mut self, row: &[f64]) -> PolyData {
         let own = &self.particles;
         let places: Vec<SVector<f64, 2>> = own

@@ -1,4 +1,4 @@
-//! Quantities as arrays of a file: numbers and vectors as they are, attitudes as the axes of their bodies.
+//! Quantities as arrays of a file: numbers and vectors unchanged, attitudes as the axes of their bodies.
 //! Takes the columns of a quantity at every point or cell; gives its arrays for a sample.
 
 use crate::output::attitude::matrix;
@@ -9,14 +9,14 @@ use std::ops::Range;
 /// A quantity at every point or at every cell.
 #[derive(Clone, Debug)]
 pub(super) struct Columns {
-    /// What it is called in files.
+    /// The name in files.
     pub name: String,
-    /// What stands before the names of its axes; nothing where no other body is there.
+    /// The prefix of the names of its axes; empty if there is only one body.
     pub prefix: String,
     pub kind: Kind,
     pub rows: usize,
     pub cols: usize,
-    /// Where it is read from; nothing where it is not known.
+    /// The columns at each point or cell; `None` if the value is unknown.
     pub at: Vec<Option<Range<usize>>>,
 }
 
@@ -94,7 +94,7 @@ pub(super) fn in_space(own: &[f64]) -> [f64; 3] {
     out
 }
 
-/// The axes of a body seen from space: where it carries the unit vectors of its own frame.
+/// The axes of a body in space: the images of the unit vectors of its own frame.
 pub(super) fn axes(kind: Kind, [rows, cols]: [usize; 2], own: &[f64]) -> Option<[[f64; 3]; 3]> {
     let entry = |i: usize, j: usize| own.get(i * cols + j).copied().unwrap_or(f64::NAN);
     let plane = || {
@@ -116,7 +116,7 @@ pub(super) fn axes(kind: Kind, [rows, cols]: [usize; 2], own: &[f64]) -> Option<
     }
 }
 
-/// Where a rigid motion has carried the origin.
+/// The image of the origin under a rigid motion.
 pub(super) fn place(kind: Kind, size: usize, own: &[f64]) -> Option<[f64; 3]> {
     let entry = |i: usize| own.get(i * size + size - 1).copied().unwrap_or(f64::NAN);
     match (kind, size) {
@@ -126,7 +126,7 @@ pub(super) fn place(kind: Kind, size: usize, own: &[f64]) -> Option<[f64; 3]> {
     }
 }
 
-/// Bodies that are not the only ones have their names before those of their axes.
+/// If there are several bodies, the names of their axes start with the name of the body.
 pub(super) fn name_axes(all: &mut [Columns]) {
     let turns = |c: &Columns| axes(c.kind, [c.rows, c.cols], &[f64::NAN; 16]).is_some();
     if all.iter().filter(|c| turns(c)).count() > 1 {

@@ -21,13 +21,13 @@ use std::rc::Rc;
 /// Particles in their domain.
 pub(super) struct Particles {
     pub(super) space: Space,
-    /// The columns of the place of each, and of its momentum.
+    /// The columns of the position of each particle, and of its momentum.
     pub(super) places: Vec<Range<usize>>,
     momenta: Vec<Range<usize>>,
     kinematics: Option<Kinematics>,
     /// Quantities at particles.
     columns: Vec<Columns>,
-    /// What does not change.
+    /// Values that do not change during the run.
     constant: Vec<Values>,
 }
 
@@ -41,7 +41,7 @@ pub(crate) fn cells(card: &Card, plan: &Plan) -> Option<Cells> {
     Cells::of(&Rc::new(particles), on_torus)
 }
 
-/// The particles of a fluid with what stands at them.
+/// The particles of a fluid with their values.
 fn particles(
     (card, plan): (&Card, &Plan),
     all: &[AtSites<'_>],
@@ -76,7 +76,7 @@ fn particles(
     Some(own)
 }
 
-/// Where a quantity stands in a row, at each of its sites.
+/// The columns of a quantity in a row, for each of its sites.
 fn columns(q: &AtSites<'_>) -> Vec<Range<usize>> {
     q.members.iter().map(|(_, c)| c.clone()).collect()
 }
@@ -86,7 +86,7 @@ fn at(q: &AtSites<'_>) -> Columns {
     Columns::of(&q.key, q.field, at)
 }
 
-/// The parts of a fluid; none of other models.
+/// The parts of a fluid; empty for other models.
 pub(super) fn parts(card: &Card, plan: &Plan) -> Vec<(String, Box<dyn Part>)> {
     let mut out: Vec<(String, Box<dyn Part>)> = Vec::new();
     let Some((space, stated)) = space(card, plan) else {
@@ -113,7 +113,7 @@ pub(super) fn parts(card: &Card, plan: &Plan) -> Vec<(String, Box<dyn Part>)> {
 }
 
 impl Particles {
-    /// Numbers of all particles, one after the other.
+    /// The numbers of all particles, concatenated.
     fn numbers(columns: &[Range<usize>], row: &[f64]) -> Vec<f64> {
         let each = columns
             .iter()
@@ -134,7 +134,7 @@ impl Particles {
         self.kinematics.as_ref()?.motion(&places, &momenta)
     }
 
-    /// What stands at particles, with their velocities.
+    /// The values at particles, including their velocities.
     pub(super) fn values(&self, row: &[f64], motion: Option<&Motion>) -> Vec<Values> {
         let mut out: Vec<Values> = self.columns.iter().flat_map(|c| c.values(row)).collect();
         out.extend(self.constant.iter().cloned());
@@ -150,7 +150,7 @@ impl Particles {
     }
 }
 
-/// Adds values, unless the model has some by the same name.
+/// Adds values, unless the model has values with the same name.
 pub(super) fn add(out: &mut Vec<Values>, values: Values) {
     if out.iter().all(|own| own.name != values.name) {
         out.push(values);

@@ -1,22 +1,22 @@
-//! The nodes of a fluid's grid as an image, a periodic direction closed by its first node. Takes a domain and what stands
-//! at nodes; gives the data of a sample.
+//! The nodes of a fluid's grid as an image. In a periodic direction the first node is repeated at the end.
+//! Takes a domain and the columns of values at nodes; gives the data of a sample.
 
 use super::columns::Columns;
 use super::{Data, Part};
 use crate::case_file::space::Space;
 use clebsch::record::vtk::{ImageData, Values};
 
-/// A grid with what stands at its nodes.
+/// A grid with the values at its nodes.
 pub(super) struct Grid {
     origin: [f64; 3],
     spacing: [f64; 3],
     nodes: [usize; 3],
-    /// Which node of the model stands at each of the image.
+    /// For each node of the image, the node of the model.
     order: Vec<usize>,
     columns: Vec<Columns>,
 }
 
-/// The grid of a domain with what stands at its nodes.
+/// The grid of a domain with the columns of values at its nodes.
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -29,7 +29,8 @@ pub(super) fn grid(space: &Space, columns: Vec<Columns>) -> Option<Grid> {
     let mut nodes = [1; 3];
     for (d, (length, n)) in space.lengths.iter().zip(cells).enumerate() {
         *spacing.get_mut(d)? = length / *n as f64;
-        // Of a periodic direction the first node once more, at the seam.
+        // A periodic direction repeats its first node at the seam; a direction with walls has a node on each
+        // wall.
         *nodes.get_mut(d)? = n + 1;
     }
     let mut order = vec![None; nodes.iter().product()];

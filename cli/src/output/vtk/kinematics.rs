@@ -1,6 +1,6 @@
-//! Velocities of particles from their momenta. Takes the momenta that the model gives to velocities, which are of the
-//! first degree in them; gives velocities, masses, and the rotation of the frame as the curl of what a momentum has
-//! beside mass times velocity.
+//! Velocities of particles from their momenta. Takes the momenta of the model, which are affine in the
+//! velocities; gives velocities, masses, and the rotation of the frame. The rotation is the curl of the part of
+//! a momentum that is independent of the velocity.
 
 use crate::plan::Plan;
 use clebsch::card::Card;
@@ -10,28 +10,29 @@ use clebsch_interpret::lines::LineModel;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-/// What tells velocities.
+/// Computes velocities from momenta.
 pub(super) struct Kinematics {
     model: Arc<LineModel>,
     choice: Choice,
-    /// Parameters, in ASCII; of sites the values of all of them.
+    /// Parameters, by their ASCII names. A parameter at sites has the values of all sites.
     numbers: HashMap<String, Vec<f64>>,
     field: String,
     size: usize,
     lengths: Vec<f64>,
 }
 
-/// The motion of all particles, one after the other.
+/// The motion of all particles, concatenated.
 pub(super) struct Motion {
     pub velocities: Vec<f64>,
-    /// Where a mass is a number.
+    /// Present if the mass matrix of every particle is a multiple of the identity.
     pub masses: Option<Vec<f64>>,
     /// In the plane, with masses.
     pub rotations: Option<Vec<f64>>,
 }
 
 impl Kinematics {
-    /// Of a field of places; nothing where the model does not tell.
+    /// For the positions in `field`. `None` if the text of the model cannot be read, or if the plan has no
+    /// sites.
     pub(super) fn of(
         (card, plan): (&Card, &Plan),
         field: &str,
@@ -42,7 +43,7 @@ impl Kinematics {
         let names: HashSet<&str> = card.parameters.iter().map(|p| p.ascii).collect();
         for (own, value) in card.parameters.iter().zip(&plan.case.parameters) {
             numbers.insert(own.ascii.to_owned(), value.clone());
-            // Copies stand in the order of their sites.
+            // The copies are in the order of their sites.
             if let Some((base, site)) = own.ascii.rsplit_once('_')
                 && site.parse::<usize>().is_ok()
                 && !names.contains(base)
@@ -65,7 +66,7 @@ impl Kinematics {
         self.numbers.get(name)
     }
 
-    /// The momenta of velocities at places.
+    /// The momenta for these positions and velocities.
     fn momenta(&self, places: &[f64], velocities: &[f64]) -> Option<Vec<f64>> {
         let given = |name: &str| match ascii(name) {
             own if own == ascii(&self.field) => Some(places.to_vec()),
@@ -77,7 +78,7 @@ impl Kinematics {
         found.ok().flatten()
     }
 
-    /// The motion of momenta at places.
+    /// The motion for these positions and momenta.
     pub(super) fn motion(&self, places: &[f64], momenta: &[f64]) -> Option<Motion> {
         let count = places.len() / self.size;
         let along = |d: usize| -> Vec<f64> {
@@ -109,7 +110,7 @@ impl Kinematics {
                     let [p, q] = [own(a, 0)?, own(a, 1)?];
                     let whole = m * l - n * k;
                     velocities.extend([(l * p - n * q) / whole, (m * q - k * p) / whole]);
-                    // Of differences that round.
+                    // The entries are differences with rounding errors, hence the tolerance.
                     let same = (m - l).abs() + n.abs() + k.abs() <= 1e-6 * m.abs();
                     masses = masses.filter(|_| same);
                 }
@@ -130,7 +131,7 @@ impl Kinematics {
         })
     }
 
-    /// The curl of the momenta of particles at rest, by differences over a small part of the domain.
+    /// The curl of the momenta of particles at rest, by finite differences over a small part of the domain.
     fn rotations(&self, places: &[f64], rest: &[f64], masses: &[f64]) -> Option<Vec<f64>> {
         if rest.iter().all(|p| *p == 0.0) {
             return Some(vec![0.0; masses.len()]);

@@ -1,5 +1,6 @@
-//! A run as files for ParaView, in a folder of their own: for everything that is seen in space one file a sample, and a
-//! collection of them over time. Takes a card and a plan, then the rows of the run; gives the names of the collections.
+//! A run as files for ParaView, in a folder of their own: one file per sample for every object in space, and a
+//! collection of these files over time. Takes a card and a plan, then the rows of the run; gives the names of
+//! the collections.
 
 mod bodies;
 mod cells;
@@ -21,17 +22,17 @@ use std::io::{self, Write};
 /// The folder, by its name among the files that a run can write.
 pub(crate) const FOLDER: &str = "vtk/";
 
-/// Most samples that are written where nobody says how many.
+/// By default, the largest number of samples that are written.
 const FRAMES: u64 = 1000;
 
-/// One thing that is seen.
+/// An object that is drawn.
 pub(crate) struct Drawn {
-    /// What its files are called.
+    /// The name of its files.
     name: String,
     part: Box<dyn Part>,
 }
 
-/// What a file holds.
+/// The content of a file.
 enum Data {
     Poly(PolyData),
     Image(ImageData),
@@ -47,10 +48,10 @@ trait Part {
     fn data(&mut self, row: &[f64]) -> Data;
 }
 
-/// Everything that is seen of a model.
+/// All objects of a model that can be drawn.
 ///
 /// # Errors
-/// Usage: nothing is.
+/// Usage: there are none.
 pub(crate) fn drawn(card: &Card, plan: &Plan) -> Result<Vec<Drawn>, Failure> {
     let own = |(name, part): (String, Box<dyn Part>)| Drawn { name, part };
     let mut all: Vec<Drawn> = fluid::parts(card, plan).into_iter().map(own).collect();
@@ -69,7 +70,7 @@ pub(crate) fn drawn(card: &Card, plan: &Plan) -> Result<Vec<Drawn>, Failure> {
 /// Writes all of them; gives the names of the collections.
 ///
 /// # Errors
-/// Failed: the file system refuses.
+/// Failed: a file cannot be written.
 pub(crate) fn write(
     staging: &Staging,
     plan: &Plan,
@@ -77,7 +78,7 @@ pub(crate) fn write(
     mut drawn: Vec<Drawn>,
 ) -> Result<Vec<String>, Failure> {
     staging.make_folder(FOLDER)?;
-    // Whoever asks for samples gets each of them.
+    // If `--every` is given, all samples are written.
     let stride = match plan.arguments["every"].is_null() {
         true => rows.count().div_ceil(FRAMES).max(1),
         false => 1,
@@ -93,7 +94,7 @@ pub(crate) fn write(
     let read = rows.each(&mut |row| {
         let at = sample;
         sample += 1;
-        // The end of a run is seen, whatever the stride.
+        // The last sample of a run is always written.
         if !at.is_multiple_of(stride) && at + 1 != rows.count() {
             return Ok(());
         }

@@ -11,22 +11,22 @@ use clebsch::record::vtk::{PolyData, Values};
 use clebsch_core::lattice::Sites;
 use std::ops::Range;
 
-/// How far sites without places are drawn from one another.
+/// The distance between sites without positions.
 const APART: f64 = 1.0;
 
 /// Points of sites, joined along a line.
 struct OfSites {
     points: Vec<Drawn>,
     joined: bool,
-    /// What the places are called, and of how many numbers they are.
+    /// The name of the positions, and their number of components.
     places: Option<(String, usize)>,
     point_data: Vec<Columns>,
     cell_data: Vec<Columns>,
 }
 
-/// Where a site is drawn.
+/// The location at which a site is drawn.
 enum Drawn {
-    /// At a place of the plane or of space.
+    /// A position in the plane or in space.
     At(Point),
     /// A number, as the height over the number of its site.
     Height(f64, Point),
@@ -65,7 +65,7 @@ fn of_label((card, plan): (&Card, &Plan), own: &[&AtSites<'_>]) -> Option<OfSite
     let places = of_size(3).or(of_size(2)).or(of_size(1));
     let first = own.first()?;
     let on_line = first.on_line;
-    // Without places a line has nodes all the same.
+    // A chain without positions is drawn with nodes.
     let at = places.map_or(if on_line { Sites::Nodes } else { first.at }, |q| q.at);
     let (ring, segments) = ring_and_segments(plan, own, on_line);
     let count = match at {
@@ -87,7 +87,7 @@ fn of_label((card, plan): (&Card, &Plan), own: &[&AtSites<'_>]) -> Option<OfSite
     let points: Vec<Drawn> = points.collect::<Option<_>>()?;
     let of_sites = |at: Sites, count: usize| {
         let all = own.iter().filter(|q| q.at == at);
-        // Places stand where they are drawn, those that an end holds among them.
+        // Positions are the points themselves, so they have no column.
         let all = all.filter(|q| places.is_none_or(|p| p.key != q.key));
         let mut all: Vec<Columns> = all
             .map(|q| Columns::of(&q.key, q.field, columns(q, count, ring.then_some(segments))))
@@ -120,7 +120,7 @@ fn ring_and_segments(plan: &Plan, own: &[&AtSites<'_>], on_line: bool) -> (bool,
         _ => site + 1,
     });
     let counted = segments.max().unwrap_or(0);
-    // A last node that is held has no column.
+    // A last node with a given value has no column, so the chosen count is preferred.
     let chosen = plan.choice.as_ref().and_then(|c| match *c.counts {
         [only] if on_line => Some(only),
         _ => None,
@@ -128,7 +128,7 @@ fn ring_and_segments(plan: &Plan, own: &[&AtSites<'_>], on_line: bool) -> (bool,
     (ring, chosen.unwrap_or(counted))
 }
 
-/// The columns of a quantity at so many sites, on a ring once more at the last one.
+/// The columns of a quantity at `count` sites. On a ring the first site is repeated at the end.
 fn columns(q: &AtSites<'_>, count: usize, ring: Option<usize>) -> Vec<Option<Range<usize>>> {
     let mut at = vec![None; count];
     for (site, columns) in &q.members {
@@ -166,7 +166,7 @@ impl Part for OfSites {
         });
         let last = points.len().saturating_sub(1) as u64;
         let mut data = match self.joined {
-            // A line from node to node for each segment, which has values of its own.
+            // One line per segment, from node to node, since segments have their own values.
             true => PolyData {
                 points,
                 lines: (0..last).map(|i| vec![i, i + 1]).collect(),

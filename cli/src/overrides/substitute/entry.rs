@@ -1,5 +1,6 @@
-//! Lists, tables and what stands within a table of a case, replaced in its text: `R = {axis = [0, 0, 1], angle = 1}`, `R.angle`.
-//! Takes the text, a key with dots, and a value; gives the text with as many lines.
+//! Replaces lists, tables and entries of tables in the text of a case: `R = {axis = [0, 0, 1], angle = 1}`,
+//! `R.angle`.
+//! Takes the text, a key with dots, and a value; gives the text with the same number of lines.
 
 use crate::words::toml_value::quoted;
 use std::ops::Range;
@@ -9,16 +10,17 @@ use toml::de::{DeTable, DeValue};
 /// The tables of quantities.
 const TABLES: [&str; 2] = ["parameters", "initial"];
 
-/// Where a key stands in the text.
+/// The position of a key in the text.
 struct Found {
     value: Range<usize>,
-    /// The key, if the case gives the quantity by another one: the inertia `I` for the second moments `J`.
+    /// The key, if the case gives the quantity under another one: the inertia `I` for the second moments `J`.
     key: Option<Range<usize>>,
     /// Whether the value is an entry of a table.
     within: bool,
 }
 
-/// The text with a value that is a list, a table or an entry of a table; none if it is not, or if the case does not give it.
+/// The text with a new value for a list, a table or an entry of a table. `None` for other values, and if the
+/// case does not give it.
 pub(super) fn put(text: &str, name: &str, value: &str) -> Option<String> {
     let found = found(text, name).filter(|found| is_own(found, value))?;
     let before = text.get(found.value.clone())?;
@@ -32,12 +34,12 @@ pub(super) fn put(text: &str, name: &str, value: &str) -> Option<String> {
     Some(out)
 }
 
-/// Whether a value is put into the text of the case, rather than number by number.
+/// Whether a value is inserted into the text of the case, rather than number by number.
 pub(crate) fn replaces(text: &str, name: &str, value: &str) -> bool {
     found(text, name).is_some_and(|found| is_own(&found, value))
 }
 
-/// Whether a name is that of an entry of a table, such as the angle of a rotation.
+/// Whether a name refers to an entry of a table, such as the angle of a rotation.
 pub(crate) fn is_within_a_table(text: &str, name: &str) -> bool {
     found(text, name).is_some_and(|found| found.within)
 }
@@ -59,7 +61,7 @@ fn found(text: &str, name: &str) -> Option<Found> {
         if let Some(value) = table.get(root) {
             let (value, within) = descended(value, &path)?;
             let span = value.span();
-            // A table with a head of its own, `[initial.R]`, has its entries elsewhere.
+            // A table with its own head, `[initial.R]`, has its entries elsewhere.
             let is_inline = text.get(span.clone())?.starts_with(['[', '{']);
             let is_table = value.get_ref().is_table();
             return (is_inline || !is_table).then_some(Found {
@@ -81,13 +83,13 @@ fn found(text: &str, name: &str) -> Option<Found> {
     None
 }
 
-/// The key by which a case may give the same body: `J2` for `I2`.
+/// The other key by which a case may give the same body: `J2` for `I2`.
 fn other_key(name: &str) -> Option<String> {
     let of = |from: char, to: char| name.strip_prefix(from).map(|rest| format!("{to}{rest}"));
     of('I', 'J').or_else(|| of('J', 'I'))
 }
 
-/// What stands under keys and numbers of entries, and whether a table was entered.
+/// Follows keys and indices of entries into a value. Gives the value there, and whether it is inside a table.
 fn descended<'v, 'i>(
     value: &'v Spanned<DeValue<'i>>,
     path: &[&str],

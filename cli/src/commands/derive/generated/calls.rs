@@ -1,10 +1,11 @@
-//! Calls of the runtime's protocol in a formatted file: the formatter fills lines with the words of a macro, whatever they
-//! mean. Takes the text of a file; gives it with a line for each part of such a call.
+//! Formats calls of the runtime's protocol, whose macro arguments rustfmt fills into lines regardless of
+//! meaning.
+//! Takes the text of a file; gives it with a line for each part of such a call.
 
-/// Columns of a line at most, as those of the formatter.
+/// The largest number of columns in a line, as rustfmt counts them.
 const WIDTH: usize = 89;
 
-/// The text with what calls of the protocol say in lines of their own.
+/// The text with one line for each part of a call of the protocol.
 pub(super) fn with_calls(text: &str) -> String {
     let mut out = String::new();
     let mut call: Option<String> = None;
@@ -22,7 +23,7 @@ pub(super) fn with_calls(text: &str) -> String {
             }
             (Some(words), line) => {
                 let line = line.trim();
-                // A path may be broken at its point.
+                // A path may be broken before a dot.
                 if !words.is_empty() && !line.starts_with('.') {
                     words.push(' ');
                 }
@@ -33,7 +34,7 @@ pub(super) fn with_calls(text: &str) -> String {
     out
 }
 
-/// What is said in one call: a type ends with a comma, what else there is begins with its word or a parenthesis.
+/// The parts of one call. A type ends with a comma; every other part begins with its keyword or a parenthesis.
 fn parts(words: &str) -> impl Iterator<Item = String> {
     let mut all = vec![String::new()];
     let (mut depth, mut quoted) = (0usize, false);
@@ -61,7 +62,7 @@ fn parts(words: &str) -> impl Iterator<Item = String> {
     all.into_iter().filter(|part| !part.is_empty())
 }
 
-/// One part in as many lines as it needs.
+/// Writes one part in as many lines as it needs.
 fn filled(part: &str, out: &mut String) {
     let (mut column, mut quoted) = (0, false);
     for word in part.split(' ') {
@@ -71,7 +72,7 @@ fn filled(part: &str, out: &mut String) {
                 out.push_str("    ");
                 column = 4 + length;
             }
-            // A text stays what it is.
+            // A quoted text is not broken.
             _ if column + 1 + length > WIDTH && !quoted => {
                 out.push_str("\n        ");
                 column = 8 + length;
