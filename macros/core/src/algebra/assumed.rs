@@ -1,6 +1,6 @@
-//! Random points on which the assumptions of a model hold: the letters of the parameters are
-//! chosen at random, then solved for where an assumed equation ties them. Takes equations between
-//! parameters; gives points in exact arithmetic, or none where the equations are beyond it.
+//! Random points at which the assumptions of a model hold: the parameters are chosen at random, then each assumed
+//! equation is solved for a letter. Takes equations between parameters; gives points in exact arithmetic, or none
+//! if the equations cannot be solved there.
 
 use super::exact::{ATTEMPTS, Matrix, POINTS, Point, add, inverse, mix, mul, negate, root};
 use crate::expr::shape::Structure;
@@ -14,9 +14,9 @@ const LARGEST: usize = 64;
 /// Most equations that are taken into account.
 pub(crate) const MOST: usize = 24;
 
-/// The point of an attempt, with every equation `e = 0` satisfied. `None` where this attempt finds
-/// no such point. The letter that an equation is solved for changes from attempt to attempt, so
-/// that an equation with several branches, such as `(a - b)*(a - c) = 0`, is met on each of them.
+/// The point of an attempt, with every equation `e = 0` satisfied. `None` where this attempt finds no such point.
+/// Each attempt may solve an equation for another letter, so that an equation with several branches, such as `(a -
+/// b)*(a - c) = 0`, is satisfied on each of them.
 pub(crate) fn point<'a>(
     symbols: &'a Symbols,
     attempt: u64,
@@ -39,8 +39,8 @@ pub(crate) fn point_of_size<'a>(
 fn start<'a>(mut point: Point<'a>, attempt: u64, equations: &[Expr]) -> Option<Point<'a>> {
     let mut free: Vec<(Letter, Vec<Matrix>)> = Vec::new();
     let mut order: Vec<&Expr> = equations.iter().collect();
-    // What ties one letter alone comes first: equations between letters then take it as given.
-    // Among those, the ones that look linear come first: they leave more of the letter free.
+    // Equations with a single letter come first: equations between letters then take it as given. Among those, the ones
+    // that look linear come first: they leave more of the letter free.
     order.sort_by_key(|e| (expr::letters(e).len(), occurrences(e)));
     for e in order {
         satisfy(&mut point, &mut free, e, attempt)?;

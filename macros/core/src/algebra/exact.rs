@@ -26,7 +26,7 @@ pub(crate) const ATTEMPTS: u64 = 100;
 /// Attempts of a check that may find no point.
 const FEW_ATTEMPTS: u64 = 4;
 
-/// What a dimension that has only a name stands for.
+/// The value of a dimension that has only a name.
 #[derive(Clone, Copy)]
 enum Size {
     Smallest,
@@ -98,7 +98,7 @@ impl<'a> Point<'a> {
         self.symbols
     }
 
-    /// The number that a dimension stands for here.
+    /// The value of a dimension at this point.
     pub(crate) fn dim(&self, d: Dim) -> usize {
         match d {
             Dim::Fixed(n) => n as usize,
@@ -153,7 +153,7 @@ impl<'a> Point<'a> {
         })
     }
 
-    /// The value, or nothing where a divisor vanishes or a root does not exist.
+    /// The value; `None` if a divisor vanishes or a root does not exist.
     pub(crate) fn value(&self, e: &Expr) -> Option<Matrix> {
         if let Some(value) = self.found.0.borrow().get(e) {
             return Some(value.clone());
@@ -202,8 +202,8 @@ impl<'a> Point<'a> {
             Node::Power(a, q) => {
                 let base = number(a)?;
                 let value = self.powered(base, *q);
-                // Half of all constants have no root here, at any point: then some value that
-                // depends on the constant alone.
+                // At any point, half of all constants do not have a root: any value serves then, if it depends on the
+                // constant alone.
                 let constant = value.is_none() && expr::letters(a).is_empty();
                 Matrix::number(match constant && base != 0 {
                     true => mix(base ^ mix(q.numerator() as u64)),
@@ -447,7 +447,7 @@ pub fn vanishes(symbols: &Symbols, e: &Expr) -> bool {
 }
 
 /// Whether the expression has a value other than zero at one random point. `false` where that proves nothing:
-/// functionals of sites have no value here, and of two roots modulo a prime none is the positive one.
+/// functionals of sites cannot be evaluated here, and modulo a prime neither of two roots is the positive one.
 pub fn differs_from_zero(symbols: &Symbols, e: &Expr) -> bool {
     if has_root(e) {
         return false;
@@ -456,7 +456,7 @@ pub fn differs_from_zero(symbols: &Symbols, e: &Expr) -> bool {
     value.is_some_and(|value| !value.vanishes())
 }
 
-/// Whether a fractional power stands in the expression.
+/// Whether the expression contains a fractional power.
 fn has_root(e: &Expr) -> bool {
     let is_root = matches!(e.node(), Node::Power(_, q) if q.as_integer().is_none());
     is_root || e.children().into_iter().any(has_root)

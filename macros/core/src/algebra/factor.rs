@@ -23,7 +23,7 @@ pub enum Source {
 pub enum Factor {
     /// A matrix or vector letter.
     Letter {
-        /// What it is.
+        /// Where the factor comes from.
         source: Source,
         /// Whether it is transposed (for orthogonal letters: inverted).
         transposed: bool,
@@ -39,8 +39,8 @@ pub enum Factor {
         /// Whether it is a row.
         transposed: bool,
     },
-    /// The axial vector of a skew 3 x 3 letter: such letters are always written `hat(axial)`, so
-    /// that one set of rules serves them and the hats.
+    /// The axial vector of a skew 3 x 3 letter: such letters are always written `hat(axial)`, so that the rules for
+    /// hats apply to them too.
     Axial {
         /// The skew letter.
         source: Source,
@@ -260,7 +260,7 @@ impl Algebra<'_> {
     }
 }
 
-/// What the reduction of a model asks of words.
+/// Queries for the reduction of a model.
 impl Algebra<'_> {
     /// The shape of a factor, transposed where the factor is.
     pub(crate) fn factor_shape(&self, f: &Factor) -> Shape {
@@ -293,7 +293,7 @@ impl Algebra<'_> {
             if !own.is_invertible() || found.is_some_and(|other| other != own) {
                 return None;
             }
-            // The transpose of a rigid motion is none.
+            // The transpose of a rigid motion is not a rigid motion.
             if let Factor::Letter {
                 transposed: true, ..
             } = f
@@ -306,12 +306,12 @@ impl Algebra<'_> {
         found
     }
 
-    /// What an interned number stands for.
+    /// The expression of an interned number.
     pub(crate) fn opaque_number(&self, i: u32) -> crate::expr::Expr {
         self.numbers.borrow()[i as usize].meaning.clone()
     }
 
-    /// What an interned matrix stands for.
+    /// The expression of an interned matrix.
     pub(crate) fn opaque_matrix(&self, i: u32) -> crate::expr::Expr {
         self.matrices.borrow()[i as usize].meaning.clone()
     }

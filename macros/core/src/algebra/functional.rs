@@ -16,14 +16,14 @@ use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::{self, Applied, Expr, FunctionalId, Kind, Node, Reach};
 use crate::work;
 
-/// Most entries of a value whose derivatives are written by those of its entries.
+/// The largest number of entries of a value whose derivatives are written by the derivatives of its entries.
 const LARGEST: u32 = 16;
 
 /// Most products for the value of one derivative at a point.
 const MOST: usize = 20_000;
 
-/// What two opaque values have in common if they are one: arguments by their normal forms, directions
-/// sorted.
+/// Identifies an opaque value: two values are the same if their arguments agree in normal form, and their sorted
+/// directions agree.
 #[derive(PartialEq)]
 pub(super) struct Opened {
     functional: FunctionalId,
@@ -82,8 +82,8 @@ impl Algebra<'_> {
         out
     }
 
-    /// The same by gradients of the entries of the value: pull-backs of unit seeds, which stand for the
-    /// transposed derivative too. Nothing where it is one already.
+    /// The same by gradients of the entries of the value: pull-backs of unit seeds, which also replace the transposed
+    /// derivative. Nothing if the expression is one already.
     fn by_entries(&self, a: &Applied, back: Option<(u8, &Expr)>, value: Kind) -> Option<Expr> {
         let s = self.symbols;
         let basis = basis(s, value)?;
@@ -175,7 +175,7 @@ impl Algebra<'_> {
     ) -> Poly {
         along.sort();
         let arguments: Vec<Poly> = a.arguments.iter().map(|x| self.lower(x)).collect();
-        // What cancels in the arguments must not come back.
+        // Letters that cancel in the arguments must not come back.
         let shorter = |own: &Expr, key: &Poly| {
             let raised = self.raise(key);
             let (left, all) = (expr::letters(&raised), expr::letters(own));
@@ -234,8 +234,8 @@ impl Algebra<'_> {
     }
 }
 
-/// The matrix units of a shape of so many entries, each with the one that has the same gradient; nothing
-/// where the size has only a name.
+/// The matrix units of a shape, each with the unit that has the same gradient; `None` if the shape is too large, or
+/// its size has only a name.
 fn basis(s: &expr::symbol::Symbols, value: Kind) -> Option<Vec<(Expr, Expr)>> {
     let Shape { rows, cols } = value.shape;
     let (Dim::Fixed(n), Dim::Fixed(m)) = (rows, cols) else {
@@ -261,11 +261,11 @@ fn basis(s: &expr::symbol::Symbols, value: Kind) -> Option<Vec<(Expr, Expr)>> {
     Some(units.collect())
 }
 
-/// One entry of a value or an argument, by the entry that stands for it: a number of the list of what is
-/// differentiated, its row and its column.
+/// One entry of a value or an argument, by the entry that represents it: its number in the list of differentiated
+/// quantities, its row and its column.
 type Entry = (u8, usize, usize);
 
-/// The entry that stands for this one, and whether it is its opposite; nothing for one that is zero.
+/// The entry that represents this entry, and whether the two are opposite; nothing for an entry that is zero.
 fn standing(structure: Structure, i: usize, j: usize) -> Option<(bool, usize, usize)> {
     match structure {
         Structure::Symmetric => Some((false, i.min(j), i.max(j))),
@@ -287,8 +287,8 @@ fn entries(a: &Matrix) -> Vec<(usize, usize, u64)> {
 }
 
 impl Point<'_> {
-    /// The value of a functional or of its pull-back: made from its arguments alone, linear in directions
-    /// and seed. Nothing where it sees other sites, of which a point knows nothing.
+    /// The value of a functional or of its pull-back: computed from its arguments alone, linear in directions and seed.
+    /// `None` for a functional of all sites, since a point contains no other sites.
     pub(super) fn functional(&self, e: &Expr) -> Option<Matrix> {
         let (a, back) = match e.node() {
             Node::Given(a) => (a, None),
@@ -327,7 +327,7 @@ impl Point<'_> {
         let entry = |i: usize, j: usize| {
             let mut total = 0;
             for (k, l, weight) in &seed {
-                // The entry of the value, and that of the argument whose pull-back it is.
+                // The entry of the value, and the entry of the argument whose pull-back it is.
                 let (own, other) = match open {
                     Some(which) => (standing(f.value.structure, *k, *l), Some((which, i, j))),
                     None => (standing(f.value.structure, i, j), None),

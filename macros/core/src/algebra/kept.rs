@@ -6,7 +6,8 @@ use super::poly::Poly;
 use crate::expr::Expr;
 use std::rc::Rc;
 
-/// Nodes of an expression from which on its normal form is kept: that of a smaller one is found as fast as it is looked up.
+/// The number of nodes from which the normal form of an expression is cached. The normal form of a smaller
+/// expression is computed as fast as it is looked up.
 const SHARED: u32 = 3;
 
 /// A normal form and the work that it took.
@@ -25,7 +26,7 @@ impl Algebra<'_> {
         }
         let forms = &self.lowered[usize::from(self.blocks.get())];
         if let Some((known, work)) = forms.borrow().get(e) {
-            // What is refused does not depend on what was asked before: the work counts again.
+            // The work counts again, so that a limit does not depend on earlier queries.
             self.spend(*work);
             return known.clone();
         }

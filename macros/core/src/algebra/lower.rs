@@ -86,8 +86,8 @@ impl Algebra<'_> {
             },
             Node::Trace(a) => self.trace_poly(&self.lowered(a)),
             Node::Det(a) => self.det(&self.lowered(a), a),
-            // Of a letter by its inverse, which cancels against the letter. Sums have too many
-            // forms for that, and skew matrices no inverse: their polynomial is decided.
+            // The adjugate of a letter is written by its inverse, which cancels against the letter. Sums have too many
+            // forms for that, and skew matrices may be singular: their adjugate is expanded as a polynomial.
             Node::Adjugate(a) if !self.is_plain_letter(a) => {
                 self.lower(&expr::adjugate_polynomial(a))
             }
@@ -246,8 +246,8 @@ impl Algebra<'_> {
         }
     }
 
-    /// `e^q`, with powers, products and quotients under it taken apart first, so that a sum under
-    /// a power is always met as the user wrote it.
+    /// `e^q`. Powers, products and quotients under it are split first, so that a sum under a power always has the form
+    /// that the user wrote.
     fn lower_power(&self, e: &Expr, q: Rational) -> Poly {
         let whole = q.as_integer().is_some();
         match e.node() {
@@ -519,7 +519,7 @@ impl Algebra<'_> {
         out
     }
 
-    /// `sum of E_i (E_i^T A E_i)`. A matrix whose size has only a name is refused before.
+    /// `sum of E_i (E_i^T A E_i)`. A matrix whose size has only a name is rejected before.
     fn diagonal_of(&self, a: &Poly) -> Poly {
         let mut out = Poly::zero(Shape::vector(a.shape.rows));
         let Dim::Fixed(n) = a.shape.rows else {

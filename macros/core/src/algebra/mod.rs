@@ -35,7 +35,7 @@ use std::collections::HashMap;
 /// thousand; the bound keeps any input of 10 kB below two seconds.
 const WORK_LIMIT: u64 = 1_000_000;
 
-/// The same of the model at hand: a lattice that is written out is given more.
+/// The work limit for this model: an expanded chain has a larger one.
 fn work_limit() -> u64 {
     WORK_LIMIT.saturating_mul(crate::work::times())
 }
@@ -43,7 +43,7 @@ fn work_limit() -> u64 {
 /// Nodes evaluated at exact points for one model; beyond it only normal forms decide.
 const EVALUATION_LIMIT: u64 = 300_000;
 
-/// Largest number of terms kept; beyond that the work is refused too.
+/// The largest number of terms in a normal form; a larger normal form also exceeds the work limit.
 const TERM_LIMIT: usize = 4_000;
 
 fn evaluation_limit() -> u64 {
@@ -78,7 +78,7 @@ pub struct Algebra<'a> {
     symbols: &'a Symbols,
     matrices: RefCell<Vec<Opaque>>,
     numbers: RefCell<Vec<Opaque>>,
-    /// What the opaque values of functionals are values of.
+    /// The keys of the opaque values of functionals.
     opened: RefCell<Vec<functional::Opened>>,
     /// Their normal forms, in blocks or not. Looked up, never iterated.
     given: RefCell<HashMap<(Expr, bool), Poly>>,
@@ -105,11 +105,11 @@ pub enum Decision {
 struct Opaque {
     key: Poly,
     meaning: Expr,
-    /// What of the key it is.
+    /// How it depends on the key.
     sense: Sense,
 }
 
-/// What of its key an opaque quantity is.
+/// How an opaque quantity depends on its key.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Sense {
     /// The key itself.
@@ -232,7 +232,7 @@ impl<'a> Algebra<'a> {
         self.is_zero(&crate::expr::sub(a.clone(), b.clone()))
     }
 
-    /// Books work; `false` when there is none left.
+    /// Charges work; `false` if the limit is reached.
     fn spend(&self, units: usize) -> bool {
         self.work.set(self.work.get().saturating_add(units as u64));
         !self.exhausted()
@@ -248,7 +248,7 @@ impl<'a> Algebra<'a> {
         self.excess.set(self.excess.get().or(Some(excess)));
     }
 
-    /// What was too large, with the number that was found and the limit; nothing where all was decided.
+    /// The limit that was exceeded, with the number that was found; nothing if everything was decided.
     pub(crate) fn excess(&self) -> Option<String> {
         if let Some(text) = crate::work::excess() {
             return Some(text);
@@ -298,8 +298,8 @@ impl<'a> Algebra<'a> {
             return i as u32;
         }
         let mut meaning = meaning();
-        // What cancels in the key must not come back with the meaning: `V V^T` of a rotation has a
-        // value where no velocity is known.
+        // Letters that cancel in the key must not come back with the meaning: `V V^T` of a rotation has a value even if
+        // no velocity is known.
         if sense == Sense::Value {
             let shorter = self.raise(&key);
             let (left, all) = (expr::letters(&shorter), expr::letters(&meaning));

@@ -22,7 +22,7 @@ pub enum Atom {
     Det(Source),
     /// The determinant of an opaque matrix.
     OpaqueDet(u32),
-    /// A sum that stands under a power.
+    /// A sum under a power.
     Base(u32),
     /// A function of an interned number.
     Call(Function, u32),

@@ -51,7 +51,7 @@ impl Poly {
         Poly::term(shape, value, Term::default())
     }
 
-    /// Whether there are no terms.
+    /// Whether it is without terms.
     pub fn is_zero(&self) -> bool {
         self.terms.is_empty()
     }

@@ -1,6 +1,6 @@
-//! Words with quaternions: the left multiplication by a vector moves to the front through elements
-//! of SU(2), two of them multiply out, the imaginary part of a conjugate is a rotated one. What
-//! these rules do not reach is left to exact evaluation.
+//! Words with quaternions: the left multiplication by a vector moves to the front through elements of SU(2), two of
+//! them multiply out, the imaginary part of a conjugate is a rotated one. Products beyond these rules are left to
+//! exact evaluation.
 
 use super::Algebra;
 use super::factor::{Factor, Source, Word};
@@ -103,7 +103,7 @@ impl Algebra<'_> {
         out
     }
 
-    /// Moves a vector to the front: `g pure(v) = pure(R(g) v) g`. Nothing where none can move.
+    /// Moves a vector to the front: `g pure(v) = pure(R(g) v) g`. `None` if no vector can move.
     pub(super) fn pure_in_front(&self, word: &[Factor]) -> Option<Word> {
         let i = word.windows(2).position(
             |pair| matches!(pair, [g, Factor::Pure(_)] if self.unit_quaternion(g).is_some()),
@@ -117,8 +117,8 @@ impl Algebra<'_> {
         Some([&word[..i], &pair, &word[i + 2..]].concat())
     }
 
-    /// `pure(u) pure(v) = -(u.v) + pure(u x v)`: the first such pair multiplied out, as words with
-    /// coefficients and numbers. Nothing where there is none.
+    /// `pure(u) pure(v) = -(u.v) + pure(u x v)`: the first such pair multiplied out, as words with coefficients and
+    /// numbers. `None` if there is no such pair.
     pub(super) fn pure_product(&self, word: &[Factor]) -> Option<Vec<(Rational, Monomial, Word)>> {
         let i = word
             .windows(2)

@@ -36,8 +36,8 @@ impl Algebra<'_> {
         expr::sum(terms.collect::<Vec<_>>(), a.shape)
     }
 
-    /// The first inverse in a word that stands with its determinant: the two are an adjugate,
-    /// which has a value where the determinant vanishes. Gives the rest of the monomial.
+    /// The first inverse in a word that occurs together with its determinant: the two are an adjugate, which has a
+    /// value where the determinant vanishes. Gives the rest of the monomial.
     fn adjugate_in(&self, t: &Term) -> (Monomial, Option<(usize, Expr)>) {
         for (i, f) in t.word.iter().enumerate() {
             let Factor::Letter {

@@ -140,7 +140,7 @@ impl Ord for Rational {
             other.num.checked_mul(self.den),
         ) {
             (Some(a), Some(b)) => a.cmp(&b),
-            // Beyond the exact range any fixed order serves: it only sorts terms.
+            // Beyond the exact range, any fixed order will do: it only sorts terms.
             _ => (self.num, self.den).cmp(&(other.num, other.den)),
         }
     }

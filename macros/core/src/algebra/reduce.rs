@@ -9,7 +9,7 @@ use super::{Algebra, Excess, WORD_LIMIT, term_limit};
 use crate::expr::shape::{Dim, Shape};
 
 impl Algebra<'_> {
-    /// Removes `g g^-1` wherever it stands.
+    /// Removes `g g^-1` wherever it occurs.
     pub(super) fn cancelled(&self, word: Word) -> Word {
         let mut out: Word = Vec::with_capacity(word.len());
         for f in word {
@@ -105,8 +105,8 @@ impl Algebra<'_> {
             && word.iter().all(|f| self.shape_of(f).rows != one)
     }
 
-    /// Adds a term whose word is canonical, opening sums that stand to a small positive power. What stands to fractional
-    /// powers keeps its coefficients; where their product is a whole power, these come out.
+    /// Adds a term whose word is canonical, and expands sums with a small positive power. Sums under fractional powers
+    /// keep their coefficients; if their product is a whole power, the coefficients are taken out.
     pub(super) fn push_term(&self, out: &mut Poly, c: Rational, m: Monomial, word: Word) {
         let mut factors = m.iter().enumerate();
         let opened = factors.find_map(|(i, (atom, e))| Some((i, self.whole_power(atom, *e)?)));
@@ -126,8 +126,8 @@ impl Algebra<'_> {
         }
     }
 
-    /// The normal form of what stands to a whole power as if it were interned for a fractional one, or opened; `None` if it
-    /// is in normal form.
+    /// The normal form of a base with an integer power, either interned as for a fractional power, or expanded; `None`
+    /// if it is in normal form.
     fn whole_power(&self, atom: &Atom, e: Rational) -> Option<Poly> {
         let Atom::Base(id) = atom else { return None };
         let n = e.as_integer()?;

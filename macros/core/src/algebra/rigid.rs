@@ -169,7 +169,7 @@ impl Algebra<'_> {
         found
     }
 
-    /// What two adjacent constant factors make: nothing to say, a shorter word, or zero.
+    /// The product of two adjacent constant factors: no rule, a shorter word, or zero.
     pub(super) fn constant_pair(&self, a: &Factor, b: &Factor) -> Option<Option<Vec<Factor>>> {
         match (a, b) {
             (
@@ -219,7 +219,7 @@ impl Algebra<'_> {
                     transposed: false,
                 },
             ) => Some(taken(*shape, *at, *axis, true)),
-            // The last row of a rigid motion is that of the identity.
+            // The last row of a rigid motion is the last row of the identity.
             (
                 Factor::Unit {
                     dim,

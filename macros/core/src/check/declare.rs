@@ -1,5 +1,5 @@
-//! Declarations: symbols with their shapes, the configurations and advected quantities that
-//! constraints must serve, and the bookkeeping of which constraint was stated.
+//! Declarations: symbols with their shapes, the configurations and advected quantities that need constraints, and
+//! which constraints were stated.
 
 use super::entries::Entries;
 use super::messages;
@@ -61,10 +61,10 @@ pub struct Declared {
     pub parameter_places: Vec<Place>,
     pub configurations: Vec<DeclaredGroup>,
     pub advected: Vec<DeclaredAdvected>,
-    /// Fields that stand for a matrix made of what they keep.
+    /// Fields whose matrix is built from the entries that are kept.
     pub structured: Vec<(SymbolId, Entries)>,
     taken: Vec<Taken>,
-    /// What is typeset, as a reader sees it: the name that says so, and where.
+    /// Typeset names: the text as a reader sees it, and the name that declares it.
     typeset: Vec<(String, Name)>,
     /// Copies that print with their sites in brackets.
     apart: BTreeSet<String>,
@@ -127,13 +127,13 @@ pub fn declare(model: &Model, errors: &mut Errors) -> Declared {
 }
 
 impl Declared {
-    /// How what the name of a quantity stands for is made of it.
+    /// How the matrix of a quantity is built from the entries that are kept.
     pub fn entries(&self, id: SymbolId) -> Entries {
         let found = self.structured.iter().find(|(own, _)| *own == id);
         found.map_or(Entries::Own, |(_, entries)| *entries)
     }
 
-    /// Names the increments of fields, and states how these go on: `next(X) = X + ΔX`.
+    /// Names the increments of fields, and states how the fields advance: `next(X) = X + ΔX`.
     fn increments(&mut self) {
         let symbols = &mut self.symbols;
         let fields = self.configurations.iter_mut();
@@ -431,7 +431,7 @@ impl Declared {
         }
     }
 
-    /// What is wrong with how a name is typeset: another one stands there already. Its uses are fine.
+    /// The error if a name is typeset like another name. Uses of the name are not errors.
     fn typeset_as_another(&self, name: &Name) -> Option<Diagnostic> {
         let latex = self.in_latex(name);
         let text = &name.text;
@@ -468,7 +468,7 @@ impl Declared {
         self.taken.iter().any(|t| t.name == text)
     }
 
-    /// The symbol that a constraint carries.
+    /// The quantity that a constraint updates.
     pub fn slot(&self, name: &Name, errors: &mut Errors) -> Option<SymbolId> {
         let found = self.symbols.find(&name.text);
         let mut fields = self.configurations.iter().filter(|g| g.group.is_additive());

@@ -65,7 +65,7 @@ impl<'a> Elaborator<'a> {
         self.unbound.push((name.text.clone(), true));
     }
 
-    /// What is named by `let` so far, in order.
+    /// The definitions by `let` so far, in order.
     pub fn bound(&self) -> &[(String, Expr)] {
         &self.bindings
     }
@@ -132,12 +132,13 @@ impl<'a> Elaborator<'a> {
 
     fn default_size(&self) -> Dim {
         let mut sizes = self.names.configurations.iter().map(|g| g.group.size());
-        // Numbers have no unit vectors.
+        // Unit vectors exist only for sizes above 1.
         let first = sizes.find(|size| *size != Dim::Fixed(1));
         first.unwrap_or(Dim::Fixed(3))
     }
 
-    /// What is made of unit vectors alone: a column or a row, of a size that the context says.
+    /// The shape of an expression that contains unit vectors alone: a column or a row, of the size that the context
+    /// gives.
     fn of_units(&self, e: &Expression) -> Option<Shape> {
         match &e.kind {
             Kind::Name(n) if UNITS.contains(&n.as_str()) => {
@@ -157,7 +158,7 @@ impl<'a> Elaborator<'a> {
         found.map(|(shape, _)| shape)
     }
 
-    /// The shape of what takes it from a context that there is not.
+    /// The shape of an expression that would take it from the context, if there is no context.
     fn unhinted(&self, e: &Expression) -> Shape {
         self.elaborate(e, None)
             .map_or(Shape::SCALAR, |value| value.shape())

@@ -1,11 +1,11 @@
-//! Fields of structured matrices, which are kept and varied as the list of their independent entries. Takes that list; gives the matrix
-//! that the name stands for.
+//! Fields of structured matrices, which are kept and varied as the list of their independent entries. Takes that
+//! list; gives the matrix that the name denotes.
 
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
 
-/// How the matrix of a field is made of what is kept.
+/// How the matrix of a field is built from the entries that are kept.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Entries {
     /// It is kept itself.

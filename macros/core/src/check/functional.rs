@@ -7,13 +7,13 @@ use crate::expr::{Functional, Kind, Reach};
 use crate::syntax::ast::{Kindred, Name};
 
 impl Declared {
-    /// What a declared shape is.
+    /// The kind that a declared shape denotes.
     pub(super) fn kind(&self, k: &Kindred, errors: &mut Errors) -> Option<Kind> {
         let (shape, structure) = shapes::shape(&self.symbols, k, errors)?;
         Some(Kind { shape, structure })
     }
 
-    /// What a letter or a functional gives.
+    /// The kind of a letter, or of the value of a functional.
     pub(super) fn kind_of(&self, name: &str) -> Option<Kind> {
         if let Some(id) = self.symbols.find(name) {
             let symbol = self.symbols.get(id);

@@ -1,4 +1,4 @@
-//! Held constraints, `hold λ: a = b;`: what may stand in them, and the shape of their multiplier.
+//! Held constraints, `hold λ: a = b;`: the quantities that may occur in them, and the shape of their multiplier.
 //! Takes the two sides, of one shape; gives the constraint, or a mistake on its tokens.
 
 use super::declare::Declared;
@@ -11,7 +11,7 @@ use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Shift};
 use crate::syntax::ast::Name;
 
-/// The held constraint; its multiplier becomes a symbol of the model.
+/// The constraint; its multiplier becomes a symbol of the model.
 pub(super) fn hold(
     declared: &mut Declared,
     name: &Name,
@@ -87,7 +87,7 @@ fn entries(symbols: &Symbols, value: Expr) -> Expr {
     expr::sum(each.collect::<Vec<_>>(), Shape::vector(count))
 }
 
-/// Refuses constraints that know the time: the rate of change of what they hold has a part that no velocity brings.
+/// Rejects constraints that depend on time: their rate of change would have a part that no velocity produces.
 pub(super) fn without_clocks(spec: &Spec) -> Result<(), Errors> {
     let clocks = spec.clocks();
     let mut errors = Errors::new();
@@ -109,7 +109,7 @@ pub(super) fn without_clocks(spec: &Spec) -> Result<(), Errors> {
     errors.propagate()
 }
 
-/// What is wrong with the equation, if anything.
+/// The error in the equation, if there is one.
 fn refused(symbols: &Symbols, name: &Name, value: &Expr, place: Place) -> Option<Diagnostic> {
     let letters = expr::letters(value);
     let role = |r: Role| letters.iter().find(|l| symbols.get(l.symbol).role == r);

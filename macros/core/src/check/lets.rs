@@ -1,4 +1,5 @@
-//! Abbreviations that lead back to themselves, which no order of the statements defines, and those that nothing uses.
+//! Abbreviations that lead back to themselves, so that no order of the statements defines them, and unused
+//! abbreviations.
 
 use crate::diagnostic::{Diagnostic, Errors};
 use crate::syntax::ast::{Expression, Kind, Model, Name, Statement};
@@ -9,7 +10,7 @@ struct Let<'a> {
     uses: Vec<usize>,
 }
 
-/// The names of definitions that lead back to themselves; each circle is told once.
+/// The names of definitions that lead back to themselves; each circle is reported once.
 pub fn circular<'a>(model: &'a Model, errors: &mut Errors) -> Vec<&'a Name> {
     let lets = lets(model);
     let mut told: Vec<usize> = Vec::new();

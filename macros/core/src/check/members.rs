@@ -1,6 +1,6 @@
 //! Names of functions that every stepper and its state have. A configuration and an advected quantity become
-//! functions of the state, and cannot bear one of them; parameters and velocities become fields and
-//! locals only, and can.
+//! functions of the state, and cannot have one of these names; parameters and velocities become fields and locals
+//! only, and can.
 
 use super::declare::Declared;
 use crate::diagnostic::{Diagnostic, Errors, Place};
@@ -57,9 +57,8 @@ const MEMBERS: [&str; 46] = [
     "tangent_at",
 ];
 
-/// Momenta at a node, and what rounding has left of a place and of a
-/// momentum; of several configurations each with the
-/// name of its element.
+/// Momenta at a node, and the rounding remainders of a position and of a momentum; if there are several
+/// configurations, each with the name of its element.
 const MOMENTA: [&str; 5] = [
     "momentum",
     "body_momentum",
@@ -68,7 +67,7 @@ const MOMENTA: [&str; 5] = [
     "momentum_rest",
 ];
 
-/// The refusal of a name that a function of the stepper or of its state bears.
+/// The error for a name that is also a function of the stepper or of its state.
 pub(crate) fn name_of_function(name: &str, place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
@@ -104,12 +103,12 @@ pub(super) fn refuse(declared: &Declared, errors: &mut Errors) {
     components(declared, errors);
 }
 
-/// Whether the files of every run have such a column beside those of the model.
+/// Whether the files of every run have a column of this name besides the columns of the model.
 fn is_column(ascii: &str) -> bool {
     ascii == "time" || ascii.starts_with("invariant_")
 }
 
-/// The refusal of a name that another column of a run's files bears.
+/// The error for a name that is also another column of a run's files.
 fn name_of_column(name: &str, place: Place) -> Diagnostic {
     Diagnostic::new(
         place,
@@ -120,7 +119,7 @@ fn name_of_column(name: &str, place: Place) -> Diagnostic {
     .help(format!("choose another name, for example `{name}1`"))
 }
 
-/// Refuses names that are those of components of others: `x_1` beside a vector `x`.
+/// Rejects names that are also names of components: `x_1` next to a vector `x`.
 fn components(declared: &Declared, errors: &mut Errors) {
     let s = &declared.symbols;
     let elements = declared.configurations.iter().map(|c| (c.element, c.place));
@@ -130,7 +129,7 @@ fn components(declared: &Declared, errors: &mut Errors) {
         let Some((stem, digits)) = s.get(*id).ascii.rsplit_once('_') else {
             continue;
         };
-        // What has components itself has columns of longer names.
+        // A quantity with components has columns of longer names.
         if !s.get(*id).shape.is_scalar() {
             continue;
         }

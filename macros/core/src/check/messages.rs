@@ -1,4 +1,4 @@
-//! Messages of `check` that name several things at once: what is wrong, why, what to write.
+//! Messages of `check` that name several things at once: the mistake, its reason, and the remedy.
 
 use super::declare::DeclaredGroup;
 use super::spec::{Configuration, Spec};
@@ -218,7 +218,7 @@ pub fn power_of_vector(place: Place, what: &str, q: Rational) -> Diagnostic {
     }
 }
 
-/// What a word with a meaning of its own means, for those that are taken for names.
+/// The meaning of a word of the language, for words that are easily taken for names.
 fn meaning(word: &str) -> Option<&'static str> {
     Some(match word {
         "Id" => "the identity matrix",
@@ -243,7 +243,7 @@ pub fn reserved(name: &Name) -> Diagnostic {
     })
 }
 
-/// A held constraint with values at both ends of a step; `end` where all are those of the end.
+/// A constraint with values at both ends of a step; `end` if all values are taken at the end.
 pub fn held_over_the_step(place: Place, end: bool) -> Diagnostic {
     if end {
         let message =

@@ -33,29 +33,29 @@ use spec::{Advected, Assumption, Configuration, Hold, Side, Spec, Subject};
 /// Largest expression tree the derivation takes on.
 const LARGEST: u32 = 1_000;
 
-/// What a model is: it decides what is required of it.
+/// The origin of a model: it decides what is required of it.
 #[derive(Clone, Copy, PartialEq)]
 enum Extent {
     /// As the user states it.
     Stated,
-    /// A lattice that is written out, which was bounded when it was.
+    /// An expanded chain, whose size was limited when it was expanded.
     WrittenOut,
-    /// One site of a lattice without its neighbours: terms of neighbours may hold all its velocities.
+    /// One site of a chain without its neighbours: terms of neighbours may contain all its velocities.
     Site,
 }
 
-/// Checks a model. Work is counted: a model that takes more than any is given is refused.
+/// Checks a model. Work is counted: a model that exceeds the limit fails.
 pub fn check(model: &Model) -> Result<Spec, Errors> {
     counted(model, Extent::Stated)
 }
 
-/// Checks a lattice that is written out, which was bounded when it was. Of the same mistake in
-/// several copies the first is told. Configurations [`without_velocity`] are left to the caller, who knows their sites.
+/// Checks an expanded chain, whose size was limited when it was expanded. If several copies have the same mistake,
+/// only the first is reported. Configurations [`without_velocity`] are left to the caller, who knows their sites.
 pub fn check_written_out(model: &Model) -> Result<Spec, Errors> {
     counted(model, Extent::WrittenOut).map_err(Errors::first_at_each_place)
 }
 
-/// Checks the model of one site of a lattice. Its configurations need no velocity in its own Lagrangian.
+/// Checks the model of one site of a chain. Its configurations need no velocity in its own Lagrangian.
 pub fn check_site(model: &Model) -> Result<Spec, Errors> {
     counted(model, Extent::Site).map_err(Errors::first_at_each_place)
 }
@@ -80,7 +80,7 @@ pub fn unused_definitions(model: &Model) -> Vec<(String, Place)> {
     unused.map(|n| (n.text.clone(), n.place)).collect()
 }
 
-/// Expressions that are numbers, in the names of a model; those that are none are left out.
+/// Expressions that are numbers, in the names of a model; `None` for an expression that is not a number.
 pub fn numbers(model: &Model, list: &[&Expression]) -> Vec<Option<Expr>> {
     let names = declare::declare(model, &mut Errors::new());
     let elaborator = Elaborator::new(&names, Vec::new());
@@ -93,7 +93,7 @@ pub fn sides(model: &Model, a: &Expression, b: &Expression) -> Option<(Expr, Exp
     Elaborator::new(&names, Vec::new()).pair(a, b).ok()
 }
 
-/// Whether two expressions are the same, in the names of a model; `false` where they have no common shape.
+/// Whether two expressions are the same, in the names of a model; `false` if they do not have a common shape.
 pub fn are_same(model: &Model, a: &Expression, b: &Expression) -> bool {
     let names = declare::declare(model, &mut Errors::new());
     let both = Elaborator::new(&names, Vec::new()).pair(a, b);
@@ -246,7 +246,7 @@ fn checked(model: &Model, extent: Extent) -> Result<Spec, Errors> {
             | Statement::Group { .. }
             | Statement::Field { .. }
             | Statement::Advected { .. }
-            // A lattice is written out before it is checked.
+            // A chain is expanded before it is checked.
             | Statement::Label { .. }
             | Statement::Periodic(_)
             | Statement::End { .. } => {}
@@ -312,7 +312,7 @@ fn finish(
             continue;
         };
         let side = match g.group.is_additive() {
-            // One frame is as good as another; the momentum is that of space.
+            // One frame is as good as another; the momentum is spatial.
             true => Some(Side::Spatial),
             false => shapes::side(&declared.symbols, g, &update),
         };
@@ -410,7 +410,7 @@ fn remarks(model: &Model, declared: &Declared) -> Vec<(Subject, Vec<String>)> {
             Statement::Scale(_) => Some(Subject::Scale),
             Statement::Node(..) => Some(Subject::Node),
             Statement::Lagrangian(_) => Some(Subject::Lagrangian),
-            // An abbreviation is put in where it stands and leaves no trace.
+            // An abbreviation is substituted where it occurs and leaves no trace.
             Statement::Let { .. }
             | Statement::Given { .. }
             | Statement::Mesh { .. }
@@ -448,7 +448,7 @@ pub fn without_velocity(spec: &Spec) -> Vec<&Configuration> {
     spec.configurations.iter().filter(is_still).collect()
 }
 
-/// What is declared must be used where the theory needs it, and only there.
+/// Checks that declared quantities are used where the theory needs them, and only there.
 fn usage(spec: &Spec, extent: Extent) -> Result<(), Errors> {
     let mut errors = Errors::new();
     let used = expr::letters(&spec.lagrangian);

@@ -1,4 +1,4 @@
-//! Which names a model cannot bear: those with a fixed meaning in the language, in derivations and in Rust, and
+//! Names that a model cannot use: those with a fixed meaning in the language, in derivations and in Rust, and
 //! letters that look like others. Takes a name; gives what is wrong with it.
 
 use super::messages;
@@ -10,10 +10,10 @@ use crate::syntax::{FUNCTIONS, HIDEABLE};
 /// Names with a fixed meaning.
 const RESERVED: [&str; 5] = ["Id", "T", "E1", "E2", "E3"];
 
-/// What derivations write for the action, the identity and unit vectors.
+/// The signs that derivations print for the action, the identity and unit vectors.
 pub(super) const PRINTED: [&str; 10] = ["ℓ", "Id", "E1", "E2", "E3", "E4", "E5", "E6", "E7", "E8"];
 
-/// Words that no field, method or local of the emitted Rust can bear.
+/// Words that cannot name a field, method or local of the emitted Rust.
 const RUST: [&str; 53] = [
     "_", "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
     "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if",
@@ -27,7 +27,7 @@ pub fn is_rust_word(name: &str) -> bool {
     RUST.contains(&name)
 }
 
-/// What is wrong with a name whatever else is declared.
+/// The error for a name that is wrong whatever else is declared.
 pub(super) fn unusable(name: &Name) -> Option<Diagnostic> {
     let text = name.text.as_str();
     let function = FUNCTIONS.contains(&text) && !HIDEABLE.contains(&text);
@@ -61,7 +61,7 @@ pub(super) fn foreign(a: &str, b: &str) -> Option<String> {
     ))
 }
 
-/// The model's name is that of a type.
+/// Checks the model's name, which is the name of a type.
 pub(super) fn model_name(name: &Name, errors: &mut Errors) {
     if RUST.contains(&name.text.as_str()) {
         errors.extend(unusable(name));

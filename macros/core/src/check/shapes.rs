@@ -16,7 +16,7 @@ const LARGEST: u64 = 32;
 
 const SHAPES: [&str; 6] = ["Real", "Vec", "Sym", "Skew", "Diag", "Mat"];
 
-/// What to write where a size of this kind is 0 or 1.
+/// The advice if a size of this kind is 0 or 1.
 fn instead_of_one(kind: &str) -> &'static str {
     match kind {
         "SO" => {
@@ -165,7 +165,7 @@ pub fn advected_shape(
     shape(symbols, k, errors)
 }
 
-/// The shape that a field is kept and varied in, and how its matrix is made of that.
+/// The shape in which a field is kept and varied, and how its matrix is built from that.
 pub fn field(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<(Shape, Entries)> {
     let (found, structure) = shape(symbols, k, errors)?;
     let column = |n: u32| match n {
@@ -241,7 +241,7 @@ pub fn group(symbols: &Symbols, k: &Kindred, errors: &mut Errors) -> Option<Grou
         });
         return None;
     }
-    // Of a family of few sizes no other one is a size at all.
+    // If a family has few sizes, any other number is not a size at all.
     let given = match k.sizes.as_slice() {
         [Size::Number(n, _)] if groups::has_few_sizes(name) => {
             u32::try_from(*n).ok().map(Dim::Fixed)

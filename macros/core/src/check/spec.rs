@@ -1,5 +1,5 @@
-//! The typed specification of a model: what `check` hands to `derive`. Everything in it has
-//! passed names, shapes and sides; spans are kept only to report what a derivation refuses.
+//! The typed specification of a model: what `check` hands to `derive`. Everything in it has passed names, shapes
+//! and sides; positions in the source are kept only to report errors of a derivation.
 
 use crate::diagnostic::Place;
 use crate::expr::shape::Shape;
@@ -9,7 +9,7 @@ use crate::syntax::ast::{Comparison, NodeRule};
 
 pub use crate::groups::Group;
 
-/// On which side the velocity stands in the reconstruction.
+/// The side of the velocity in the reconstruction.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Side {
     /// `next(Λ) = Λ Ω`: left-invariant systems, velocity and momentum in the body frame.
@@ -79,17 +79,17 @@ pub struct Configuration {
     pub side: Side,
     /// Right side of its constraint.
     pub update: Expr,
-    /// Where the constraint stands.
+    /// The position of the constraint.
     pub place: Place,
-    /// Where its name stands in its declaration.
+    /// The position of its name in its declaration.
     pub name_place: Place,
-    /// Where its group stands.
+    /// The position of its group.
     pub group_place: Place,
-    /// Of what it is a copy, in a lattice that is written out.
+    /// The quantity of which it is a copy, in an expanded chain.
     pub copy: Option<CopyOf>,
 }
 
-/// A configuration of a lattice at one of its sites.
+/// A configuration of a chain at one of its sites.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct CopyOf {
     /// The configuration as stated: the number of its first copy.
@@ -98,20 +98,20 @@ pub struct CopyOf {
     pub site: usize,
 }
 
-/// A quantity carried by the group.
+/// A quantity advected by the group.
 #[derive(Clone, Debug)]
 pub struct Advected {
     /// The quantity, at nodes.
     pub quantity: SymbolId,
     /// Its definition by the configuration, if stated.
     pub definition: Option<Expr>,
-    /// Where the definition stands.
+    /// The position of the definition.
     pub definition_place: Option<Place>,
     /// Right side of its constraint.
     pub update: Expr,
-    /// Where the constraint stands.
+    /// The position of the constraint.
     pub place: Place,
-    /// Where its name stands in its declaration.
+    /// The position of its name in its declaration.
     pub name_place: Place,
     /// Whether the reduction of an unreduced statement found it.
     pub found: bool,
@@ -126,15 +126,15 @@ pub struct Hold {
     pub left: Expr,
     /// Right side.
     pub right: Expr,
-    /// What vanishes: the left side less the right one.
+    /// The expression that vanishes: the left side minus the right side.
     pub value: Expr,
-    /// Where the equation stands.
+    /// The position of the equation.
     pub place: Place,
-    /// Where the name of the multiplier stands.
+    /// The position of the name of the multiplier.
     pub name_place: Place,
 }
 
-/// What the reduction of a model that was stated by `Λ` and `next(Λ)` gave.
+/// The reduction of a model that was stated by `Λ` and `next(Λ)`.
 #[derive(Clone, Debug)]
 pub struct Reduction {
     /// Terms on the edge, in velocities and advected quantities.
@@ -157,7 +157,7 @@ pub struct Assumption {
     pub relation: Comparison,
     /// Right side.
     pub right: Expr,
-    /// Where it stands.
+    /// Its position.
     pub place: Place,
 }
 
@@ -183,7 +183,7 @@ pub enum Subject {
     Assumption(usize),
     /// The constraint of a quantity.
     Constraint(SymbolId),
-    /// The held constraint with this multiplier.
+    /// The constraint with this multiplier.
     Hold(SymbolId),
     /// The scale.
     Scale,
@@ -198,11 +198,11 @@ pub enum Subject {
 pub struct Spec {
     /// Name as written.
     pub name: String,
-    /// Where the name stands.
+    /// The position of the name.
     pub name_place: Place,
     /// Documentation lines.
     pub docs: Vec<String>,
-    /// Documentation lines of statements that declare no symbol; those of symbols stand with them.
+    /// Documentation lines of statements that declare no symbol; the lines of symbols are stored with the symbols.
     pub remarks: Vec<(Subject, Vec<String>)>,
     /// Whether it is `pub`.
     pub public: bool,
@@ -216,15 +216,15 @@ pub struct Spec {
     pub dimensions: Vec<Dimension>,
     /// Parameters in order.
     pub parameters: Vec<SymbolId>,
-    /// Where their names stand in their declarations.
+    /// The positions of their names in their declarations.
     pub parameter_places: Vec<Place>,
     /// Conditions on them.
     pub assumptions: Vec<Assumption>,
     /// Functions that are written out, as they are stated: their calls are replaced.
     pub formulas: Vec<String>,
-    /// What the model names by `let`, with its names written out, in order.
+    /// The definitions by `let`, in order, with their names expanded.
     pub lets: Vec<(String, Expr)>,
-    /// Names of those that nothing uses, with their places.
+    /// Names of unused definitions, with their positions.
     pub unused_lets: Vec<(String, Place)>,
     /// Configurations in order.
     pub configurations: Vec<Configuration>,
@@ -234,15 +234,15 @@ pub struct Spec {
     pub holds: Vec<Hold>,
     /// The Lagrangian as typed.
     pub typed: Expr,
-    /// What `scale` says: typed = scale x physical.
+    /// The value of `scale`: typed = scale x physical.
     pub scale: Option<Expr>,
     /// The physical action of one step before nodal terms are distributed.
     pub lagrangian: Expr,
-    /// Where the Lagrangian stands.
+    /// The position of the Lagrangian.
     pub lagrangian_place: Place,
     /// Its terms as they were typed, with their places.
     pub terms: Vec<(Expr, Place)>,
-    /// Whether it is one site of a lattice, whose velocities may stand in terms of neighbours alone.
+    /// Whether it is one site of a chain, whose velocities may occur in terms of neighbours alone.
     pub of_site: bool,
     /// The rule for nodal terms.
     pub node_rule: NodeRule,
@@ -267,8 +267,8 @@ impl Spec {
         found.map_or(&[], |(_, lines)| lines)
     }
 
-    /// The advected quantities that know the time: the step stands in how they go on, or another one that knows it does, or they
-    /// go on by themselves, whatever moves.
+    /// The advected quantities that depend on time: their update contains the step size or another such quantity, or
+    /// they advance by themselves, whatever moves.
     pub fn clocks(&self) -> Vec<SymbolId> {
         let mut found: Vec<SymbolId> = Vec::new();
         loop {
@@ -292,8 +292,8 @@ impl Spec {
         }
     }
 
-    /// What stands at the end of an edge, elements and advected quantities, by its start and the
-    /// velocities: written so, the dependence on the velocities is complete.
+    /// The quantities at the end of an edge, elements and advected quantities, written by its start and the velocities:
+    /// in this form, the dependence on the velocities is complete.
     pub fn end_of_edge(&self) -> Vec<(Letter, Expr)> {
         let at_end = |symbol| Letter {
             symbol,

@@ -93,9 +93,9 @@ fn place(symbols: &Symbols, term: &Expr) -> Place {
     level.map_or(Place::Constant, Place::Node)
 }
 
-/// The summands of a number, with common factors and divisors of a sum multiplied in. A difference in time
-/// under a factor or over a divisor stays one term, as in `x*(next(y) - y)`: taken apart, what of it is
-/// known at one node alone would be moved to another edge, and half of the momentum with it.
+/// The summands of a number, with common factors and divisors of a sum multiplied in. A difference in time under a
+/// factor or over a divisor stays one term, as in `x*(next(y) - y)`: if it were split, the part that is known at
+/// one node alone would move to another edge, with half of the momentum.
 pub fn summands(symbols: &Symbols, e: &Expr) -> Vec<Expr> {
     match e.node() {
         Node::Sum(terms) => terms.iter().flat_map(|t| summands(symbols, t)).collect(),
@@ -141,7 +141,8 @@ fn moves(symbols: &Symbols, e: &Expr) -> bool {
 }
 
 /// Terms with the constant ones added to the first that lives on the edge. In `q^2*(3 - tr(Ω))` both belong to one
-/// kinetic energy: taken apart, `3*q^2` would be a term at one node, and half of it would move to another edge.
+/// kinetic energy: if they were split, `3*q^2` would be a term at one node, and half of it would move to another
+/// edge.
 fn with_constants(symbols: &Symbols, terms: Vec<Expr>) -> Vec<Expr> {
     let is_edge = |t: &Expr| matches!(place(symbols, t), Place::Edge);
     if !terms.iter().any(is_edge) {
@@ -173,7 +174,7 @@ fn joined(symbols: &Symbols, terms: Vec<Expr>) -> Vec<Expr> {
             out.push(term);
             continue;
         };
-        // Of a difference one term stands at each end of the step.
+        // If a term is a difference, one summand is evaluated at each end of the step.
         let (at, by) = match level {
             0 => (Shift::NEXT.time, Shift::NEXT.time),
             _ => (Shift::HERE.time, -Shift::NEXT.time),

@@ -14,7 +14,7 @@ use crate::expr::{self, Expr, Letter, Shift};
 pub enum AdvectionRule {
     /// Its definition: group elements and parameters.
     Defined(Expr),
-    /// The action on a constant reference value, which the quantity's own letter stands for.
+    /// The action on a constant reference value, which the quantity's own letter denotes.
     Carried {
         /// The value at a node: elements act on the reference.
         value: Expr,

@@ -7,8 +7,8 @@ use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr};
 use crate::syntax::ast::Comparison;
 
-/// Left sides less right sides. Those beyond the exact points are left out: what holds without an
-/// assumption holds with it.
+/// Left sides minus right sides. Equations that exact points cannot satisfy are left out: a result without an
+/// assumption also holds with it.
 pub(crate) fn equations(spec: &Spec, symbols: &Symbols) -> Vec<Expr> {
     let mut out: Vec<Expr> = Vec::new();
     for a in &spec.assumptions {

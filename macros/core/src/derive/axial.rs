@@ -1,7 +1,7 @@
-//! Axial vectors of a velocity as letters of their own. When both ends of an edge are turned alike,
-//! its velocity turns with them, and so does the axis of it: `vee(O)` goes by a cross product, which
-//! says in three numbers what the change of the whole matrix says in eighteen.
-//! Takes a number and how everything changes; gives the same covector written by cross products.
+//! Axial vectors of a velocity as letters of their own. When both ends of an edge are turned alike, the velocity
+//! and its axis turn too: the change of `vee(O)` is a cross product of three numbers, whereas the change of the
+//! whole matrix has eighteen. Takes a number and how everything changes; gives the same covector written by cross
+//! products.
 
 use super::variation::at;
 use crate::algebra::Algebra;
@@ -19,14 +19,14 @@ pub(super) struct Axial {
     velocity: Letter,
     /// The turn, a vector.
     turn: Letter,
-    /// Axial vectors of the velocity, and the letters that stand for them.
+    /// Axial vectors of the velocity, and the letters that replace them.
     parts: Vec<(Expr, Letter)>,
     changes: Vec<(Letter, Expr)>,
 }
 
 impl Axial {
-    /// `along` is how everything changes with the variation `xi` of the configuration. None for
-    /// groups whose velocities have no axis.
+    /// `along` is how everything changes with the variation `xi` of the configuration. `None` for groups whose
+    /// velocities have no axial vector.
     pub(super) fn of(
         symbols: &Symbols,
         c: &Configuration,
@@ -87,8 +87,8 @@ impl Axial {
         })
     }
 
-    /// The derivative of a number along the turn, as a covector. None where the velocity does not
-    /// stand in it by axial vectors alone.
+    /// The derivative of a number along the turn, as a covector. `None` if the velocity occurs in it other than by its
+    /// axial vectors.
     pub(super) fn covector(&self, e: &Expr) -> Option<Expr> {
         let s = &self.symbols;
         let written = self.written(e);

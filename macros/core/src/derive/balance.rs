@@ -22,21 +22,20 @@ pub struct Balance {
     pub gradient: Expr,
     /// The velocity's part of the outgoing edge: `R`, with a plus sign in the node momentum.
     pub edge_out: Expr,
-    /// What quantities at node k contribute to the outgoing edge: the node momentum is
-    /// `edge_out + node_out`.
+    /// The contribution of quantities at node k to the outgoing edge: the node momentum is `edge_out + node_out`.
     pub node_out: Expr,
     /// The velocity's part of the incoming edge, written at the outgoing edge of node k-1 shifted
     /// to start at k: the transported `R`.
     pub edge_in: Expr,
-    /// What quantities at the end of the edge contribute, written on the edge that starts at k
-    /// (so they are taken at k+1): the momentum at k+1 is `edge_in + node_in`.
+    /// The contribution of quantities at the end of the edge, written on the edge that starts at k (so that they are
+    /// evaluated at k+1): the momentum at k+1 is `edge_in + node_in`.
     pub node_in: Expr,
     /// The node momentum by the outgoing edge: `edge_out + node_out`, in its shortest form.
     pub outgoing: Expr,
     /// The node momentum at the end of the edge: `edge_in + node_in`, in its shortest form.
     pub incoming: Expr,
-    /// Spatial side: what the step adds to the momentum, where that is free of velocities (zero when
-    /// the momentum is conserved). Adding it keeps rounding out of what is conserved.
+    /// On the spatial side: the increment of the momentum in the step, if it is free of velocities (zero if the
+    /// momentum is conserved). Adding it keeps rounding out of conserved quantities.
     pub increment: Option<Expr>,
     /// For each advected quantity: gradient of the outgoing edge at its start and at its end.
     pub advected_gradients: Vec<(Expr, Expr)>,
@@ -128,7 +127,7 @@ fn balance(
     let incoming = total(&edge_in, &node_in, &|| {
         expr::add(derived_in.clone(), nodes_of(l, Shift::NEXT))
     });
-    // What potentials add, if that is all that the step adds.
+    // The contribution of the potentials, if the step adds nothing else.
     let acting = || {
         if c.side.is_body() {
             return None;
@@ -141,7 +140,7 @@ fn balance(
         (!moving && algebra.is_zero(&rest)).then_some(added)
     };
     let increment = match increment(s, c, &outgoing, &incoming, algebra) {
-        // Expanded for what cancels, it may have lost what places have in common.
+        // Its expanded form may have lost the cancellation between positions.
         Some(added) if cancellation::error(algebra, &added) > 0.0 => Some(match acting() {
             Some(derived) => cancellation::nearer(algebra, added, derived),
             None => added,
@@ -170,9 +169,9 @@ const LINEAR: f64 = -1.0;
 /// Largest momentum of which two forms are compared.
 const LARGEST: u32 = 2_000;
 
-/// The short form of a momentum, or the derived one where that rounds less at small steps: powers of `vee(Ω)` stay
-/// products of small numbers in it. The short form stays where it rounds no more than a momentum that is linear
-/// in the velocity, unless small steps round the derived one not at all.
+/// The short form of a momentum, or the derived form if that rounds less for small steps: powers of `vee(Ω)` stay
+/// products of small numbers in it. The short form is kept if it rounds no more than a momentum that is linear in
+/// the velocity, unless the derived form does not round at all for small steps.
 fn rounded_least(spec: &Spec, algebra: &Algebra, short: Expr, derived: &dyn Fn() -> Expr) -> Expr {
     let symbols = algebra.symbols();
     if short.size() > LARGEST || !expr::contains_role(symbols, &short, Role::Velocity) {

@@ -1,7 +1,7 @@
-//! What a step solves together: the velocities that stand in one another's equations, directly or
-//! through others. Each block of them is recognised and solved by itself; forces between blocks are
-//! made of what is known at the node.
-//! Takes the balances and their Riccati forms; gives the blocks and the method of each.
+//! The systems that a step solves. Velocities that occur in each other's equations, directly or through other
+//! velocities, form one block. Each block is classified and solved separately; forces between blocks depend only on
+//! values that are known at the node. Takes the balances and their Riccati forms; gives the blocks and the method
+//! of each.
 
 use super::balance::{Balance, shorter};
 use super::holds;
@@ -23,7 +23,7 @@ pub struct Block {
     pub method: Method,
     /// Why so, in one clause.
     pub reason: String,
-    /// The held constraints whose multipliers are solved with it.
+    /// The constraints whose multipliers are solved with it.
     pub holds: Vec<usize>,
     /// Whether its balances are one linear system in the velocities, which Newton's method solves.
     pub is_one_system: bool,
@@ -35,7 +35,7 @@ impl Block {
         matches!(self.method, Method::Linear)
     }
 
-    /// What a step makes of a linear balance.
+    /// How a step solves a linear balance.
     pub fn linear_work(&self) -> Option<&str> {
         let why = self.is_linear().then_some(self.reason.as_str())?;
         Some(why.strip_prefix(LINEAR).unwrap_or(why))
@@ -76,7 +76,7 @@ pub fn blocks(
             }
         }
     }
-    // A constraint ties all that it holds.
+    // A constraint couples all configurations in it.
     let held = |hold: &Hold| -> Vec<usize> {
         let each = 0..velocities.len();
         each.filter(|i| holds::holds(&letters.symbols, spec, hold, *i))
@@ -185,7 +185,7 @@ fn block(spec: &Spec, letters: &Letters, riccati: &[StepEquation], members: Vec<
     }
 }
 
-/// What stands before how a linear balance is solved.
+/// The text before the description of how a linear balance is solved.
 const LINEAR: &str = "the balance is linear: ";
 
 /// How a linear balance is solved.
@@ -225,9 +225,8 @@ pub fn reasons(letters: &Letters, spec: &Spec, blocks: &[Block]) -> String {
 }
 
 impl Derivation {
-    /// A block seen as a model of its own, with what belongs to the others known: its
-    /// configurations, their equations and how those are solved. Everything else is that of the
-    /// whole.
+    /// A block seen as a model of its own, with what belongs to the others known: its configurations, their equations
+    /// and how those are solved. Everything else is copied from the whole model.
     pub fn of_block(&self, b: &Block) -> Derivation {
         fn part<T: Clone>(list: &[T], members: &[usize]) -> Vec<T> {
             let kept = members.iter().filter_map(|i| list.get(*i));

@@ -54,11 +54,9 @@ pub struct Bracket {
     pub advected: Vec<Moved>,
     /// Group elements: with them it is the bracket of the phase space.
     pub elements: Vec<Moved>,
-    /// What is printed: momenta, then configurations that stand in the action, then advected
-    /// quantities.
+    /// The printed rows: momenta, then configurations that occur in the action, then advected quantities.
     pub rows: Vec<Row>,
-    /// Whether configurations stand in the action themselves: the bracket is that of their phase space
-    /// then.
+    /// Whether the action depends on configurations themselves: this is then the bracket on their phase space.
     pub holds_elements: bool,
 }
 
@@ -183,8 +181,8 @@ pub fn bracket(
     }
 }
 
-/// The entries that determine a skew matrix: for three dimensions those of the axial vector in
-/// order, (2,1), (0,2), (1,0); else (j, i) for `i < j`, row by row.
+/// The entries that determine a skew matrix: for three dimensions the entries of the axial vector in order, (2,1),
+/// (0,2), (1,0); else (j, i) for `i < j`, row by row.
 pub fn skew_entries(n: usize) -> Coordinates {
     if n == 3 {
         return vec![(2, 1), (0, 2), (1, 0)];
@@ -211,7 +209,7 @@ pub fn coordinates(structure: Structure, rows: usize, cols: usize) -> Coordinate
     }
 }
 
-/// What a matrix of the bracket is made with: numbers of some kind.
+/// The kind of numbers that a matrix of the bracket is computed with.
 pub(crate) trait Numbers {
     /// A number.
     type Number: Copy;
@@ -219,7 +217,7 @@ pub(crate) trait Numbers {
     fn zero(&self) -> Self::Number;
     /// The opposite.
     fn opposite(&self, x: Self::Number) -> Self::Number;
-    /// The number that a dimension stands for.
+    /// The value of a dimension.
     fn dim(&self, d: Dim) -> usize;
     /// `tr(g^T e)`, for a gradient row by row with so many columns.
     fn paired(&self, gradient: &[Self::Number], cols: usize, e: &Element) -> Self::Number;

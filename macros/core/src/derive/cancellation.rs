@@ -1,6 +1,6 @@
-//! What rounding does to an expression far from the origin: `X - Y` of two places keeps the digits of
-//! their distance, the expanded square of it loses all that both have in common.
-//! Takes expressions; gives the power of the distance from the origin that their rounding is of.
+//! Estimates rounding far from the origin: `X - Y` of two positions keeps the digits of their distance. Its
+//! expanded square loses all digits that the two positions have in common. Takes expressions; gives the power of
+//! the distance from the origin to which their rounding is proportional.
 
 use crate::algebra::Algebra;
 use crate::algebra::exact::{ATTEMPTS, Point};
@@ -9,8 +9,8 @@ use crate::expr::shape::{Dim, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Map, Node};
 
-/// Powers of the distance from the origin: that of the value, and that of its rounding in units of
-/// `EPSILON`. What is exact has a rounding of minus infinity.
+/// Powers of the distance from the origin: one for the value, and one for its rounding in units of `EPSILON`. Exact
+/// values have a rounding of minus infinity.
 #[derive(Clone, Copy)]
 struct Order {
     size: f64,
@@ -20,9 +20,9 @@ struct Order {
 /// Largest part that is looked at for what cancels in it.
 const LARGEST: u32 = 400;
 
-/// The power of the distance from the origin that the rounding of an expression is of, for places that
-/// are far from it and near to each other: values of fields, the translations of rigid motions, and
-/// constants that are taken from such. Zero where no place stands.
+/// The power of the distance from the origin to which the rounding of an expression is proportional. Positions are
+/// far from the origin and near to each other: values of fields, translations of rigid motions, and constants that
+/// are subtracted from these. Zero if no position occurs.
 pub(crate) fn error(algebra: &Algebra, e: &Expr) -> f64 {
     let symbols = algebra.symbols();
     if !expr::letters(e).iter().any(|l| is_place(symbols, l)) {
@@ -41,8 +41,8 @@ pub(super) fn nearer(algebra: &Algebra, preferred: Expr, other: Expr) -> Expr {
     }
 }
 
-/// The reduced form of an expression, unless places far from the origin round more in it: then the
-/// form that is reduced with differences of places kept as they are, or the expression itself.
+/// The reduced form of an expression, unless positions far from the origin round more in it. Otherwise the form that is
+/// reduced with differences of positions kept as they are, or the expression itself.
 pub(super) fn least(algebra: &Algebra, reduced: Expr, e: &Expr) -> Expr {
     let expanded = error(algebra, &reduced);
     if expanded == 0.0 {
@@ -55,7 +55,7 @@ pub(super) fn least(algebra: &Algebra, reduced: Expr, e: &Expr) -> Expr {
         .unwrap_or(reduced)
 }
 
-/// The shortest form in which differences of places are letters of their own.
+/// The shortest form in which differences of positions are letters of their own.
 fn between(algebra: &Algebra, e: &Expr) -> Option<Expr> {
     let named = position_differences::named(algebra.symbols(), e)?;
     let inner = Algebra::new(&named.symbols);
@@ -72,7 +72,7 @@ fn is_place(s: &Symbols, l: &Letter) -> bool {
 }
 
 struct Far<'a> {
-    /// Constants that are subtracted from places.
+    /// Constants that are subtracted from positions.
     centres: Vec<Letter>,
     symbols: &'a Symbols,
 }
@@ -93,8 +93,8 @@ impl Far<'_> {
             Node::Letter(l) => exact(f64::from(u8::from(self.is_far(l)))),
             Node::Sum(terms) => {
                 let inside = terms.iter().map(|t| self.order(t)).fold(exact(0.0), sum);
-                // Partial sums of more than two terms are rounded before the last one cancels; places,
-                // which are emitted first, are not.
+                // The partial sums of more than two terms are rounded before the last term cancels; differences of
+                // positions, which are emitted first, are not.
                 let size = self.size(e, inside.size);
                 let paired = terms.len() == 2 || position_differences::is_between(self.symbols, e);
                 let rounded = if paired { size } else { inside.size };
@@ -148,9 +148,10 @@ impl Far<'_> {
         }
     }
 
-    /// The power of the value, zero where it stays when all places are moved alike.
+    /// The power of the value; zero if the value stays the same when all positions are translated.
     fn size(&self, e: &Expr, largest: f64) -> f64 {
-        // Places with weights stay where they are moved together, not each of a shape alike.
+        // A weighted sum stays the same if its positions move together, not if each position of a shape moves by the
+        // same amount.
         let weighted = match e.node() {
             Node::Sum(terms) => position_differences::are_weighted(self.symbols, e, terms),
             _ => false,
@@ -163,7 +164,8 @@ impl Far<'_> {
         is_place(self.symbols, l) || self.centres.contains(l)
     }
 
-    /// Whether it is the same after all places are moved alike, those of each shape by themselves.
+    /// Whether the expression stays the same if all positions are translated. Positions of each shape are translated
+    /// separately.
     fn stays(&self, e: &Expr) -> bool {
         let letters = expr::letters(e);
         let far: Vec<Letter> = letters.into_iter().filter(|l| self.is_far(l)).collect();
@@ -184,8 +186,8 @@ impl Far<'_> {
         })
     }
 
-    /// Whether it is zero at random points, which cost less than a normal form: no more than the choice
-    /// of a form stands on it.
+    /// Whether it is zero at random points, which cost less than a normal form: this is reliable enough, because only
+    /// the choice between equal forms depends on it.
     fn vanishes(&self, e: &Expr) -> bool {
         let values = (0..ATTEMPTS).filter_map(|attempt| Point::new(self.symbols, attempt).value(e));
         let mut two = values.take(2).peekable();

@@ -20,7 +20,7 @@ use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Expr, Letter, Node, Shift};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the proof is about.
+/// The derivation to prove.
 pub struct Inputs<'a> {
     /// The model.
     pub spec: &'a Spec,
@@ -43,7 +43,7 @@ pub struct Inputs<'a> {
 /// One identity of the proof, between numbers.
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// What it says.
+    /// A description of the identity.
     pub name: String,
     /// Left side.
     pub left: Expr,
@@ -79,7 +79,7 @@ impl Certificate {
     }
 }
 
-/// Proves, or says what is left.
+/// Proves the identities of the derivation, or reports those that remain.
 pub fn certify(x: &Inputs) -> Result<Certificate, Errors> {
     let mut steps = Vec::new();
     let back = Back {
@@ -129,8 +129,8 @@ fn name_of(x: &Inputs, l: Letter) -> String {
     x.letters.symbols.get(l.symbol).name.clone()
 }
 
-/// The variations preserve every constraint: on the outgoing edge as they stand, on the incoming
-/// edge with node k written by node k-1. A constraint in which nothing varies says nothing.
+/// The variations preserve every constraint: on the outgoing edge as they are, on the incoming edge with node k
+/// written by node k-1. A constraint in which nothing varies is trivial.
 fn constraint_steps(x: &Inputs, i: usize, earlier: &Back, steps: &mut Vec<Step>) {
     let s = &x.letters.symbols;
     let v = &x.variations[i];
@@ -210,7 +210,7 @@ fn gradient_steps(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
 /// which must cancel by itself.
 fn combination(x: &Inputs, i: usize, back: &Back, steps: &mut Vec<Step>) {
     let s = &x.letters.symbols;
-    // The relations are those of the constrained action: the sum of the action and these terms.
+    // The relations follow from the constrained action: the sum of the action and these terms.
     debug_assert_eq!(
         constraint_terms(x.spec, x.letters).len(),
         x.letters.momentum.len() + x.letters.multiplier.len()
@@ -384,7 +384,7 @@ fn named_form(x: &Inputs, i: usize, steps: &mut Vec<Step>) {
         node(back(&b.node_in)),
         expr::directional(s, &before, &at_node),
     );
-    // The node terms stand in the residual as they are: the rest is the momentum map.
+    // The residual contains the node terms unchanged: the rest is the momentum map.
     block(
         "emitted residual, outgoing edge,",
         node(difference(b.outgoing.clone(), b.node_out.clone())),

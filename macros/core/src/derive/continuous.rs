@@ -1,7 +1,7 @@
-//! The continuous equations of motion: from the Lagrangian of the limit of small steps, by the
-//! same calculus, the Euler-Poincaré equation with advected quantities
-//! `dμ/dt = ±ad*_ζ μ + Σ ∂L/∂a ◇ a` and the transport `da/dt = ζ·a`, to stand beside the discrete
-//! ones as in the thesis's tables A.2 to A.5. Time is continuous here: no letter has a node.
+//! The continuous equations of motion, derived by the same calculus from the Lagrangian of the limit of small
+//! steps: the Euler-Poincaré equation with advected quantities `dμ/dt = ±ad*_ζ μ + Σ ∂L/∂a ◇ a` and the transport
+//! `da/dt = ζ·a`. They are printed next to the discrete equations, as in the thesis's tables A.2 to A.5. Time is
+//! continuous here: no letter has a node.
 
 use super::Letters;
 use super::balance::{pairing, shorter};
@@ -22,8 +22,8 @@ pub struct Continuous {
     pub lagrangian: Expr,
     /// The momentum `μ = ∂L/∂ζ` (body or spatial, by the side).
     pub momenta: Vec<Expr>,
-    /// What carries the momentum, in the letter of [`Letters::node_momentum`]: `ad*_ζ μ` on the body
-    /// side, `-ad*_ζ μ` on the spatial side.
+    /// The coadjoint term, in the letter of [`Letters::node_momentum`]: `ad*_ζ μ` on the body side, `-ad*_ζ μ` on the
+    /// spatial side.
     pub coadjoint: Vec<Expr>,
     /// The forces `Σ ∂L/∂a ◇ a`, quantities and elements alike.
     pub forces: Vec<Expr>,
@@ -33,8 +33,8 @@ pub struct Continuous {
     pub rates: Vec<Expr>,
     /// For each configuration the rate of change of its element, `Λ ζ` or `ζ Λ`.
     pub reconstruction: Vec<Expr>,
-    /// What vanishes along a motion, in `ζ` and the accelerations of [`Letters::acceleration`]:
-    /// `-dμ/dt ± ad*_ζ μ + Σ ∂L/∂a ◇ a`. It is the limit of the discrete balance over the step.
+    /// The residual of the equation of motion, in `ζ` and the accelerations of [`Letters::acceleration`]: `-dμ/dt ±
+    /// ad*_ζ μ + Σ ∂L/∂a ◇ a`. It is the limit of the discrete balance over the step.
     pub balances: Vec<Expr>,
 }
 
@@ -124,7 +124,7 @@ pub fn continuous(
     out
 }
 
-/// Axial vectors of outer products as vector products, where that is all that is left.
+/// Axial vectors of outer products written as vector products, if no other axial vectors remain.
 fn without_axial_vectors(algebra: &Algebra, e: Expr) -> Expr {
     fn has(e: &Expr) -> bool {
         matches!(e.node(), Node::Vee(_)) || e.children().into_iter().any(has)

@@ -1,7 +1,7 @@
-//! Fields whose discrete Lagrangian is convex in their velocities: the velocity of a step is then the
-//! minimiser of a strictly convex function, so that a root of its balance is the only one.
-//! Takes the terms of the edge and the fields that are solved together; gives the coefficients whose
-//! signs decide, or nothing where the terms are not of this kind.
+//! Fields whose discrete Lagrangian is convex in their velocities: the velocity of a step is then the minimiser of
+//! a strictly convex function, so that a root of its balance is the only one. Takes the terms of the edge and the
+//! fields that are solved together; gives the coefficients whose signs decide, or nothing if the terms are not of
+//! this kind.
 
 use super::action::{Action, summands};
 use super::variation::at;
@@ -11,8 +11,8 @@ use crate::expr::shape::Shape;
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Function, Letter, Node, Shift};
 
-/// What makes the terms strictly convex, all of them times the step: a Lagrangian of a step `-h` is
-/// concave where that of `h` is convex, and its root is as much the only one.
+/// The conditions that make the terms strictly convex, each multiplied by the step size. If the Lagrangian is
+/// convex for `h`, it is concave for `-h`, and its root is unique in both cases.
 #[derive(Clone, Debug)]
 pub struct Convexity {
     /// Must be positive: coefficients of the squares of the velocities, one for each field.
@@ -22,7 +22,7 @@ pub struct Convexity {
 }
 
 impl Convexity {
-    /// All coefficients, those that must be positive first.
+    /// All coefficients, first the coefficients that must be positive.
     pub fn all(&self) -> impl Iterator<Item = &Expr> {
         self.positive.iter().chain(&self.not_negative)
     }
@@ -51,7 +51,7 @@ pub fn convexity(spec: &Spec, s: &Symbols, action: &Action) -> Option<Convexity>
     let mut squares: Vec<Option<Expr>> = vec![None; places.len()];
     let mut not_negative = Vec::new();
     for term in summands(s, &edge).iter().filter(|t| terms.moves(t)) {
-        // What the fields and their velocities stand in together acts on both.
+        // A term that contains both fields and velocities affects both, so that no convexity is claimed.
         if places.iter().any(|x| expr::contains(term, *x)) {
             return None;
         }
@@ -134,7 +134,7 @@ impl Terms<'_> {
         }
     }
 
-    /// A number as a weight free of the velocities times what they stand in.
+    /// Factors a number into a weight free of the velocities and a part that contains them.
     fn weighted(&self, e: &Expr) -> Option<(Expr, Expr)> {
         Some(match e.node() {
             Node::Neg(a) => {
@@ -178,7 +178,7 @@ impl Terms<'_> {
         }
     }
 
-    /// Of which velocity a number is the square of the length.
+    /// The velocity whose squared length this number is.
     fn square_of(&self, e: &Expr) -> Option<usize> {
         let root = self.root(e)?;
         let letter = match root.node() {

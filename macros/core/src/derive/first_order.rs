@@ -1,4 +1,4 @@
-//! Lagrangians of first order, linear in all velocities, as those of point vortices and guiding centres. Takes a limit
+//! Lagrangians of first order, linear in all velocities, such as point vortices and guiding centres. Takes a limit
 //! without kinetic energy; says whether its equations of motion determine the velocities all the same.
 
 use super::action::summands;
@@ -14,8 +14,9 @@ use crate::expr::{self, Expr, Letter, Shift};
 /// Largest expression that is differentiated.
 const LARGEST: u32 = 20_000;
 
-/// Whether the Lagrangian is linear in the velocities of fields, `θ(q)·v - V(q)` with a two-form `dθ` that is regular for
-/// general parameters, and no term is of second order in the increments alone, as a kinetic term without `/h` is.
+/// Whether the Lagrangian is linear in the velocities of fields, `θ(q)·v - V(q)`, and the two-form `dθ` is regular
+/// for general parameters. No term may be of second order in the increments alone, such as a kinetic term without
+/// `/h`.
 pub(super) fn is_first_order(
     spec: &Spec,
     letters: &Letters,

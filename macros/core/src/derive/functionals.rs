@@ -1,5 +1,5 @@
-//! Models with functionals, made by hand: a parameter of a Lagrangian is replaced by a functional, and all that
-//! is derived is held to what the model with the functional written out gives.
+//! Models with functionals, made by hand: a parameter of a Lagrangian is replaced by a functional, and every result
+//! is compared with the model in which the functional is written out.
 
 use super::warnings::Topic;
 use super::{Derivation, derive};
@@ -12,10 +12,10 @@ use crate::interpret::{Assignment, evaluate};
 use crate::print::Format;
 use crate::syntax;
 
-/// What takes the place of the parameter `w`.
+/// The expression that replaces the parameter `w`.
 type Made = dyn Fn(&Sample, &dyn Fn(&str) -> Expr) -> Expr;
 
-/// The models with a functional in the place of `w`, and with what it is.
+/// The models with a functional in place of `w`, and with its definition in place of `w`.
 fn stated(body: &str, made: &Made) -> (Spec, Spec, Sample) {
     let text = format!("model Functional {{ param m: Real; param z: Vec<3>; {body} }}");
     let tokens = syntax::tokens(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -121,7 +121,7 @@ fn a_potential_of_a_field_is_stepped_explicitly() {
     printed_everywhere(&own, "∇f(X_k)");
     let tokens = emit::emit(&own, true).to_string().replace(' ', "");
     assert!(tokens.contains("f.pull_back_1(&"), "{tokens}");
-    // Of a functional of unknown form nothing is conserved but the symplectic form and, nearly, the energy.
+    // If the form of the functional is unknown, only the symplectic form and, approximately, the energy are conserved.
     let free = format!("field X: Vec<3>; param w: Real; lagrangian = {KINETIC} - h*w;");
     let (free, ..) = pair(&free, &|s, x| s.of("f", &[&x("z")]));
     assert!(own.invariants.len() < free.invariants.len());

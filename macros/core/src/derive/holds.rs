@@ -1,7 +1,7 @@
-//! Held constraints: `h <λ, g>` is added to the action at the node where the edge starts, and its
-//! multiplier is an unknown of that step, whose equation is the constraint at the end of the edge. To
-//! whatever solves equations a multiplier is then one more velocity, of an additive group.
-//! Takes the model; gives the reactions, what is solved with them, and which invariants they leave.
+//! `hold` constraints: the action receives `h <λ, g>` at the start of the edge. The multiplier is an unknown of
+//! that step, and its equation is the constraint at the end of the edge. The solvers treat the multiplier as one
+//! more velocity, of an additive group. Takes the model; gives the reactions, what is solved with them, and which
+//! invariants they leave.
 
 mod solved;
 
@@ -21,20 +21,20 @@ use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::groups::{Additive, Group};
 
-/// The letters of one held constraint beside its multiplier.
+/// The letters of one constraint besides its multiplier.
 #[derive(Clone, Debug)]
 pub struct Held {
-    /// What its multiplier is the increment of: an element that no state keeps.
+    /// The element whose increment is the multiplier: the state does not contain it.
     pub element: SymbolId,
     /// A free variation: the multiplier on arrival.
     pub variation: SymbolId,
     /// A second one.
     pub direction: SymbolId,
-    /// Letters that are asked for every configuration.
+    /// Letters that every configuration needs.
     others: [SymbolId; 3],
 }
 
-/// The letters of all held constraints.
+/// The letters of all constraints.
 pub(super) fn letters(spec: &Spec, symbols: &mut Symbols) -> Vec<Held> {
     let mut all = Vec::new();
     for hold in &spec.holds {
@@ -45,7 +45,7 @@ pub(super) fn letters(spec: &Spec, symbols: &mut Symbols) -> Vec<Held> {
         };
         let [variation, direction] = ["δ", "η"].map(|base| own(base, Role::Variation));
         let others = ["P", "M", "p"].map(|base| own(base, Role::Derived));
-        // Its name stands in refusals alone.
+        // This name appears only in error messages.
         let element = symbols.add(
             &symbols.fresh_name(&format!("constraint_{}", symbol.name)),
             symbol.shape,
@@ -105,7 +105,7 @@ pub(crate) fn node_changes(variations: &[Variation], letters: &Letters) -> Vec<(
     all
 }
 
-/// The rate of change of what a constraint holds, in the letters of variation as velocities.
+/// The rate of change of a constraint, with the letters of variation as velocities.
 pub(crate) fn rate(d: &Derivation, hold: &Hold) -> Expr {
     let s = &d.letters.symbols;
     let changes = node_changes(&d.variations, &d.letters);
@@ -150,7 +150,7 @@ fn at_the_end(s: &Symbols, spec: &Spec, hold: &Hold) -> Expr {
     expr::substitute(s, &next, &spec.end_of_edge())
 }
 
-/// Whether a step moves what a constraint holds through the velocity of configuration `i`.
+/// Whether a constraint at the end of the step depends on the velocity of configuration `i`.
 pub(super) fn holds(s: &Symbols, spec: &Spec, hold: &Hold, i: usize) -> bool {
     let velocity = here(spec.configurations[i].velocity);
     expr::contains(&at_the_end(s, spec, hold), velocity)
@@ -191,7 +191,7 @@ fn equation(value: Expr) -> Balance {
     }
 }
 
-/// The refusal of a constraint that follows from those before it whatever the configuration is.
+/// The error for a constraint that follows from the constraints before it, whatever the configuration is.
 pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> {
     let count = d.spec.holds.len();
     if count == 0 {
@@ -245,7 +245,7 @@ pub(super) fn dependent(d: &Derivation, assumed: &[Expr]) -> Option<Diagnostic> 
 }
 
 impl Derivation {
-    /// What is solved, with the multipliers of these constraints as further velocities behind those of the
+    /// The derivation whose unknowns include the multipliers of these constraints, after the velocities of the
     /// configurations.
     pub fn with_multipliers(&self, which: &[usize]) -> Derivation {
         let mut own = self.clone();
@@ -318,14 +318,15 @@ pub(crate) fn scale(s: &Symbols, hold: &Hold) -> Expr {
     expr::sum(terms, Shape::SCALAR)
 }
 
-/// What the search for invariants found: momenta of the motion with its reactions, the others of that without.
+/// The result of the search for invariants. Momenta belong to the motion with constraint forces, the other invariants
+/// to the motion without them.
 pub(super) struct Found {
     pub invariants: Vec<Invariant>,
     pub integrability: Integrability,
 }
 
-/// The invariants that the reactions leave: those that no momentum along a reaction changes where the constraints
-/// hold. The constraints are added, and their rates of change where these are held too.
+/// The invariants that constraint forces do not change wherever the constraints are satisfied. The constraints are
+/// added, and their rates of change if these are enforced too.
 pub(super) fn kept(
     spec: &Spec,
     letters: &Letters,

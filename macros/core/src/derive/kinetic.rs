@@ -21,10 +21,11 @@ use crate::expr::{self, Expr, Letter, Shift};
 pub struct Kinetic {
     /// The kinetic energy in the letters of [`Letters::variation`].
     pub energy: Expr,
-    /// The rank of the form at a point in general position of parameters and configurations, and
-    /// the number of velocities; nothing where the form is too large to be evaluated.
+    /// The rank of the form at a point in general position of parameters and configurations, and the number of
+    /// velocities; `None` if the form is too large to evaluate.
     pub rank: Option<(usize, usize)>,
-    /// Whether the Lagrangian is linear in all velocities and determines them: it has no kinetic energy and needs none.
+    /// Whether the Lagrangian is linear in all velocities and determines them: such a model does not need a kinetic
+    /// energy.
     pub first_order: bool,
 }
 
@@ -47,7 +48,7 @@ const VELOCITIES: usize = 256;
 /// Points in general position that are tried: the rank is the largest found.
 const POINTS: u64 = 3;
 
-/// The kinetic energy, where the step stands outside functions and roots.
+/// The kinetic energy, if the step size occurs outside functions and roots only.
 pub fn kinetic(
     spec: &Spec,
     letters: &Letters,
@@ -69,10 +70,11 @@ pub fn kinetic(
     })
 }
 
-/// The second-order part in 1/h of an action that has no limit as a whole.
+/// The kinetic energy of an action without a limit: half the coefficient of `1/h` in the second derivative of the
+/// action along the velocities, at rest.
 fn expanded(spec: &Spec, letters: &Letters, action: &Action, algebra: &Algebra) -> Option<Expr> {
     let s = &letters.symbols;
-    // On what work is left; the derivation itself books none of it.
+    // Uses the work that is left; the derivation itself is not charged for it.
     let algebra = algebra.over(s);
     let (mut identity, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
     for (c, xi) in spec.configurations.iter().zip(&letters.variation) {
@@ -97,7 +99,7 @@ fn expanded(spec: &Spec, letters: &Letters, action: &Action, algebra: &Algebra) 
     for (term, coefficient) in &twice.terms {
         let mut term = term.clone();
         let Some(i) = term.monomial.iter().position(|(a, _)| *a == h) else {
-            // Inside a root or a function, as in `sqrt(h^2 - x)`: of which order it is is not seen.
+            // Inside a root or a function, as in `sqrt(h^2 - x)`: the order is not visible.
             let value = algebra.raise(&Poly::term(Shape::SCALAR, *coefficient, term));
             if expr::contains(&value, at(spec.step, Shift::HERE)) {
                 return None;
@@ -132,7 +134,7 @@ pub fn is_second_moment(spec: &Spec, letters: &Letters, energy: &Expr, symbol: S
     let mut turns = spec.configurations.iter().zip(&letters.variation);
     turns.any(|(c, xi)| {
         let xi = expr::here(s, *xi);
-        // Of a group that turns space: the letters of variation are matrices, or begin with the axis.
+        // For a group that turns space, the letters of variation are matrices, or begin with the axis.
         let element = expr::here(s, c.element);
         let turn = match (c.group.turn(s, &element), c.group.coordinates()) {
             (None, _) => return false,

@@ -36,20 +36,20 @@ const TOO_LARGE: &str = "the Lagrangian is too large to expand";
 /// Highest derivative that is looked at for terms beyond the quadratic ones.
 const HIGHEST: i64 = 8;
 
-/// Why there is no limit, where there is one of another kind: a Lagrangian whose energy is not known as a function of the
+/// The reason if the Lagrangian is not quadratic in the velocity: its energy is then not known as a function of the
 /// momentum.
 pub const NOT_QUADRATIC: &str = "the Lagrangian is not quadratic in the velocity";
 
-/// Why there is no limit.
+/// The reason if the action does not shrink in proportion to the step size.
 pub const STANDING: &str = "the action of a step does not shrink in proportion to the step";
 
-/// Why none is sought, and no energy, where a clock stands in the Lagrangian.
+/// The reason if a clock occurs in the Lagrangian: then neither a limit nor an energy is sought.
 pub const DRIVEN: &str = "the Lagrangian depends on time";
 
 /// Why no limit is found where the step does not come out of a function.
 pub(crate) const INSIDE: &str = "the step stands inside a function or root";
 
-/// The limit, or why there is none.
+/// The limit, or why it does not exist.
 pub fn limit(
     spec: &Spec,
     letters: &Letters,
@@ -131,7 +131,8 @@ pub fn limit(
         if order > Rational::ONE || algebra.is_zero(&value) {
             continue;
         }
-        // What a potential is measured from stays; what an edge has at rest does not.
+        // A constant of order one, such as the reference level of a potential, stays; constants of lower order are
+        // dropped.
         if order < Rational::ONE {
             if constant || is_carried_constant(spec, letters, variations, algebra, &value) {
                 continue;
@@ -174,8 +175,8 @@ pub fn limit(
     })
 }
 
-/// What is in proportion to the step where nothing moves: as it was stated, where the expanded form would round more far
-/// from the origin.
+/// The part that is proportional to the step size at zero velocity. It is kept as stated if the expanded form would
+/// round more far from the origin.
 fn as_stated(s: &Symbols, spec: &Spec, still: &Expr, expanded: Expr, algebra: &Algebra) -> Expr {
     let step = at(spec.step, Shift::HERE);
     let stated = expr::collect(s, &of_order(algebra, still, step, Rational::ONE));
@@ -187,7 +188,8 @@ fn as_stated(s: &Symbols, spec: &Spec, still: &Expr, expanded: Expr, algebra: &A
     }
 }
 
-/// The terms that are as stated of one order in the step, this one put to one: their coefficient.
+/// The coefficient of one power of the step size: the sum of all terms of this order, with the step size set to
+/// one.
 pub(crate) fn of_order(algebra: &Algebra, e: &Expr, step: Letter, order: Rational) -> Expr {
     let h = Atom::Letter(step);
     let is_of = |e: &Expr| {
@@ -204,8 +206,8 @@ pub(crate) fn of_order(algebra: &Algebra, e: &Expr, step: Letter, order: Rationa
     expr::substitute(algebra.symbols(), &sum, &[(step, expr::integer(1))])
 }
 
-/// Refuses an action of which a term over a high power of the step is left in the limit by its third or a higher
-/// derivative along `exp(h ξ)`, as `(b/h^3)*dot(d, d)^2` and `-h*m*c^2*sqrt(1 - dot(d, d)/(c*h)^2)` are.
+/// Rejects an action if a term over a high power of the step size contributes to the limit by its third or a higher
+/// derivative along `exp(h ξ)`. Examples are `(b/h^3)*dot(d, d)^2` and `-h*m*c^2*sqrt(1 - dot(d, d)/(c*h)^2)`.
 fn no_higher_powers(
     s: &Symbols,
     action: &Expr,
@@ -247,7 +249,8 @@ fn no_higher_powers(
             break;
         }
         if derivative.size() > LARGEST {
-            // Of functions the first four are wanted, the others where they can be had.
+            // For functions, the first four derivatives are required; higher derivatives are used if they are small
+            // enough.
             return match needed || n <= 4 {
                 true => Err(TOO_LARGE.to_owned()),
                 false => Ok(()),

@@ -50,7 +50,7 @@ use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::work::{self, Count, Work};
 use std::sync::OnceLock;
 
-/// Letters that the derivation adds to those of the model.
+/// The letters that the derivation adds to the letters of the model.
 #[derive(Clone, Debug)]
 pub struct Letters {
     /// The model's symbols and the ones below.
@@ -74,7 +74,7 @@ pub struct Letters {
     pub edge_momentum: Vec<SymbolId>,
     /// For each configuration: the name of its node momentum, a covector (a vector for SO(3)).
     pub node_momentum: Vec<SymbolId>,
-    /// For each held constraint: its letters beside the multiplier.
+    /// For each constraint: its letters besides the multiplier.
     pub held: Vec<holds::Held>,
     /// The spectral parameter of a Lax form.
     pub spectral: SymbolId,
@@ -101,19 +101,19 @@ pub struct Derivation {
     pub momenta: Vec<momentum::Momentum>,
     /// How the momentum of every configuration goes from one node to the next.
     pub carries: Vec<momentum_update::MomentumUpdate>,
-    /// What each step must solve.
+    /// The equations that each step solves.
     pub solve: select_solver::Solve,
     /// How advected quantities follow from the configuration.
     pub transports: Vec<advection_rule::AdvectionRule>,
     /// Whether the one-step action is symmetric under time reversal.
     pub reversible: bool,
-    /// The same with what breaks it, or what it takes.
+    /// The same: in general, under the assumptions, or the remainder that breaks the symmetry.
     pub reversal: reversal::Reversal,
-    /// The Lagrangian in the limit of small steps, or why there is none.
+    /// The Lagrangian in the limit of small steps, or why the limit does not exist.
     pub limit: Result<limit::Limit, String>,
     /// The equations of motion of that limit, where there is one.
     pub continuous: Option<continuous::Continuous>,
-    /// The kinetic energy, also of an action that has no limit as a whole.
+    /// The kinetic energy. It is known even for some actions without a limit.
     pub kinetic: Option<kinetic::Kinetic>,
     /// The Lie-Poisson bracket of the reduced space.
     pub bracket: bracket::Bracket,
@@ -121,18 +121,19 @@ pub struct Derivation {
     pub invariants: Vec<invariants::Invariant>,
     /// How many there are, and the Lax form.
     pub integrability: invariants::Integrability,
-    /// What derives but is hardly meant.
+    /// Warnings about statements that are valid but probably not intended.
     pub warnings: Vec<warnings::Warning>,
-    /// What the derivation took.
+    /// The work of the derivation.
     pub work: Work,
-    /// The scheduled residual, once it has been asked for.
+    /// The scheduled residual, computed on first use.
     pub(crate) residual: OnceLock<crate::interpret::Evaluator>,
 }
 
 fn letters(spec: &Spec) -> Letters {
     let mut symbols = spec.symbols.clone();
     let many = spec.configurations.len() > 1;
-    // Letters of a paper, another one where the model bears the first: two that differ by a number alone are confused.
+    // Letters as papers use them, or another letter if the model uses the first one: two names that differ by a number
+    // alone are easily confused.
     let free = |letters: &[&'static str]| spec.symbols.free_letter(letters, many);
     let mut numbered = |letters: &[&'static str], i: usize, shape: Shape, structure, role| {
         let base = free(letters);
@@ -199,7 +200,7 @@ fn letters(spec: &Spec) -> Letters {
         };
         multiplier.push(symbols.add(&name, s.shape, dual, Role::Multiplier));
         let name = symbols.fresh_name(&format!("d{}", s.name));
-        // Where it stands in a word must show, and skew letters are written as hats.
+        // The position in a word must be visible, and skew letters would be written as hats.
         let marker = match dual {
             Structure::Skew => Structure::General,
             other => other,
@@ -256,8 +257,8 @@ impl Derivation {
     }
 }
 
-/// Derives a checked model. Work is counted, and a model that takes more than any is given is
-/// refused: what was found until then is void, errors among it.
+/// Derives a checked model. Work is counted, and a model that exceeds the limit fails: all results until then are
+/// void, including errors.
 pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
     let count = Count::begin();
     let whole = place_of_most(&spec);
@@ -268,7 +269,7 @@ pub fn derive(spec: Spec) -> Result<Derivation, Errors> {
     }
 }
 
-/// Where most of a Lagrangian stands: one term, if it is more than half of it, or all of them.
+/// The position of most of a Lagrangian: one term, if it is more than half of it, or all of them.
 fn place_of_most(spec: &Spec) -> Place {
     let largest = spec.terms.iter().max_by_key(|(e, _)| e.size());
     let half = spec.lagrangian.size() / 2;
@@ -276,7 +277,7 @@ fn place_of_most(spec: &Spec) -> Place {
     found.map_or(spec.lagrangian_place, |(_, place)| *place)
 }
 
-/// The refusal of a model, with what is more than is taken.
+/// The error for a model that exceeds a limit, with the limit.
 fn too_large(place: Place, excess: Option<String>) -> Diagnostic {
     let message = match excess {
         Some(excess) => format!("this model is too large to derive: {excess}"),
@@ -298,7 +299,7 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         true => Err(Errors::from(too_large(whole, algebra.excess()))),
         false => Ok(()),
     };
-    // What the constraints do not touch is found without their reactions.
+    // Quantities that the constraints do not affect are derived without constraint forces.
     let free = action::action(&spec);
     let action = holds::with_reactions(&spec, &letters, &free);
     // The constraints first: a wrong-sided action makes everything below meaningless.
@@ -366,7 +367,7 @@ fn derived(spec: Spec, count: &Count) -> Result<Derivation, Errors> {
         held: (!spec.holds.is_empty()).then_some((&action, balances.as_slice())),
         bracket: &bracket,
         solve: &solve,
-        // Momenta that do not determine the velocities have no energy.
+        // If the momenta do not determine the velocities, no energy is listed.
         limit: limit.as_ref().ok().filter(|_| {
             let degenerate = kinetic.as_ref().and_then(kinetic::Kinetic::degenerate);
             degenerate.is_none()

@@ -13,15 +13,15 @@ use crate::expr::{self, Expr, Shift};
 /// The momentum map of one configuration.
 #[derive(Clone, Debug)]
 pub struct Momentum {
-    /// The edge momentum as a matrix: `2 skew(∇ℓ Ω^T)` for SO(n), `∇ℓ Ω^T` for GL(n); for SU(2)
-    /// and SE(3) its pairings with the coordinates. It stands at the start of the edge on the body
-    /// side, at its end on the spatial side.
+    /// The edge momentum as a matrix: `2 skew(∇ℓ Ω^T)` for SO(n), `∇ℓ Ω^T` for GL(n); for SU(2) and SE(3) its pairings
+    /// with the coordinates. It is evaluated at the start of the edge on the body side, and at its end on the spatial
+    /// side.
     pub edge: Expr,
     /// The same, reduced.
     pub reduced: Expr,
-    /// What the edge contributes at its start: `M` (body) or `Ad*_ω M = ω^T M ω^-T` (spatial).
+    /// The contribution of the edge at its start: `M` (body) or `Ad*_ω M = ω^T M ω^-T` (spatial).
     pub start: Expr,
-    /// What the edge contributes at its end: `Ad*_Ω M` (body) or `M` (spatial).
+    /// The contribution of the edge at its end: `Ad*_Ω M` (body) or `M` (spatial).
     pub end: Expr,
     /// The momentum map of the configuration and its multiplier: `skew(Λ^T P)` on the body side
     /// (the right one), `skew(P Λ^T)` on the spatial side (the left one); without `skew` for GL(n).

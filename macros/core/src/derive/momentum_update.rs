@@ -1,6 +1,6 @@
-//! How the momentum goes from one node to the next: what acts is added to what it was. It is never
-//! made again from the velocity, which would lose what is conserved to the rounding of `1/h`.
-//! Takes the action and its variations; gives what is added, in the form that rounds least.
+//! The update of the momentum from one node to the next: the impulse of the step is added to it. The momentum is
+//! never recomputed from the velocity, which would lose conserved quantities to the rounding of `1/h`. Takes the
+//! action and its variations; gives the increment, in the form that rounds least.
 
 use super::Letters;
 use super::action::Action;
@@ -15,28 +15,28 @@ use crate::expr::shape::Shape;
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Node, Shift};
 
-/// How the node momentum of one configuration is carried, covectors in the frame of its side.
+/// The update of the node momentum of one configuration, with covectors in the frame of its side.
 #[derive(Clone, Debug)]
 pub enum MomentumUpdate {
-    /// In this frame: `m' = m + added`. Exact where the action is invariant under what moves both
-    /// ends of the edge alike in this frame.
+    /// In this frame: `m' = m + added`. Exact if the action is invariant when both ends of the edge move together in
+    /// this frame.
     Kept(Expr),
-    /// By the edge: `m' = Ad*(m + leave) + arrive`, with what acts at its start and at its end.
-    /// Exact where the action is invariant in the other frame.
+    /// By the edge: `m' = Ad*(m + leave) + arrive`, with the impulses at its start and at its end. Exact if the action
+    /// is invariant in the other frame.
     Through {
-        /// What acts at the start of the edge.
+        /// The impulse at the start of the edge.
         leave: Expr,
-        /// What acts at its end.
+        /// The impulse at its end.
         arrive: Expr,
-        /// Of a rigid motion seen from its body: whether its linear momentum is along its way, as that
-        /// of a body about its centre of mass is. The moment of the way is then nothing, which would
-        /// come out as the rounding of two long vectors.
+        /// For a rigid motion seen from its body: whether the linear momentum is parallel to the displacement, as for a
+        /// body about its centre of mass. The moment of the displacement is then zero; if computed, it would be the
+        /// rounding error of two long vectors.
         straight: bool,
     },
 }
 
 impl MomentumUpdate {
-    /// The expressions it is made of.
+    /// The expressions it contains.
     pub fn parts(&self) -> Vec<&Expr> {
         match self {
             MomentumUpdate::Kept(added) => vec![added],
@@ -52,7 +52,7 @@ impl MomentumUpdate {
 /// Most terms of a Lagrangian that are looked at in groups.
 const MOST_TERMS: usize = 32;
 
-/// What the derivation has so far.
+/// The results of the derivation so far.
 pub struct Inputs<'a> {
     /// The model.
     pub spec: &'a Spec,
@@ -68,7 +68,7 @@ pub struct Inputs<'a> {
     pub transports: &'a [AdvectionRule],
 }
 
-/// How every momentum is carried.
+/// The update of every momentum.
 pub fn carries(inputs: &Inputs) -> Vec<MomentumUpdate> {
     let displacements = Displacements::of(inputs.spec, &inputs.letters.symbols);
     let symbols = &displacements.symbols;
@@ -100,7 +100,7 @@ impl Work<'_> {
             arrive: b.node_in.clone(),
             straight: self.is_straight(c, b),
         };
-        // What is free of velocities is a force, and of the step's own size.
+        // An increment that is free of velocities is a force, and of the order of the step size.
         match &b.increment {
             Some(added) if c.side.is_spatial() => return MomentumUpdate::Kept(added.clone()),
             _ if c.side.is_body() && !self.moving(&through) => return through,
@@ -130,8 +130,8 @@ impl Work<'_> {
         }
     }
 
-    /// What acts at the ends of the edge, in the form that rounds least: what is divided by the step
-    /// may cancel in it.
+    /// The impulses at the ends of the edge, in the form that rounds least: divisions by the step size may cancel in
+    /// it.
     fn rounded_least(&self, i: usize, c: &Configuration, carry: MomentumUpdate) -> MomentumUpdate {
         let MomentumUpdate::Through {
             leave,
@@ -189,8 +189,8 @@ impl Work<'_> {
             .any(|e| expr::contains_role(self.symbols, e, Role::Velocity))
     }
 
-    /// What the step adds to the momentum, in the frame of the side: the derivative of the action
-    /// when both ends of the edge are moved alike.
+    /// The increment of the momentum in one step, in the frame of the side: the derivative of the action when both ends
+    /// of the edge move together.
     fn added(&self, i: usize, c: &Configuration) -> Expr {
         let along = self.alike(i);
         let terms = self.felt(&self.inputs.action.total, &along);
@@ -215,7 +215,7 @@ impl Work<'_> {
         self.rounding().best(all)
     }
 
-    /// How everything on the edge changes when its two ends are moved alike.
+    /// How everything on the edge changes when its two ends move together.
     fn alike(&self, i: usize) -> Vec<(Letter, Expr)> {
         let (s, v) = (self.symbols, &self.inputs.variations[i]);
         let next = |(l, e): &(Letter, Expr)| (at(l.symbol, Shift::NEXT), expr::shift_time(s, e, 1));
@@ -321,8 +321,7 @@ impl Work<'_> {
         c.group.of_gradient(self.symbols, y)
     }
 
-    /// The same covector as it was derived, in its normal form, and in that of velocities less the
-    /// identity.
+    /// The covector as derived, in its normal form, and in the normal form for velocities minus the identity.
     fn forms(&self, e: &Expr) -> Vec<Expr> {
         vec![
             e.clone(),

@@ -1,5 +1,5 @@
-//! Where a velocity stands in a term of a normal form.
-//! Takes the term; says whether it is free of the velocity, linear in it, or neither.
+//! Finds a velocity in a term of a normal form. Takes the term; says whether it is free of the velocity, linear in
+//! it, or neither.
 
 use super::variation::at;
 use crate::algebra::{Algebra, Factor, Monomial, Poly, Rational, Source, Term};
@@ -7,7 +7,7 @@ use crate::expr::shape::Shape;
 use crate::expr::symbol::SymbolId;
 use crate::expr::{self, Shift};
 
-/// How often a velocity stands in a term, and where.
+/// How often a velocity occurs in a term, and where.
 pub(super) enum Occurrence {
     /// Nowhere.
     Free,
@@ -30,7 +30,7 @@ pub(super) fn occurrence(algebra: &Algebra, term: &Term, velocity: SymbolId) -> 
     let w = at(velocity, Shift::HERE);
     let is_velocity =
         |f: &Factor| matches!(f, Factor::Letter { source: Source::Letter(l), .. } if *l == w);
-    // In what a letter stands for too: an inverse, a value of a functional.
+    // Also inside expressions that a letter replaces: an inverse, a value of a functional.
     let holds = |f: &Factor| match f {
         Factor::Letter {
             source: Source::Opaque(i),

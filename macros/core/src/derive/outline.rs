@@ -1,5 +1,5 @@
-//! The beginning of a derivation: how everything varies, and the equations. Takes a checked model; gives
-//! what neighbours and ends of a line are derived from, without proofs and what follows from them.
+//! The beginning of a derivation: how everything varies, and the equations. Takes a checked model; gives the data
+//! from which the forces of neighbours and of ends are derived, without proofs and consequences.
 
 use super::advection_rule::{self, AdvectionRule};
 use super::balance::{self, Balance};
@@ -11,8 +11,7 @@ use crate::diagnostic::Errors;
 use crate::expr::{self, Expr, Letter, Shift};
 use crate::work::{self, Count};
 
-/// What a derivation begins with: how everything varies, and the equations, without their proof and
-/// without what follows from them.
+/// The first results of a derivation: the variations and the equations, without their proof and their consequences.
 #[derive(Clone, Debug)]
 pub struct Outline {
     /// The reduced model.
@@ -51,8 +50,8 @@ pub fn outline(spec: Spec) -> Result<Outline, Errors> {
 }
 
 impl Outline {
-    /// The expression with advected quantities by the configurations that carry them, at both ends of
-    /// the edge; those that no definition gives stay.
+    /// The expression with advected quantities replaced by their definitions, at both ends of the edge; quantities
+    /// without a definition stay.
     pub fn defined(&self, e: &Expr) -> Expr {
         let s = &self.letters.symbols;
         let mut list: Vec<(Letter, Expr)> = Vec::new();
@@ -70,7 +69,7 @@ impl Outline {
 }
 
 impl Derivation {
-    /// What it began with.
+    /// The first results of this derivation.
     pub fn outline(&self) -> Outline {
         Outline {
             spec: self.spec.clone(),

@@ -1,6 +1,6 @@
-//! Velocities by parts of three dimensions: a unit quaternion as a number and a vector, a rigid
-//! motion as a rotation and a vector. What is solved at each step is then written in vectors.
-//! Takes the model and expressions of its derivation; gives the same in the parts.
+//! Velocities by parts of three dimensions: a unit quaternion as a number and a vector, a rigid motion as a
+//! rotation and a vector. The equations of each step are then written in vectors. Takes the model and expressions
+//! of its derivation; gives the same in the parts.
 
 use super::Letters;
 use crate::algebra::Rational;
@@ -25,7 +25,7 @@ pub enum Velocity {
 /// All velocities by parts.
 #[derive(Clone, Debug)]
 pub struct Parts {
-    /// The letters of the derivation, those of the parts, and [`Parts::direction`].
+    /// The letters of the derivation, the letters of the parts, and [`Parts::direction`].
     pub symbols: Symbols,
     /// The parts, one configuration after the other.
     pub velocities: Vec<Velocity>,
@@ -44,7 +44,7 @@ fn at(symbol: SymbolId) -> Letter {
 }
 
 impl Parts {
-    /// Those of a model; `None` where a group is not one of space.
+    /// The parts of a model; `None` if one of its groups is not a group of space.
     pub fn of(spec: &Spec, letters: &Letters) -> Option<Parts> {
         let mut symbols = letters.symbols.clone();
         let mut add = |name: &str, shape: Shape, structure: Structure| {
@@ -146,7 +146,7 @@ impl Parts {
         })
     }
 
-    /// The parts of a velocity that stands as it is.
+    /// The parts of an expression that is a velocity itself.
     fn velocity(&self, e: &Expr) -> Option<Velocity> {
         let Node::Letter(letter) = e.node() else {
             return None;

@@ -1,6 +1,6 @@
-//! The equation of a step on SU(2) that comes down to one for a number: with the velocity `w + v`
-//! the balance reads `w A v + v x A v + β v = h N / 2`, `A` symmetric. Takes the balance; gives `A`, `β` and
-//! what of the node's momentum is none of the edge's, or why the balance is not of this form.
+//! The equation of a step on SU(2) that comes down to one for a number: with the velocity `w + v` the balance reads
+//! `w A v + v x A v + β v = h N / 2`, `A` symmetric. Takes the balance; gives `A`, `β` and the part of the node
+//! momentum that does not belong to the edge, or why the balance is not of this form.
 
 use super::Letters;
 use super::balance::{Balance, shorter};
@@ -17,7 +17,7 @@ use crate::expr::{self, Expr, Shift};
 /// The parts of such an equation.
 #[derive(Clone, Debug)]
 pub struct Quaternionic {
-    /// What it shares with a Moser-Veselov equation: the factor is `A`.
+    /// The fields that it shares with a Moser-Veselov equation: the factor is `A`.
     pub edge: MoserVeselov,
     /// `β`, made of parameters.
     pub real: Expr,
@@ -46,7 +46,7 @@ pub(super) fn form(
         let is_own = algebra.equal(&b.node_out, &rest);
         (a, real, if is_own { b.node_out.clone() } else { rest })
     });
-    // What acts at the node may hold the quaternion itself, which the parts of the velocity do not take apart.
+    // Forces at the node may contain the quaternion itself, which the parts of the velocity do not split.
     let without_node = || {
         let (a, real, rest) = read(&own, letters, &b.edge_out, algebra)?;
         let known = !expr::contains_role(s, &b.node_out, Role::Velocity);
@@ -73,7 +73,7 @@ fn read(
     let inner = algebra.over(s);
     let (w, v) = (expr::here(s, re), expr::here(s, im));
     let [re, im] = [re, im].map(|id| at(id, Shift::HERE));
-    // Nor may the velocities of others stand in them.
+    // Nor may they contain the velocities of other configurations.
     let free = |e: &Expr| {
         !expr::contains(e, re)
             && !expr::contains(e, im)
@@ -108,7 +108,7 @@ fn read(
     let symmetric = expr::sub(a.clone(), expr::transpose(s, a.clone()));
     let proved = inner.is_zero(&difference) && inner.is_zero(&symmetric);
     algebra.charge(&inner);
-    // h N / 2: the balance carries 2/h.
+    // h N / 2: the balance contains 2/h.
     let half = expr::scale(Rational::HALF, expr::here(&letters.symbols, spec.step));
     let scaled = |e: Expr| {
         let e = expr::mul(half.clone(), e);

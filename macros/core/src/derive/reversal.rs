@@ -18,7 +18,7 @@ pub enum Reversal {
     Symmetric,
     /// It is for the parameters that the assumptions admit.
     Assumed,
-    /// What is left of `ℓ(q0, q1, h) + ℓ(q1, q0, -h)`; nothing where that is too large to be shown.
+    /// The remainder of `ℓ(q0, q1, h) + ℓ(q1, q0, -h)`; none if it is too large to show.
     Broken(Option<Expr>),
 }
 
@@ -32,7 +32,7 @@ impl Reversal {
 /// Largest left-over that is shown.
 const LARGEST: u32 = 40;
 
-/// `ℓ(q0, q1, h) + ℓ(q1, q0, -h)`, written by the velocities and what stands at the start of the edge.
+/// `ℓ(q0, q1, h) + ℓ(q1, q0, -h)`, written by the velocities and the quantities at the start of the edge.
 pub(crate) fn sum(spec: &Spec, action: &Action) -> Expr {
     let s = &spec.symbols;
     let mut swap: Vec<(Letter, Expr)> = vec![(
@@ -54,8 +54,8 @@ pub(crate) fn sum(spec: &Spec, action: &Action) -> Expr {
     expr::substitute(s, &sum, &forward)
 }
 
-/// The same expression with every advected quantity by its definition: a carried point has 1 for its
-/// last component and a carried frame is orthogonal, which letters of their shape do not show.
+/// The same expression with every advected quantity replaced by its definition: an advected point has 1 as its last
+/// component, and an advected frame is orthogonal. The shapes of their letters do not show this.
 pub(crate) fn by_configuration(spec: &Spec, e: &Expr) -> Expr {
     let defined = spec.advected.iter().filter_map(|a| {
         let definition = a.definition.clone()?;
@@ -64,7 +64,8 @@ pub(crate) fn by_configuration(spec: &Spec, e: &Expr) -> Expr {
     expr::substitute(&spec.symbols, e, &defined.collect::<Vec<_>>())
 }
 
-/// What a clock in the action is ahead after a step of `h` and one of `-h`, of the first that does not return.
+/// How far a clock in the action is ahead after a step of `h` and one of `-h`; for the first clock that does not
+/// return.
 pub(crate) fn clock_left(spec: &Spec, action: &Action, algebra: &Algebra) -> Option<Expr> {
     let s = &spec.symbols;
     let clocks = spec.clocks();
@@ -72,7 +73,7 @@ pub(crate) fn clock_left(spec: &Spec, action: &Action, algebra: &Algebra) -> Opt
         .iter()
         .map(|l| l.symbol)
         .collect();
-    // And those that these go on by.
+    // And the quantities in the updates of these.
     let own = |id| spec.advected.iter().find(move |a| a.quantity == id);
     let mut next = 0;
     while let Some(id) = used.get(next).copied() {

@@ -1,6 +1,6 @@
-//! What rounding does to an expression when the step is small: velocities are then near the identity,
-//! and `(Ω - 1) a / h` keeps sixteen digits of what `Ω a / h - a / h` loses. Takes expressions; gives
-//! the power of the step that they are of, and that of their rounding.
+//! Estimates the rounding of an expression when the step size is small. Velocities are then near the identity, and
+//! `(Ω - 1) a / h` keeps sixteen digits, of which `Ω a / h - a / h` loses some. Takes expressions; gives the order
+//! of their values in the step size, and the order of their rounding.
 
 use super::cancellation;
 use crate::algebra::Algebra;
@@ -10,8 +10,8 @@ use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Map, Node, Shift};
 use crate::schedule;
 
-/// Powers of the step: `size` that of the value, `error` that of its rounding, in units of
-/// `EPSILON`. What is exact has an infinite one.
+/// Powers of the step size: `size` for the value, `error` for its rounding, in units of `EPSILON`. For exact values
+/// the power is infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Order {
     /// The value is of this power of the step.
@@ -20,19 +20,19 @@ pub struct Order {
     pub error: f64,
 }
 
-/// What the orders are found from.
+/// The input of the estimate.
 pub struct Rounding<'a> {
     /// The model.
     pub spec: &'a Spec,
     /// Letters of the expressions.
     pub symbols: &'a Symbols,
-    /// Decides what vanishes at rest.
+    /// Decides which expressions vanish at rest.
     pub algebra: &'a Algebra<'a>,
 }
 
 /// Letters for velocities less the identity: small terms are small when they are written in these.
 pub struct Displacements {
-    /// The letters of the model and those of the displacements.
+    /// The letters of the model, and the letters of the displacements.
     pub symbols: Symbols,
     /// One for each configuration whose velocity is a matrix that keeps its own coordinates.
     letters: Vec<Option<SymbolId>>,
@@ -131,7 +131,7 @@ impl Rounding<'_> {
             .any(|l| self.symbols.get(l.symbol).role == Role::Velocity || l.shift.time != 0)
     }
 
-    /// What is of the order `inside`, or one more where it vanishes at rest.
+    /// The order `inside`, with one more power of the step size in the value if the expression vanishes at rest.
     fn cancelling(&self, e: &Expr, inside: Order) -> Order {
         let gains = self.moves(e) && self.rests_at_zero(e);
         Order {

@@ -1,8 +1,8 @@
-//! Unknowns that stand linearly in their own equations, solved for in closed form before the others are
-//! sought: translations of rigid motions where the balance of linear momentum is linear in them and its
-//! matrix is a product whose factors can be undone, made of rotations and constants. Newton's method
-//! then finds rotations alone, with the whole derivative of what is left.
-//! Takes velocities by parts and their equations; gives the solution and the equations that are left.
+//! Schur reduction: unknowns that occur linearly in their own equations are eliminated in closed form before the
+//! others are sought. These are translations of rigid motions, if the balance of linear momentum is linear in them.
+//! Its matrix must be a product of invertible factors that contain rotations and constants. Newton's method then
+//! finds rotations alone, with the whole derivative of the remaining equations. Takes velocities by parts and their
+//! equations; gives the solution and the remaining equations.
 
 use super::parts::{Parts, Velocity};
 use super::tangent::Direction;
@@ -13,7 +13,7 @@ use crate::expr::{self, Expr, Letter, Shift, Undone};
 
 const THREE: Dim = Dim::Fixed(3);
 
-/// What is solved for beforehand.
+/// The unknowns that are eliminated, and how.
 #[derive(Clone, Debug)]
 pub struct SchurReduction {
     /// The letters of the parts, and those below.
@@ -35,7 +35,7 @@ pub struct Place {
     pub block: usize,
     /// The letter of the momentum of the node in it.
     pub momentum: SymbolId,
-    /// What it is found by, one after the other; itself is the last.
+    /// The intermediate values from which it is computed, in order; the translation itself is the last.
     pub steps: Vec<(SymbolId, Expr)>,
     /// The matrix of its equation.
     factors: Vec<Undone>,
@@ -50,7 +50,7 @@ impl Place {
         })
     }
 
-    /// An expression in which what was found on the way stands for what it is.
+    /// An expression in which intermediate values replace the expressions that they equal.
     fn by_steps(&self, symbols: &Symbols, e: &Expr) -> Expr {
         let steps: Vec<Expr> = self
             .steps
@@ -73,7 +73,7 @@ fn at(symbol: SymbolId) -> Letter {
 }
 
 impl SchurReduction {
-    /// Of equations by parts, if the velocities are rotations and rigid motions.
+    /// The reduction of equations by parts, if the velocities are rotations and rigid motions.
     pub fn of(parts: &Parts, list: &[Expr]) -> Option<SchurReduction> {
         let mut symbols = parts.symbols.clone();
         let vector = Shape::vector(THREE);
@@ -168,7 +168,7 @@ impl SchurReduction {
         })
     }
 
-    /// What translations are found by, one after the other.
+    /// The intermediate values from which translations are computed, in order.
     pub fn steps(&self) -> Vec<(SymbolId, Expr)> {
         self.places.iter().flat_map(|p| p.steps.clone()).collect()
     }
@@ -192,8 +192,8 @@ impl SchurReduction {
         all.fold(e.clone(), |e, p| p.by_steps(&self.symbols, &e))
     }
 
-    /// The whole derivative of the equations that are left, from the blocks of the tangent row by row.
-    /// `along` are those of the translations moved by themselves.
+    /// The whole derivative of the equations that are left, from the blocks of the tangent row by row. `along` has the
+    /// blocks for translations that move by themselves.
     pub fn tangent(&self, blocks: &[Expr], along: &[Expr], side: Side) -> Vec<Expr> {
         let s = &self.symbols;
         let count = blocks.len().isqrt();

@@ -1,7 +1,7 @@
-//! The equations of a step of spatial statements with every velocity seen from the body: the same
-//! action varied from the right. What is added up over the distance from the origin then drops out
-//! of them before any number does, and a body that is constant in its own frame is constant in them.
-//! Takes the model; gives the momenta of the outgoing edges, where that makes them simpler.
+//! The equations of a step of spatial statements with every velocity seen from the body: the same action varied
+//! from the right. Terms that grow with the distance from the origin then cancel in the formulas instead of in the
+//! numbers. A body that is constant in its own frame is constant in these equations. Takes the model; gives the
+//! momenta of the outgoing edges, where that makes them simpler.
 
 use super::Letters;
 use super::balance::{self, Balance};
@@ -21,10 +21,9 @@ pub fn outgoing(spec: &Spec, letters: &Letters, balances: &[Balance]) -> Vec<Exp
         .collect()
 }
 
-/// The same of a model with spatial velocities as body covectors of `W = Λ⁻¹ V Λ`, written with the
-/// letters of the `V`. `stated` is the model before its reduction to quantities that the other side
-/// carries. None where nothing is gained: where rotations only are stated in space, and
-/// the equations ask more of a node than they do as stated.
+/// The same of a model with spatial velocities as body covectors of `W = Λ⁻¹ V Λ`, written with the letters of the
+/// `V`. `stated` is the model before its reduction to advected quantities of the other side. `None` without an
+/// advantage: only rotations are stated in space, and the equations need more at a node than as stated.
 pub fn seen_from_body(
     stated: &Spec,
     spec: &Spec,
@@ -41,7 +40,7 @@ pub fn seen_from_body(
     let variations = variation::variations(&turned, &own, &algebra).ok()?;
     let action = holds::with_reactions(&turned, &own, &action::action(&turned));
     let found = balance::balances(&turned, &own, &action, &variations, &algebra);
-    // What the reduction found is no quantity of the model: it stands for its definition.
+    // A quantity that the reduction found does not belong to the model: its definition replaces it.
     let found_here = turned.advected.iter().filter(|a| a.found);
     let defined: Option<Vec<(Letter, Expr)>> = found_here
         .map(|a| Some((at(a.quantity, Shift::HERE), a.definition.clone()?)))
@@ -69,7 +68,7 @@ pub fn seen_from_body(
     (needed || asked(&found) < asked(&outgoing(spec, letters, balances))).then_some(found)
 }
 
-/// The model with `Λ V Λ⁻¹` for every spatial velocity `V`, which then stands on the right.
+/// The model with `Λ V Λ⁻¹` in place of every spatial velocity `V`, which then acts from the right.
 fn turned(spec: &Spec, letters: &Letters) -> Spec {
     let s = &letters.symbols;
     let mut turned = spec.clone();

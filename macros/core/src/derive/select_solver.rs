@@ -1,6 +1,6 @@
-//! What each step must solve for the velocities: the Moser-Veselov equation
-//! `Ω C^T - C Ω^T = h N` when the balance is linear in the velocity with `C` free of velocities
-//! (an exact matrix Riccati equation), else Newton on the derived residual and tangent.
+//! Selects how each step solves for the velocities. If the balance is linear in the velocity and `C` is free of
+//! velocities, this is the Moser-Veselov equation `Ω C^T - C Ω^T = h N`, an exact matrix Riccati equation.
+//! Otherwise Newton's method solves the derived residual with its tangent.
 
 use super::Letters;
 use super::advection_rule::AdvectionRule;
@@ -24,7 +24,7 @@ pub enum StepEquation {
     Exact(MoserVeselov),
     /// The same with a `C` that contains other velocities.
     Coupled(MoserVeselov),
-    /// None, but the equation of SU(2) that takes its place.
+    /// None, but the equation of SU(2) applies instead.
     Quaternionic(Quaternionic),
     /// None, but a balance that is linear in the velocity; GL(n) and fields.
     Linear(TwoSidedLinear),
@@ -42,15 +42,15 @@ pub struct MoserVeselov {
     /// The part of the node momentum that does not depend on the velocity, as a covector: the
     /// edge momentum is `N = μ - rest`.
     pub rest: Expr,
-    /// `C` as the body sees it, where it is constant there: made of parameters and of advected
-    /// quantities by their constant values at the identity, for which their letters stand.
+    /// `C` as the body sees it, if it is constant there: it contains parameters, and advected quantities whose letters
+    /// denote their constant values at the identity.
     pub in_body: Option<Expr>,
-    /// What the momentum receives at the end of the edge, taken at the node there, on the side of
-    /// the configuration; where that is all the node does: then the next edge can be made there.
+    /// The momentum received at the end of the edge, evaluated at the node there, on the side of the configuration.
+    /// Present only if the node does nothing else: the next edge can then be computed there.
     pub arrive: Option<Expr>,
-    /// For a configuration in space: what acts at a node on both sides of it, seen from the body
-    /// there, in the element and in advected quantities by their constant values at the identity.
-    /// None where the body does not see it more simply.
+    /// For a configuration in space: the impulse at a node on both sides of it, seen from the body there. It is written
+    /// by the element and by advected quantities with their constant values at the identity. `None` if the body does
+    /// not see it more simply.
     pub torque: Option<Expr>,
 }
 
@@ -77,7 +77,7 @@ pub enum Method {
     Blocks,
 }
 
-/// What must be solved and how.
+/// The equations to solve, and how they are solved.
 #[derive(Clone, Debug)]
 pub struct Solve {
     /// The Riccati form of each balance.
@@ -92,7 +92,7 @@ pub struct Solve {
     /// The momenta that Newton's method solves for, where spatial velocities are seen from the body
     /// for it.
     pub seen_from_body: Option<Vec<Expr>>,
-    /// What is solved together, where that is not the whole model: none or several.
+    /// The blocks, if the model is not solved as a whole: none or several.
     pub blocks: Vec<Block>,
     /// Configurations whose velocities are part of one linear system, with others or with their own
     /// components, that Newton's method solves.
@@ -288,7 +288,7 @@ fn turned(
     constant.then_some(seen)
 }
 
-/// Whether `C` is made of parameters only: it is then validated once.
+/// Whether `C` contains parameters only: it is then validated once.
 pub(super) fn is_constant(letters: &Letters, mv: &MoserVeselov) -> bool {
     let s = &letters.symbols;
     let letters = expr::letters(&mv.factor);
@@ -316,13 +316,13 @@ pub fn keeps_edge(mv: &MoserVeselov) -> bool {
     mv.in_body.is_some() && mv.arrive.is_some()
 }
 
-/// The rotation by which the body stands in space.
+/// The rotation of the body relative to space.
 fn frame(s: &Symbols, c: &Configuration) -> Expr {
     let element = expr::here(s, c.element);
     c.group.turn(s, &element).unwrap_or(element)
 }
 
-/// What acts at a node on both sides of it, seen from the body; see [`MoserVeselov::torque`].
+/// The impulse at a node on both sides of it, seen from the body; see [`MoserVeselov::torque`].
 fn torque(
     spec: &Spec,
     letters: &Letters,
@@ -347,8 +347,7 @@ fn torque(
     (!algebra.exhausted() && occurrences(&seen) <= occurrences(&spatial)).then_some(seen)
 }
 
-/// How many letters stand in an expression, each as often as it does; to transpose one costs
-/// nothing.
+/// The number of letters in an expression, counted with repetition; transposes cost nothing.
 fn occurrences(e: &Expr) -> u32 {
     let inside = |list: Vec<&Expr>| list.into_iter().map(occurrences).sum();
     u32::from(matches!(e.node(), Node::Letter(_))).saturating_add(inside(e.children()))
@@ -380,7 +379,7 @@ fn turned_back(s: &Symbols, algebra: &Algebra, element: &Expr, e: &Expr) -> Expr
     shorter(algebra, expr::mul(back, e.clone()))
 }
 
-/// Advected quantities by what acts on their reference values, for which their letters stand.
+/// Advected quantities by the action on their reference values, which their letters denote.
 fn carried(spec: &Spec, transports: &[AdvectionRule]) -> Vec<(Letter, Expr)> {
     let list = spec.advected.iter().zip(transports);
     list.filter_map(|(a, t)| match t {
@@ -424,7 +423,7 @@ fn in_body(
     (!expr::contains_role(s, &reduced, Role::Element)).then_some(reduced)
 }
 
-/// What arrives at the node at the end of the edge; see [`MoserVeselov::arrive`].
+/// The momentum received at the node at the end of the edge; see [`MoserVeselov::arrive`].
 fn arrive(
     spec: &Spec,
     letters: &Letters,
@@ -500,7 +499,7 @@ fn riccati(
         return StepEquation::None(format!("the momentum is not linear in {name} on the left"));
     };
     let step = expr::here(s, spec.step);
-    // h N = Ω C^T - C Ω^T, and the balance carries 1/h.
+    // h N = Ω C^T - C Ω^T, and the balance contains 1/h.
     let transposed = expr::mul(step, algebra.raise(&factor));
     let factor = shorter(algebra, expr::transpose(s, transposed));
     let rest = algebra.raise(&rest);
@@ -555,8 +554,7 @@ fn with_node(
     }
 }
 
-/// Splits `Ω X - X^T Ω^T + rest`: returns `X` and the rest, or nothing if the velocity stands
-/// anywhere else.
+/// Splits `Ω X - X^T Ω^T + rest`: returns `X` and the rest, or nothing if the velocity occurs anywhere else.
 fn split(algebra: &Algebra, poly: &Poly, velocity: SymbolId, s: &Symbols) -> Option<(Poly, Poly)> {
     let (mut x, mut rest) = (Poly::zero(poly.shape), Poly::zero(poly.shape));
     let mut mirrored = Poly::zero(poly.shape);

@@ -22,12 +22,11 @@ pub struct SpatialIncrementForm {
     pub right: Expr,
     /// The node momentum at rest, in space.
     pub rest: Expr,
-    /// What is added to the momentum on the edge, in space: `left ΔQ right ΔQ^T/h`, symmetric behind the metric
-    /// however the change was rounded, and what acts. The letter of a direction of this configuration stands
-    /// for its change.
+    /// The increment of the spatial momentum on the edge: `left ΔQ right ΔQ^T/h`, symmetric behind the metric however
+    /// the change was rounded, and the impulses. The letter of a direction of this configuration denotes its change.
     pub added: Expr,
-    /// The quantity for which the letter of a variation stands in `rest` and `added`, seen from space:
-    /// `Q^-T A Q^T` of a quantity `A` that is stated in the body.
+    /// The quantity that the letter of a variation denotes in `rest` and `added`, seen from space: `Q^-T A Q^T` of a
+    /// quantity `A` that is stated in the body.
     pub seen: Option<Expr>,
 }
 
@@ -135,7 +134,7 @@ impl Space<'_> {
         })
     }
 
-    /// A factor that is made of parameters.
+    /// The shortest form of a factor that contains only parameters.
     fn constant(&self, e: &Expr) -> Option<Expr> {
         let s = &self.d.letters.symbols;
         let short = self.algebra.shortest(&self.defined(e));
@@ -144,8 +143,7 @@ impl Space<'_> {
         (all && short.shape() == e.shape()).then_some(short)
     }
 
-    /// What of a covector of the side stands still, and what moves, both seen from space, without inverse
-    /// configurations.
+    /// The part of a covector at rest, and its moving part, both seen from space and without inverse configurations.
     fn in_space(&self, e: &Expr, time: i8) -> Option<(Option<Expr>, Option<Expr>)> {
         let (d, s) = (self.d, &self.d.letters.symbols);
         let c = &d.spec.configurations[self.i];
@@ -210,7 +208,7 @@ impl Space<'_> {
         self.algebra.is_zero(&less).then_some(found)
     }
 
-    /// Determinants of a quantity are those of what it is seen from space.
+    /// Replaces determinants of a quantity by determinants of the quantity as seen from space.
     fn determinants(&self, e: &Expr, quantity: SymbolId) -> Expr {
         let s = &self.d.letters.symbols;
         if let Node::Det(a) = e.node()

@@ -1,6 +1,6 @@
-//! Linear expressions as matrices: what is linear in a vector `η` is written `M η`. Newton's tangent
-//! is found so in closed form, where a basis of directions would cost its columns one by one.
-//! Takes an expression and the letter; gives the matrix, or nothing where no rule applies.
+//! Linear expressions as matrices: what is linear in a vector `η` is written `M η`. Newton's tangent is found so in
+//! closed form, where a basis of directions would cost its columns one by one. Takes an expression and the letter;
+//! gives the matrix, or nothing if no rule applies.
 
 use crate::algebra::Rational;
 use crate::expr::shape::{Dim, Shape, Structure};

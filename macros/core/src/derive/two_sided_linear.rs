@@ -14,9 +14,9 @@ use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Letter, Shift};
 
-/// `μ = left (Ω - Id) right + rest`, or `p = left ΔX right + rest`: what is solved for is small where
-/// the step is. The factors are square matrices, or numbers that stand for multiples of the identity,
-/// made of parameters and of quantities at the node.
+/// `μ = left (Ω - Id) right + rest`, or `p = left ΔX right + rest`: the unknown is small if the step size is small.
+/// The factors are square matrices, or numbers that denote multiples of the identity. They contain parameters and
+/// quantities at the node.
 #[derive(Clone, Debug)]
 pub struct TwoSidedLinear {
     /// The factor to the left of the velocity, the step in it.
@@ -30,7 +30,7 @@ pub struct TwoSidedLinear {
 /// Most components of a vector whose factor is made column by column.
 const LARGEST: u32 = 8;
 
-/// The form of the balance of configuration `i`, or what stands against it.
+/// The form of the balance of configuration `i`, or why it does not exist.
 pub fn form(
     spec: &Spec,
     letters: &Letters,
@@ -154,8 +154,8 @@ struct Linear {
     coefficient: Rational,
 }
 
-/// The factors around the velocity and what stands without it: all terms have one factor in common,
-/// on one side or the other.
+/// The factors around the velocity, and the terms without it: all terms with the velocity have one factor in
+/// common, on one side or the other.
 fn split(algebra: &Algebra, poly: &Poly, velocity: SymbolId) -> Option<(Poly, Poly, Poly)> {
     let mut rest = Poly::zero(poly.shape);
     let mut linear: Vec<Linear> = Vec::new();

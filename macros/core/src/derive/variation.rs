@@ -117,7 +117,7 @@ fn of_advected(
     let here = at(a.quantity, Shift::HERE);
     let name = &s.get(a.quantity).name;
     let shape = s.get(a.quantity).shape;
-    // next(a) = f(a, ...) with next(a) held: D_a f[da] = -D_rest f.
+    // next(a) = f(a, ...) with next(a) fixed: D_a f[da] = -D_rest f.
     let rest = expr::directional(s, &a.update, &v.on_outgoing());
     let marker = expr::here(s, letters.placeholder[j]);
     let own = expr::directional(s, &a.update, &[(here, marker)]);
@@ -125,7 +125,7 @@ fn of_advected(
     let read = sandwich(algebra, &algebra.lower(&own), marker);
     let in_blocks = || sandwich(algebra, &algebra.lower_in_blocks(&own)?, marker);
     let Some((left, right)) = read.or_else(in_blocks) else {
-        // What nothing moves does not vary, whatever it is multiplied by.
+        // A quantity that nothing moves does not vary, whatever its factors are.
         if is_left_alone(s, a, &own) {
             return Ok((here, expr::zero(shape)));
         }
@@ -162,8 +162,8 @@ fn of_advected(
     )))
 }
 
-/// Whether no motion enters the constraint of a quantity, which goes on in proportion to itself: `own` is the
-/// derivative of its update by it.
+/// Whether a quantity changes in proportion to itself, and no motion enters its constraint: `own` is the derivative
+/// of its update by it.
 fn is_left_alone(s: &Symbols, a: &Advected, own: &Expr) -> bool {
     let role = |l: &Letter| s.get(l.symbol).role;
     let is_given = |l: &Letter| matches!(role(l), Role::Parameter | Role::Step);
@@ -176,7 +176,7 @@ fn is_left_alone(s: &Symbols, a: &Advected, own: &Expr) -> bool {
         && made_of(own, &|l| role(l) == Role::Variation)
 }
 
-/// Whether a configuration or its velocity stands in the constraint of a quantity.
+/// Whether the constraint of a quantity contains a configuration or its velocity.
 fn is_moved(spec: &Spec, a: &Advected) -> bool {
     let letters = expr::letters(&a.update);
     let mut all = spec.configurations.iter();
@@ -349,8 +349,8 @@ fn wrong_side(
     ))
 }
 
-/// The field by whose increment alone a constraint carries its quantity: no velocity of a group stands
-/// there. Where no velocity does, the first field of a model that has nothing else.
+/// The field whose increment alone advects a quantity: the constraint contains no velocity of a group. If it
+/// contains no velocity at all, the first field of a model that has only fields.
 fn by_field(spec: &Spec, a: &Advected) -> Option<String> {
     let letters = crate::expr::letters(&a.update);
     let stands = |c: &&Configuration| {
@@ -367,7 +367,7 @@ fn by_field(spec: &Spec, a: &Advected) -> Option<String> {
     Some(spec.symbols.get(field.element).name.clone())
 }
 
-/// How a field carries a quantity, as one writes it.
+/// The constraint by which a field usually advects a quantity.
 fn of_field(s: &Symbols, a: &Advected, field: &str) -> String {
     let q = s.get(a.quantity);
     let name = &q.name;

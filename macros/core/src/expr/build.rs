@@ -23,7 +23,7 @@ pub(super) fn make(node: Node, shape: Shape) -> Expr {
             marks = marks.with(c.0.marks);
         }),
     }
-    // Once the work is spent, all that is still made is nothing: the model is refused.
+    // Once the work limit is exceeded, every new expression is zero: the model fails anyway.
     let node = match work::make(size) {
         true => node,
         false => {
@@ -63,7 +63,7 @@ pub fn letter(symbols: &Symbols, symbol: SymbolId, shift: Shift) -> Expr {
     )
 }
 
-/// A symbol where the equation stands.
+/// A symbol at the current node.
 pub fn here(symbols: &Symbols, symbol: SymbolId) -> Expr {
     letter(symbols, symbol, Shift::HERE)
 }
@@ -103,7 +103,7 @@ pub fn axes(shape: Shape) -> Option<Vec<Expr>> {
     }
 }
 
-/// Sum of terms of one shape; `shape` serves the empty sum. A term and its opposite both go.
+/// Sum of terms of one shape; `shape` is needed for the empty sum. A term and its opposite cancel.
 pub fn sum(terms: impl IntoIterator<Item = Expr>, shape: Shape) -> Expr {
     let mut flat: Vec<Expr> = Vec::new();
     let mut constant = Rational::ZERO;
@@ -134,7 +134,7 @@ pub fn sum(terms: impl IntoIterator<Item = Expr>, shape: Shape) -> Expr {
     }
 }
 
-/// Drops pairs of a term and its opposite, the earliest first. What stays keeps its order.
+/// Drops pairs of a term and its opposite, the earliest first. The remaining terms keep their order.
 fn without_opposites(terms: &mut Vec<Expr>) {
     if !terms.iter().any(|t| matches!(t.node(), Node::Neg(_))) {
         return;
@@ -426,7 +426,7 @@ pub fn inverse(symbols: &Symbols, a: Expr) -> Expr {
     }
 }
 
-/// Whether a matrix is made of what is invertible by itself.
+/// Whether a matrix is invertible by its form, because all its factors are.
 pub fn is_invertible(symbols: &Symbols, e: &Expr) -> bool {
     let go = |x: &Expr| is_invertible(symbols, x);
     match e.node() {

@@ -177,7 +177,7 @@ pub(super) fn take(e: &Expr, power: Rational, out: &mut Parts) {
     }
 }
 
-/// The product of the parts, negative powers below the line.
+/// The product of the parts, with negative powers in the denominator.
 pub(super) fn whole(mut parts: Parts) -> Expr {
     // Letters before scalar products and traces.
     parts
@@ -238,7 +238,7 @@ mod tests {
         let long = quotient(mul(square, l(a)), scale(Rational::integer(2), l(h)));
         let short = product([number(Rational::HALF), l(h), l(a)]);
         assert_eq!(collect(&s, &long), short);
-        // What differs stays.
+        // Terms that differ stay.
         let other = add(mul(l(v), l(m)), mul(l(m), l(v)));
         assert_eq!(collect(&s, &other), other);
     }

@@ -1,5 +1,5 @@
-//! Numbers that exact arithmetic does not follow: π, and those of many digits, such as physical constants. Takes a decimal; to the
-//! algebra each is a letter of its own, about which nothing is known but that it is positive.
+//! Numbers that exact arithmetic does not follow: π, and decimals of many digits, such as physical constants. Takes
+//! a decimal; the algebra treats each of them as a letter of its own, and knows only that it is positive.
 
 /// A positive finite number, kept as the double that it is in a run.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -20,7 +20,7 @@ impl Constant {
         f64::from_bits(self.0)
     }
 
-    /// Its bits: equal ones stand for equal numbers.
+    /// Its bits: equal bits denote equal numbers.
     pub fn bits(self) -> u64 {
         self.0
     }

@@ -17,8 +17,9 @@ pub fn det(a: Expr) -> Expr {
     }
 }
 
-/// The determinants of the factors of a product of square matrices, whose product is its determinant: that of
-/// `Q^T C Q` is told by those of `Q` and `C`, and so are its derivatives, without inverses that cancel.
+/// The determinants of the factors of a product of square matrices, whose product is its determinant: the
+/// determinant of `Q^T C Q` is written by the determinants of `Q` and `C`, and so are its derivatives, without
+/// inverses that cancel.
 pub(super) fn factors_of_det(a: &Expr) -> Option<&[Expr]> {
     match a.node() {
         Node::Product(factors)

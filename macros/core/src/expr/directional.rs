@@ -17,7 +17,7 @@ pub fn directional(symbols: &Symbols, e: &Expr, changes: &[(Letter, Expr)]) -> E
     walk.of(e, &mut Memo::default())
 }
 
-/// What stays the same during one derivative.
+/// The data that stay the same during one derivative.
 struct Walk<'a> {
     symbols: &'a Symbols,
     changes: &'a [(Letter, Expr)],

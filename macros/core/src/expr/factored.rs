@@ -1,6 +1,5 @@
-//! Common factors taken out of sums: `h M x + h M y` is computed as `h (M (x + y))`. For what is
-//! emitted, not for what is shown: divisions become products with inverses, which are known before.
-//! Takes an expression, gives an equal one.
+//! Common factors taken out of sums: `h M x + h M y` is computed as `h (M (x + y))`. Used for emitted code, not for
+//! print: divisions become products with inverses, which are known before. Takes an expression, gives an equal one.
 
 use super::collect::{Parts, parts};
 use super::shape::Structure;
@@ -182,7 +181,7 @@ fn alike(a: &[(Expr, Rational)], b: &[(Expr, Rational)]) -> bool {
     a.len() == b.len() && a.iter().all(|x| b.contains(x))
 }
 
-/// A number that stands before every word, up to sign, taken out.
+/// Factors out the number that all words share, up to sign.
 fn without_common_number(mut words: Vec<Word>) -> (Rational, Vec<Word>) {
     let size = |q: Rational| if q.is_negative() { q.negated() } else { q };
     let Some(first) = words.first().map(|w| size(w.times)) else {
@@ -242,7 +241,7 @@ fn of_words(symbols: &Symbols, words: Vec<Word>, shape: Shape) -> Expr {
     if without.is_empty() {
         return together;
     }
-    // What was taken out may be common with what was left.
+    // The factored part and the rest may have something in common.
     let both = add(together, of_words(symbols, without, shape));
     let Node::Sum(terms) = both.node() else {
         return both;
@@ -256,7 +255,7 @@ fn of_words(symbols: &Symbols, words: Vec<Word>, shape: Shape) -> Expr {
     }
 }
 
-/// The words of a word whose wrapping was taken off, unless other numbers stand in them.
+/// Expands a word whose wrapping was removed. The word stays as it is if its terms contain other numbers.
 fn opened(symbols: &Symbols, w: &Word) -> Vec<Word> {
     let mut terms = Vec::new();
     flatten(symbols, &product(w.factors.clone()), &mut terms);
@@ -271,7 +270,7 @@ fn opened(symbols: &Symbols, w: &Word) -> Vec<Word> {
     words.unwrap_or_else(|| vec![w.clone()])
 }
 
-/// A term that is a word; nothing where other numbers stand in it.
+/// A term that is a word; nothing if it contains other numbers.
 fn word(e: &Expr) -> Option<Word> {
     let term = parts(e);
     term.numbers.is_empty().then_some(Word {
@@ -280,7 +279,7 @@ fn word(e: &Expr) -> Option<Word> {
     })
 }
 
-/// What several words have in common on the outside.
+/// The outer part that several words share.
 #[derive(Clone, PartialEq)]
 enum Outer {
     First(Expr),
@@ -308,7 +307,7 @@ impl Outer {
                 _ => {}
             }
         }
-        // What is left of `A` without `A` is the identity: square ones only.
+        // `A` without its factor `A` is the identity, so that `A` must be square.
         let fits = |f: &Expr| factors.len() > 1 || f.shape().is_square();
         all.extend(
             factors
@@ -363,7 +362,7 @@ impl Outer {
     }
 }
 
-/// What most words have in common, the first of equals; nothing where no two have.
+/// The outer part that most words share, the first of equals; nothing if no two words share one.
 fn outermost(words: &[Word]) -> Option<Outer> {
     let mut found: Vec<(Outer, usize)> = Vec::new();
     for w in words {

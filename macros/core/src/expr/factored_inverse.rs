@@ -1,6 +1,6 @@
-//! Products of matrices undone factor by factor: `F A + B` with the inverse of `F` in front is `A + F⁻¹ B`,
-//! and the inverse of `Id + Q` for a rotation `Q` is `(Id - hat(c))/2`, with its Rodrigues vector `c`.
-//! Takes expressions and factors; gives equal ones in which less is to be computed.
+//! Products of matrices inverted factor by factor. With the inverse of `F` in front, `F A + B` becomes `A + F⁻¹ B`.
+//! The inverse of `Id + Q` for a rotation `Q` with Rodrigues vector `c` is `(Id - hat(c))/2`. Takes expressions and
+//! factors; gives equal expressions that cost less.
 
 use super::collect::parts;
 use super::shape::Structure;
@@ -28,7 +28,7 @@ pub enum Undone {
 
 impl Undone {
     /// The factors of a product with their order, and one over its number; `turn` knows the Rodrigues vectors of
-    /// rotations that are letters. None where a factor is none that can be undone.
+    /// rotations that are letters. `None` if a factor cannot be inverted.
     pub fn factors(
         symbols: &Symbols,
         e: &Expr,
@@ -218,7 +218,7 @@ mod tests {
         assert!(matches!(first, Undone::Cayley { minus: false, .. }));
         assert!(matches!(second, Undone::Matrix(_)));
         assert!(matches!(third, Undone::Cayley { minus: true, .. }));
-        // What begins with the factor loses it, whatever the order of its terms.
+        // The factor is removed from terms that begin with it, in whatever order they are.
         let asked = add(mul(add(one(), q.clone()), u.clone()), v.clone());
         let rest = scale(Rational::HALF, sub(v.clone(), cross(c.clone(), v.clone())));
         assert_eq!(first.undo(&s, &asked, false), add(u.clone(), rest));
@@ -231,7 +231,7 @@ mod tests {
         let long = sum([mul(back, v.clone()), v.clone(), c.clone()], vector);
         let seen = third.acted(&s, &mul(m.clone(), long), &v, &u);
         assert_eq!(seen, mul(m, add(c.clone(), u.clone())));
-        // A matrix that varies is not undone, and `Id - Q` has no inverse at rest.
+        // A matrix that varies is not inverted, and `Id - Q` is singular at rest.
         assert!(Undone::factors(&s, &mul(far, a), turn).is_none());
         assert!(Undone::factors(&s, &sub(one(), q), turn).is_none());
     }

@@ -21,7 +21,7 @@ pub enum Function {
     Cosh,
     /// Hyperbolic tangent.
     Tanh,
-    /// Absolute value: no derivative at 0, where it is taken as 0.
+    /// Absolute value: the derivative at 0 does not exist and is taken as 0.
     Abs,
     /// The sign: -1, 0 or 1.
     Sign,
@@ -104,8 +104,7 @@ impl Function {
         }
     }
 
-    /// Its value at an argument that is known exactly, where that is a rational number for every
-    /// such argument or at 0.
+    /// Its value at an exactly known argument, if the value is rational.
     pub(super) fn at(self, a: &Expr) -> Option<Expr> {
         if let (Function::Abs, Node::Constant(_)) = (self, a.node()) {
             return Some(a.clone());

@@ -1,10 +1,9 @@
-//! Functionals: functions of which the engine knows names and shapes alone, `f(x, y)`. Two kinds of
-//! node hold them: a value, differentiated along some arguments, `D_1 f(x, y)[u]`, and its pull-back, the
-//! transposed derivative with respect to one argument, applied to a seed. Gradients and directional
-//! derivatives of the two are sums of the two, so that no further kind is needed: the gradient of
-//! `<s, f(x)>` is a pull-back, that of a pull-back a pull-back along one more direction, and a
-//! directional derivative adds a direction. Derivatives of a number are gradients, never kept along
-//! their last direction: `Df(x)[u]` is `<∇f(x), u>`.
+//! Functionals: functions of which the engine knows names and shapes alone, `f(x, y)`. Two kinds of node hold them:
+//! a value, differentiated along some arguments, `D_1 f(x, y)[u]`, and its pull-back, the transposed derivative
+//! with respect to one argument, applied to a seed. Gradients and directional derivatives of the two are sums of
+//! the two, so that no further kind is needed: the gradient of `<s, f(x)>` is a pull-back, the gradient of a
+//! pull-back is a pull-back along one more direction, and a directional derivative adds a direction. Derivatives of
+//! a number are gradients, never kept along their last direction: `Df(x)[u]` is `<∇f(x), u>`.
 
 #[cfg(test)]
 pub(crate) mod sample;
@@ -20,17 +19,17 @@ use super::*;
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct FunctionalId(pub u32);
 
-/// What a functional takes or gives.
+/// The shape and structure of an argument or of the value.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Kind {
     /// Its shape.
     pub shape: Shape,
-    /// What is known of it: gradients with respect to a symmetric argument are symmetric.
+    /// Its structure: gradients with respect to a symmetric argument are symmetric.
     pub structure: Structure,
 }
 
 impl Kind {
-    /// Of this shape, with no structure.
+    /// The kind of this shape, without structure.
     pub fn of(shape: Shape) -> Kind {
         let structure = Structure::General;
         Kind { shape, structure }
@@ -41,16 +40,16 @@ impl Kind {
     }
 }
 
-/// What stands for the path of a function that the case gives.
+/// The path that denotes a function provided by the case.
 pub const BY_CASE: &str = "case";
 
 /// How far a functional sees.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Reach {
-    /// Its value is made of the values of its arguments.
+    /// Its value depends on the local values of its arguments.
     Point,
-    /// Its value at one site is made of its arguments at all sites, as areas of a mesh are: numbers that
-    /// differ from site to site do not come out of its derivatives.
+    /// Its value at one site depends on its arguments at all sites, as areas of a mesh do: numbers that differ from
+    /// site to site do not factor out of its derivatives.
     Sites,
 }
 
@@ -59,9 +58,9 @@ pub enum Reach {
 pub struct Functional {
     /// Name as written.
     pub name: String,
-    /// What it takes, in order.
+    /// Its arguments, in order.
     pub arguments: Vec<Kind>,
-    /// What it gives; at one site, where it gives a field.
+    /// Its value; for a field, the value at one site.
     pub value: Kind,
     /// How far it sees.
     pub reach: Reach,
@@ -124,7 +123,7 @@ impl Applied {
     }
 }
 
-/// What the value of this node is, where it is one of a functional: its shape and structure.
+/// The shape and structure of this node, if it is the value or pull-back of a functional.
 pub(crate) fn kind(symbols: &Symbols, node: &Node) -> Option<Kind> {
     match node {
         Node::Given(a) => Some(symbols.functional(a.functional).value),
@@ -136,7 +135,7 @@ pub(crate) fn kind(symbols: &Symbols, node: &Node) -> Option<Kind> {
     }
 }
 
-/// The transpose of a value or a pull-back, where its structure says what that is.
+/// The transpose of a value or a pull-back, if its structure determines it.
 pub(super) fn transposed(symbols: &Symbols, e: &Expr) -> Option<Expr> {
     let kind = kind(symbols, e.node())?;
     match kind.structure {
@@ -179,8 +178,8 @@ pub fn derived(symbols: &Symbols, a: Applied) -> Expr {
     mul(outside, core)
 }
 
-/// `(D_i f(x, y))^T[s]`: the transposed derivative with respect to the argument `which`, counted from 0,
-/// applied to a seed of the shape of the value. Of a number, `s ∇_i f(x, y)`.
+/// `(D_i f(x, y))^T[s]`: the transposed derivative with respect to the argument `which`, counted from 0, applied to
+/// a seed of the shape of the value. For a number, this is `s ∇_i f(x, y)`.
 pub fn pull_back(symbols: &Symbols, a: Applied, which: u8, seed: Expr) -> Expr {
     let f = symbols.functional(a.functional);
     let own = a.arguments.get(usize::from(which));
@@ -195,8 +194,8 @@ pub fn pull_back(symbols: &Symbols, a: Applied, which: u8, seed: Expr) -> Expr {
     mul(outside, make(Node::PullBack(a, which, seed), shape))
 }
 
-/// The factors that come out of the directions, and the rest; the factor is zero where a direction is.
-/// Directions along a symmetric argument are symmetric: nothing is said of others.
+/// The factors that come out of the directions, and the rest; the factor is zero where a direction is. Directions
+/// are projected onto the structure of their argument.
 fn apart(symbols: &Symbols, mut a: Applied) -> (Expr, Applied) {
     let f = symbols.functional(a.functional);
     let mut outside = integer(1);
@@ -261,7 +260,7 @@ pub(super) fn rebuilt(
     }
 }
 
-/// What a seed of the node gives to each child that is wanted.
+/// The contribution of a seed of the node to each child that is wanted.
 pub(super) fn gradients<'a>(
     symbols: &Symbols,
     a: &'a Applied,
@@ -269,8 +268,7 @@ pub(super) fn gradients<'a>(
     seed: &Expr,
     wanted: &dyn Fn(&Expr) -> bool,
 ) -> Vec<(&'a Expr, Expr)> {
-    // The gradient of a pull-back, paired with `t`, is that of the seed paired with the derivative
-    // along `t`.
+    // The gradient of a pull-back, paired with `t`, is the gradient of the seed paired with the derivative along `t`.
     let (a_more, inner) = match back {
         Some((which, own)) => (a.also_along(which, seed.clone()), own.clone()),
         None => (a.clone(), seed.clone()),

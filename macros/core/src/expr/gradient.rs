@@ -14,7 +14,8 @@ pub fn gradient(symbols: &Symbols, e: &Expr, wrt: Letter) -> Expr {
     sum(terms, shape)
 }
 
-/// Adds to `out` what `seed`, the gradient with respect to `e`, contributes to that of `wrt`.
+/// Adds to `out` the contribution of `seed`, the gradient with respect to `e`, to the gradient with respect to
+/// `wrt`.
 fn pull_back(symbols: &Symbols, e: &Expr, seed: Expr, wrt: Letter, out: &mut Vec<Expr>) {
     if !contains(e, wrt) || seed.is_zero() {
         return;

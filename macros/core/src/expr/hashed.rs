@@ -5,7 +5,7 @@ use super::Expr;
 use core::hash::{BuildHasherDefault, Hasher};
 use std::collections::{HashMap, HashSet};
 
-/// What is known of expressions.
+/// A map whose keys are expressions.
 pub(crate) type Hashed<V> = HashMap<Expr, V, BuildHasherDefault<Words>>;
 
 /// Some expressions.

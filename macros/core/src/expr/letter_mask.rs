@@ -1,6 +1,6 @@
-//! What a walk of an expression need not do: read a part in which a letter cannot occur, or a
-//! part that several places share again. One mark of 128 stands for each letter; letters may share
-//! one, so that a mark that is absent proves absence and one that is present proves nothing.
+//! Shortens the walk of an expression: it skips parts in which a letter cannot occur, and shared parts that it has
+//! already visited. Each letter has one of 128 marks; letters may share a mark. An absent mark proves that the
+//! letter is absent, and a present mark proves nothing.
 
 use super::hashed::Words;
 use super::{Expr, Letter};
@@ -15,7 +15,7 @@ pub(super) struct Marks([u64; 2]);
 impl Marks {
     /// The mark of one letter.
     pub(super) fn of(letter: Letter) -> Marks {
-        // Three time levels of a symbol stand side by side.
+        // The three time levels of a symbol have adjacent marks.
         let place = i64::from(letter.symbol.0) * 3 + i64::from(letter.shift.time);
         let place = place.rem_euclid(128) as usize;
         let mut marks = [0; 2];
@@ -44,13 +44,13 @@ impl Marks {
         self.with(other) == self
     }
 
-    /// Whether there is no letter.
+    /// Whether no letter is marked.
     pub(super) fn is_empty(self) -> bool {
         self == Marks::default()
     }
 }
 
-/// Whether all letters of a part may occur in the whole; where not, it is no part of it.
+/// Whether all letters of a part may occur in the whole; if not, the part does not occur in the whole.
 pub(crate) fn may_hold(whole: &Expr, part: &Expr) -> bool {
     whole.0.marks.hold(part.0.marks)
 }
@@ -75,7 +75,7 @@ impl<T> Default for Memo<T> {
 }
 
 impl<T: Clone> Memo<T> {
-    /// What was found for this part.
+    /// The result stored for this part.
     pub(super) fn get(&self, e: &Expr) -> Option<T> {
         let (_, found) = self.0.get(&place(e)?)?;
         Some(found.clone())

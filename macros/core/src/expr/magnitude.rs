@@ -1,8 +1,8 @@
-//! How large the terms of an expression are: what its rounding is measured by. To first order this is a running error bound
-//! in units of rounding (Higham, Accuracy and Stability of Numerical Algorithms, section 3.3): the terms of a sum count, each
-//! by itself; those of a factor count times the *values* of the other factors, so that a power of what nearly vanishes is
-//! as small as it is. A difference of stored position_differences is as uncertain as they are.
-//! Takes an expression; gives one without cancellation.
+//! How large the terms of an expression are: the scale of its rounding. To first order this is a running error
+//! bound in units of rounding (Higham, Accuracy and Stability of Numerical Algorithms, section 3.3): the terms of a
+//! sum count, each by itself; the terms of a factor count times the *values* of the other factors, so that a power
+//! of a small number is as small as it is. A difference of stored positions is as uncertain as the positions. Takes
+//! an expression; gives one without cancellation.
 
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::Symbols;
@@ -21,8 +21,8 @@ pub(crate) fn magnitude(s: &Symbols, e: &Expr) -> Expr {
     .terms
 }
 
-/// How large the terms of an expression at a node are, differences of position_differences by their own lengths, with what the rounding of
-/// the position_differences themselves changes, to first order and in units of rounding.
+/// The size of the terms of an expression at a node. Differences of positions count by their own lengths, plus the
+/// effect of the rounding of the positions themselves, to first order and in units of rounding.
 pub(crate) fn magnitude_by_differences(s: &Symbols, e: &Expr) -> Expr {
     let plain = |e: &Expr| magnitude(s, e);
     in_differences(s, e, plain, |named| {
@@ -37,13 +37,13 @@ pub(crate) fn magnitude_by_differences(s: &Symbols, e: &Expr) -> Expr {
     })
 }
 
-/// The same without the rounding of position_differences.
+/// The same without the rounding of the positions.
 pub(crate) fn lengths_of_differences(s: &Symbols, e: &Expr) -> Expr {
     let plain = |e: &Expr| magnitude(s, e);
     in_differences(s, e, plain, |named| magnitude(&named.symbols, &named.whole))
 }
 
-/// A size that is taken with letters for differences of position_differences; the plain one where there are none.
+/// A size computed with letters for differences of positions; the plain size if there are no such differences.
 fn in_differences(
     s: &Symbols,
     e: &Expr,
@@ -100,14 +100,14 @@ fn length(s: &Symbols, x: &Expr) -> Expr {
 struct Size {
     /// Itself.
     value: Expr,
-    /// Its terms, where they cancel; those of a single term are its value.
+    /// Its terms, where they cancel; for a single term, its value.
     terms: Expr,
     /// How large its change is where stored elements change by their rounding.
     stored: Expr,
 }
 
 impl Size {
-    /// Of what is no sum, and not stored.
+    /// The size of an expression that is neither a sum nor stored.
     fn exact(value: Expr) -> Self {
         Self {
             terms: value.clone(),
@@ -121,7 +121,7 @@ impl Size {
         self.terms == self.value
     }
 
-    /// Of a product.
+    /// The size of a product.
     fn times(self, other: Self) -> Self {
         let value = mul(self.value.clone(), other.value.clone());
         let [own, others] = [
@@ -141,7 +141,7 @@ impl Size {
         }
     }
 
-    /// Of a function whose value is this, and which changes with its argument at this rate.
+    /// The size of a function with this value, which changes with its argument at this rate.
     fn at_rate(self, value: Expr, rate: impl Fn(Expr) -> Expr) -> Self {
         Self {
             terms: match self.is_single() {
@@ -159,7 +159,7 @@ impl Size {
 
 struct Terms<'a> {
     symbols: &'a Symbols,
-    /// The sizes of the position_differences of which letters of differences are made, where their rounding is asked for.
+    /// The sizes of the positions in the letters of differences, if their rounding is requested.
     differences: Option<&'a [(Letter, Expr)]>,
 }
 
@@ -201,7 +201,7 @@ impl Terms<'_> {
                 stored: add(of(a).stored, of(b).stored),
                 ..Size::exact(length(e))
             },
-            // The products of components cancel, by themselves, in what they are summed to.
+            // The products of components may cancel in their sum.
             Node::Dot(a, b) | Node::Cross(a, b) => Size {
                 value: length(e),
                 ..of(a).times(of(b))
@@ -212,7 +212,8 @@ impl Terms<'_> {
                 ..of(a)
             },
             Node::Neg(a) | Node::Transpose(a) | Node::Part(_, a) => of(a),
-            // Of n entries it is at most √n times their length; of a product, the product of the lengths.
+            // The trace of n entries is at most √n times their length; the trace of a product is at most the product of
+            // the lengths.
             Node::Trace(a) => Size {
                 value: length(e),
                 ..match a.node() {
@@ -238,7 +239,7 @@ impl Terms<'_> {
             Node::Map(Map::Diagonal | Map::DiagonalOf, a) => of(a),
             Node::Quotient(a, b) => of(a).times(Size::exact(quotient(integer(1), length(b)))),
             Node::Power(a, q) if *q == Rational::integer(2) => of(a).times(of(a)),
-            // A root where its argument vanishes has no rate.
+            // A root does not have a rate at a zero of its argument.
             Node::Power(a, q) if q.value() > 1.0 => of(a).at_rate(length(e), |change| {
                 let less = q.plus(Rational::MINUS_ONE);
                 less.map_or_else(
@@ -274,7 +275,7 @@ impl Terms<'_> {
     }
 }
 
-/// What a change of an argument changes a function by, or a bound of it.
+/// The change of a function when its argument changes, or a bound of it.
 fn called(f: Function, a: &Expr, e: &Expr, change: Expr, length: impl Fn(&Expr) -> Expr) -> Expr {
     match f {
         Function::Sin | Function::Cos | Function::Tanh | Function::Abs => change,

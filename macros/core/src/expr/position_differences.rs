@@ -1,13 +1,13 @@
-//! Differences of places: sums in which what places far from the origin have in common cancels,
-//! `X - Y` of two fields or `y - x*E1` of a vector and a number. Opened and multiplied out they would be rounded to that distance.
-//! Takes expressions; says which are such, and gives them names.
+//! Differences of positions: sums in which the common part of positions far from the origin cancels, such as `X -
+//! Y` of two fields or `y - x*E1` of a vector and a number. Expanded, they would be rounded relative to that
+//! distance. Takes expressions; recognises such differences and names them.
 
 use super::collect::parts;
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{Role, Symbols};
 use super::*;
 
-/// Whether it is such a difference, up to sign: of places, or of places and constants.
+/// Whether it is such a difference, up to sign: of positions, or of positions and constants.
 pub(crate) fn is_between(symbols: &Symbols, e: &Expr) -> bool {
     let terms = match e.node() {
         Node::Sum(terms) => terms,
@@ -18,12 +18,13 @@ pub(crate) fn is_between(symbols: &Symbols, e: &Expr) -> bool {
     let all = bare.iter().map(|(times, _)| *times);
     let places = bare.iter().filter(|(_, kind)| *kind == Bare::Place);
     let own = places.clone().map(|(times, _)| *times);
-    // Constants may be forces: they count where places alone do not cancel.
+    // Constants may be forces: they count if positions alone do not cancel.
     places.count() > 0 && (is_zero(own) || is_zero(all)) || are_weighted(symbols, e, terms)
 }
 
-/// Whether places with constant weights, `y - x*E1` of a vector and a number or `x - r*φ` of two numbers, can be moved together so
-/// that their sum stays, as a sum of coordinates along axes cannot be; beside them constants alone.
+/// Whether positions with constant weights can be moved together so that their sum stays, such as `y - x*E1` of a
+/// vector and a number or `x - r*φ` of two numbers. A sum of coordinates along different axes cannot. All other
+/// terms must be constants.
 pub(crate) fn are_weighted(symbols: &Symbols, e: &Expr, terms: &[Expr]) -> bool {
     let mut known: Vec<(Expr, bool)> = Vec::new();
     let mut coordinates = 0;
@@ -105,7 +106,7 @@ fn is_zero(mut all: impl Iterator<Item = Rational>) -> bool {
     total.is_some_and(Rational::is_zero)
 }
 
-/// What stands by itself in a sum, up to a number.
+/// The kind of a term of a sum, up to a numeric factor.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Bare {
     Place,
@@ -116,7 +117,7 @@ fn bare(symbols: &Symbols, term: &Expr) -> Option<(Rational, Bare)> {
     let found = parts(term);
     let only = match (found.matrices.as_slice(), found.numbers.as_slice()) {
         ([only], []) => only,
-        // A field of numbers stands among the numbers.
+        // A field of scalars is among the numbers.
         ([], [(only, q)]) if q.is_one() => only,
         _ => return None,
     };
@@ -132,7 +133,7 @@ fn bare(symbols: &Symbols, term: &Expr) -> Option<(Rational, Bare)> {
     Some((found.coefficient, kind))
 }
 
-/// Constants that places are taken from in such differences.
+/// The constants in such differences, if the positions do not cancel without them.
 pub(crate) fn centres(symbols: &Symbols, e: &Expr, out: &mut Vec<Letter>) {
     e.children()
         .into_iter()
@@ -141,13 +142,13 @@ pub(crate) fn centres(symbols: &Symbols, e: &Expr, out: &mut Vec<Letter>) {
         return;
     }
     let Node::Sum(terms) = e.node() else { return };
-    // Nor is one taken from places with weights, which cancel among themselves.
+    // Positions with weights cancel among themselves, without a constant.
     if are_weighted(symbols, e, terms) {
         return;
     }
     let bare_terms = terms.iter().filter_map(|t| bare(symbols, t));
     let places = bare_terms.filter(|(_, kind)| *kind == Bare::Place);
-    // From places that cancel among themselves a length is subtracted.
+    // If positions cancel among themselves, the constant is a length.
     if is_zero(places.map(|(times, _)| times)) {
         return;
     }
@@ -159,7 +160,7 @@ pub(crate) fn centres(symbols: &Symbols, e: &Expr, out: &mut Vec<Letter>) {
     }
 }
 
-/// Such a difference with places first, so that they cancel before anything is added.
+/// Such a difference with positions first, so that they cancel before anything is added.
 pub(crate) fn first(symbols: &Symbols, e: Expr) -> Expr {
     let Node::Sum(terms) = e.node() else { return e };
     if terms.len() < 3 || !is_between(symbols, &e) {
@@ -182,11 +183,11 @@ pub(crate) struct Named {
     pub(crate) symbols: Symbols,
     /// The expression.
     pub(crate) whole: Expr,
-    /// What the letters stand for.
+    /// The expressions that the letters replace.
     pub(crate) definitions: Vec<(Letter, Expr)>,
 }
 
-/// The expression with a letter for each such difference. None where there is none.
+/// The expression with a letter for each such difference. `None` if there are none.
 pub(crate) fn named(symbols: &Symbols, e: &Expr) -> Option<Named> {
     let mut all = symbols.clone();
     let mut definitions = Vec::new();

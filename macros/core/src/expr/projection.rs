@@ -1,6 +1,6 @@
-//! Matrices projected onto those of a structure: the gradient with respect to a symmetric, skew or
-//! diagonal letter is itself symmetric, skew or diagonal. Takes any matrix, gives its projection in
-//! the pairing `tr(A^T B)`, term by term, so that terms of the structure stay as they are.
+//! Projects matrices onto a structure: the gradient with respect to a symmetric, skew or diagonal letter is itself
+//! symmetric, skew or diagonal. Takes any matrix; gives its projection in the pairing `tr(A^T B)`, term by term.
+//! Terms that have the structure stay as they are.
 
 use super::shape::Structure;
 use super::*;
@@ -12,8 +12,7 @@ pub fn projected(symbols: &Symbols, structure: Structure, e: &Expr) -> Expr {
         Structure::Symmetric => Part::Symmetric,
         Structure::Skew => Part::Skew,
         Structure::Diagonal => Part::Diagonal,
-        // Tangent spaces of these groups are no linear spaces of matrices: the multiplier of the
-        // group takes the rest.
+        // These groups are not linear spaces of matrices: the multiplier of the group takes the rest.
         Structure::General
         | Structure::Orthogonal
         | Structure::Invertible
@@ -96,7 +95,7 @@ mod tests {
         let raw = neg(quotient(wt.clone(), h.clone()));
         let expected = neg(quotient(part(Part::Symmetric, w.clone()), h));
         assert_eq!(projected(&s, Structure::Symmetric, &raw), expected);
-        // What is symmetric already stays as it was written.
+        // A symmetric term stays as it was written.
         let congruence = product([wt.clone(), j.clone(), w.clone()]);
         let mixed = add(congruence.clone(), wt.clone());
         let symmetric = add(congruence, part(Part::Symmetric, w.clone()));

@@ -1,6 +1,6 @@
-//! Quaternions as 4 x 4 matrices: the constructors of the maps between them and numbers, vectors and
-//! rotations. A quaternion `w + v` is the matrix of its left multiplication `p -> (w + v) p` on
-//! `(1, i, j, k)`, so that products are products and the conjugate is the transpose.
+//! Quaternions as 4 x 4 matrices: the constructors of the maps between them and numbers, vectors and rotations. The
+//! matrix of a quaternion `w + v` is its left multiplication `p -> (w + v) p` on `(1, i, j, k)`. Products of
+//! quaternions are then products of matrices, and the conjugate is the transpose.
 
 use super::build::make;
 use super::rigid::within;

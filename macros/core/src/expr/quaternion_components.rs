@@ -1,6 +1,6 @@
-//! Quaternions taken apart for what is emitted: real and imaginary parts of products of unit quaternions and of
-//! vectors read as quaternions, by the parts of their factors, in numbers and vectors of three components instead of
-//! matrices of four rows. Takes an expression, gives an equal one.
+//! Splits quaternions for emitted code. Real and imaginary parts of products of unit quaternions, and of vectors
+//! read as quaternions, are written by the parts of their factors. The result has numbers and vectors of three
+//! components instead of matrices of four rows. Takes an expression, gives an equal one.
 
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::Symbols;
@@ -191,7 +191,7 @@ fn of_word(symbols: &Symbols, numbers: Vec<Expr>, mut word: Vec<Expr>) -> Option
     })
 }
 
-/// The parts of `x^T y`, of two letters, by those of the pair in one order.
+/// The parts of `x^T y` for two letters, written by the parts of the pair in one fixed order.
 fn between(symbols: &Symbols, x: &Expr, y: &Expr) -> Both {
     let letter = |e: &Expr| letters(e).first().copied();
     let turned = letter(x) > letter(y);
@@ -224,8 +224,8 @@ fn times(a: Both, b: Both) -> Both {
     }
 }
 
-/// What cancels is left out, and vectors go before the quaternions by which they are turned:
-/// `q quat(rot(q)^T v) = quat(v) q`.
+/// Cancels opposite factors, and moves vectors in front of the quaternions that turn them: `q quat(rot(q)^T v) =
+/// quat(v) q`.
 fn ordered(symbols: &Symbols, word: &mut Vec<Expr>) {
     let opposite =
         |a: &Expr, b: &Expr| conjugated(symbols, a) == Some(b) || conjugated(symbols, b) == Some(a);
@@ -268,7 +268,7 @@ fn without(e: &Expr, lead: &Expr) -> Option<Expr> {
                 true => {
                     rest.remove(at);
                 }
-                // Of a vector in brackets.
+                // A vector in brackets is the last factor.
                 false if rest.len() == at + 1 => rest[at] = go(&rest[at])?,
                 false => return None,
             }

@@ -274,7 +274,7 @@ fn bounds(e: &Expr) -> Range {
     }
 }
 
-/// What a function makes of an interval.
+/// The image of an interval under a function.
 fn image(f: Function, a: Range) -> Range {
     let within = |r: Range, low: f64, high: f64| Range {
         low: end(r.low.at.max(low), r.low.met),
@@ -374,7 +374,7 @@ mod tests {
         for e in &all {
             let r = range(e);
             bounded += usize::from(r != Range::ALL);
-            // Neither where a quotient has no value nor where a power underflows.
+            // Points where a quotient is undefined or a power underflows are skipped.
             for k in (-40..=-5).chain(5..=40) {
                 let mut values = crate::interpret::Assignment::default();
                 values.set("p", 0, 1, 1, &[f64::from(k) * 0.12]);

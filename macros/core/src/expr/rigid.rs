@@ -1,6 +1,6 @@
-//! Rigid motions as homogeneous matrices `[R x; 0 1]` of one row more than the space has dimensions:
-//! their blocks, the elements of their Lie algebra, and zero-padding inclusions. Blocks of products
-//! are written by those of the factors, so that what is shown and emitted is of the space itself.
+//! Rigid motions as homogeneous matrices `[R x; 0 1]` of one row more than the space has dimensions: their blocks,
+//! the elements of their Lie algebra, and zero-padding inclusions. Blocks of products are written by the blocks of
+//! the factors, so that shown and emitted expressions use the dimension of the space itself.
 
 use super::build::make;
 use super::quaternion::rotation;
@@ -15,7 +15,7 @@ const ONE: Dim = Dim::Fixed(1);
 const TWO: Dim = Dim::Fixed(2);
 const THREE: Dim = Dim::Fixed(3);
 
-/// One dimension less: that of the space whose homogeneous coordinates have this many.
+/// One dimension less: the dimension of the space with this many homogeneous coordinates.
 pub fn within(homogeneous: Dim) -> Dim {
     match homogeneous {
         Dim::Fixed(n) => Dim::Fixed(n.saturating_sub(1)),
@@ -61,8 +61,8 @@ pub fn is_motion(symbols: &Symbols, e: &Expr) -> bool {
     }
 }
 
-/// The element `[hat(ω) v; 0 0]` of the Lie algebra with coordinates `(ω, v)`; in the plane, where
-/// `ω` is a number, `ω` times the quarter turn stands for `hat(ω)`.
+/// The element `[hat(ω) v; 0 0]` of the Lie algebra with coordinates `(ω, v)`; in the plane `ω` is a number, and
+/// `ω` times the quarter turn replaces `hat(ω)`.
 pub fn twist(x: Expr) -> Expr {
     let shape = Shape::square(match moved_by(x.shape().rows) {
         TWO => THREE,
@@ -132,8 +132,7 @@ pub fn rows_in_parts(e: &Expr) -> Option<[(u8, Dim); 2]> {
     }
 }
 
-/// Some components of an expression that is written in such parts: terms that stand elsewhere are left
-/// out.
+/// Some components of an expression that is written in such parts: terms in other components are left out.
 pub fn taken_rows(symbols: &Symbols, e: &Expr, row: u8, count: Dim) -> Expr {
     let taken = |x: &Expr| taken_rows(symbols, x, row, count);
     match e.node() {
@@ -278,7 +277,7 @@ pub fn column(symbols: &Symbols, a: &Expr) -> Expr {
     }
 }
 
-/// One dimension more: that of homogeneous coordinates.
+/// One dimension more: the number of homogeneous coordinates.
 fn homogeneous(space: Dim) -> Dim {
     match space {
         Dim::Fixed(n) => Dim::Fixed(n + 1),

@@ -3,7 +3,7 @@
 
 pub use clebsch_program::{Dim, Shape};
 
-/// What a matrix obeys whatever its value.
+/// An identity that a matrix satisfies for every value.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Structure {
     /// Nothing.

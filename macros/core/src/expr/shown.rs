@@ -51,7 +51,7 @@ fn of_one_power(e: &Expr) -> (Rational, Expr) {
     }
 }
 
-/// What stands under a root, and its exponent.
+/// The radicand of a root, and its exponent.
 fn root(e: &Expr) -> Option<(&Expr, Rational)> {
     match e.node() {
         Node::Power(a, q) if q.as_integer().is_none() => Some((a, *q)),
@@ -190,7 +190,7 @@ mod tests {
         assert_eq!(shown(&s, &super::super::add(one, other)), both);
         let turned = sub(dot(x.clone(), y.clone()), dot(y, x.clone()));
         assert!(shown(&s, &turned).is_zero());
-        // A root of a square is no first power.
+        // A root of a square is not a first power.
         let size = power(power(a.clone(), two), half);
         assert_eq!(shown(&s, &size), size);
         assert_eq!(power_of_length(&size), Some((&a, Rational::ONE)));

@@ -1,6 +1,6 @@
-//! What costs less in another form: `(Id + Q^T) Q` is `Q + Id`, `(Id + A) v` is `v + A v` and the
-//! axial vector of `A Q^T` is that of `-Q A`, where `A` is symmetric. For what is emitted.
-//! Takes an expression, gives an equal one.
+//! Equal forms that cost less: `(Id + Q^T) Q` is `Q + Id`, and `(Id + A) v` is `v + A v`. If `A` is symmetric, the
+//! axial vector of `A Q^T` is the axial vector of `-Q A`. Used for emitted code. Takes an expression, gives an
+//! equal one.
 
 use super::shape::Structure;
 use super::*;
@@ -25,7 +25,7 @@ pub fn simpler(symbols: &Symbols, e: &Expr) -> Expr {
     }
 }
 
-/// Whether the transpose is the same expression: it has no axial vector.
+/// Whether the transpose is the same expression: its axial vector is then zero.
 fn is_symmetric(symbols: &Symbols, e: &Expr) -> bool {
     transpose(symbols, e.clone()) == *e
 }

@@ -23,7 +23,8 @@ pub(crate) struct Parsed {
 /// The sign of an increment, before the name of what it is one of.
 pub(crate) const INCREMENT: char = 'Δ';
 
-/// The Greek letter of a word such as `Lambda`, or the word itself; of an increment such as `Δphi` that of its name.
+/// The Greek letter of a word such as `Lambda`, or the word itself; for an increment such as `Δphi`, `Δ` and the
+/// Greek letter of its name.
 pub(crate) fn letter(word: &str) -> String {
     let (increment, of) = match word.strip_prefix(INCREMENT) {
         Some(of) => (true, of),
@@ -142,8 +143,8 @@ fn script(text: &str) -> String {
     out
 }
 
-/// What a base with scripts looks like. An index in time at its end, `k`, `k+1` or `k-1`, is left out:
-/// what moves bears it besides.
+/// The appearance of a base with scripts. A time index at its end, `k`, `k+1` or `k-1`, is left out: a moving
+/// quantity gets it anyway.
 fn shown(base: &str, mut below: Vec<String>, above: &str, index: &str) -> String {
     let last = below.last().map(|l| {
         let stem = l.trim_end_matches("+1").trim_end_matches("-1");
@@ -209,7 +210,7 @@ mod tests {
             ("chi_0k", "χ_{0 k}"),
             ("J^R_{k+1}", "J_{k+1}^R"),
             ("Mu", "M"),
-            // An index in time stands on what moves.
+            // A time index belongs to moving quantities.
             ("x_k", "x"),
             ("x_{k+1}", "x"),
             ("x1_k", "x_1"),

@@ -1,5 +1,5 @@
-//! Questions about and replacements of letters: which occur, shift them in time, put
-//! expressions in their place. All other rewriting happens on normal forms.
+//! Finds letters, shifts them in time, and replaces them by expressions. All other rewriting happens on normal
+//! forms.
 
 use super::build::letter_of_shape;
 use super::letter_mask::{Marks, Memo};

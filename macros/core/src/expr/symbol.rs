@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct SymbolId(pub u32);
 
-/// What a symbol stands for; decides where it lives.
+/// The role of a symbol, which decides where it lives.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub enum Role {
     /// The time step, a positive constant.
@@ -21,7 +21,7 @@ pub enum Role {
     Element,
     /// A discrete velocity, on the edge from node k to node k+1.
     Velocity,
-    /// A quantity carried by the group, at nodes.
+    /// A quantity advected by the group, at nodes.
     Advected,
     /// A Lagrange multiplier of a Clebsch constraint, at nodes.
     Multiplier,
@@ -84,8 +84,8 @@ struct NamedSize {
     to: u64,
 }
 
-/// Largest size taken for a dimension that has only a name, where smaller ones are allowed: what
-/// holds there for words of up to so many factors holds for every larger size.
+/// Largest size taken for a dimension that has only a name, where smaller ones are allowed: if an identity of words
+/// of so many factors holds there, it holds for every larger size.
 const LARGEST_TRIED: u64 = 8;
 
 impl Symbols {
@@ -226,8 +226,8 @@ impl Symbols {
         (0..self.list.len() as u32).map(SymbolId)
     }
 
-    /// The first of these letters that no symbol bears; where it is to be numbered, with a number neither. The first one
-    /// if all are taken.
+    /// The first of these letters that is not the name of a symbol; if it will be numbered, not with a number either.
+    /// The first one if all are taken.
     pub fn free_letter<'a>(&self, letters: &[&'a str], is_numbered: bool) -> &'a str {
         let digit = |c: char| c.is_ascii_digit() || c == '_';
         let bears = |s: &Symbol, letter: &str| match s.name.strip_prefix(letter) {
@@ -240,7 +240,7 @@ impl Symbols {
         found.copied().unwrap_or("")
     }
 
-    /// A name that no symbol bears yet, in print either: `base`, or `base` with a number, which is set apart from a
+    /// A name that no symbol has yet, in print either: `base`, or `base` with a number, which is set apart from a
     /// number at its end: `R_1` is of one site, and `R_11` of another.
     pub fn fresh_name(&self, base: &str) -> String {
         let apart = if base.ends_with(|c: char| c.is_ascii_digit()) {
@@ -259,7 +259,7 @@ impl Symbols {
 }
 
 impl Symbol {
-    /// What it means, on one line; empty where nothing was said.
+    /// Its documentation on one line; empty if there is none.
     pub fn doc(&self) -> String {
         let lines = self.docs.iter().map(|l| l.trim());
         let words: Vec<&str> = lines.filter(|l| !l.is_empty()).collect();
@@ -326,7 +326,7 @@ pub const GREEK: [(char, &str); 54] = [
     ('Ω', "Omega"),
 ];
 
-/// The command of LaTeX for a letter of [`GREEK`]; for the capitals that look Latin there is none.
+/// The command of LaTeX for a letter of [`GREEK`]; capitals that look Latin do not have one.
 pub(crate) fn greek_command(word: &str) -> String {
     let latin = match word {
         "Alpha" => "A",

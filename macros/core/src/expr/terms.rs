@@ -14,7 +14,7 @@ pub struct Change {
     pub flipped: bool,
 }
 
-/// Every way to drop or flip one term. An expression that is no sum is itself one term.
+/// Every way to drop or flip one term. An expression that is not a sum is itself one term.
 pub fn changes(symbols: &Symbols, e: &Expr) -> Vec<Change> {
     let mut out = Vec::new();
     collect(symbols, e, true, &mut out);
@@ -59,7 +59,7 @@ fn collect(symbols: &Symbols, e: &Expr, whole: bool, out: &mut Vec<Change>) {
     }
 }
 
-/// Whether the value depends linearly on the child at this position, the others held.
+/// Whether the value depends linearly on the child at this position, with the others fixed.
 fn is_linear(e: &Expr, child: usize) -> bool {
     match e.node() {
         Node::Sum(_)

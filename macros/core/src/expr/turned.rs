@@ -1,6 +1,6 @@
-//! Vectors in the frame to which a rotation takes them: `R (a x R^T b)` is `R a x b`, and nothing is
-//! turned forth and back. For what is emitted.
-//! Takes a rotation and an expression; gives their product, or nothing where it is no less work.
+//! Vectors in the frame to which a rotation takes them: `R (a x R^T b)` is `R a x b`, and nothing is turned forth
+//! and back. For what is emitted. Takes a rotation and an expression; gives their product, or nothing if this does
+//! not save work.
 
 use super::*;
 use crate::expr::symbol::Symbols;

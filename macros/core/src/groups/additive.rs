@@ -1,6 +1,5 @@
-//! Numbers, vectors and matrices under addition: fields. The velocity of an edge is the increment
-//! `next(X) - X`, variations are free in the shape, and every frame is the same, so that momenta are
-//! carried by nothing.
+//! Numbers, vectors and matrices under addition: fields. The velocity of an edge is the increment `next(X) - X`,
+//! and variations are free in the shape. Every frame is the same, so that momenta are not transformed.
 
 use super::{Element, Kept, Record, Sizes, entries};
 use crate::check::spec::Side;

@@ -1,6 +1,6 @@
-//! What the engine asks of rigid motions, whatever the dimension of their space: the angular and the
-//! linear part of their covectors, and what turns and places do to them. Takes expressions of the
-//! space; gives expressions of the space.
+//! The engine's view of rigid motions, whatever the dimension of their space: the angular and the linear part of
+//! their covectors, and the effect of turns and positions on them. Takes expressions of the space; gives
+//! expressions of the space.
 
 use crate::expr::shape::{Dim, Shape};
 use crate::expr::symbol::Symbols;
@@ -24,8 +24,8 @@ pub trait Euclidean {
     /// An angular part as another frame sees it, which is turned by `turn`.
     fn turned(&self, turn: Expr, angular: Expr) -> Expr;
 
-    /// An angular part as turns of this space are read together with those of other groups:
-    /// axial vectors, or skew matrices.
+    /// An angular part in the form in which turns of this space are combined with turns of other groups: axial vectors,
+    /// or skew matrices.
     fn as_turn(&self, s: &Symbols, angular: Expr) -> Expr;
 
     /// The other way round, for a rate of turning.
@@ -43,7 +43,7 @@ impl dyn Euclidean + '_ {
         Shape::vector(self.space())
     }
 
-    /// Where the two parts stand in a vector of coordinates: the first row, and how many.
+    /// The position of the two parts in a vector of coordinates: the first row, and the number of rows.
     pub fn rows(&self) -> [(u8, Dim); 2] {
         let first = match self.angles() {
             Dim::Fixed(n) => u8::try_from(n).unwrap_or(u8::MAX),

@@ -1,6 +1,6 @@
-//! The table of groups: one record a file, with everything that the engine knows of a group.
-//! Takes nothing but sizes; gives shapes of letters, the Lie algebra and its dual, how both are
-//! carried, and the words for them. To add a group, add its file and its line in [`Group`].
+//! The table of groups: one record per file, with everything that the engine knows of a group. Takes nothing but
+//! sizes; gives shapes of letters, the Lie algebra and its dual, how both are transformed, and the words for them.
+//! To add a group, add its file and its line in [`Group`].
 
 mod additive;
 mod euclidean;
@@ -156,7 +156,7 @@ pub fn of_elements(structure: Structure, shape: Shape) -> Option<Group> {
         .find(|g| g.structure() == structure && g.shape() == shape)
 }
 
-/// The groups of any size, of that of a shape.
+/// The groups of any size, at the size of a shape.
 fn families_in(shape: Shape) -> impl Iterator<Item = Group> {
     let lines = TABLE.iter().filter(|line| line.size.is_none());
     lines.map(move |line| (line.group)(shape.rows))
@@ -224,7 +224,7 @@ pub enum Chart {
     TurnAndPlace,
 }
 
-/// What the runtime calls a group whose Lie algebra has coordinates: its types and functions.
+/// The names in the runtime of a group whose Lie algebra has coordinates: its types and functions.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Names {
     /// The type of elements.
@@ -233,25 +233,25 @@ pub struct Names {
     pub momentum: &'static str,
     /// How many coordinates the Lie algebra has.
     pub coordinates: u32,
-    /// What case files call an element.
+    /// The kind of an element in case files.
     pub kind: &'static str,
-    /// What an element says.
+    /// A description of an element.
     pub words: &'static str,
 }
 
 /// An element of a basis of a Lie algebra: its entries (row, column, value) that are not zero.
 pub type Element = Vec<(usize, usize, i64)>;
 
-/// The numbers that sizes stand for.
+/// The values of the sizes.
 pub type Sizes<'a> = dyn Fn(Dim) -> usize + 'a;
 
-/// What the engine knows of a group. Letters of variation `ξ` are elements of the Lie algebra as
+/// The properties of a group that the engine uses. Letters of variation `ξ` are elements of the Lie algebra as
 /// matrices, or their coordinates; covectors, momenta, are written as [`Record::dual`] says.
 pub trait Record {
     /// The shape of its elements, and of velocities.
     fn shape(&self) -> Shape;
 
-    /// What its elements obey.
+    /// The structure of its elements.
     fn structure(&self) -> Structure;
 
     /// The number of coordinates of its Lie algebra, where the letters of variation are those.
@@ -271,7 +271,7 @@ pub trait Record {
     /// variation.
     fn basis(&self, size: &Sizes) -> Vec<Element>;
 
-    /// The element of the Lie algebra, as a matrix, that a letter of variation stands for.
+    /// The element of the Lie algebra, as a matrix, that a letter of variation denotes.
     fn element(&self, x: Expr) -> Expr {
         x
     }
@@ -342,14 +342,14 @@ pub trait Record {
         expr::mul(xi.clone(), xi)
     }
 
-    /// A gradient with respect to an element, carried to the identity: `g^T Y` (body) or `Y g^T`.
+    /// A gradient with respect to an element, transformed to the identity: `g^T Y` (body) or `Y g^T`.
     fn pulled_back(&self, s: &Symbols, side: Side, g: Expr, y: Expr) -> Expr {
         let t = expr::transpose(s, g);
         side.product(t, y)
     }
 
-    /// The weight of the pairing of an element with its multiplier: with ½ the momentum map of SO(n)
-    /// is `skew(Λ^T P)` (thesis 2.75), with 1 that of GL(n) is `Q^T P` (3.25).
+    /// The weight of the pairing of an element with its multiplier: with weight ½, the momentum map of SO(n) is
+    /// `skew(Λ^T P)` (thesis 2.75); with weight 1, the momentum map of GL(n) is `Q^T P` (3.25).
     fn weight(&self) -> Rational {
         Rational::ONE
     }
@@ -378,8 +378,8 @@ pub trait Record {
         None
     }
 
-    /// Where an element is, of those that have a place in space: what is stored of it is rounded to
-    /// its distance from the origin.
+    /// The position of an element, if elements of the group have one: its stored components are rounded to its distance
+    /// from the origin.
     fn place(&self, s: &Symbols, g: &Expr) -> Option<Expr> {
         self.rigid().map(|_| expr::column(s, g))
     }
@@ -395,10 +395,10 @@ pub trait Record {
         self.structure().is_orthogonal()
     }
 
-    /// What a letter of variation is, in words: on a line, and typeset.
+    /// A description of a letter of variation: on a line, and typeset.
     fn variation_words(&self) -> [String; 2];
 
-    /// What the elements do as symmetries of space.
+    /// A description of the elements as symmetries of space.
     fn motions_words(&self) -> &'static str {
         "rotations of space"
     }

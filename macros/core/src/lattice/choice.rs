@@ -1,14 +1,14 @@
-//! What a case chooses of a lattice: how many sites, a line or a ring, how the ends are held.
+//! The choices that a case makes for a chain: the number of sites, open or periodic, and the end conditions.
 
 use super::declared::{Label, Lattice, Quantity, Sites};
 use core::fmt;
 
-/// The numbers of sites and the end conditions of one lattice.
+/// The numbers of sites and the end conditions of one chain.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Choice {
     /// For each label: the number of segments of an open line, of sites of a ring or a set.
     pub counts: Vec<usize>,
-    /// Whether the line is closed to a ring.
+    /// Whether the chain is a ring.
     pub periodic: bool,
     /// Which alternative holds at the first and at the last site.
     pub ends: [usize; 2],
@@ -17,34 +17,34 @@ pub struct Choice {
 /// Why a choice cannot be made.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Refusal {
-    /// The model has no such label.
+    /// The model does not have this label.
     Label {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// The names that the model has.
         known: Vec<String>,
     },
-    /// The model has no such end condition.
+    /// The model does not have this end condition.
     End {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// Of which end.
+        /// Whether the last end was requested.
         last: bool,
-        /// What there is.
+        /// The names that the model has.
         known: Vec<String>,
     },
-    /// The line is not stated to be periodic.
+    /// The chain is not declared periodic.
     NotPeriodic {
-        /// The line.
+        /// The label of the chain.
         label: String,
     },
     /// Too few sites.
     Few {
         /// The label.
         label: String,
-        /// How many were asked for.
+        /// The requested number.
         found: usize,
-        /// How many it takes.
+        /// The smallest possible number.
         least: usize,
     },
 }
@@ -88,12 +88,12 @@ fn listed(names: &[String]) -> String {
 }
 
 impl Choice {
-    /// The shortest lattice on which the middle site and each end have all the neighbours that their
-    /// equations hold: what is found there holds for every longer line. A ring has an odd number of
-    /// sites, so that its even and odd ones are not two lattices.
+    /// The shortest chain on which the middle site and each end have all the neighbours in their equations: its results
+    /// hold for every longer chain. A ring has an odd number of sites, so that its even and odd sites are not two
+    /// separate chains.
     pub fn representative(lattice: &Lattice, reach: usize) -> Choice {
         let count = |l: &Label| match l.set {
-            // Values of functionals stand for those of all sites: there is one.
+            // If there are functionals of all sites, one site represents all of them.
             true if !lattice.meshes.is_empty() => 1,
             true => 2,
             false => 2 * reach.max(1) + 2,
@@ -118,7 +118,7 @@ impl Choice {
     /// With so many segments or sites of a label.
     ///
     /// # Errors
-    /// There is no such label, or too few are asked for.
+    /// The label does not exist, or the requested number is too small.
     pub fn with_count(
         mut self,
         lattice: &Lattice,
@@ -164,7 +164,7 @@ impl Choice {
     /// With this end condition at the first or the last site.
     ///
     /// # Errors
-    /// There is no such alternative.
+    /// The alternative does not exist.
     pub fn with_end(
         mut self,
         lattice: &Lattice,
@@ -202,7 +202,7 @@ impl Choice {
         self.sites(lattice, q.label, q.sites)
     }
 
-    /// How an open line is held: `with both ends free`.
+    /// The ends of an open chain in words: `with both ends free`.
     pub fn held(&self, lattice: &Lattice) -> String {
         let name = |last: bool| {
             let names = lattice.alternatives(last);

@@ -1,5 +1,5 @@
-//! What a model declares of its labels: lines and sets, what lives at their sites, how a line may
-//! end. Mistakes that can be seen before anything is written out are told here.
+//! The labels that a model declares: chains and sets, the quantities at their sites, and the ends of a chain.
+//! Mistakes that can be found before the model is expanded are reported here.
 
 use super::mesh::Mesh;
 use crate::diagnostic::{Diagnostic, Errors, Place, closest};
@@ -9,15 +9,15 @@ use std::collections::BTreeSet;
 /// The kinds of sites of a label.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Sites {
-    /// Nodes of a line.
+    /// Nodes of a chain.
     Nodes,
-    /// Segments of a line; segment i joins nodes i and i+1.
+    /// Segments of a chain; segment i joins nodes i and i+1.
     Segments,
     /// Members of a set.
     Members,
 }
 
-/// What lives at the sites.
+/// The kind of a quantity at sites.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Kind {
     /// A constant of each site.
@@ -56,13 +56,13 @@ pub struct Quantity {
     pub label: usize,
     /// At which of its sites.
     pub sites: Sites,
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
     /// Its shape or group.
     pub shape: Kindred,
-    /// By what it grows once around a ring.
+    /// The amount by which it grows once around a ring.
     pub offset: Option<Name>,
-    /// Where its values lie, of places of particles.
+    /// For positions of particles, the domain of its values.
     pub domain: Option<Extent>,
 }
 
@@ -71,15 +71,15 @@ pub struct Quantity {
 pub struct Lattice {
     /// All labels.
     pub labels: Vec<Label>,
-    /// The one that is a line.
+    /// The label of the chain.
     pub line: Option<usize>,
-    /// Where the line is said to be periodic.
+    /// Where the chain is declared periodic.
     pub periodic: Option<Place>,
     /// The end conditions at the first and at the last site; none: the natural ones.
     pub ends: [Vec<Alternative>; 2],
-    /// What lives at sites.
+    /// The quantities at sites.
     pub quantities: Vec<Quantity>,
-    /// Functionals of all sites, in an order in which each stands behind those that it takes.
+    /// Functionals of all sites, each after the functionals that it depends on.
     pub meshes: Vec<Mesh>,
     /// Names of numbers, at sites or not.
     pub(super) numbers: BTreeSet<String>,
@@ -91,10 +91,10 @@ pub struct Lattice {
     pub(super) declared: BTreeSet<String>,
 }
 
-/// The name of the end condition of a line for which none is stated.
+/// The name of the end condition of a chain that states none.
 const NATURAL: &str = "free";
 
-/// Names of ends at which something is held, which a natural end does not bear.
+/// Names of ends that prescribe something; an end that states nothing cannot have them.
 const HOLDING: [&str; 6] = ["clamped", "closed", "fixed", "held", "pinned", "wall"];
 
 impl Lattice {
@@ -113,8 +113,8 @@ impl Lattice {
         self.quantities.iter().find(|q| q.name.text == name)
     }
 
-    /// The quantity that a name of the model written out is a copy of. `q_1` is the copy of `q` at site 1 even if
-    /// another quantity at sites has that name, since only its copies stand there.
+    /// The quantity of which a name in the expanded model is a copy. `q_1` is the copy of `q` at site 1 even if another
+    /// quantity at sites has that name, since only copies of that quantity occur in the expanded model.
     pub(super) fn of_copy(&self, name: &str) -> Option<&Quantity> {
         if self.declared.contains(name) && self.find(name).is_none() {
             return None;
@@ -500,7 +500,7 @@ impl Lattice {
         }
     }
 
-    /// What is given at an end is a configuration there.
+    /// Checks that ends prescribe configurations only, and that an end with a name such as `pinned` states something.
     fn check_ends(&self, model: &Model, errors: &mut Errors) {
         for alternative in self.ends.iter().flatten() {
             let name = &alternative.name;

@@ -1,5 +1,5 @@
-//! Functionals of all sites as a model declares them: what computes each, of which field or other functional,
-//! and of which constants. Mistakes of the declarations are told here.
+//! Functionals of all sites as a model declares them: what computes each, of which field or other functional, and
+//! of which constants. Mistakes in the declarations are reported here.
 
 #[cfg(test)]
 mod tests;
@@ -8,10 +8,10 @@ use super::declared::{Kind, Lattice, Quantity, Sites};
 use crate::diagnostic::{Diagnostic, Errors, closest};
 use crate::syntax::ast::{Extent, Model, Name, Statement};
 
-/// What a functional is made of.
+/// The quantity that a functional depends on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// A field of places, by name.
+    /// A field of positions, by name.
     Field(String),
     /// Another functional, by its number.
     Functional(usize),
@@ -24,37 +24,37 @@ pub struct Mesh {
     pub name: Name,
     /// The path of Rust of what computes it.
     pub path: String,
-    /// What it is made of.
+    /// The quantity it depends on.
     pub of: Source,
-    /// Its arguments in order, the first being what it is made of; the others are parameters.
+    /// Its arguments in order. The first is the quantity it depends on; the others are parameters.
     pub arguments: Vec<Name>,
-    /// What is known of it.
+    /// Its known properties.
     pub kind: Known,
 }
 
-/// What is known of a functional.
+/// The known properties of a functional.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
-    /// It is one of cells and particles, which stays as it is when all places move by the same amount.
+    /// It belongs to cells and particles, and is invariant when all positions move by the same amount.
     Cells,
-    /// It is one of grids, made for the dimension of the domain.
+    /// It belongs to grids, made for the dimension of the domain.
     Grid,
-    /// Its path alone.
+    /// Only its path is known.
     Path,
 }
 
-/// What the runtime supplies by a bare name.
+/// A functional that the runtime provides under a bare name.
 struct Supplied {
     name: &'static str,
-    /// Whether it is made of another functional.
+    /// Whether it depends on another functional.
     of_functional: bool,
     /// How many parameters it takes.
     data: usize,
-    /// Of cells and particles in the plane, or of grids.
+    /// Whether it is for cells and particles in the plane, or for grids.
     kind: Known,
 }
 
-/// One of cells in the plane, which equal shifts of all places leave as it is.
+/// One of cells in the plane, which is invariant under equal shifts of all positions.
 const fn cells(name: &'static str, data: usize) -> Supplied {
     let (of_functional, kind) = (false, Known::Cells);
     Supplied {
@@ -143,7 +143,7 @@ impl Lattice {
         self.unused(model, errors);
     }
 
-    /// Every functional stands in a term, or another one is made of it.
+    /// Every functional must occur in a term, or be an argument of another functional.
     fn unused(&self, model: &Model, errors: &mut Errors) {
         let stands = |name: &str, statement: &Statement| match statement {
             Statement::Let { value, .. } | Statement::Lagrangian(value) => {
@@ -306,7 +306,7 @@ impl Lattice {
         Ok(mesh(format!("clebsch::mesh::{}", path.text), known.kind))
     }
 
-    /// What the first argument is.
+    /// The source that the first argument denotes.
     fn source(&self, first: &Name) -> Checked<Source> {
         let found = self.find(&first.text);
         let message = match found.map(|q| (q.kind, q.shape.name.text.as_str())) {
@@ -333,7 +333,7 @@ impl Lattice {
         )))
     }
 
-    /// Whether a functional of the runtime is made of what it takes, and stands where its values are.
+    /// Checks that a functional of the runtime has an argument of the right kind, and is declared where its values are.
     fn supplied(
         &self,
         known: &Supplied,

@@ -1,7 +1,7 @@
-//! Label lattices: chains, rods, rings and sets of bodies from one statement. A model with labels is
-//! written out, for chosen numbers of sites and end conditions, as a model of as many bodies, which
-//! the rest of the engine takes like any other. What is printed for every number of sites is folded
-//! back from a short lattice, on which each equation already has all its neighbours.
+//! Models with labels: chains, rods, rings and sets of bodies from one statement. A model with labels is expanded,
+//! for chosen numbers of sites and end conditions, to a model of as many bodies. The rest of the engine treats it
+//! like any other model. The equations printed for every number of sites are recovered from a short chain, on which
+//! each equation already has all its neighbours.
 
 mod choice;
 mod declared;
@@ -57,7 +57,7 @@ pub fn has_labels(model: &Model) -> bool {
     })
 }
 
-/// The refusal of a model with labels of which no stepper for every number of sites is compiled, and why.
+/// The error for a model with labels for which no stepper for every number of sites is compiled, with the reason.
 pub fn not_emitted(model: &Model, why: &str) -> Diagnostic {
     let label = model.statements.iter().find_map(|s| match s {
         Statement::Label { index, .. } => Some(index.place),

@@ -5,7 +5,7 @@ use crate::syntax::ast::Name;
 /// A copy: its own name, the name of the quantity, and its site.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Copied {
-    /// The name in the model that is written out.
+    /// The name in the expanded model.
     pub name: String,
     /// The name in the model as stated.
     pub of: String,

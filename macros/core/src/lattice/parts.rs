@@ -30,7 +30,7 @@ pub(crate) fn holds_sums(model: &Model) -> bool {
     model.statements.iter().any(holds) && model.statements.iter().any(sums)
 }
 
-/// The expressions that one is made of.
+/// The direct subexpressions of an expression.
 pub(super) fn parts(e: &Expression) -> Vec<&Expression> {
     match &e.kind {
         Kind::Number(_) | Kind::Constant(_) | Kind::Name(_) => Vec::new(),

@@ -1,6 +1,5 @@
-//! Puts the copies of one site into an expression: every letter of the line becomes the copy at its
-//! own site, across the seam of a ring with the offset of its field, and what is given at an end
-//! stands still.
+//! Puts the copies of one site into an expression: every letter of the chain becomes the copy at its own site.
+//! Across the seam of a ring it receives the offset of its field, and prescribed quantities do not move.
 
 use super::choice::Choice;
 use super::declared::{Lattice, Quantity, Sites};
@@ -10,7 +9,7 @@ use crate::diagnostic::Diagnostic;
 use crate::syntax::ast::{Expression, Kind, Kindred, Name, Size};
 use std::collections::BTreeMap;
 
-/// What stands in the place of a copy that does not move.
+/// The replacement of a copy that does not move.
 #[derive(Clone, Debug)]
 pub(super) enum Still {
     /// A parameter of the same name.
@@ -26,13 +25,13 @@ pub(super) type Pinned = BTreeMap<String, Still>;
 
 /// Where an expression is put.
 pub(super) struct SiteSubstitution<'a> {
-    /// The lattice.
+    /// The labels, with their quantities and ends.
     pub lattice: &'a Lattice,
     /// Its sites and ends.
     pub choice: &'a Choice,
-    /// What does not move.
+    /// The copies that do not move.
     pub pinned: &'a Pinned,
-    /// Names of an end condition, with those that they have in the model written out.
+    /// Names of an end condition, with their names in the expanded model.
     pub locals: &'a [(String, String)],
     /// The index.
     pub site: isize,
@@ -74,7 +73,7 @@ impl SiteSubstitution<'_> {
                 ("sum", [inner, _]) => return self.at(inner, by),
                 ("next" | "prev", [inner]) => {
                     let placed = self.at(inner, by)?;
-                    // What is given is the same at the next node in time.
+                    // A prescribed quantity is the same at the next time level.
                     if self.moves(inner, &self.lattice.moving) && !self.is_moving(&placed) {
                         return Ok(placed);
                     }
@@ -96,7 +95,7 @@ impl SiteSubstitution<'_> {
         }
         let Some(q) = self.lattice.find(n) else {
             return match self.is_name_of_a_copy(n) {
-                // It is a name in the model written out, and none in the one that is stated.
+                // It is a name in the expanded model, but not in the model as stated.
                 true => Err(Box::new(
                     Diagnostic::new(place, format!("`{n}` is not declared")).help(
                         "a quantity is named as it is declared, and stands at the site of the term",
@@ -152,7 +151,8 @@ impl SiteSubstitution<'_> {
         })
     }
 
-    /// The values of a functional of all sites, `A(X)`: of the only site that is written out, which stands for all.
+    /// The values of a functional of all sites, `A(X)`: taken at the only site of the expanded model, which represents
+    /// all sites.
     fn functional(&self, n: &str, e: &Expression) -> Placed {
         let mut meshes = self.lattice.meshes.iter();
         let Some(mesh) = meshes.find(|m| m.name.text == n) else {
@@ -181,7 +181,7 @@ impl SiteSubstitution<'_> {
         })
     }
 
-    /// Whether a name that is not declared is that of a copy.
+    /// Whether an undeclared name is the name of a copy.
     fn is_name_of_a_copy(&self, n: &str) -> bool {
         let split = n.rsplit_once('_');
         let copied = split.is_some_and(|(base, site)| {
@@ -190,7 +190,7 @@ impl SiteSubstitution<'_> {
         copied && !self.lattice.declared.contains(n)
     }
 
-    /// Whether something in an expression that is written out moves.
+    /// Whether an expanded expression contains a moving quantity.
     pub(super) fn is_moving(&self, e: &Expression) -> bool {
         any_name(e, &|n| match self.lattice.of_copy(n) {
             Some(q) => self.lattice.moving.contains(&q.name.text) && !self.pinned.contains_key(n),
@@ -203,7 +203,7 @@ impl SiteSubstitution<'_> {
     }
 }
 
-/// The velocity of what stands still; of a rigid motion with its size, which `pos` does not tell.
+/// The velocity of a prescribed quantity. For a rigid motion it includes the size, which `pos` does not determine.
 fn still(q: &Quantity, e: &Expression) -> Expression {
     let identity = named("Id".to_owned(), e);
     let [Size::Number(n, _)] = q.shape.sizes.as_slice() else {

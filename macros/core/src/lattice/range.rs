@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, Place};
 use crate::syntax::ast::{Expression, Kind};
 use crate::syntax::unknown::PAIRS;
 
-/// Where the letters of an expression stand, seen from its index.
+/// The offsets of the letters of an expression from its index.
 #[derive(Clone, Default, Debug)]
 pub(super) struct Reach {
     /// The label, where there is one.
@@ -49,7 +49,7 @@ pub(super) fn of_one_neighbour(lattice: &Lattice, e: &Expression) -> bool {
     }
 }
 
-/// Where the letters of an expression stand.
+/// The offsets of the letters of an expression.
 pub(super) fn reach(lattice: &Lattice, e: &Expression) -> Result<Reach, Diagnostic> {
     let mut found = Reach::default();
     walk(lattice, e, 0, &mut found)?;
@@ -121,8 +121,8 @@ fn walk(lattice: &Lattice, e: &Expression, by: isize, found: &mut Reach) -> Resu
     }
 }
 
-/// Where a term of the Lagrangian is not linear in its sum over stated sites, if so: such a sum says over which sites the
-/// term is summed, and is no number of the whole line.
+/// The error if a term of the Lagrangian is not linear in its sum over stated sites: such a sum states over which
+/// sites the term is summed, and is not a number of the whole chain.
 pub(super) fn beside_sum(lattice: &Lattice, e: &Expression) -> Option<Diagnostic> {
     let refused = |at: &Expression, what: &str| {
         let message = format!(
@@ -165,7 +165,7 @@ pub(super) fn beside_sum(lattice: &Lattice, e: &Expression) -> Option<Diagnostic
     }
 }
 
-/// An index is no quantity.
+/// An index is not a quantity.
 fn named(lattice: &Lattice, name: &str, place: Place) -> Result<(), Diagnostic> {
     let is = |l: &&super::Label| l.index.text == name || l.count.text == name;
     match lattice.labels.iter().find(is) {
@@ -192,7 +192,7 @@ fn mixed(lattice: &Lattice, a: usize, b: usize, place: Place) -> Diagnostic {
         .help("terms of different labels are summed each over its own: write them as two terms")
 }
 
-/// `next(x, i)`: of something at the sites of a line.
+/// `next(x, i)`: a quantity at the sites of a chain.
 fn neighbour(
     lattice: &Lattice,
     inner: &Expression,
@@ -249,7 +249,7 @@ fn summed_over(sites: &Expression) -> Result<Sites, Diagnostic> {
 }
 
 impl Reach {
-    /// The range of a term on this lattice, `None` where it stands once.
+    /// The range of a term on this chain; `None` if the term is not summed.
     pub(super) fn range(&self, lattice: &Lattice, choice: &Choice) -> Option<Range> {
         let label = self.label?;
         let whole = Range {
@@ -281,7 +281,7 @@ impl Reach {
         Some(range)
     }
 
-    /// How far apart its letters stand.
+    /// The largest distance between its letters, in sites.
     pub(super) fn width(&self) -> usize {
         let offsets = || self.letters.iter().map(|(_, o)| *o);
         match (offsets().min(), offsets().max()) {

@@ -1,7 +1,7 @@
-//! The summands of a Lagrangian as they were typed. Numbers before a sum are multiplied into it and
-//! nothing else is expanded, so that `(next(q, i) - q)^2` stays one term of a segment. Below the top,
-//! a sum with a term of one neighbour alone, as in `next(q, i) - q`, is a difference and stays whole as well, and so do the
-//! two terms of a difference in time, `next(q) - q`.
+//! The summands of a Lagrangian as they were typed. Numbers before a sum are multiplied into it and nothing else is
+//! expanded, so that `(next(q, i) - q)^2` stays one term of a segment. Below the top level, a sum with a term of
+//! one neighbour alone, as in `next(q, i) - q`, is a difference and also stays whole. So do the two terms of a
+//! difference in time, `next(q) - q`.
 
 use super::declared::Lattice;
 use super::range::of_one_neighbour;
@@ -49,7 +49,7 @@ fn split(lattice: &Lattice, e: &Expression, top: bool) -> Vec<Expression> {
     }
 }
 
-/// Of each term the one that stands in a difference in time with it, the same a step earlier or later.
+/// For each term, its partner in a difference in time: the same term one step earlier or later.
 fn differences(terms: &[(bool, Expression)]) -> Vec<Option<usize>> {
     let mut out: Vec<Option<usize>> = vec![None; terms.len()];
     let known: Vec<(bool, String)> = terms.iter().map(|(_, t)| in_words(t)).collect();
@@ -64,7 +64,7 @@ fn differences(terms: &[(bool, Expression)]) -> Vec<Option<usize>> {
     out
 }
 
-/// Whether something of the end of the step stands in an expression, and its words without `next`.
+/// Whether an expression contains a quantity at the end of the step, and its text without `next`.
 fn in_words(e: &Expression) -> (bool, String) {
     let head = match &e.kind {
         Kind::Call(f, arguments) if f.text == "next" && arguments.len() == 1 => {
@@ -122,8 +122,8 @@ fn product(lattice: &Lattice, e: &Expression, factors: &[Expression]) -> Vec<Exp
     parts.collect()
 }
 
-/// Terms with the constant ones added to the first that holds a velocity: `3 - tr(Ω)` is one kinetic energy, whose
-/// constant is no term of a node in time.
+/// Adds the constant terms to the first term that contains a velocity: `3 - tr(Ω)` is one kinetic energy, and its
+/// constant is not a nodal term of its own.
 fn with_constants(lattice: &Lattice, e: &Expression, terms: Vec<Expression>) -> Vec<Expression> {
     let on_edge = |e: &Expression| contains(e, &|e| is_of_the_edge(lattice, e));
     if !terms.iter().any(on_edge) {

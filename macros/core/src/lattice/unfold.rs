@@ -1,5 +1,5 @@
-//! A model with labels written out for chosen numbers of sites and end conditions: a model of as
-//! many bodies, each with a name of its own, whose Lagrangian is the sum over the sites that exist.
+//! Expands a model with labels, for chosen numbers of sites and end conditions: a model of as many bodies, each
+//! with a name of its own, whose Lagrangian is the sum over the sites that exist.
 
 mod definitions;
 mod holds;
@@ -29,10 +29,10 @@ use std::collections::BTreeMap;
 pub use totals::{StatedTotal, Summed};
 use warned::without_a_ring;
 
-/// Largest Lagrangian that is written out, in quantities, numbers and operations.
+/// The largest expanded Lagrangian, in quantities, numbers and operations.
 pub(crate) const LARGEST: usize = 60_000;
 
-/// Most copies of quantities that are written out.
+/// The largest number of copies of quantities.
 const MOST_COPIES: usize = 20_000;
 
 /// One term of the Lagrangian as stated, definitions put in.
@@ -40,11 +40,11 @@ const MOST_COPIES: usize = 20_000;
 pub struct Summand {
     /// The term.
     pub stated: Expression,
-    /// The sites that it is summed over; `None` where it stands once.
+    /// The sites that it is summed over; `None` if it is not summed.
     pub range: Option<Range>,
     /// The end condition that it belongs to: whether of the last site, and which.
     pub end: Option<(bool, usize)>,
-    /// How far apart its letters stand.
+    /// The largest distance between its letters, in sites.
     pub width: usize,
     /// Kind of sites and offset of its letters, seen from its index.
     pub letters: Vec<(Sites, isize)>,
@@ -56,7 +56,7 @@ pub struct Summand {
     pub of_functionals: bool,
 }
 
-/// A held constraint as stated, and the sites that it has a multiplier at.
+/// A constraint as stated, and the sites at which it has a multiplier.
 #[derive(Clone, Debug)]
 pub struct StatedHold {
     /// The name of its multiplier.
@@ -67,26 +67,27 @@ pub struct StatedHold {
     pub letters: Vec<(Sites, isize)>,
 }
 
-/// A model written out.
+/// An expanded model.
 #[derive(Clone, Debug)]
 pub struct ExpandedModel {
     /// The model of as many bodies.
     pub model: Model,
     /// The names of all copies.
     pub copies: Vec<Copied>,
-    /// Names of parameters of end conditions: in the model written out, as stated, whether of the last site.
+    /// Parameters of end conditions: the name in the expanded model, the name as stated, and whether it belongs to the
+    /// last site.
     pub end_parameters: Vec<(String, String, bool)>,
     /// Names of the copies that are given at an end.
     pub given: Vec<String>,
     /// The terms of the Lagrangian.
     pub summands: Vec<Summand>,
-    /// The constraints that are held at sites.
+    /// The constraints at sites.
     pub holds: Vec<StatedHold>,
-    /// The constraints that are held on sums over sites.
+    /// The constraints on sums over sites.
     pub totals: Vec<StatedTotal>,
-    /// Terms that are hardly meant.
+    /// Warnings about terms that are probably not intended.
     pub warnings: Vec<Warning>,
-    /// What the whole statement names, whatever the choice.
+    /// The names in the whole statement, whatever the choice.
     named: warned::Named,
 }
 
@@ -473,7 +474,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// What stands once holds no letter of a site.
+    /// A term that is not summed must not contain a letter of a site.
     fn constant(&mut self, e: &Expression) {
         match reach(self.lattice, e) {
             Err(d) => self.errors.push(d),
@@ -533,7 +534,7 @@ fn velocity_of<'a>(model: &'a Model, element: &str) -> Option<&'a Name> {
 }
 
 impl ExpandedModel {
-    /// The farthest that letters of one term stand apart.
+    /// The largest distance between the letters of one term, in sites.
     pub fn width(&self) -> usize {
         self.summands.iter().map(|s| s.width).max().unwrap_or(0)
     }
@@ -562,8 +563,8 @@ impl ExpandedModel {
         words.join(" ")
     }
 
-    /// What a name begins with, a copy or a parameter of an end: the name as stated, what is behind it, and whether it is
-    /// a copy. Names may hold underscores: the longest counts.
+    /// Splits a name that begins with a copy or a parameter of an end: the name as stated, the rest, and whether it is
+    /// a copy. Names may contain underscores: the longest match counts.
     fn copied<'n>(&self, name: &'n str) -> Option<(&'n str, &'n str, bool)> {
         let sited = |of: &str| {
             let behind = name.strip_prefix(of)?.strip_prefix('_')?;

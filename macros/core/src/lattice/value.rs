@@ -34,7 +34,7 @@ impl SiteData {
     /// Reads an expression.
     ///
     /// # Errors
-    /// What is wrong with it, in words.
+    /// A description of the mistake in the text.
     pub fn read(text: &str) -> Result<SiteData, String> {
         let read = syntax::expression(text);
         let expression = read.map_err(|errors| {
@@ -61,12 +61,12 @@ impl SiteData {
     /// The same where names have slopes, `slope(S, 1)`, as [`SiteData::slopes`] lists them.
     ///
     /// # Errors
-    /// As [`SiteData::value`]; a slope that has no value.
+    /// As [`SiteData::value`]; an undefined slope.
     pub fn value_and_slopes(&self, of: &Names<'_>, slope: &Slopes<'_>) -> Result<f64, String> {
         value(&self.expression, &Given { of, slope })
     }
 
-    /// The names in it, those of slopes too.
+    /// The names in it, including the names in slopes.
     pub fn names(&self) -> BTreeSet<String> {
         let mut out = BTreeSet::new();
         self.expression.each(&mut |e| {
@@ -80,7 +80,7 @@ impl SiteData {
     /// The slopes in it: of what, along which direction, counted from 1.
     ///
     /// # Errors
-    /// One is not that of a name along a direction that is written as a number.
+    /// One of the slopes is not a name with a direction that is written as a number.
     pub fn slopes(&self) -> Result<Vec<(String, u64)>, String> {
         let mut out = Vec::new();
         self.expression.each(&mut |e| {
@@ -108,7 +108,7 @@ struct Given<'a> {
     slope: &'a Slopes<'a>,
 }
 
-/// Of what a slope is, and along which direction.
+/// The name and the direction of a slope.
 fn slope_of(arguments: &[Expression]) -> Result<(&str, u64), String> {
     let [name, direction] = arguments else {
         return Err("a slope is that of a mesh along a direction, as in slope(S, 1)".to_owned());
@@ -202,7 +202,7 @@ fn value(e: &Expression, of: &Given<'_>) -> Result<f64, String> {
     })
 }
 
-/// What to write for a name that has no value, if it is one of other languages.
+/// The replacement for an undefined name that other languages have.
 #[must_use]
 pub fn instead_of(name: &str) -> Option<String> {
     match unknown::name(name) {
@@ -212,7 +212,7 @@ pub fn instead_of(name: &str) -> Option<String> {
     }
 }
 
-/// An expression of other languages, such as `2*np.pi**2`, as this one writes it; nothing of what is no expression.
+/// Translates an expression of another language, such as `2*np.pi**2`; `None` if the result is not an expression.
 #[must_use]
 pub fn translated(text: &str) -> Option<String> {
     let mut out = text.trim().replace("**", "^");
@@ -240,7 +240,7 @@ fn without_module(text: &str, module: &str) -> String {
     out
 }
 
-/// Whether what a help tells to write can be written here.
+/// Whether the advice in a help text can be written here.
 fn is_of_sites(help: &str) -> bool {
     let Some(Ok(data)) = help.split('`').nth(1).map(SiteData::read) else {
         return false;

@@ -1,6 +1,6 @@
-//! Constraints that are held at the sites of a line: their derivatives by what moves, and how what moves answers to an
-//! impulse, in a step and at a node. Takes the lattice that is written out and the models of its sites; gives what a
-//! block-tridiagonal system for the multipliers of all sites is made of.
+//! Constraints at the sites of a chain: their derivatives with respect to the unknowns, and the response of the
+//! unknowns to an impulse, in a step and at a node. Takes the expanded chain and the models of its sites; gives the
+//! data of a block-tridiagonal system for the multipliers of all sites.
 
 use super::neighbour_force::{defined, forces};
 use super::site::BASE;
@@ -26,13 +26,13 @@ pub struct ChainConstraint {
     pub label: usize,
     /// The last index of an open line, less the number of segments.
     pub to: isize,
-    /// How far its letters stand apart: neighbours at most.
+    /// The distance between its letters, in sites: neighbours at most.
     pub width: usize,
     /// Its multiplier, at the base of the representative.
     pub multiplier: Letter,
-    /// Of how many numbers it is.
+    /// Its number of components.
     pub components: usize,
-    /// What vanishes.
+    /// The expression that vanishes.
     pub value: Expr,
     /// The size of its terms.
     pub scale: Expr,
@@ -40,7 +40,7 @@ pub struct ChainConstraint {
     pub sides: [Formula; 2],
     /// The letters of the equation.
     pub symbols: Symbols,
-    /// Of a sum over sites, whose summand is what `value` is: what stands beside it.
+    /// For a constraint on a sum over sites, whose summand is `value`: the terms outside the sum.
     pub beside: Option<Expr>,
     /// Its derivatives.
     pub reaches: Vec<Reach>,
@@ -128,7 +128,7 @@ fn refused<T>(words: String) -> Result<T, Refused> {
     Err(Refused::Form(words))
 }
 
-/// The constraints of a line.
+/// The constraints of a chain.
 pub(super) fn held(
     lattice: &Lattice,
     part: &RepresentativeChain,
@@ -186,7 +186,7 @@ pub(super) fn held(
     }
 }
 
-/// What is reached stands on the line, and moves in a way that impulses are put into.
+/// Checks that a constrained quantity belongs to the chain, and that impulses can act on it.
 fn admitted(
     lattice: &Lattice,
     lone: &[SiteModel],
@@ -219,7 +219,8 @@ fn admitted(
     }
 }
 
-/// The letters of a constraint begin at its index, and reach the next one at most: how far they stand apart.
+/// Checks that the letters of a constraint begin at its index and reach at most the next site. Returns the distance
+/// between them.
 fn width(name: &str, from: isize, letters: &[(Sites, isize)]) -> Result<usize, Refused> {
     let first = letters.iter().map(|(_, o)| *o).min().unwrap_or(0);
     let last = letters.iter().map(|(_, o)| *o).max().unwrap_or(0);
@@ -350,7 +351,7 @@ fn total(
     with_derivatives(part, hold, held)
 }
 
-/// An expression of the base with its letters as those of the site `i`, for print.
+/// An expression at the base, with its letters named as letters of the site `i`, for print.
 fn seen_from(part: &RepresentativeChain, e: &Expr, index: &str, symbols: &mut Symbols) -> Expr {
     let mut list = Vec::new();
     for l in expr::letters(e) {
@@ -420,7 +421,7 @@ fn with_derivatives(
     })
 }
 
-/// What impulses do to the configurations that constraints reach, in the models of their sites.
+/// The response of constrained configurations to impulses, in the models of their sites.
 pub(super) fn units(
     lone: &SiteModel,
     held: &[ChainConstraint],
@@ -430,7 +431,7 @@ pub(super) fn units(
     for members in &lone.blocks {
         let own = |i: &usize| lone.movers.iter().find(|m| m.index == *i);
         let movers: Vec<&SiteUnknown> = members.iter().filter_map(own).collect();
-        // A block that is held in part moves as a whole.
+        // If a constraint acts on part of a block, the whole block moves.
         if movers.iter().any(|m| reached(m)) {
             out.push(unit(lone, members, &movers)?);
         }
@@ -501,8 +502,8 @@ fn unit(
     })
 }
 
-/// The reactions of all copies of all constraints on a configuration of the lattice that is written out, per unit
-/// time: what a line must give.
+/// The constraint forces of all copies of all constraints on a configuration of the expanded chain, per unit time:
+/// the program for every number of sites must give the same forces.
 pub(super) fn written_out(part: &RepresentativeChain, i: usize) -> Vec<Expr> {
     let d = &part.d;
     let each = d.spec.holds.iter();

@@ -1,7 +1,7 @@
-//! What terms with functionals of all sites add to the momenta of sites: derivatives of each through the
-//! functionals' pull-backs, and as far as it holds places itself. One site is written out, whose letters
-//! stand for those of all: `A(X)` are the values at all sites, and the pull-back of a seed is what all sites
-//! of the functional add to one site of what it is made of.
+//! Contributions of terms with functionals of all sites to the momenta of sites: derivatives of each term through
+//! the pull-backs of the functionals, and directly through the positions. One site is written out, and its letters
+//! represent all sites: `A(X)` are the values at all sites. The pull-back of a seed is the contribution of all
+//! sites of the functional to one site of the quantity it depends on.
 
 use super::neighbour_force::{Force, elaborated, forces};
 use super::{Refused, RepresentativeChain};
@@ -16,7 +16,7 @@ use crate::lattice::Lattice;
 pub struct FunctionalForce {
     /// The terms of the Lagrangian, with the label over whose sites each is summed.
     pub terms: Vec<(usize, Expr)>,
-    /// What they add, the whole of it at one node.
+    /// The contributions, each as a whole at one node.
     pub forces: Vec<Force>,
 }
 
@@ -59,7 +59,8 @@ pub(super) fn meshed(
     }))
 }
 
-/// A pull-back of a sum of seeds in the place of a sum of pull-backs: each is computed over all sites.
+/// Replaces a sum of pull-backs by the pull-back of the sum of their seeds: each pull-back is computed over all
+/// sites.
 fn gathered(part: &RepresentativeChain, e: &Expr) -> Expr {
     let s = &part.d.letters.symbols;
     let mut rest: Vec<Expr> = Vec::new();
@@ -69,7 +70,7 @@ fn gathered(part: &RepresentativeChain, e: &Expr) -> Expr {
             rest.push(term);
             continue;
         };
-        // What multiplies a seed may stand in it, as long as it is the same at all sites.
+        // A factor of a seed may be part of it, as long as it is the same at all sites.
         let seed = expr::mul(expr::number(factor), gathered(part, &seed));
         match backs.iter_mut().find(|(b, i, _)| *b == a && *i == which) {
             Some((.., seeds)) => seeds.push(seed),

@@ -16,7 +16,7 @@ use crate::expr::{self, Expr, Letter, Shift};
 pub struct Inertia {
     /// The momentum of each configuration where nothing moves.
     pub at_rest: Vec<Expr>,
-    /// Of each configuration the derivative by the velocities of each, a column for each axis.
+    /// For each configuration, the derivative with respect to the velocities of each; one column per axis.
     pub columns: Vec<Vec<Expr>>,
 }
 
@@ -54,7 +54,8 @@ pub fn of_site(lone: &SiteModel, members: &[usize]) -> Option<Inertia> {
     Some(of(&lone.d.spec, &lone.d.letters, limit, members))
 }
 
-/// That of a term of neighbours, its parts in order; none where it has no limit or one with more than velocities.
+/// The inertia of a term of neighbours, its parts in order; `None` if its limit does not exist or contains more
+/// than velocities.
 pub(super) fn of_tie(part: &RepresentativeChain, tie: &VelocityCoupling) -> Option<Inertia> {
     let d = &part.d;
     let algebra = Algebra::new(&d.letters.symbols);

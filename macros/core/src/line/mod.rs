@@ -1,7 +1,7 @@
-//! A model with labels as one program for every number of sites: what moves at a site alone, what
-//! neighbours add to its momentum, and what the ends add. The short lattice that is written out
-//! proves that these are all of its equations. Takes a model with labels; gives the parts that a
-//! stepper with loops over sites is made of, or why it has to be written out.
+//! A model with labels as one program for every number of sites: the model of a single site, the contributions of
+//! neighbours to its momentum, and the contributions of the ends. A short chain is expanded to prove that these are
+//! all of its equations. Takes a model with labels; gives the parts of a stepper with loops over sites, or why the
+//! model must be expanded.
 
 mod chain_constraint;
 mod coordinates;
@@ -46,32 +46,32 @@ pub struct Line {
     pub coordinates: Vec<Coordinates>,
     /// Its labels.
     pub lattice: Lattice,
-    /// The lattice that is written out: letters of [`NeighbourForce`] are those of its copies.
+    /// The expanded chain; the letters of [`NeighbourForce`] are letters of its copies.
     pub representative: RepresentativeChain,
-    /// What moves at a site, for each kind of sites.
+    /// The model of a single site, for each kind of sites.
     pub lone: Vec<SiteModel>,
-    /// What neighbours add to momenta, terms of equal ranges together.
+    /// The forces of neighbours; terms with equal ranges are combined.
     pub pulls: Vec<NeighbourForce>,
-    /// What terms of neighbours in which velocities stand add to momenta.
+    /// The contributions of neighbour terms with velocities to momenta.
     pub ties: Vec<VelocityCoupling>,
-    /// Constraints that are held.
+    /// The constraints.
     pub holds: Vec<ChainConstraint>,
-    /// What impulses do to what is held, for each kind of sites.
+    /// The response of constrained configurations to impulses, for each kind of sites.
     pub units: Vec<Vec<ConstraintResponse>>,
-    /// What end conditions add.
+    /// The contributions of end conditions.
     pub ends: Vec<EndTerm>,
-    /// Unit quaternions that meet their neighbours.
+    /// Unit quaternions that occur in a term with their neighbours.
     pub signs: Vec<Signs>,
-    /// What terms with functionals of all sites add.
+    /// The contributions of terms with functionals of all sites.
     pub meshed: Option<FunctionalForce>,
     /// Conserved totals.
     pub totals: Vec<Total>,
-    /// What of a nodal term acts at the end of the edge that comes to its node, and what of it at the
-    /// start of the edge that leaves: together the whole.
+    /// The shares of a nodal term at the end of the incoming edge and at the start of the outgoing edge: together the
+    /// whole.
     pub shares: [Rational; 2],
 }
 
-/// One choice of sites and ends, written out.
+/// One choice of sites and ends, expanded.
 pub struct RepresentativeChain {
     /// The choice.
     pub choice: Choice,
@@ -81,7 +81,7 @@ pub struct RepresentativeChain {
     pub d: Outline,
 }
 
-/// Why a model has no program for every number of sites: it is written out, body by body.
+/// The reason why a model cannot be one program for every number of sites: it is then expanded, body by body.
 #[derive(Debug)]
 pub enum Refused {
     /// The model itself is wrong.
@@ -100,7 +100,7 @@ impl Line {
     /// The program of a model with labels.
     ///
     /// # Errors
-    /// [`Refused`] where the model is wrong, or is solved together along the line.
+    /// [`Refused`] if the model is wrong, or must be solved together along the chain.
     pub fn of(model: &Model) -> Result<Line, Refused> {
         let lattice = Lattice::read(model)?;
         stands_alone(model, &lattice)?;
@@ -140,7 +140,7 @@ impl Line {
                 m,
             ));
         }
-        // A total is asked of a state, which does not know its step.
+        // A total is computed from a state, which does not contain the step size.
         let holds_step =
             |e: &Expr| expr::contains_role(&representative.d.letters.symbols, e, Role::Step);
         totals.retain(|t| {
@@ -173,7 +173,8 @@ impl Line {
         Ok(line)
     }
 
-    /// What an end adds is put beside what neighbours add, and what an end holds is solved for by itself.
+    /// Checks that ends act only on configurations on which neighbours act, and that prescribed configurations are
+    /// solved for by themselves.
     fn ends_are_collected(&self) -> Result<(), Refused> {
         let pulled = |name: &str| {
             let mut all = self.pulls.iter().flat_map(|p| &p.forces);
@@ -229,13 +230,13 @@ impl Line {
         }
     }
 
-    /// Whether velocities of neighbours stand in the momentum of a configuration.
+    /// Whether the momentum of a configuration contains velocities of neighbours.
     pub fn is_tied(&self, name: &str) -> bool {
         let mut parts = self.ties.iter().flat_map(|t| &t.parts);
         parts.any(|p| p.on == name)
     }
 
-    /// What moves, by name.
+    /// The unknown with this name, and the model of its site.
     pub fn mover(&self, name: &str) -> Option<(&SiteModel, &SiteUnknown)> {
         self.lone
             .iter()
@@ -252,8 +253,7 @@ impl Line {
 }
 
 impl RepresentativeChain {
-    /// What of a nodal term acts at the end of the edge that comes to its node, and what of it at the start
-    /// of the edge that leaves.
+    /// The shares of a nodal term at the end of the incoming edge and at the start of the outgoing edge.
     fn shares(&self) -> [Rational; 2] {
         let (all, none) = (Rational::integer(1), Rational::integer(0));
         match self.d.spec.node_rule {
@@ -304,7 +304,7 @@ fn stands_alone(model: &Model, lattice: &Lattice) -> Result<(), Refused> {
     Ok(())
 }
 
-/// Refuses what goes on with the step by itself: loops over sites keep no time.
+/// Rejects quantities that advance with the step by themselves: loops over sites keep no time.
 fn without_clocks(representative: &RepresentativeChain) -> Result<(), Refused> {
     let spec = &representative.d.spec;
     match spec.clocks().first() {

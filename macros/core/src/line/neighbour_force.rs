@@ -1,6 +1,6 @@
-//! What terms of neighbours add to the momenta of the sites that they touch, and what end conditions
-//! add: derivatives of one term along the variations of the lattice that is written out. All act at a
-//! node in time, on covectors of the side of each configuration.
+//! Contributions of neighbour terms and of end conditions to the momenta of the sites that they touch: derivatives
+//! of one term along the variations of the expanded chain. All act at a node in time, on covectors of the side of
+//! each configuration.
 
 use super::site::BASE;
 use super::velocity_coupling::{self, VelocityCoupling};
@@ -16,14 +16,14 @@ use crate::lattice::{Choice, Lattice, Sites, Summand};
 use crate::syntax::ast::Model;
 use crate::{algebra::Algebra, check};
 
-/// What acts on one configuration.
+/// The force on one configuration.
 #[derive(Clone, Debug)]
 pub struct Force {
     /// The configuration as stated.
     pub on: String,
     /// Its site, from the index of the term; of an end condition from the first or to the last site.
     pub site: usize,
-    /// The covector, the whole of it at one node.
+    /// The covector, as a whole at one node.
     pub value: Expr,
 }
 
@@ -36,15 +36,15 @@ pub struct NeighbourForce {
     pub from: usize,
     /// The last index of an open line, less the number of segments.
     pub to: isize,
-    /// How far its letters stand apart.
+    /// The distance between its letters, in sites.
     pub width: usize,
-    /// What it adds, letters of the first site at the base of the representative.
+    /// Its forces, with the letters of the first site at the base of the representative.
     pub forces: Vec<Force>,
     /// The terms of the Lagrangian, in the same letters.
     pub terms: Expr,
 }
 
-/// What one end condition adds.
+/// The contributions of one end condition.
 #[derive(Clone, Debug)]
 pub struct EndTerm {
     /// Whether of the last site.
@@ -83,13 +83,13 @@ pub(super) struct Placed {
     pub from: usize,
     /// The last one, less the number of segments.
     pub to: isize,
-    /// How far its letters stand apart.
+    /// The distance between its letters, in sites.
     pub width: usize,
     /// The term.
     pub term: Expr,
 }
 
-/// The term of a summand in its range; none where it holds no letter of a site, and is constant.
+/// The term of a summand in its range; `None` if it contains no letter of a site, and is constant.
 fn placed(
     lattice: &Lattice,
     part: &RepresentativeChain,
@@ -123,7 +123,7 @@ fn placed(
     }))
 }
 
-/// The terms of neighbours: those at a node, and those in which velocities stand.
+/// The terms of neighbours: nodal terms, and terms with velocities.
 pub(super) fn pulls(
     lattice: &Lattice,
     part: &RepresentativeChain,
@@ -210,7 +210,7 @@ fn keeps(lattice: &Lattice, part: &RepresentativeChain, term: &Expr) -> bool {
         let Some(first) = own.first() else {
             return true;
         };
-        // By an amount that stands for any: the first letter itself.
+        // By an arbitrary amount: the first letter itself.
         let by = expr::letter(s, first.symbol, first.shift);
         let changes: Vec<(Letter, Expr)> = own.iter().map(|l| (*l, by.clone())).collect();
         algebra.is_zero(&expr::directional(s, term, &changes))
@@ -226,14 +226,14 @@ fn read(part: &RepresentativeChain, summand: &Summand) -> Result<Expr, Refused> 
     }
 }
 
-/// Its part that stands on the edge, and the one at a node.
+/// The part of a term on the edge, and its part at a node.
 pub(super) fn in_two(part: &RepresentativeChain, summand: &Summand) -> Result<[Expr; 2], Refused> {
     let (edge, nodal) = action::split(&part.d.letters.symbols, &read(part, summand)?);
     Ok([edge, nodal])
 }
 
-/// The same where the derivation takes terms of negative powers of the step together: what of a difference over the step
-/// stands at a node is then a part of the edge, at the end at which it is stated.
+/// The same if the derivation combines terms with negative powers of the step size: the nodal part of a difference
+/// over the step then belongs to the edge, at the end where it is stated.
 fn gathered(part: &RepresentativeChain, summand: &Summand) -> Result<[Expr; 2], Refused> {
     let s = &part.d.letters.symbols;
     let reduction = part.d.spec.reduction.as_ref();
@@ -257,7 +257,7 @@ fn gathered(part: &RepresentativeChain, summand: &Summand) -> Result<[Expr; 2], 
     Ok([sum(on_edge), sum(at_node)])
 }
 
-/// A summand as it is shown, which must stand at one node in time.
+/// A summand as it is shown; it must belong to one node in time.
 pub(super) fn elaborated(part: &RepresentativeChain, summand: &Summand) -> Result<Expr, Refused> {
     let [edge, nodal] = in_two(part, summand)?;
     match edge.is_zero() {
@@ -330,7 +330,8 @@ pub(super) fn forces(part: &RepresentativeChain, term: &Expr) -> Vec<Force> {
     out
 }
 
-/// What ends add is put beside what neighbours add: of what no neighbour acts on, places where nothing is added else.
+/// Forces of ends are added to the forces of neighbours: a configuration on which no neighbour acts gets empty
+/// entries for the forces of ends.
 pub(super) fn collecting(
     lattice: &Lattice,
     pulls: &[NeighbourForce],
@@ -366,7 +367,7 @@ pub(super) fn collecting(
     out
 }
 
-/// What every end condition adds, each from a lattice that ends so.
+/// The contributions of every end condition, each from a chain with this end.
 pub(super) fn ends(
     model: &Model,
     lattice: &Lattice,

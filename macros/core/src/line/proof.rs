@@ -1,5 +1,5 @@
-//! The proof that a site by itself and what neighbours add are the whole equation of a site: shown on
-//! the lattice that is written out, at a site with all its neighbours.
+//! The proof that the model of a single site and the contributions of neighbours are the whole equation of a site:
+//! shown on the expanded chain, at a site with all its neighbours.
 
 use super::{Line, Refused, SiteModel, SiteUnknown};
 use crate::algebra::Algebra;
@@ -11,7 +11,7 @@ impl Line {
     /// Proves it for every configuration.
     ///
     /// # Errors
-    /// [`Refused::Form`] where the two are not seen to be equal.
+    /// [`Refused::Form`] if the two cannot be shown to be equal.
     pub(super) fn prove(&self) -> Result<(), Refused> {
         for lone in &self.lone {
             for mover in &lone.movers {
@@ -78,8 +78,7 @@ impl Line {
         equal.then_some(()).ok_or_else(refused)
     }
 
-    /// What terms with velocities of neighbours add to the momentum of the edge that leaves, and of the one
-    /// that comes.
+    /// The contributions of neighbour terms with velocities to the momenta of the outgoing and of the incoming edge.
     #[allow(clippy::option_option)] // Outside: whether its letters exist. Inside: whether there are such terms.
     fn tied(&self, name: &str, site: usize) -> Option<Option<[Expr; 2]>> {
         let mut out: Option<[Expr; 2]> = None;
@@ -101,7 +100,7 @@ impl Line {
         Some(out)
     }
 
-    /// What constraints add at a site of the representative, for their multipliers there.
+    /// The contributions of constraints at a site of the representative, for their multipliers there.
     fn reacted(&self, name: &str, site: usize) -> Option<Expr> {
         let part = &self.representative;
         let mut terms = Vec::new();
@@ -122,7 +121,7 @@ impl Line {
         Some(expr::sum(terms, shape))
     }
 
-    /// What neighbours add at a site of the representative.
+    /// The contributions of neighbours at a site of the representative.
     fn pulled(&self, name: &str, site: usize) -> Option<Expr> {
         let part = &self.representative;
         let mut terms = Vec::new();

@@ -1,6 +1,6 @@
-//! Signs of unit quaternions: which quantities along the line meet their neighbours in a term, whether a term sees by
-//! which sign, and at which ends they meet a quaternion that is given. Takes the lattice that is written out; gives
-//! what is made to agree where a trajectory starts, since `q` and `-q` are one attitude and two states.
+//! Signs of unit quaternions: which quantities along the chain meet their neighbours in a term, whether the term
+//! depends on the sign, and at which ends they meet a prescribed quaternion. Takes the expanded chain; gives the
+//! quantities whose signs must agree when a trajectory starts, since `q` and `-q` are one attitude and two states.
 
 use super::neighbour_force::{self, EndTerm};
 use super::{Refused, RepresentativeChain, written};
@@ -19,7 +19,7 @@ pub struct Signs {
     pub of: String,
     /// Whether a term changes if the sign of one site does.
     pub seen: bool,
-    /// What it meets at the first end and at the last.
+    /// The walls at the first end and at the last.
     pub walls: [Vec<Wall>; 2],
 }
 
@@ -54,7 +54,7 @@ pub fn signs(model: &Model, lattice: &Lattice) -> Result<Vec<Signs>, Refused> {
     of_parts(lattice, &part, &ends)
 }
 
-/// The unit quaternions along the line, as stated.
+/// The unit quaternions along the chain, as stated.
 fn of_line(lattice: &Lattice, part: &RepresentativeChain) -> Vec<String> {
     let own = lattice.quantities.iter().filter(|q| {
         let group = part.copy(&q.name.text, 0).map(|id| is_unit(part, id));
@@ -68,7 +68,7 @@ fn is_unit(part: &RepresentativeChain, id: SymbolId) -> bool {
     symbol.structure == Structure::UnitQuaternion && symbol.role == Role::Element
 }
 
-/// The same of a lattice that is written out already, with its end conditions.
+/// The same for a chain that is already expanded, with its end conditions.
 pub(super) fn of_parts(
     lattice: &Lattice,
     part: &RepresentativeChain,
@@ -101,8 +101,8 @@ pub(super) fn of_parts(
     Ok(each.collect())
 }
 
-/// Whether a term in which two sites of a quantity stand changes with the sign of one of them; none where there
-/// are no two.
+/// Whether a term with two sites of a quantity changes with the sign of one of them; `None` if the term has fewer
+/// sites.
 fn sees(part: &RepresentativeChain, algebra: &Algebra, term: &Expr, of: &str) -> Option<bool> {
     let s = &part.d.letters.symbols;
     let letters = expr::letters(term).into_iter();

@@ -1,4 +1,4 @@
-//! Letters of a lattice that is written out, by the quantity and the site they are copies of.
+//! Letters of an expanded chain, by the quantity and the site of which they are copies.
 
 use super::{RepresentativeChain, SiteModel};
 use crate::check::spec::Configuration;
@@ -10,10 +10,10 @@ use crate::lattice::copy_name;
 /// all its neighbours at every width.
 pub const BASE: usize = 1;
 
-/// What stands before the name of a configuration to mean its node momentum.
+/// The prefix that turns the name of a configuration into the name of its node momentum.
 const MOMENTUM: &str = "momentum of ";
 
-/// What stands before the name of a field to mean its velocity.
+/// The prefix that turns the name of a field into the name of its velocity.
 const VELOCITY: &str = "velocity of ";
 
 /// A copy of a quantity, the node momentum of a configuration, or the velocity of a field.
@@ -105,7 +105,7 @@ impl RepresentativeChain {
         Some(expr::substitute(s, e, &list))
     }
 
-    /// An expression moved along the line; none where a copy does not exist there.
+    /// An expression moved along the chain; `None` if a copy does not exist there.
     pub fn moved(&self, e: &Expr, by: isize) -> Option<Expr> {
         let s = &self.d.letters.symbols;
         let mut list: Vec<(Letter, Expr)> = Vec::new();

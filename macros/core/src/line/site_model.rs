@@ -1,5 +1,5 @@
-//! What moves at one site by itself: the model of one site without its neighbours, derived as any
-//! other, and how its velocities are found when neighbours add to its momentum.
+//! The unknowns of a single site: its model without neighbours, derived like any other model, and how its
+//! velocities are found if neighbours add to its momentum.
 
 use super::neighbour_force::lone_at;
 use super::velocity_coupling::VelocityCoupling;
@@ -22,11 +22,11 @@ use crate::syntax::ast::{Expression, Kind, Kindred, Model, Name, Statement};
 pub struct SiteModel {
     /// Its label.
     pub label: usize,
-    /// At which of its sites it stands.
+    /// The kind of its sites.
     pub sites: Sites,
     /// Its derivation, in the names of the model as stated.
     pub d: Derivation,
-    /// What that began with.
+    /// The first results of this derivation.
     pub outline: Outline,
     /// Its configurations.
     pub movers: Vec<SiteUnknown>,
@@ -51,9 +51,9 @@ pub enum SiteSolve {
     Rotation {
         /// The factor.
         factor: Expr,
-        /// Of a unit quaternion the number that goes with it, made of parameters as well.
+        /// For a unit quaternion, its real coefficient, which also contains parameters only.
         real: Option<Expr>,
-        /// What acts at the start of the edge, and at its end, both seen from the body.
+        /// The impulse at the start of the edge, seen from the body there.
         leave: Expr,
         /// The same at its end.
         arrive: Expr,
@@ -62,7 +62,7 @@ pub enum SiteSolve {
     Field {
         /// The factors.
         form: TwoSidedLinear,
-        /// What acts at the end of the edge.
+        /// The impulse at the end of the edge.
         arrive: Expr,
     },
     /// Fields whose momenta are linear in all velocities of their block together.
@@ -71,7 +71,7 @@ pub enum SiteSolve {
         rest: Expr,
         /// The columns of the momentum's derivative, one for each component of each velocity of the block.
         columns: Vec<Expr>,
-        /// What the edge adds to the momentum, in velocities and both ends.
+        /// The increment of the momentum over the edge, in velocities and both ends.
         added: Expr,
     },
     /// Fields whose momenta are other functions of the velocities of their block: by Newton's method.
@@ -80,16 +80,16 @@ pub enum SiteSolve {
         momentum: Expr,
         /// Its derivative by each component of each velocity of the block.
         columns: Vec<Expr>,
-        /// What the edge adds to the momentum, in velocities and both ends; of a rotation at its start, seen from
-        /// the body there.
+        /// The increment of the momentum over the edge, in velocities and both ends; for a rotation, the increment at
+        /// its start, seen from the body there.
         added: Expr,
-        /// Of a rotation what it adds at its end, seen from the body there.
+        /// For a rotation, the increment at its end, seen from the body there.
         arriving: Option<Expr>,
     },
 }
 
 impl SiteSolve {
-    /// What the edge adds to the momentum, where velocities are found together.
+    /// The increment of the momentum over the edge, if velocities are found together.
     pub fn added(&self) -> Option<&Expr> {
         match self {
             SiteSolve::System { added, .. } | SiteSolve::Newton { added, .. } => Some(added),
@@ -142,7 +142,7 @@ fn one(
         let element = d.spec.configurations[i].element;
         d.letters.symbols.get(element).name.as_str()
     };
-    // What velocities of neighbours stand in is found together, of all sites.
+    // If terms contain velocities of neighbours, these velocities are found together, for all sites.
     let is_tied = |i: &usize| {
         let mut parts = ties.iter().flat_map(|t| &t.parts);
         parts.any(|p| p.on == name(*i))
@@ -189,7 +189,8 @@ fn one(
     })
 }
 
-/// Refuses terms with quantities that no definition gives: a line keeps no values of them from step to step.
+/// Rejects terms with advected quantities that have a constraint but not a definition: a chain does not store their
+/// values from step to step.
 fn without_carried(d: &Derivation) -> Result<(), Refused> {
     let s = &d.letters.symbols;
     let stated = expr::letters(&d.spec.lagrangian);
@@ -205,7 +206,7 @@ fn without_carried(d: &Derivation) -> Result<(), Refused> {
     Ok(())
 }
 
-/// The model of one site: what is declared there, and the terms that it has by itself.
+/// The model of one site: its declarations, and the terms without neighbours.
 fn alone(
     model: &Model,
     lattice: &Lattice,
@@ -295,7 +296,7 @@ fn alone(
         }
     }
     let lagrangian = match terms.len() {
-        // Its velocities stand in terms of neighbours alone.
+        // Its velocities occur in terms of neighbours only.
         0 => Some(Expression {
             kind: Kind::Number(Rational::integer(0)),
             place,
@@ -448,7 +449,7 @@ fn by_newton(d: &Derivation, i: usize, block: &[usize]) -> Result<SiteSolve, Ref
     })
 }
 
-/// What the edge adds to a momentum.
+/// The increment of a momentum over the edge.
 fn added(d: &Derivation, i: usize) -> Expr {
     match &d.carries[i] {
         MomentumUpdate::Kept(added) => added.clone(),
@@ -456,8 +457,8 @@ fn added(d: &Derivation, i: usize) -> Expr {
     }
 }
 
-/// The momentum of the edge that leaves a node, in the place at the node and the velocities, and its
-/// derivative by each component of each velocity of a block, columns side by side.
+/// The momentum of the outgoing edge, in the position at the node and the velocities. Also its derivative with
+/// respect to each component of each velocity of a block, one column per component.
 pub(super) fn momentum(
     d: &Derivation,
     i: usize,

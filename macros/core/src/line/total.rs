@@ -1,5 +1,6 @@
-//! Conserved totals of a line: sums over sites of one density, which is the same at every site that no end holds; places
-//! that ends hold may stand in it. Found on the lattice that is written out; a quantity that is no such sum is left to it.
+//! Conserved totals of a chain: sums over sites of one density, which is the same at every site that no end
+//! prescribes; the density may contain positions that ends prescribe. Totals are found on the expanded chain; a
+//! quantity that is not such a sum remains specific to it.
 
 use super::site::BASE;
 use super::{FunctionalForce, Refused, RepresentativeChain, SiteModel};
@@ -16,7 +17,7 @@ use crate::print::{Format, Style, expression};
 use crate::syntax::ast::{Extent, Model};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What is summed over the sites of one kind.
+/// A density, summed over the sites of one kind.
 #[derive(Clone, Debug)]
 pub struct Density {
     /// The label of the sites.
@@ -38,9 +39,9 @@ pub struct Total {
     pub reason: String,
     /// On which lines.
     pub on: String,
-    /// What is summed.
+    /// The densities.
     pub densities: Vec<Density>,
-    /// Letters of what an end holds, with whether it is the last end: these stay where they are.
+    /// The letters that an end prescribes, with whether it is the last end:
     pub places: Vec<(Letter, bool)>,
     /// The end conditions that hold the same configurations as those with which it was found, at the first end and at the
     /// last. A total of the same name with other densities belongs to other ends.
@@ -54,13 +55,13 @@ impl Total {
         first.map_or(Shape::SCALAR, |d| d.value.shape())
     }
 
-    /// What is summed, as text, by which a total of another lattice is known to be this one; letters are of `part`.
+    /// The densities as text, which identifies equal totals of different chains; letters belong to `part`.
     pub fn text(&self, part: &RepresentativeChain) -> String {
         let style = Style::new(&part.d.spec.time_index);
         let each = self.densities.iter().map(|density| {
             let (label, sites, e) = (density.label, density.sites, &density.value);
             let [first, last] = density.left_out;
-            // In names that are those of any lattice of the model.
+            // With names that are the same on every chain of the model.
             let mut s = part.d.letters.symbols.clone();
             let place = |l: &Letter| self.places.iter().find(|(own, _)| own == l);
             let name = |l: &Letter| match (part.sited(l.symbol), place(l)) {
@@ -92,8 +93,8 @@ impl Total {
     }
 }
 
-/// The totals on the line that a case has by default, a ring where `periodic` stands alone, else the first
-/// end conditions; then those on lines whose ends hold other configurations.
+/// The totals on the default chain of a case, a ring if `periodic` is the only choice, else with the first end
+/// conditions; then the totals on chains whose ends prescribe other configurations.
 pub(super) fn totals(
     model: &Model,
     lattice: &Lattice,
@@ -110,8 +111,8 @@ pub(super) fn totals(
     };
     let on = |choice: Choice| -> Result<Vec<Total>, Refused> {
         let own = written(choice.clone())?;
-        // A held sum over all sites may bring their number into a total: what a longer lattice does not repeat is not known
-        // for every number of sites.
+        // A constraint on a sum over all sites may bring the number of sites into a total: a total that a longer chain
+        // does not repeat is not known for every number of sites.
         match lattice
             .line
             .filter(|_| holds_sums(model) && !own.is_empty())
@@ -130,7 +131,7 @@ pub(super) fn totals(
     let choice = default_choice(lattice, part.choice.clone());
     let mut all = on(choice.clone())?;
     for other in holding_others(lattice, &choice) {
-        // Ends that do not derive are told where a case chooses them.
+        // Errors of other ends are reported where a case chooses these ends.
         for total in on(other).unwrap_or_default() {
             let text = total.text(part);
             let mut alike = all.iter().filter(|t| t.name == total.name);
@@ -151,8 +152,8 @@ fn longer(mut choice: Choice, line: usize) -> Choice {
     choice
 }
 
-/// Choices of ends that hold other configurations than this one, one for all that hold the same: that which adds fewest
-/// terms.
+/// Choices of ends that prescribe other configurations than this choice, one for each set of prescribed
+/// configurations: the choice that adds the fewest terms.
 fn holding_others(lattice: &Lattice, choice: &Choice) -> Vec<Choice> {
     if choice.periodic {
         return Vec::new();
@@ -203,9 +204,9 @@ fn holding_alike(lattice: &Lattice, choice: &Choice) -> [Vec<usize>; 2] {
     })
 }
 
-/// Totals that functionals of all sites leave as they are: those of the sites alone in which no momentum that
-/// functionals change has another factor than a constant. A functional that equal shifts of all places leave
-/// as it is adds nothing to such a sum; the step is made of the step of each site alone and of what is added.
+/// Totals that functionals of all sites do not change: totals of single sites in which every momentum that
+/// functionals change has a constant factor. A functional that is invariant under equal shifts of all positions
+/// adds nothing to such a sum; the step combines the steps of single sites with these contributions.
 pub(super) fn beside_functionals(
     lattice: &Lattice,
     part: &RepresentativeChain,
@@ -253,7 +254,7 @@ pub(super) fn name_apart(lattice: &Lattice, totals: &mut [Total]) {
     for i in 1..totals.len() {
         let (before, rest) = totals.split_at_mut(i);
         let Some(own) = rest.first_mut() else { break };
-        // On lines that are held in another way it is this total.
+        // On chains with other prescribed ends, this total applies.
         let is_other = |t: &Total| t.name == own.name && t.ends == own.ends;
         if !before.iter().any(is_other) {
             continue;
@@ -271,8 +272,8 @@ pub(super) fn name_apart(lattice: &Lattice, totals: &mut [Total]) {
     }
 }
 
-/// Whether everything that functionals add to the momenta of this field has sum zero: they are made of it alike,
-/// and no term holds a place itself.
+/// Whether the contributions of functionals to the momenta of this field have sum zero: these functionals are
+/// invariant under equal shifts, and no term contains a position itself.
 fn is_pushed_evenly(
     lattice: &Lattice,
     part: &RepresentativeChain,
@@ -298,7 +299,7 @@ fn is_pushed_evenly(
         .any(|(_, e)| through(e).iter().any(named))
 }
 
-/// The letters of an expression that stand in no functional of all sites.
+/// The letters of an expression outside functionals of all sites.
 fn outside(s: &Symbols, e: &Expr, out: &mut Vec<Letter>) {
     match e.node() {
         Node::Letter(l) => out.push(*l),
@@ -315,7 +316,7 @@ fn has_constant_factor(s: &Symbols, value: &Expr, momentum: Letter) -> bool {
     expr::axes(shape).is_some_and(|all| all.iter().all(|u| expr::letters(&by(u)).is_empty()))
 }
 
-/// The totals of one lattice in the letters of another.
+/// The totals of one chain in the letters of another.
 fn of_part(
     lattice: &Lattice,
     part: &RepresentativeChain,
@@ -327,7 +328,7 @@ fn of_part(
         false if lattice.line.is_none() => "always".to_owned(),
         false => part.choice.held(lattice),
     };
-    // Constraints are told for all sites together.
+    // Constraints are reported for all sites together.
     let exact = invariants.iter();
     let exact = exact.filter(|v| v.exact && v.family != Family::Held);
     let ends = holding_alike(lattice, &part.choice);
@@ -361,8 +362,8 @@ fn of_part(
     each.collect()
 }
 
-/// The totals of a lattice that is written out, by name, with the text of their densities: a sum that leaves sites out is
-/// none.
+/// The totals of an expanded chain, by name, with the text of their densities: a sum that leaves sites out does not
+/// count.
 pub fn totals_on(
     lattice: &Lattice,
     choice: &Choice,
@@ -380,7 +381,7 @@ pub fn totals_on(
         .collect()
 }
 
-/// The values of invariants. What single sites keep is added up, one for all of them.
+/// The values of invariants. Invariants of single sites are added up to one total.
 fn summed<'v>(
     part: &RepresentativeChain,
     invariants: Vec<&'v Invariant>,
@@ -474,14 +475,14 @@ fn holds(lattice: &Lattice, part: &RepresentativeChain, kind: (usize, Sites), si
     })
 }
 
-/// Whether a letter is of what an end holds, which is the same for all sites.
+/// Whether a letter is prescribed by an end, and thus the same for all sites.
 fn is_held(part: &RepresentativeChain, l: &Letter) -> bool {
     part.unfolded
         .given
         .contains(&part.d.letters.symbols.get(l.symbol).name)
 }
 
-/// A summand of one site at the base; what ends hold stays where it is.
+/// A summand of one site at the base; letters that ends prescribe stay where they are.
 fn at_base(part: &RepresentativeChain, e: &Expr, site: usize) -> Option<Expr> {
     let by = isize::try_from(BASE).ok()? - isize::try_from(site).ok()?;
     let s = &part.d.letters.symbols;
@@ -495,7 +496,7 @@ fn at_base(part: &RepresentativeChain, e: &Expr, site: usize) -> Option<Expr> {
     Some(expr::substitute(s, e, &list))
 }
 
-/// Whether something of one site stands beside what an end holds.
+/// Whether an expression contains configurations that an end prescribes, and besides them letters of a single site.
 fn is_from_held(part: &RepresentativeChain, e: &Expr) -> bool {
     let letters = expr::letters(e).into_iter();
     let (held, others): (Vec<Letter>, Vec<Letter>) = letters.partition(|l| is_held(part, l));
@@ -507,7 +508,7 @@ fn is_from_held(part: &RepresentativeChain, e: &Expr) -> bool {
     !held.is_empty() && first.is_some() && sites.all(|s| Some(s) == first)
 }
 
-/// The only site of a term, besides those that ends hold.
+/// The only site of a term, apart from sites that ends prescribe.
 fn only_site(
     lattice: &Lattice,
     part: &RepresentativeChain,
@@ -529,8 +530,8 @@ fn only_site(
     found
 }
 
-/// The terms of a sum, with what multiplies a sum as a whole multiplied in. Distances from what an end holds stay as they
-/// are: multiplied out they round more far from the origin.
+/// The terms of a sum, with common factors multiplied in. Distances from prescribed positions stay as they are:
+/// expanded, they would round more far from the origin.
 fn terms(part: &RepresentativeChain, e: &Expr) -> Vec<Expr> {
     if is_from_held(part, e) {
         return vec![e.clone()];
@@ -546,7 +547,7 @@ fn terms(part: &RepresentativeChain, e: &Expr) -> Vec<Expr> {
     match e.node() {
         Node::Sum(list) => list.iter().flat_map(go).collect(),
         Node::Neg(a) => go(a).into_iter().map(expr::neg).collect(),
-        // Of a matrix what is linear in it.
+        // Linear functions of a matrix.
         Node::Part(which, a) => go(a).into_iter().map(|a| expr::part(*which, a)).collect(),
         Node::Trace(a) => go(a).into_iter().map(expr::trace).collect(),
         Node::Vee(a) => go(a).into_iter().map(expr::vee).collect(),
@@ -577,7 +578,7 @@ fn terms(part: &RepresentativeChain, e: &Expr) -> Vec<Expr> {
 }
 
 impl RepresentativeChain {
-    /// Whether walls change a value: it holds the momentum of places in a box.
+    /// Whether walls change a value: it contains the momentum of positions in a box.
     pub(crate) fn is_turned_by_walls(&self, lattice: &Lattice, e: &Expr) -> bool {
         let mut letters = expr::letters(e).into_iter();
         letters.any(|l| {
@@ -589,7 +590,7 @@ impl RepresentativeChain {
         })
     }
 
-    /// An expression in the letters of another lattice of the same model, copies of equal sites.
+    /// An expression in the letters of another chain of the same model, with copies of equal sites.
     pub(crate) fn in_letters_of(&self, other: &RepresentativeChain, e: &Expr) -> Option<Expr> {
         let (own, s) = (&self.d.letters.symbols, &other.d.letters.symbols);
         let there = |id: SymbolId| match self.sited(id) {

@@ -1,5 +1,5 @@
-//! Derivatives of momenta by the velocities of a site, of fields and of rotations seen from the body.
-//! Takes a momentum and the velocity; gives the columns of its derivative, which stand side by side.
+//! Derivatives of momenta by the velocities of a site, of fields and of rotations seen from the body. Takes a
+//! momentum and the velocity; gives the columns of its derivative, next to each other.
 
 use crate::check::spec::{Configuration, Side};
 use crate::derive::tangent::Direction;

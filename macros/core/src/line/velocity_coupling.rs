@@ -1,5 +1,5 @@
-//! Terms of neighbours in which velocities stand: what they add to the momenta of the sites that they touch,
-//! whose velocities are then found together. Letters are those of the lattice that is written out.
+//! Terms of neighbours that contain velocities: their contributions to the momenta of the sites that they touch.
+//! The velocities of these sites are then found together. Letters are letters of the expanded chain.
 
 use super::neighbour_force::{Placed, defined};
 use super::{Inertia, Refused, RepresentativeChain, inertia, velocity};
@@ -18,17 +18,17 @@ pub struct VelocityCoupling {
     pub from: usize,
     /// The last index of an open line, less the number of segments.
     pub to: isize,
-    /// How far its letters stand apart.
+    /// The distance between its letters, in sites.
     pub width: usize,
-    /// What it adds to momenta, letters of the first site at the base of the representative.
+    /// Its contributions to momenta, with the letters of the first site at the base of the representative.
     pub parts: Vec<Part>,
-    /// The terms of the Lagrangian, in places at the node and velocities.
+    /// The terms of the Lagrangian, in positions at the node and velocities.
     pub terms: Expr,
-    /// What it adds to momenta in the limit of small steps, if there is one.
+    /// Its contributions to momenta in the limit of small steps, if this limit exists.
     pub inertia: Option<Inertia>,
 }
 
-/// What terms add to the momentum of one configuration.
+/// The contribution to the momentum of one configuration.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// The configuration as stated.
@@ -37,15 +37,15 @@ pub struct Part {
     pub site: usize,
     /// Its velocity.
     pub velocity: Letter,
-    /// To the momentum of the edge where it comes to a node: the derivative by the velocity.
+    /// To the momentum of the edge where it comes to a node: the derivative with respect to the velocity.
     pub incoming: Expr,
-    /// By how much the edge adds to it, seen from there: the derivative by the place.
+    /// The increment of the momentum over the edge, seen from there: the derivative with respect to the position.
     pub added: Expr,
-    /// To the momentum of the edge where it leaves a node: seen from there, less what the edge adds.
+    /// To the momentum of the edge where it leaves a node: seen from there, minus the increment over the edge.
     pub momentum: Expr,
 }
 
-/// Puts a term beside those of its range.
+/// Adds a term to the coupling with the same range.
 pub(super) fn put(ties: &mut Vec<VelocityCoupling>, part: &RepresentativeChain, placed: Placed) {
     let s = &part.d.letters.symbols;
     let term = expr::substitute(s, &placed.term, &part.d.spec.end_of_edge());
@@ -67,8 +67,8 @@ pub(super) fn put(ties: &mut Vec<VelocityCoupling>, part: &RepresentativeChain, 
     }
 }
 
-/// Terms of neighbours, with those of the same range that stand at a node: what of all of them vanishes where
-/// nothing moves is the tie, what is left there stands at a node. So differences are not taken apart.
+/// Splits terms of neighbours, together with the nodal terms of the same range: the part that vanishes at rest is
+/// the coupling, and the remainder is nodal. Differences thus stay together.
 pub(super) fn settle(
     part: &RepresentativeChain,
     tie: &mut VelocityCoupling,

@@ -1,5 +1,5 @@
-//! Like terms of sums, in whatever order their numbers stand: the gradient of a symmetric form has each twice.
-//! Takes an expression; gives an equal one in which they are added.
+//! Combines like terms of sums, in whatever order their factors are: the gradient of a symmetric form contains each
+//! term twice. Takes an expression; gives an equal one.
 
 use crate::algebra::Rational;
 use crate::expr::symbol::Symbols;
@@ -56,7 +56,7 @@ impl Like<'_> {
             }
             let mut key: Vec<usize> = term.scalars.iter().map(|x| self.number(x)).collect();
             key.sort_unstable();
-            // No factor has this number: it stands before the word.
+            // No factor has this number: it separates the numbers from the word.
             key.push(usize::MAX);
             key.extend(term.word.iter().map(|x| self.number(x)));
             match list.iter_mut().find(|(known, _)| *known == key) {

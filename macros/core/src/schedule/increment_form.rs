@@ -1,24 +1,23 @@
-//! Differences from rest: `A Ω - A` as `A (Ω - Id)`, `tr(J) - tr(J Ω)` as `-tr(J (Ω - Id))`, `cosh(Δx) - 1` as
-//! `2 sinh(Δx/2)^2`. For small
-//! steps a velocity is near the identity, and only where both stand together can the difference be
-//! computed with all its digits: `emit` writes it so, where [`Symbols::differences`] asks for it. Takes an
-//! expression; gives an equal one.
+//! Differences from rest: `A Ω - A` as `A (Ω - Id)`, `tr(J) - tr(J Ω)` as `-tr(J (Ω - Id))`, `cosh(Δx) - 1` as `2
+//! sinh(Δx/2)^2`. For small steps a velocity is near the identity, and the difference keeps all its digits only if
+//! both are in one term: `emit` writes it so, where [`Symbols::differences`] asks for it. Takes an expression;
+//! gives an equal one.
 
 use crate::algebra::Rational;
 use crate::expr::shape::{self, Shape, Structure};
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::*;
 
-/// Whether a Lagrangian divides by more than the first power of the step: then differences from rest
-/// stand in it to a power, and what they are rounded to is divided by the step more often than the
-/// rounding of a matrix of second moments times a velocity is. A step inside a function or a root
-/// counts as such.
+/// Whether a Lagrangian divides by more than the first power of the step: differences from rest then occur in it to
+/// a power, and their rounding is divided by the step size more often than the rounding of a matrix of second
+/// moments. A step inside a function or a root counts as such.
 pub fn divides_twice(e: &Expr, step: Letter) -> bool {
     lowest(e, step).is_none_or(|n| n < -1.0)
 }
 
-/// Whether a number that moves multiplies or divides one with the velocity of a rotation, as in `q^2*(3 - tr(Ω))/h`: the
-/// difference from rest then stands in the momentum of `q`, where its rounding would be divided by the step.
+/// Whether a number that moves multiplies or divides one with the velocity of a rotation, as in `q^2*(3 -
+/// tr(Ω))/h`: the difference from rest then occurs in the momentum of `q`, where its rounding would be divided by
+/// the step size.
 pub fn varies_with_rotations(symbols: &Symbols, e: &Expr) -> bool {
     let has = |e: &Expr, wanted: &dyn Fn(Role, Structure) -> bool| {
         letters(e).iter().any(|l| {
@@ -50,7 +49,7 @@ pub fn varies_with_rotations(symbols: &Symbols, e: &Expr) -> bool {
         .any(|child| varies_with_rotations(symbols, child))
 }
 
-/// The lowest power of the step that a term has; nothing where it is not seen.
+/// The lowest power of the step size in an expression; `None` if it cannot be determined.
 fn lowest(e: &Expr, step: Letter) -> Option<f64> {
     if !contains(e, step) {
         return Some(0.0);
@@ -123,7 +122,7 @@ pub fn is_difference(symbols: &Symbols, e: &Expr) -> bool {
     opposite(a, b) || opposite(b, a)
 }
 
-/// Whether the expression is not to be taken apart: a difference from rest, or from the identity.
+/// Whether the expression must not be split: a difference from rest, or from the identity.
 pub(super) fn stays_whole(symbols: &Symbols, e: &Expr) -> bool {
     is_difference(symbols, e) || super::increments::is_increment(symbols, e)
 }
@@ -138,7 +137,7 @@ pub(super) fn rebuilt(symbols: &Symbols, e: &Expr, go: &mut dyn FnMut(&Expr) -> 
 
 /// The same expression with differences from rest written as such, at every depth.
 pub fn displaced(symbols: &Symbols, e: &Expr) -> Expr {
-    // Of the whole: what is multiplied out in a part would cancel with the others.
+    // Applied to the whole, since a product that is expanded in one part would cancel against other parts.
     parts_displaced(symbols, &super::increments::by_increments(symbols, e))
 }
 
@@ -155,8 +154,8 @@ fn parts_displaced(symbols: &Symbols, e: &Expr) -> Expr {
     }
 }
 
-/// `vee(A Ω)` as `vee(A (Ω - Id)) + vee(A)`, where the latter is known: a symmetric `A` has no axial vector, and its
-/// large entries then meet small ones alone. The entries of `vee(Ω)` are small as they are.
+/// `vee(A Ω)` as `vee(A (Ω - Id)) + vee(A)`, where the latter is known: if `A` is symmetric, its axial vector is
+/// zero, and its large entries then multiply small ones only. The entries of `vee(Ω)` are small as they are.
 fn of_axial(symbols: &Symbols, a: &Expr) -> Option<Expr> {
     if at_rest(symbols, a).is_some() {
         return None;
@@ -166,7 +165,7 @@ fn of_axial(symbols: &Symbols, a: &Expr) -> Option<Expr> {
         .find_map(|(rest, moved)| Some(add(vee(moved), axial(symbols, &rest)?)))
 }
 
-/// The axial vector of a matrix that is made of symmetric matrices and of hats; nothing for others.
+/// The axial vector of a matrix that contains only symmetric matrices and hats; nothing for other matrices.
 fn axial(symbols: &Symbols, e: &Expr) -> Option<Expr> {
     let vector = Shape::vector(shape::Dim::Fixed(3));
     match e.node() {
@@ -205,7 +204,7 @@ fn moves(symbols: &Symbols, e: &Expr) -> bool {
         .any(|role| contains_role(symbols, e, role))
 }
 
-/// Whether a function of something that moves, of value 1 where it vanishes, stands in the expression.
+/// Whether the expression contains a function of a moving quantity that is 1 at zero.
 fn calls_what_moves(symbols: &Symbols, e: &Expr) -> bool {
     above_one(symbols, e).is_some()
         || e.children()
@@ -213,7 +212,7 @@ fn calls_what_moves(symbols: &Symbols, e: &Expr) -> bool {
             .any(|child| calls_what_moves(symbols, child))
 }
 
-/// What `cos(u)`, `cosh(u)` or `exp(u)` of something that moves is more than 1, without cancellation.
+/// `cos(u) - 1`, `cosh(u) - 1` or `exp(u) - 1` of a moving quantity, without cancellation.
 fn above_one(symbols: &Symbols, e: &Expr) -> Option<Expr> {
     let Node::Call(f, a) = e.node() else {
         return None;
@@ -260,7 +259,8 @@ fn of_sum(symbols: &Symbols, terms: &[Expr], shape: Shape) -> Expr {
     sum(left.into_iter().chain(found), shape)
 }
 
-/// With one velocity of the term put to rest: the term so, and with the difference in its place.
+/// With one velocity of the term set to rest: the term at rest, and the term with the difference in place of the
+/// velocity.
 fn differences(symbols: &Symbols, e: &Expr) -> Vec<(Expr, Expr)> {
     if !moves(symbols, e) {
         return Vec::new();
@@ -298,8 +298,8 @@ fn differences(symbols: &Symbols, e: &Expr) -> Vec<(Expr, Expr)> {
     }
 }
 
-/// The same expression with `re(q) - 1` as `-|im(q)|²/(1 + re(q))`, where quaternions are taken apart.
-/// The trace of their matrix is `4 re(q)`.
+/// The same expression with `re(q) - 1` as `-|im(q)|²/(1 + re(q))`, if quaternions are split. The trace of their
+/// matrix is `4 re(q)`.
 pub fn by_imaginary(symbols: &Symbols, e: &Expr) -> Expr {
     if !symbols.differences() {
         return e.clone();
@@ -419,7 +419,7 @@ mod tests {
                     "{e:?}: {made:e}"
                 );
             }
-            // What does not move stays as it is.
+            // A function of constants stays as it is.
             let still = sub(of(f, &q), integer(1));
             assert_eq!(displaced(&s, &still), still);
         }

@@ -11,7 +11,8 @@ use crate::expr::{
     substitute, sum,
 };
 
-/// What has more terms, multiplied out, stays as it is: a program of a step is read and compiled.
+/// The largest number of terms after expansion. An expression with more terms stays as it is, because the program
+/// of a step is read and compiled.
 const MOST_TERMS: u64 = 64;
 
 /// Whether the letter is such a velocity.
@@ -25,7 +26,7 @@ fn is_velocity(symbols: &Symbols, l: &Letter) -> bool {
     symbol.role == Role::Velocity && by_matrix
 }
 
-/// Whether the expression is such a velocity, or its transpose, less the identity.
+/// Whether the expression is such a velocity, or its transpose, minus the identity.
 pub(super) fn is_increment(symbols: &Symbols, e: &Expr) -> bool {
     let velocity = |x: &Expr| match x.node() {
         Node::Letter(l) => is_velocity(symbols, l),
@@ -42,8 +43,8 @@ pub(super) fn is_increment(symbols: &Symbols, e: &Expr) -> bool {
     }
 }
 
-/// The same expression, multiplied out in the differences of such velocities from the identity; differences of position_differences and
-/// terms with which nothing cancels stay as they are.
+/// The same expression, expanded in the differences of such velocities from the identity. Differences of positions, and
+/// terms with which nothing cancels, stay as they are.
 pub(super) fn by_increments(symbols: &Symbols, e: &Expr) -> Expr {
     let mut velocities = letters(e);
     velocities.retain(|l| is_velocity(symbols, l));
@@ -124,7 +125,7 @@ fn count(symbols: &Symbols, e: &Expr) -> u64 {
     }
 }
 
-/// Whether a velocity within is left there: this is no polynomial of it.
+/// Whether a velocity inside this node stays as it is, because the node is not a polynomial in it.
 fn is_opaque(node: &Node) -> bool {
     match node {
         Node::Power(_, q) => q.as_integer().is_none_or(|n| n < 0),
@@ -138,7 +139,7 @@ fn is_opaque(node: &Node) -> bool {
     }
 }
 
-/// With `Id + increment` for each velocity, but in what is no polynomial of it.
+/// Replaces each velocity by `Id + increment`, except in nodes that are not polynomials in it.
 fn opened(open: &Symbols, e: &Expr, increments: &[(Letter, Letter)]) -> Expr {
     match e.node() {
         Node::Letter(l) => match increments.iter().find(|(velocity, _)| velocity == l) {

@@ -25,7 +25,7 @@ pub fn by_adjugates(symbols: &Symbols, results: &[Expr]) -> Vec<Expr> {
     results.iter().map(|e| all.rewrite(e)).collect()
 }
 
-/// What adjugates are taken of.
+/// Collects the arguments of adjugates.
 fn collect(e: &Expr, all: &mut Exprs, seen: &mut Exprs) {
     if !seen.insert(e.clone()) {
         return;

@@ -1,6 +1,6 @@
-//! What stays the same while an equation is solved, apart from what varies with the unknowns: it
-//! is computed once, before.
-//! Takes expressions and which letters vary; gives names for the rest, and the expressions in them.
+//! Parts of an equation that stay the same while it is solved, because they do not depend on the unknowns: they are
+//! computed once, before. Takes expressions and the letters that vary; gives names for the constant parts, and the
+//! expressions in these names.
 
 use crate::algebra::Rational;
 use crate::expr::shape::Structure;
@@ -9,7 +9,7 @@ use crate::expr::{self, Expr, Letter, Node};
 
 /// Names and values of what is known, in the order in which they were met.
 pub struct LoopInvariants<'a> {
-    /// The symbols, those of the names included.
+    /// The symbols, including the names.
     pub symbols: Symbols,
     /// The names and their values.
     pub values: Vec<(SymbolId, Expr)>,
@@ -80,7 +80,7 @@ impl<'a> LoopInvariants<'a> {
             }
         }
         self.close(&mut word, &mut rest);
-        // Twice an axial vector is that of a difference, and costs less than one.
+        // Twice an axial vector is the axial vector of a difference, and costs less than a single one.
         let axial = rest.len() == 1 && matches!(rest[0].node(), Node::Vee(_));
         if axial && !numbers.is_empty() {
             numbers.push(expr::number(Rational::HALF));

@@ -1,5 +1,5 @@
-//! Products of two matrices that stand in several others: formed once, they shorten all of these. Takes
-//! expressions that are computed together; gives names for such pairs and what is left.
+//! Products of two matrices that occur in several other products: if they are computed once, all of these get shorter.
+//! Takes expressions that are computed together; gives names for such pairs and what is left.
 
 use super::program::{Program, scheduled};
 use super::work;
@@ -48,7 +48,7 @@ impl Pairs {
         self.list.iter().map(|(_, e)| e).chain(&self.results)
     }
 
-    /// The pair that stands in most places, of several the one met first.
+    /// The pair that occurs most often, the first of equals.
     fn most_frequent(&self, refused: &HashSet<[Expr; 2]>) -> Option<[Expr; 2]> {
         let mut found = Found {
             symbols: &self.symbols,
@@ -69,7 +69,7 @@ impl Pairs {
         most.map(|(_, pair)| pair)
     }
 
-    /// The same with a name for a pair wherever it stands, or its transpose.
+    /// Replaces a pair or its transpose by a name, wherever it occurs.
     fn with(&self, pair: &[Expr; 2], prefix: &str) -> Pairs {
         let mut symbols = self.symbols.clone();
         let [left, right] = pair;
@@ -89,7 +89,7 @@ impl Pairs {
             list.push((*known, put.put(e)));
         }
         let results = self.results.iter().map(|e| put.put(e)).collect();
-        // Before those that are written in it.
+        // Before the first name that uses it.
         let uses = |e: &Expr| expr::letters(e).iter().any(|l| l.symbol == id);
         let first = list.iter().position(|(_, e)| uses(e));
         list.insert(first.unwrap_or(list.len()), (id, value));

@@ -1,5 +1,5 @@
-//! A program: temporaries and results, each an expression in the model's letters and earlier
-//! temporaries. What is emitted and what is interpreted is the same program.
+//! A program: temporaries and results, each an expression in the model's letters and earlier temporaries. The
+//! emitted program and the interpreted program are the same.
 
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Hashed, Letter, Node, Shift};
@@ -11,7 +11,7 @@ pub struct Program {
     pub symbols: Symbols,
     /// Names and values of the temporaries.
     pub temporaries: Vec<(SymbolId, Expr)>,
-    /// The results, in the order asked for.
+    /// The results, in the requested order.
     pub results: Vec<Expr>,
 }
 
@@ -28,7 +28,8 @@ impl Program {
 
 /// Schedules several results together. `prefix` starts the names of temporaries.
 pub fn program(symbols: &Symbols, results: &[Expr], prefix: &str) -> Program {
-    // What is computed has its digits where nothing moves, and determinants of products are those of their factors.
+    // Results are written in increment form, so that they keep their digits near rest. The determinant of a product is
+    // written by the determinants of its factors.
     let results: Vec<Expr> = results
         .iter()
         .map(|r| {
@@ -78,7 +79,7 @@ fn at(symbol: SymbolId) -> Letter {
     }
 }
 
-/// Of results that are written in the names of `before`, which are computed in this order.
+/// The program of results that are written in the names of `before`; these names are computed in the given order.
 pub(super) fn scheduled(
     symbols: &Symbols,
     before: &[(SymbolId, Expr)],

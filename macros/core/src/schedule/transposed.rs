@@ -1,6 +1,6 @@
-//! Matrices that are one another's transposes, in whatever order their terms stand, are computed once.
-//! Takes expressions that are computed together; gives equal ones in which the later of two such matrices is
-//! written as the transpose of the earlier one.
+//! Matrices that are transposes of one another, up to the order of their terms, are computed once. Takes
+//! expressions that are computed together; gives equal ones in which the later of two such matrices is written as
+//! the transpose of the earlier one.
 
 use crate::expr::symbol::Symbols;
 use crate::expr::{self, Expr, Hashed, Node};
@@ -21,7 +21,7 @@ struct Met<'a> {
     symbols: &'a Symbols,
     /// A number for each term, in the order in which they were met.
     numbers: Hashed<usize>,
-    /// What was met first, by the numbers of its terms in rising order.
+    /// The sum that was met first, by the numbers of its terms in rising order.
     first: HashMap<Vec<usize>, Expr>,
     done: Hashed<Expr>,
 }
@@ -63,7 +63,7 @@ impl Met<'_> {
         Some(expr::transposed(first.clone()))
     }
 
-    /// The transpose of a sum or a product, in whose terms what is computed by itself stays whole.
+    /// The transpose of a sum or a product; parts of its terms that are computed separately stay whole.
     fn turned(&self, e: &Expr) -> Expr {
         match e.node() {
             Node::Neg(a) => expr::neg(self.turned(a)),
@@ -145,7 +145,7 @@ mod tests {
         // Another sum is not the transpose.
         let other = expr::add(turned(&c), expr::mul(turned(&a), turned(&b)));
         assert_eq!(work(&[sum, other]), 2 * (45 + 9));
-        // What is symmetric is its own.
+        // A symmetric product is its own transpose.
         let square = expr::mul(a.clone(), turned(&a));
         assert_eq!(aligned(&symbols, std::slice::from_ref(&square)), [square]);
     }

@@ -1,5 +1,5 @@
-//! How much a program computes: sums and products of numbers, counted. Of two programs for the same
-//! thing the one with less is emitted.
+//! How much a program computes: sums and products of numbers, counted. If two programs are equivalent, the one with
+//! less work is emitted.
 
 use super::{Bracketed, Program, associate};
 use crate::expr::shape::{Dim, Shape};
@@ -22,8 +22,8 @@ fn entries(shape: Shape) -> u64 {
     length(shape.rows) * length(shape.cols)
 }
 
-/// Operations of a functional, of which none are known: more than what is written around it, so that of two
-/// programs the one that asks for less of them is taken.
+/// The assumed number of operations of a functional, since the true number is unknown. It is larger than the work
+/// around a call, so that the program with fewer calls is selected.
 const CALLED: u64 = 1_000;
 
 fn of(e: &Expr) -> u64 {

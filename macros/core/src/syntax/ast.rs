@@ -1,11 +1,10 @@
-//! The syntax tree: what was written, with the place of every part, before names and shapes mean
-//! anything.
+//! The syntax tree: the text as written, with the position of every part, before names and shapes are resolved.
 
 use crate::algebra::Rational;
 use crate::diagnostic::Place;
 use crate::expr::Constant;
 
-/// A name and where it stands.
+/// A name and its position.
 #[derive(Clone, Debug)]
 pub struct Name {
     /// The text.
@@ -28,7 +27,7 @@ impl Name {
 /// An expression.
 #[derive(Clone, Debug)]
 pub struct Expression {
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
     /// From its first to its last token.
     pub place: Place,
@@ -43,7 +42,7 @@ pub enum Kind {
     Constant(Constant),
     /// A name.
     Name(String),
-    /// What must be of a shape: an argument or a value of a function that is written out.
+    /// An expression with a required shape: an argument or a value of a function that is written out.
     Shaped(Box<Expression>, Kindred),
     /// A sum of signed terms: `true` marks a term that is subtracted.
     Sum(Vec<(bool, Expression)>),
@@ -148,7 +147,7 @@ pub enum Comparison {
 }
 
 impl Comparison {
-    /// What holds where an inequality does not.
+    /// The opposite of an inequality.
     pub fn opposite(self) -> Option<Comparison> {
         match self {
             Comparison::Equal => None,
@@ -163,7 +162,7 @@ impl Comparison {
 /// Which sites of a label hold a quantity.
 #[derive(Clone, Debug)]
 pub enum Site {
-    /// The nodes of the line.
+    /// The nodes of the chain.
     Nodes,
     /// The segments between them.
     Segments,
@@ -180,7 +179,7 @@ pub struct At {
     pub place: Place,
 }
 
-/// One way to end a line: `pinned { φ = given; }`.
+/// One way to end a chain: `pinned { φ = given; }`.
 #[derive(Clone, Debug)]
 pub struct Alternative {
     /// Its name, by which a case chooses it.
@@ -189,7 +188,7 @@ pub struct Alternative {
     pub params: Vec<(Vec<Name>, Kindred)>,
     /// Configurations that are given at this end.
     pub given: Vec<Name>,
-    /// What it adds to the Lagrangian.
+    /// Its terms in the Lagrangian.
     pub terms: Vec<Expression>,
 }
 
@@ -218,9 +217,9 @@ pub enum Statement {
     Periodic(Place),
     /// `end i = 0 { free; pinned { φ = given; } }`
     End {
-        /// The index of the line.
+        /// The index of the chain.
         label: Name,
-        /// The end that is meant: `0`, or the name of the number of segments.
+        /// The end: `0`, or the name of the number of segments.
         at: Name,
         /// The alternatives, the first being the default.
         alternatives: Vec<Alternative>,
@@ -320,17 +319,17 @@ pub enum Statement {
     Given {
         /// The name in the model.
         name: Name,
-        /// What it takes.
+        /// Its arguments.
         arguments: Vec<Kindred>,
-        /// What it gives.
+        /// Its value.
         value: Kindred,
-        /// What computes it, a path of Rust; its own name where it is written out.
+        /// The Rust path of the function; its own name if it is written out.
         path: Name,
-        /// What it is, where that is written out: an expression for each component.
+        /// Its definition, if it is written out: an expression for each component.
         components: Vec<Expression>,
         /// The same as it was written, between the quotes.
         texts: Vec<String>,
-        /// The word `case`, where the case says what it is: with no components before it has.
+        /// The word `case`, if the case gives the definition: there are no components until it does.
         by_case: Option<Place>,
     },
     /// `grid n;`
@@ -339,20 +338,20 @@ pub enum Statement {
     Mesh {
         /// Its values, by this name.
         name: Name,
-        /// What it is at one site.
+        /// Its shape at one site.
         shape: Kindred,
         /// At which sites.
         at: Option<At>,
-        /// What computes it: a name of the runtime's, or a path of Rust.
+        /// The functional that computes it: a name of the runtime, or a Rust path.
         path: Name,
-        /// What it is made of: a field or another functional first, then what is constant in time.
+        /// Its arguments: a field or another functional first, then quantities that are constant in time.
         arguments: Vec<Name>,
     },
     /// `let W = EXPR;`
     Let {
         /// The name.
         name: Name,
-        /// What it stands for.
+        /// Its value.
         value: Expression,
     },
     /// `scale EXPR;`

@@ -64,7 +64,7 @@ impl Formula {
     }
 }
 
-/// The model with calls of such functions replaced by what they are.
+/// The model with calls of such functions replaced by their definitions.
 pub(super) fn written_out(mut model: Model) -> Result<Model, Errors> {
     let stated = formulas(&model)?;
     if stated.is_empty() {
@@ -142,7 +142,8 @@ fn formulas(model: &Model) -> Result<Vec<Formula>, Errors> {
     errors.propagate().map(|()| found)
 }
 
-/// What a function may be made of beside its argument: parameters, definitions, the step and the spacing, unit vectors.
+/// The constants that a function may contain besides its argument: parameters, definitions, the step and the
+/// spacing, unit vectors.
 fn constants(model: &Model) -> Vec<&str> {
     let mut all = vec!["Id", "E1", "E2", "E3", "h"];
     for statement in &model.statements {
@@ -167,7 +168,7 @@ fn constants(model: &Model) -> Vec<&str> {
     all
 }
 
-/// Functions with those that stand in them written out, each after what it is made of.
+/// Functions with the calls of other functions expanded, each after the functions that it calls.
 fn by_others(mut open: Vec<Formula>, room: &Cell<Option<usize>>) -> Result<Vec<Formula>, Errors> {
     let mut done: Vec<Formula> = Vec::new();
     let mut errors = Errors::new();
@@ -232,7 +233,7 @@ fn put_in(e: &Expression, formulas: &[Formula], room: &Cell<Option<usize>>) -> E
             return None;
         };
         let argument = put_in(argument, formulas, room);
-        // It is not made where it could be too large: each of its names stands for the argument at most.
+        // It is not expanded if the result could be too large: each of its names becomes at most the argument.
         let own: usize = formula.components.iter().map(Expression::size).sum();
         let most = own.saturating_mul(argument.size() + 1);
         let left = room.get().filter(|left| most <= *left);

@@ -1,4 +1,4 @@
-//! Characters that papers have and the language has not: a minus of typesetting, indices below the line, primes. In a file they
+//! Characters that papers use and the language does not: a typographic minus, subscripts, primes. In a file they
 //! are found here, where the text could not be split into tokens.
 
 use super::delimiters::place;
@@ -6,10 +6,10 @@ use super::text;
 use super::unknown::RADIANS;
 use crate::diagnostic::{Diagnostic, Place};
 
-/// What a prime means in papers.
+/// The advice for a prime, as papers write it.
 pub(super) const PRIME: &str = "write `(next(x) - x)/h` for a rate of change, `next(x)` for the value at the next node, `A^T` for a transpose";
 
-/// What a character is in a paper, and how the language writes it.
+/// How the language writes a character that papers use.
 fn written(c: char) -> Option<&'static str> {
     Some(match c {
         '−' | '–' | '—' | '‐' => "write the minus of the keyboard, `-`",
@@ -88,7 +88,7 @@ mod tests {
             assert_eq!(first.place.line_and_column(), (1, column), "{source}");
             assert!(errors.to_string().contains(said), "{source}: {errors}");
         }
-        // In remarks and texts anything may stand.
+        // Comments and strings may contain any character.
         assert!(tokens("model M { // a − b\n let a = m as \"ω₀\"; }").is_ok());
     }
 }

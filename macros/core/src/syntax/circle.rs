@@ -7,7 +7,7 @@ use crate::expr::Constant;
 /// How it may be written.
 const NAMES: [&str; 2] = ["pi", "π"];
 
-/// Whether a name that is not declared stands for it.
+/// Whether an undeclared name denotes this number.
 pub(crate) fn is_meant(name: &str) -> bool {
     NAMES.contains(&name)
 }

@@ -1,11 +1,11 @@
-//! Parentheses, brackets and braces that have no partner. A compiler finds them before it calls a
-//! macro; in a file they are found here, where the text could not be split into tokens.
+//! Finds parentheses, brackets and braces without a partner. A compiler finds them before it calls a macro; in a
+//! file they are found here, where the text could not be split into tokens.
 
 use super::text;
 use crate::diagnostic::{Diagnostic, Place};
 use proc_macro2::{Span, TokenStream};
 
-/// How an opening delimiter is told not to be closed: by what follows in its place, if anything does.
+/// The error for an opening delimiter that is not closed. It names what follows instead, if anything does.
 pub(super) fn not_closed(opening: char, place: Place, before: Option<(&str, Place)>) -> Diagnostic {
     let closing = partner(opening);
     let message = match before {
@@ -34,7 +34,7 @@ fn partner(c: char) -> char {
     }
 }
 
-/// An opening delimiter, where it stands, and the first end of a statement inside of it.
+/// An opening delimiter, its position, and the first end of a statement inside it.
 struct Opening {
     at: usize,
     delimiter: char,
@@ -58,7 +58,7 @@ pub(super) fn unmatched(source: &str) -> Option<Diagnostic> {
             delimiter: c,
             ends: None,
         }),
-        // No statement goes on in parentheses: what is missing, is missing before this.
+        // A statement cannot continue inside parentheses: the missing delimiter belongs before this.
         ';' => {
             if let Some(inner) = open.last_mut().filter(|o| o.delimiter != '{') {
                 inner.ends.get_or_insert((at, c));
@@ -95,7 +95,7 @@ pub(super) fn unmatched(source: &str) -> Option<Diagnostic> {
     }
 }
 
-/// The place of one character: that of the only token of a text which is blank up to there.
+/// The place of one character: the place of the only token of a text that is blank up to there.
 pub(super) fn place(text: &str, at: usize) -> Option<Place> {
     let before = text.get(..at)?.chars();
     let mut blank: String = before.map(|c| if c == '\n' { c } else { ' ' }).collect();
@@ -109,7 +109,7 @@ pub(super) fn place(text: &str, at: usize) -> Option<Place> {
 mod tests {
     use crate::syntax::{parse, tokens};
 
-    /// Line and column of the first fault, and what is said of it.
+    /// Line and column of the first error, and its message.
     fn fault(source: &str) -> (usize, usize, String) {
         let errors = tokens(source).and_then(parse).map(|_| ()).unwrap_err();
         let first = errors.iter().next().unwrap();

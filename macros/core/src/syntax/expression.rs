@@ -1,6 +1,6 @@
-//! Expressions: a Pratt parser with the precedence of mathematics, lowest first: `+ -`, then
-//! `* /` and juxtaposition, then unary `-`, then postfix `^T ^-1 ^number [i] [i, j]`. What could be
-//! read in two ways is refused, see [`ambiguous`].
+//! Expressions: a Pratt parser with the precedence of mathematics, lowest first: `+ -`, then `* /` and
+//! juxtaposition, then unary `-`, then postfix `^T ^-1 ^number [i] [i, j]`. Expressions that could be read in two
+//! ways are errors, see [`ambiguous`].
 
 mod ambiguous;
 
@@ -11,7 +11,7 @@ use crate::algebra::Rational;
 use crate::diagnostic::Diagnostic;
 use crate::expr::Constant;
 
-/// Words that end an expression because a statement goes on with them.
+/// Words that end an expression because the statement continues with them.
 const FOLLOWING: [&str; 4] = ["at", "on", "periodic", "in"];
 
 /// More transposes and powers on one operand than anybody writes.
@@ -263,7 +263,7 @@ fn too_large(c: &Cursor) -> Diagnostic {
 /// Largest numerator and denominator of a number that is exact in products and powers with others: those have 37 digits.
 const EXACT: i128 = 1_000_000;
 
-/// What a decimal literal stands for; nothing where it is infinite.
+/// The value of a decimal literal; `None` if it is infinite.
 fn number(text: &str) -> Option<Kind> {
     let exact = rational(text);
     let is_small = |q: &Rational| q.numerator() <= EXACT && q.denominator() <= EXACT;

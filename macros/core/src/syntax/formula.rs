@@ -1,5 +1,5 @@
-//! Functions that are given by what they are: `given b(Vec<2>): Real = "A*cos(2*pi*x/L)";`, here or in a case. Takes what stands
-//! in quotes; gives the expression, and how such functions are stated.
+//! Functions that are given by what they are: `given b(Vec<2>): Real = "A*cos(2*pi*x/L)";`, here or in a case.
+//! Takes the text in quotes; gives the expression, and how such functions are stated.
 
 use super::ast::{Expression, Kind, Kindred, Model, Name, Statement};
 use super::token::{Cursor, Token};
@@ -12,7 +12,7 @@ const OTHERWISE: &str = "give functions of matrices or of several arguments by a
 /// The components of a vector by letters, as a paper calls the place.
 const LETTERS: [&str; 3] = ["x", "y", "z"];
 
-/// After `=`: one expression in quotes, or a list of them for the components of a vector; nothing where a path follows.
+/// After `=`: one expression in quotes, or a list of them for the components of a vector; empty if a path follows.
 pub(super) fn components(c: &mut Cursor) -> Result<Vec<(String, Expression)>, Diagnostic> {
     if !c.take_delimiter('[') {
         let is_text = matches!(c.peek(), Some(Token::Literal(t)) if t.ends_with('"'));
@@ -46,7 +46,7 @@ fn quoted(c: &mut Cursor) -> Result<(String, Expression), Diagnostic> {
 /// An expression in quotes.
 ///
 /// # Errors
-/// What is wrong of it first, and at which of its characters.
+/// The first mistake, with its position in the text.
 fn read(text: &str) -> Result<Expression, Diagnostic> {
     super::expression(text).map_err(|errors| {
         let mut first = errors.first();
@@ -79,7 +79,7 @@ pub fn in_quotes(components: &[String]) -> String {
     }
 }
 
-/// What such a function takes, and how many components it gives; of others what is wrong.
+/// The argument of such a function, and the number of its components; an error for other functions.
 pub(super) fn signature<'k>(
     name: &Name,
     arguments: &'k [Kindred],
@@ -126,11 +126,11 @@ pub fn stated(model: &Model) -> Vec<String> {
 pub struct Open {
     /// Its name.
     pub name: Name,
-    /// What it takes, a number or a vector.
+    /// Its argument, a number or a vector.
     pub argument: Kindred,
     /// How many components it has.
     pub components: usize,
-    /// Whether what it is stands there already.
+    /// Whether its definition is already filled in.
     pub is_filled: bool,
     /// Line and column of the word `case` in the text, from 1.
     pub at: (usize, usize),
@@ -139,7 +139,7 @@ pub struct Open {
 /// The functions of a model that the case gives.
 ///
 /// # Errors
-/// One that takes or gives what no expression can.
+/// A function whose argument or value no expression can have.
 pub fn open(model: &Model) -> Result<Vec<Open>, Diagnostic> {
     let mut all = Vec::new();
     for statement in &model.statements {
@@ -170,7 +170,7 @@ pub fn open(model: &Model) -> Result<Vec<Open>, Diagnostic> {
 /// that it may hold beside them.
 ///
 /// # Errors
-/// What cannot be read, or the first name that is not known.
+/// A text that cannot be read, or the first unknown name.
 pub fn check(text: &str, argument: &Kindred, known: &dyn Fn(&str) -> bool) -> Result<(), String> {
     let parsed = read(text).map_err(|wrong| wrong.text())?;
     if let Some(name) = parsed.call_that(&|n| !super::FUNCTIONS.contains(&n)) {
@@ -185,7 +185,7 @@ pub fn check(text: &str, argument: &Kindred, known: &dyn Fn(&str) -> bool) -> Re
     }
 }
 
-/// What an expression holds that is neither the argument nor among the names that are `known`.
+/// The error if an expression contains anything but the argument and `known` names.
 pub(super) fn foreign(
     e: &Expression,
     argument: &Kindred,
@@ -210,7 +210,7 @@ pub(super) fn foreign(
     ))
 }
 
-/// What each component of the argument may be called.
+/// The possible names of each component of the argument.
 pub(super) fn names(argument: &Kindred) -> Vec<Vec<String>> {
     let n = argument.components().unwrap_or(0);
     (0..n)

@@ -81,7 +81,7 @@ pub(super) fn end(c: &mut Cursor) -> Result<Statement, Diagnostic> {
         match alternative(c) {
             Ok(one) => alternatives.push(one),
             Err(error) => {
-                // Statements go on behind the block.
+                // The next statement is after the block.
                 c.go_past(close);
                 return Err(error);
             }

@@ -41,8 +41,8 @@ pub(super) fn mesh(c: &mut Cursor) -> Result<Statement, Diagnostic> {
 /// The length over which a smoother smooths that names none.
 const LENGTH: &str = "alpha";
 
-/// With `alpha` behind the argument of smoothers that have no length, a parameter of the model: its own, where it declares
-/// one.
+/// Adds `alpha` after the argument of smoothers without a length. It is a parameter of the model: the model's own,
+/// if it declares one.
 pub(super) fn with_lengths(mut model: Model) -> Model {
     let mut asked = None;
     for s in &mut model.statements {

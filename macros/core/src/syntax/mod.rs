@@ -58,7 +58,7 @@ pub fn expression(source: &str) -> Result<ast::Expression, Errors> {
     }
 }
 
-/// Longest text that is read, in bytes: a source that holds a model may hold other things too.
+/// Longest text that is read, in bytes: a source with a model may also contain other things.
 const LONGEST_TEXT: usize = 250_000;
 
 /// The tokens of a text.

@@ -1,9 +1,9 @@
-//! What an expression is made of: names in it, its size, and the same expression with parts of it replaced.
+//! The contents of an expression: names in it, its size, and the same expression with parts of it replaced.
 
 use super::ast::{Expression, Extent, Kind, Name, Statement};
 
 impl Expression {
-    /// What it is made of directly, in order.
+    /// Its direct subexpressions, in order.
     pub fn parts(&self) -> Vec<&Expression> {
         match &self.kind {
             Kind::Number(_) | Kind::Constant(_) | Kind::Name(_) => Vec::new(),
@@ -71,7 +71,8 @@ impl Expression {
         1 + self.parts().into_iter().map(Self::size).sum::<usize>()
     }
 
-    /// The same with what `of` puts in the place of parts, larger ones first; into what is put in it does not look.
+    /// The expression with parts replaced by the results of `of`, larger parts first. Replacements are not searched
+    /// again.
     pub(crate) fn replaced(&self, of: &dyn Fn(&Expression) -> Option<Expression>) -> Expression {
         let mut out = self.clone();
         out.replace(of);
@@ -91,7 +92,7 @@ impl Expression {
 }
 
 impl Statement {
-    /// The names that it declares, those of ends and of counts of sites not among them.
+    /// The names that it declares, except the names of ends and of counts of sites.
     pub(crate) fn declared(&self) -> Vec<&Name> {
         match self {
             Statement::Param { names, .. } | Statement::Advected { names, .. } => {
@@ -122,7 +123,7 @@ impl Statement {
         }
     }
 
-    /// Every expression in it, those of functions that are written out among them.
+    /// Every expression in it, including functions that are written out.
     pub(crate) fn expressions(&self) -> Vec<&Expression> {
         match self {
             Statement::Assume { left, right, .. } | Statement::Hold { left, right, .. } => {

@@ -42,7 +42,7 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
             }
             Err(e) => {
                 errors.push(e);
-                // A block that was left behind has no `;` to skip to.
+                // Right behind a block, there is nothing to skip.
                 if c.position() == start || !c.follows_block() {
                     skip_statement(c);
                 }
@@ -68,7 +68,7 @@ pub fn model(c: &mut Cursor) -> Result<Model, Errors> {
     called::written_out(stated).map(circle::named)
 }
 
-/// Documentation lines; other attributes are refused.
+/// Documentation lines; other attributes are errors.
 fn attributes(c: &mut Cursor) -> Result<Vec<String>, Diagnostic> {
     let mut docs = Vec::new();
     while c.is_punct('#') {
@@ -93,7 +93,7 @@ fn attributes(c: &mut Cursor) -> Result<Vec<String>, Diagnostic> {
     Ok(docs)
 }
 
-/// What a string literal of documentation says.
+/// The text of a string literal of documentation.
 pub(super) fn unquoted(literal: &str) -> String {
     let body = literal.trim_start_matches('r').trim_matches('#');
     let body = body.strip_prefix('"').unwrap_or(body);
@@ -472,7 +472,7 @@ fn given(c: &mut Cursor) -> Result<Statement, Diagnostic> {
     })
 }
 
-/// What follows the first name of a path of Rust.
+/// Reads the rest of a Rust path, after its first name.
 pub(super) fn path_goes_on(c: &mut Cursor, path: &mut Name) -> Result<(), Diagnostic> {
     while c.take_punct(':') {
         c.punct(':')?;

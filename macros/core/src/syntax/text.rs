@@ -1,6 +1,6 @@
-//! The text of a model before it is split into tokens: in strings a backslash stands for itself, so
-//! that names in LaTeX are written as they are (`as "m g \chi"`), though the tokens are those of
-//! Rust, where `\c` is no escape. Columns stay what they are.
+//! The text of a model before it is split into tokens: in strings a backslash denotes itself, so that names in
+//! LaTeX are written as they are (`as "m g \chi"`). The tokens are Rust tokens, in which `\c` is not a valid
+//! escape. Columns stay what they are.
 
 /// Stands for a backslash that no escape of Rust begins with: a character of private use.
 pub(super) const BACKSLASH: char = '\u{e000}';
@@ -61,7 +61,7 @@ pub(super) fn read(source: &str, mut code: impl FnMut(usize, char)) -> (String, 
 
 type Rest<'a> = std::iter::Peekable<std::str::Chars<'a>>;
 
-/// After `r`: hashes, and what stands between the quotes; whether there is an end.
+/// After `r`: hashes, and the text between the quotes. Returns whether the string ends.
 fn raw(rest: &mut Rest, out: &mut String) -> bool {
     let mut hashes = 0;
     while rest.next_if_eq(&'#').is_some() {

@@ -1,6 +1,5 @@
-//! Tokens as a flat list with a cursor. Groups become opening and closing tokens, `2Ω` is kept as
-//! what it is, a number glued to a name, which the parser refuses; depth and length are bounded, so
-//! that no input exhausts the stack.
+//! Tokens as a flat list with a cursor. Groups become opening and closing tokens. `2Ω` stays a number joined to a
+//! name, which the parser rejects; depth and length are bounded, so that no input exhausts the stack.
 
 use super::ast::Name;
 use super::delimiters::not_closed;
@@ -10,7 +9,8 @@ use proc_macro2::{Delimiter, Spacing, Span, TokenStream, TokenTree};
 
 /// Deepest nesting of parentheses that the parser follows.
 const DEEPEST: usize = 100;
-/// Most divisions in a statement: each stands on all that is before it, `((a/b)/c)/d`, so that they nest without parentheses.
+/// Most divisions in a statement: each division contains everything before it, `((a/b)/c)/d`, so that divisions
+/// nest without parentheses.
 const MOST_DIVISIONS: usize = 500;
 /// Longest model, in bytes; blanks, comments and documentation are not counted.
 pub(super) const LONGEST: usize = 10_000;
@@ -254,7 +254,7 @@ impl Cursor {
         self.at
     }
 
-    /// Where the brace stands that closes the block whose inside comes next.
+    /// The position of the brace that closes the block whose contents come next.
     pub fn closing_brace(&self) -> usize {
         let mut depth = 0_u32;
         let mut at = self.at;
@@ -285,7 +285,7 @@ impl Cursor {
         self.at >= self.tokens.len()
     }
 
-    /// Whether a quantity in the rest of the statement has another index than this one, as `x[j]` beside `x[i]`.
+    /// Whether a quantity in the rest of the statement has a different index, such as `x[j]` next to `x[i]`.
     pub fn is_indexed_otherwise(&self, index: &str) -> bool {
         let rest = self.tokens.get(self.at..).unwrap_or_default();
         let ends = |t: &Token| matches!(t, Token::Punct(';', _));
@@ -326,7 +326,7 @@ impl Cursor {
         found
     }
 
-    /// An error at the next token: what was expected, and what stands there.
+    /// An error at the next token: what was expected, and what was found.
     pub fn unexpected(&self, expected: &str) -> Diagnostic {
         let found = match self.peek() {
             Some(t) => format!("found `{}`", t.text()),
@@ -356,14 +356,13 @@ impl Cursor {
             error = self.unexpected("`;` after this");
             error.place = self.last_place();
         }
-        // The partner of what was not closed in its own statement, where that was told.
+        // A closing delimiter here may belong to an unclosed one that was already reported.
         error.follows = matches!(self.peek(), Some(Token::Close(')' | ']')));
         Err(unknown::ends_expression(self)
             .unwrap_or_else(|| error.help(unknown::ends_statement(self))))
     }
 
-    /// Whether the next tokens read as the start of a statement, not as a factor of a product
-    /// that happens to bear the name of a keyword.
+    /// Whether the next tokens start a statement. A factor of a product may also have the name of a keyword.
     pub fn starts_statement(&self) -> bool {
         let Some(Token::Name(word)) = self.peek() else {
             return false;

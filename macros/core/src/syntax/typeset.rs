@@ -1,5 +1,5 @@
-//! How a declared name is typeset: `as "m g \chi"` behind its shape. Takes tokens; gives LaTeX that
-//! any formula can hold, and refuses what would act on the rest of a document.
+//! How a declared name is typeset: `as "m g \chi"` behind its shape. Takes tokens; gives LaTeX that is valid in any
+//! formula, and rejects commands that would act on the rest of a document.
 
 use super::ast::Name;
 use super::token::{Cursor, Token};
@@ -37,8 +37,7 @@ pub(super) fn typeset(c: &mut Cursor, names: &mut [Name]) -> Result<(), Diagnost
 /// Longest typeset name, in characters.
 const LONGEST_NAME: usize = 120;
 
-/// What a string literal says as LaTeX: a backslash is one, doubled or not, and raw strings are
-/// taken as they are.
+/// The LaTeX in a string literal: a backslash is one, doubled or not, and raw strings are taken as they are.
 fn latex(literal: &str) -> Result<String, String> {
     let raw = literal.starts_with('r');
     let inside = literal
@@ -80,8 +79,8 @@ const FRACTIONS: &str = "frac tfrac dfrac";
 /// Deepest nesting of braces.
 const DEEPEST: usize = 8;
 
-/// A row of pieces with scripts, up to its closing brace or the end: what may stand in a formula
-/// wherever a letter does, and nothing that acts on the rest of the document.
+/// A row of pieces with scripts, up to its closing brace or the end: anything that may replace a letter in a
+/// formula, and nothing that acts on the rest of the document.
 fn row(rest: &mut Rest, depth: usize) -> Result<(), String> {
     let unpaired = || "its braces are not paired, or something is missing at its end".to_owned();
     if depth > DEEPEST {
@@ -114,7 +113,7 @@ fn row(rest: &mut Rest, depth: usize) -> Result<(), String> {
     }
 }
 
-/// What a script or a command applies to: a group in braces, or one piece.
+/// The argument of a script or a command: a group in braces, or one piece.
 fn argument(rest: &mut Rest, depth: usize) -> Result<(), String> {
     while rest.next_if(|c| c.is_whitespace()).is_some() {}
     match rest.next() {

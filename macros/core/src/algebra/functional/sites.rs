@@ -11,7 +11,8 @@ use crate::expr::{self, Expr, Node, Reach};
 const MOST: usize = 16;
 
 impl Algebra<'_> {
-    /// The number with every derivative of a functional of all sites as a pull-back; nothing where it has none.
+    /// The number with every derivative of a functional of all sites as a pull-back; `None` if it contains no such
+    /// derivative.
     pub(in crate::algebra) fn by_parts(&self, number: &Poly) -> Option<Poly> {
         let functionals = self.symbols.functionals();
         let of_sites = functionals.iter().any(|f| f.reach == Reach::Sites);
@@ -39,7 +40,7 @@ impl Algebra<'_> {
         changed.then_some(all)
     }
 
-    /// A term with a derivative along a direction as a pull-back, its seed everything that stands beside it.
+    /// Writes a term with a derivative along a direction as a pull-back; its seed contains all other factors.
     fn term_by_parts(&self, t: &Term) -> Option<Expr> {
         let along = |atom: &Atom| {
             let Atom::Given(_) = atom else {

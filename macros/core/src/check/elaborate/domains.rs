@@ -1,5 +1,6 @@
-//! Domains of functions: an argument for which a function has a value nowhere is refused on its tokens,
-//! and so is a number beyond the largest double. What may be inside is left to `new` and to the step.
+//! Domains of functions: an argument for which a function is undefined everywhere is an error on its tokens, and so
+//! is a number beyond the largest double. An argument that may be inside the domain is checked by `new` and by the
+//! step.
 
 use super::{Elaborated, Elaborator, fail};
 use crate::algebra::Rational;
@@ -7,7 +8,7 @@ use crate::diagnostic::{Diagnostic, Place};
 use crate::expr::range::range;
 use crate::expr::{self, Expr, Function};
 
-/// What is wrong with an argument that has to be positive, if it never is.
+/// The description of an argument that must be positive but never is.
 fn never_positive(e: &Expr, vanishes: bool) -> Option<&'static str> {
     let r = range(e);
     match (vanishes, r.is_negative(), r.is_not_positive()) {

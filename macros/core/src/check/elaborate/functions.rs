@@ -1,4 +1,4 @@
-//! The functions of the language, and what is written like one and is none. Takes a call; gives the
+//! The functions of the language, and names that look like functions but are not. Takes a call; gives the
 //! expression.
 
 use super::{Elaborated, Elaborator, fail};
@@ -36,8 +36,7 @@ impl Elaborator<'_> {
             || super::UNITS.contains(&n)
     }
 
-    /// Parentheses after a name that is no function, or that the model has declared as something
-    /// else.
+    /// The error for parentheses after a name that is not a function, or that the model declares as something else.
     fn no_function(&self, name: &Name) -> Option<Diagnostic> {
         let n = name.text.as_str();
         let function = FUNCTIONS.contains(&n);

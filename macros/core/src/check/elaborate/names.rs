@@ -1,5 +1,5 @@
-//! Names: what was declared or bound, `Id` and the unit vectors in the size that the context asks for.
-//! Takes a word and its place; gives an expression, or what the word may have been meant to be.
+//! Names: declared or bound names, `Id`, and the unit vectors in the size that the context requires. Takes a word
+//! and its place; gives an expression, or the probable meaning of the word.
 
 use super::{Elaborated, Elaborator, UNITS, fail};
 use crate::check::messages::shape_text;
@@ -35,7 +35,7 @@ fn end_of<'n>(name: &'n str, symbols: &Symbols) -> Option<(&'n str, bool)> {
     (moves && symbol.shape.is_scalar()).then_some((stem, end))
 }
 
-/// The component that a name is meant for: `x_3`, `x3`, `x_z`.
+/// The component that a name probably means: `x_3`, `x3`, `x_z`.
 fn component_of(name: &str, symbols: &Symbols) -> Option<String> {
     let (at, last) = name.char_indices().next_back()?;
     let stem = name.get(..at)?;
@@ -128,7 +128,7 @@ impl Elaborator<'_> {
         }
         if let Some(axis) = UNITS.iter().position(|u| *u == n) {
             let size = match expected {
-                // As a column of what is asked for, or before the rest of a product of that shape.
+                // The size is taken from the required column, or from the required product.
                 Some(s) if s.rows != Dim::Fixed(1) => s.rows,
                 _ => self.default_size(),
             };

@@ -1,5 +1,5 @@
-//! Sums, products and inverses: shapes must agree, and a wrong one is told by both sides. Takes the
-//! parts of an operation; gives the expression.
+//! Sums, products and inverses: shapes must agree, and the error names both sides. Takes the parts of an operation;
+//! gives the expression.
 
 use super::{Elaborated, Elaborator, fail};
 use crate::algebra::Algebra;
@@ -47,7 +47,7 @@ impl Elaborator<'_> {
         let mut left: Option<(Expr, Place)> = None;
         let mut numbers = Vec::new();
         for (i, f) in factors.iter().enumerate() {
-            // What must stand here, from the neighbour before or after.
+            // The shape required here, from the factor before or after.
             let before = left.as_ref().map(|(l, _)| Shape::square(l.shape().cols));
             let after = factors[i + 1..]
                 .iter()

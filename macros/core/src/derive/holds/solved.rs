@@ -1,5 +1,6 @@
-//! Constraints solved for letters that they contain linearly, places of bodies before parameters: put in, they leave
-//! of an expression what it is wherever the constraints hold. Takes the constraints; gives the letters by the others.
+//! Constraints solved for letters that they contain linearly, positions of bodies before parameters: after
+//! substitution, an expression keeps its value wherever the constraints are satisfied. Takes the constraints; gives
+//! these letters in terms of the others.
 
 use super::here;
 use crate::algebra::Algebra;
@@ -8,11 +9,11 @@ use crate::derive::Letters;
 use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr, Letter, Node};
 
-/// Letters that the constraints determine, each by those that remain.
+/// Letters that the constraints determine, written by the remaining letters.
 pub(crate) struct Solved(Vec<(Letter, Expr)>);
 
 impl Solved {
-    /// Of one constraint after the other as far as each has such a letter; the others say nothing.
+    /// Solves one constraint after the other. Constraints without such a letter are skipped.
     pub(crate) fn of(spec: &Spec, letters: &Letters, algebra: &Algebra) -> Solved {
         let s = &letters.symbols;
         let mut all: Vec<(Letter, Expr)> = Vec::new();
@@ -47,8 +48,8 @@ impl Solved {
     }
 }
 
-/// Letters of the shape of a constraint that stand in it free of conditions: additive configurations, then parameters;
-/// of each the last first.
+/// Letters of a constraint's shape that occur in it and may take any value: additive configurations, then
+/// parameters; in each group the last declared comes first.
 fn candidates(spec: &Spec, letters: &Letters, hold: &Hold) -> impl Iterator<Item = Letter> {
     let s = &letters.symbols;
     let found = expr::letters(&hold.value);
@@ -66,8 +67,8 @@ fn candidates(spec: &Spec, letters: &Letters, hold: &Hold) -> impl Iterator<Item
     all.into_iter()
 }
 
-/// What the letter is where the value vanishes, if it stands there once behind what can be inverted. `direction` is a
-/// letter of its shape that stands nowhere else.
+/// The value of the letter at which `value` vanishes, if the letter occurs once, behind invertible factors.
+/// `direction` is a letter of the same shape that occurs nowhere else.
 fn solution(
     letters: &Letters,
     value: &Expr,
@@ -99,7 +100,7 @@ fn solution(
     (!expr::contains(&found, letter) && algebra.is_zero(&checked)).then_some(found)
 }
 
-/// The invertible factor before the direction, and whether it stands with the opposite sign.
+/// The invertible factor before the direction, and whether its sign is negative.
 fn factor(s: &expr::symbol::Symbols, change: &Expr, direction: &Expr) -> Option<(bool, Expr)> {
     let (is_negative, e) = match change.node() {
         Node::Neg(inner) => (true, inner),

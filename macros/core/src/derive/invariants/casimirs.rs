@@ -11,7 +11,7 @@ use crate::derive::bracket::{Element, Numbers, Space};
 use crate::expr::shape::Dim;
 use crate::expr::{self, Expr, Letter};
 
-/// What is known of the Casimirs at one size of the model.
+/// The number of Casimirs at one size of the model.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Count {
     /// The size, where it has only a name.
@@ -20,7 +20,7 @@ pub struct Count {
     pub dimension: usize,
     /// The rank of its bracket at a general point.
     pub rank: usize,
-    /// How many of those that were found are independent.
+    /// The number of independent Casimirs among those found.
     pub found: usize,
     /// How many of those are the same number for every state, which are not listed.
     pub same: usize,
@@ -33,7 +33,7 @@ impl Count {
     }
 }
 
-/// What the search gave.
+/// The result of the search.
 #[derive(Default)]
 pub(super) struct Casimirs {
     pub(super) list: Vec<Invariant>,
@@ -116,7 +116,7 @@ pub(super) fn casimirs(x: &Inputs, equations: &[Expr], passages: &[RandomStep]) 
             let sizes = from..=to;
             sizes.filter_map(|n| count(x, equations, n, &out)).collect()
         }
-        // Sizes that vary by themselves have no single list.
+        // Sizes that vary independently do not give a single list.
         _ => Vec::new(),
     };
     out

@@ -1,6 +1,7 @@
-//! Which motions are taken as one: of few configurations each by itself; of many those that the action couples are
-//! moved together. On a lattice the copies of one configuration are, at all sites, or each by itself where something of
-//! every single momentum is conserved. Takes the motions; gives lists of them, of which combinations are sought.
+//! Which motions are combined into one. With few configurations, each is moved separately; with many, the
+//! configurations that the action couples are moved together. On a chain, the copies of one configuration are moved
+//! together at all sites, or separately if part of every single momentum is conserved. Takes the motions; gives
+//! lists of them, of which combinations are sought.
 
 use super::Inputs;
 use super::mixed::Component;
@@ -18,10 +19,10 @@ const SINGLES: usize = 32;
 /// A list of motions that are made together.
 pub(super) type Column<'s> = Vec<&'s Motion>;
 
-/// What is moved, and how.
+/// Identifies what a motion moves, and how.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Key {
-    /// The configuration as stated, for motions that are told of each; else none.
+    /// The configuration as stated, for motions that are listed per configuration; else none.
     family: Option<usize>,
     way: Way,
 }
@@ -29,19 +30,19 @@ struct Key {
 /// The motions of a model by their sorts, as they are combined.
 pub(super) struct Columns<'s>(Vec<OfSort<'s>>);
 
-/// Those of one sort.
+/// The columns of one sort.
 struct OfSort<'s> {
     sort: Sort,
-    /// What may be combined, for each set of configurations that the action couples.
+    /// The motions that may be combined, for each set of configurations that the action couples.
     combined: Vec<Vec<Column<'s>>>,
-    /// Single ones that are told before.
+    /// Single motions that are reported first.
     single: Vec<Column<'s>>,
-    /// Those of which all others are combinations.
+    /// The columns of which all others are combinations.
     basis: Vec<Column<'s>>,
 }
 
 impl<'s> Columns<'s> {
-    /// Of these motions.
+    /// The columns of these motions.
     pub(super) fn new(x: &Inputs, motions: &'s [Motion], passages: &[RandomStep]) -> Self {
         let is_lattice = x.spec.configurations.iter().any(|c| c.copy.is_some());
         let coupled = Coupled {
@@ -80,7 +81,7 @@ impl<'s> Columns<'s> {
         self.own(sort).map_or(&[], |own| &own.single)
     }
 
-    /// Those of all sorts of which all others are combinations.
+    /// The columns of all sorts of which all others are combinations.
     pub(super) fn basis(&self) -> impl Iterator<Item = &Column<'s>> {
         self.0.iter().flat_map(|own| &own.basis)
     }
@@ -90,13 +91,13 @@ impl<'s> Columns<'s> {
     }
 }
 
-/// What says which motions are made together.
+/// Decides which motions are combined.
 struct Coupled<'x, 'a> {
     x: &'x Inputs<'a>,
     passages: &'x [RandomStep<'a>],
-    /// Whether a lattice is written out.
+    /// Whether the model is an expanded chain.
     is_lattice: bool,
-    /// Sets of configurations that the action couples; none where each is moved by itself.
+    /// Sets of configurations that the action couples; none if each is moved separately.
     sets: Vec<Vec<usize>>,
 }
 
@@ -116,8 +117,8 @@ impl Coupled<'_, '_> {
                     all().filter(is_basis).cloned().collect(),
                 )
             }
-            // Of bodies that are listed one by one each is counted. What constraints join is added up afterwards, of
-            // which each part is wanted.
+            // If bodies are listed one by one, each counts separately. Bodies that constraints connect are summed
+            // afterwards, so the momentum of each is needed.
             false => {
                 let held = !self.x.spec.holds.is_empty();
                 let of_space = unspanned.clone().filter(|m| held && m.way == Way::Space);
@@ -138,7 +139,8 @@ impl Coupled<'_, '_> {
         }
     }
 
-    /// A turn about a place or about its own origin is one of the others of the set too, which have no place.
+    /// A turn about a position, or about the body's own origin, is combined with the turns of the members of the set
+    /// that are without a position.
     fn with_wholes<'s>(
         &self,
         own: &[&'s Motion],
@@ -214,7 +216,8 @@ impl Coupled<'_, '_> {
         self.x.spec.configurations[configuration].copy
     }
 
-    /// Whether these are told of each: some component of the momentum of every single copy is conserved.
+    /// Whether these motions are reported for each copy: some component of the momentum of every single copy is
+    /// conserved.
     fn is_told_of_each(&self, key: Key, list: &Column) -> bool {
         // Numbers that are listed one by one may be coordinates along several axes.
         let number = |m: &&Motion| m.direction().0.is_scalar() && m.way == Way::Space;
@@ -232,7 +235,7 @@ impl Coupled<'_, '_> {
             else {
                 return false;
             };
-            // What vanishes always says nothing.
+            // An entry that is zero does not count as conserved.
             let same = before.data.iter().zip(&after.data);
             let same = same.map(|(a, b)| a == b && *a != 0);
             kept = Some(match kept {

@@ -14,15 +14,15 @@ use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, Symbols};
 use crate::expr::{self, Expr, Letter, Shift};
 
-/// What the direction of a motion is.
+/// The shape and the structure of the direction of a motion.
 type Kind = (Shape, Structure);
 
 /// Largest derivative that is taken.
 const LARGEST: u32 = 5_000;
 
-/// What the momentum of a combination of motions must be lessened by, constants left out.
+/// The expression to subtract from the momentum of a combination of motions, up to constants.
 pub(super) fn difference(x: &Inputs, passages: &[RandomStep], terms: &[Term]) -> Option<Expr> {
-    // One table with a direction of each kind: copying it for every term is most of the work of a lattice.
+    // One table with a direction of each kind: on a chain, copying the table for every term would be most of the work.
     let mut symbols = x.letters.symbols.clone();
     let mut kinds: Vec<(Kind, Letter)> = Vec::new();
     for kind in terms.iter().map(|t| t.motion.direction()) {
@@ -84,7 +84,7 @@ fn of_term(x: &Inputs, s: &Symbols, direction: Letter, m: &Motion, term: &Expr) 
     let is_moved = starts.iter().any(|(l, _)| held.contains(l))
         || ends.iter().any(|(l, _)| held.contains(&next(*l)));
     if !is_moved {
-        // Most terms of a lattice hold other bodies.
+        // Most terms of a chain contain other bodies only.
         let nothing = expr::zero(Shape::SCALAR);
         return m.covector(s, expr::gradient(s, &nothing, direction));
     }

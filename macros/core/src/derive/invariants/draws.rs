@@ -1,6 +1,7 @@
-//! Random nodes at which the roots of the action exist and constraints hold: in exact arithmetic half of all
-//! numbers have a square root, so that a draw of many bodies at once would almost never serve. Bodies are drawn one by
-//! one, each until the roots that it completes exist. Takes a model; gives nodes, and velocities that lead to such.
+//! Random nodes at which the roots of the action exist and constraints are satisfied. In exact arithmetic half of
+//! all numbers have a square root, so that a draw of many bodies at once would almost always fail. Bodies are drawn
+//! one by one, each until the roots that it completes exist. Takes a model; gives nodes, and velocities that lead
+//! to such nodes.
 
 use super::{Inputs, here};
 use crate::algebra::exact::Point;
@@ -10,10 +11,10 @@ use crate::derive::variation::at;
 use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Letter, Node, Shift};
 
-/// Most draws of one body: with eight roots one of 256 serves.
+/// The largest number of draws for one body: with eight roots, one draw in 256 succeeds.
 const TRIES: u64 = 2048;
 
-/// What is asked of nodes.
+/// The conditions on random nodes: roots that must exist, and constraints.
 pub(crate) struct Roots {
     /// Roots, each with the last configuration that it depends on.
     list: Vec<(usize, Expr)>,
@@ -22,7 +23,8 @@ pub(crate) struct Roots {
 }
 
 impl Roots {
-    /// Those of the action that stand at a node, with advected quantities by their definitions.
+    /// The roots of the action that depend on configurations at a single node, with advected quantities replaced by
+    /// their definitions.
     pub(super) fn of(x: &Inputs) -> Roots {
         let s = &x.letters.symbols;
         let mut all = Vec::new();
@@ -74,7 +76,7 @@ impl Roots {
         own.all(|(_, root)| at.value(root).is_some())
     }
 
-    /// The letters that constraints determine are put to what they are there.
+    /// Sets the letters that constraints determine to their values; `None` if a root does not exist then.
     fn held(&self, node: &mut Point) -> Option<()> {
         if self.solved.list().is_empty() {
             return Some(());

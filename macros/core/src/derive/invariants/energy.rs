@@ -36,7 +36,7 @@ pub(super) fn energy(x: &Inputs, passages: &[RandomStep]) -> Option<Invariant> {
     })
 }
 
-/// The discrete energy of an edge, `-∂L_d/∂h`, less its value at rest.
+/// The discrete energy of an edge, `-∂L_d/∂h`, minus its value at rest.
 #[derive(Clone, Debug)]
 pub struct DiscreteEnergy {
     /// Its value by letters at both ends of the edge and the velocity.
@@ -48,8 +48,8 @@ pub struct DiscreteEnergy {
 }
 
 impl Derivation {
-    /// What is known of the discrete energy of an edge, and why. Where the kinetic energy is
-    /// degenerate, a symplectic step bounds nothing.
+    /// Whether the discrete energy of an edge is conserved, and why. Where the kinetic energy is degenerate, a
+    /// symplectic step bounds nothing.
     pub fn discrete_energy(&self) -> (&'static str, &str) {
         let energy = &self.integrability.discrete_energy;
         if self.limit.as_ref().is_err_and(|why| why == DRIVEN) {
@@ -76,8 +76,8 @@ impl Derivation {
 pub(super) fn discrete(x: &Inputs, passages: &[RandomStep], lax: Option<&Lax>) -> DiscreteEnergy {
     let s = &x.letters.symbols;
     let h = here(x.spec.step);
-    // A constant of the action would weigh h^-2: what the edge has at rest is taken off if the
-    // motion keeps it.
+    // A constant of the action would weigh h^-2: the value of the edge at rest is subtracted if it is constant along
+    // the motion.
     let still: Vec<(expr::Letter, Expr)> = x
         .spec
         .configurations

@@ -26,8 +26,8 @@ pub(super) fn moment(s: &Symbols, rigid: &dyn Euclidean, momentum: &Expr, point:
     expr::sub(expr::mul(rigid.angular(s, momentum), weight(point)), lever)
 }
 
-/// What is read from homogeneous vectors that rigid motions carry: the normal of a plane or the
-/// place of a point, and the moment of a momentum about the point, `w a - x × l` for the weight `w`.
+/// The parts of homogeneous vectors that rigid motions advect: the normal of a plane or the position of a point,
+/// and the moment of a momentum about the point, `w a - x × l` for the weight `w`.
 pub(super) fn pieces(x: &Inputs) -> Vec<Piece> {
     let s = &x.letters.symbols;
     let mut out = Vec::new();

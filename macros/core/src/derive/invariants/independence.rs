@@ -55,9 +55,9 @@ fn is_linear(x: &Inputs, e: &Expr) -> bool {
         })
 }
 
-/// Whether a Casimir is the same number for every state and all parameters: zero, or made of several carried
-/// quantities as `tr(A B)` is where `B` is the inverse of `A`. The length of one that has always the same is kept, as a
-/// Casimir that is checked by its drift.
+/// Whether a Casimir is the same number for every state and all parameters: zero, or a combination of advected
+/// quantities such as `tr(A B)`, where `B` is the inverse of `A`. A length that is always the same is kept, as a
+/// Casimir whose drift is checked.
 pub(super) fn is_same_for_all(x: &Inputs, passages: &[RandomStep], v: &Invariant) -> bool {
     let Some(value) = &v.value else {
         return false;
@@ -84,8 +84,8 @@ pub(super) fn is_same_for_all(x: &Inputs, passages: &[RandomStep], v: &Invariant
         && (own.vanishes() || symbols.len() > 1)
 }
 
-/// Differentials of the entries of an invariant on the phase space: momenta, elements, and what is
-/// carried without a definition.
+/// Differentials of the entries of an invariant on the phase space: momenta, elements, and advected quantities
+/// without a definition.
 fn differentials(x: &Inputs, point: &Point, v: &Invariant) -> Option<Vec<Vec<u64>>> {
     let s = &x.letters.symbols;
     let value = v.value.clone()?;
@@ -119,7 +119,7 @@ fn differentials(x: &Inputs, point: &Point, v: &Invariant) -> Option<Vec<Vec<u64
             }
         }
     }
-    // Entry (i, j) is the pairing with a constant matrix: linear in it, so one derivative serves.
+    // Entry (i, j) is the pairing with a constant matrix: it is linear in the matrix, so that one derivative is enough.
     let mut out = vec![vec![0; coordinates.len()]; rows * cols];
     let mut derivative: Option<(Letter, Expr)> = None;
     // The change of a letter is a letter of its shape: itself, at a label that nothing else has.
@@ -164,7 +164,7 @@ pub(super) fn tangents(point: &Point, l: Letter, structure: Structure) -> Option
         m
     };
     let minus = Some(crate::algebra::exact::negate(1));
-    // A translation has no mirror image, a turn has.
+    // A turn has a mirrored entry of opposite sign; a translation does not.
     let turn = |i: usize, j: usize| {
         unit(
             i,

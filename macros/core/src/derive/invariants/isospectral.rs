@@ -22,7 +22,7 @@ pub struct Lax {
     pub factor: Expr,
 }
 
-/// The Lax form of the step, if it is that of a free body.
+/// The Lax form of the step, if the model is a free body.
 pub(super) fn lax(x: &Inputs) -> Option<Lax> {
     let s = &x.letters.symbols;
     let ([c], [StepEquation::Exact(mv)], [b]) = (
@@ -32,7 +32,7 @@ pub(super) fn lax(x: &Inputs) -> Option<Lax> {
     ) else {
         return None;
     };
-    // On the spatial side the factor is carried: its value at the end of the edge is its update.
+    // On the spatial side, the factor is an advected quantity: its value at the end of the edge is its update.
     let carried: Vec<(Letter, Expr)> = x
         .spec
         .advected
@@ -103,7 +103,7 @@ pub(super) fn integrals(x: &Inputs, lax: Option<&Lax>, passages: &[RandomStep]) 
     let factor = &lax.factor;
     let size = length(x, &mu);
     if mu.shape().is_vector() {
-        // For three dimensions |μ|² and this one are all.
+        // In three dimensions, |μ|² and this invariant are a complete set.
         let value = expr::dot(
             mu.clone(),
             expr::product([factor.clone(), factor.clone(), mu.clone()]),

@@ -184,15 +184,14 @@ fn whole_numbers(v: &[u64]) -> Option<Vec<i64>> {
 
 /// All symmetries at fixed parameters.
 pub(super) struct Kernel<'a> {
-    /// How many momenta are conserved, less those that are constants or the same as others.
+    /// The number of conserved momenta, minus the momenta that are constant or equal to others.
     pub(super) dimension: usize,
-    /// Nodes of motions that share their parameters, and what is carried.
+    /// Nodes of motions that share their parameters and their advected quantities.
     nodes: Vec<Point<'a>>,
 }
 
 impl<'a> Kernel<'a> {
-    /// Solves for the coefficients of all columns at once, total differences left out of account;
-    /// nothing where that is too much work.
+    /// Solves for the coefficients of all columns at once, ignoring total differences; `None` if that is too much work.
     pub(super) fn new(
         x: &Inputs<'a>,
         roots: &Roots,
@@ -375,7 +374,7 @@ fn from_origin<'a>(
     completed(x, p)
 }
 
-/// The step from the end of one step to that of another.
+/// The step from the end of `from` to the end of `to`.
 fn between<'a>(
     x: &Inputs<'a>,
     origin: &Point<'a>,

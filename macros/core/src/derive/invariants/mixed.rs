@@ -17,8 +17,8 @@ pub(super) struct Component {
     pub(super) entry: u8,
 }
 
-/// Every component of a field in proportion to every one, where there are few of them. On a lattice these are of
-/// one site, and alike at all sites.
+/// Every component of a field in proportion to every one, where there are few of them. On a chain, both components
+/// belong to one site, and the motion is the same at all sites.
 pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
     let components = components(x);
     let copy = |c: &Component| x.spec.configurations[c.configuration].copy;
@@ -53,8 +53,8 @@ pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
             spanned: false,
         }
     };
-    // Vectors turn together in their angular momenta; what mixes them otherwise mostly tells of the
-    // centre of mass, which moves along the total momentum.
+    // Vectors turn together in their angular momenta; other mixtures mostly describe the centre of mass, which moves
+    // along the total momentum.
     let told = |(by, to): &(&Component, &Component)| {
         let at_one_site = copy(by).map(|c| c.site) == copy(to).map(|c| c.site);
         at_one_site && (by.configuration == to.configuration || number(by) || number(to))
@@ -87,7 +87,7 @@ impl Component {
         expr::here(&x.letters.symbols, c.element)
     }
 
-    /// Its value, given that of the field.
+    /// Its value, computed from the field's value.
     pub(super) fn of(self, field: &Expr) -> Expr {
         let shape = field.shape();
         match shape.is_scalar() {

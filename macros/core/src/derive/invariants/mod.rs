@@ -52,11 +52,11 @@ pub enum Family {
     Manakov,
     /// An energy.
     Energy,
-    /// A held constraint, or its rate of change.
+    /// A constraint, or its rate of change.
     Held,
 }
 
-/// What an invariant is.
+/// The kind of an invariant.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Kind {
     /// The spatial momentum of the only configuration, kept by a symmetry: the state holds it.
@@ -69,7 +69,7 @@ pub enum Kind {
     Spectrum,
     /// The physical energy.
     Energy,
-    /// The rate of change of what a constraint holds, by its number.
+    /// The rate of change of a constraint, by the number of the constraint.
     ConstraintRate(usize),
 }
 
@@ -78,7 +78,7 @@ pub enum Kind {
 pub struct Invariant {
     /// Its ASCII name.
     pub name: String,
-    /// What it is.
+    /// The kind.
     pub kind: Kind,
     /// Where it comes from.
     pub family: Family,
@@ -94,10 +94,10 @@ pub struct Invariant {
     pub reason: String,
 }
 
-/// What is known of the number of invariants, and the Lax form.
+/// The number of Casimirs, the Lax form, and the discrete energy.
 #[derive(Clone, Debug)]
 pub struct Integrability {
-    /// What is known of the Casimirs.
+    /// The Casimirs: their number, or why the search was skipped.
     pub casimirs: Known,
     /// The Lax form of the step, if one was found.
     pub lax: Option<Lax>,
@@ -105,7 +105,7 @@ pub struct Integrability {
     pub discrete_energy: DiscreteEnergy,
 }
 
-/// What is known of the Casimirs of a model.
+/// The result of the search for the Casimirs of a model.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Known {
     /// How many there are and how many were found, at each size that was looked at.
@@ -128,7 +128,7 @@ impl Integrability {
     }
 }
 
-/// What the search looks at.
+/// The input of the search.
 pub struct Inputs<'a> {
     /// The model.
     pub spec: &'a Spec,
@@ -140,15 +140,16 @@ pub struct Inputs<'a> {
     pub variations: &'a [Variation],
     /// The balances.
     pub balances: &'a [Balance],
-    /// The action and the balances with the reactions of constraints, where some are held; those above are without.
+    /// The action and the balances with constraint forces, if there are constraints; `action` and `balances` are
+    /// without.
     pub held: Option<(&'a Action, &'a [Balance])>,
     /// The bracket.
     pub bracket: &'a Bracket,
-    /// What is solved.
+    /// The equations to solve.
     pub solve: &'a Solve,
     /// The continuous Lagrangian.
     pub limit: Option<&'a Limit>,
-    /// What is assumed of the parameters, as expressions that vanish.
+    /// The assumptions on the parameters, as expressions that vanish.
     pub assumed: &'a [Expr],
     /// The normal forms.
     pub algebra: &'a Algebra<'a>,
@@ -168,7 +169,7 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
     let large = too_large(x);
     let small = large.is_none();
     out.extend(energy::energy(x, if small { &passages } else { &[] }));
-    // What single bodies keep reactions change; of several they may leave the sum.
+    // Constraint forces change the momentum of a single body; they may conserve the sum over several bodies.
     let momenta = match x.held {
         None => noether::momenta(x, &roots, &passages),
         Some((action, balances)) => {
@@ -207,7 +208,7 @@ pub fn invariants(x: &Inputs) -> (Vec<Invariant>, Integrability) {
             out.push(v);
         }
     }
-    // A fact about what is carried, not about the motion.
+    // This is a property of the advected quantities, not of the motion.
     let mut counts = casimirs.counts;
     out.retain(|v| {
         let same = v.family == Family::Casimir && independence::is_same_for_all(x, &passages, v);
@@ -263,7 +264,7 @@ fn too_large(x: &Inputs) -> Option<String> {
         .then(|| format!("the advected quantities have {entries} entries"))
 }
 
-/// Two invariants of one name are told apart by a number.
+/// Numbers invariants that share a name, so that their names differ.
 fn distinguish(list: &mut [Invariant]) {
     for i in 0..list.len() {
         let base = list[i].name.clone();

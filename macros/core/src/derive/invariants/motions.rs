@@ -13,7 +13,7 @@ use crate::groups::{Additive, Euclidean, GeneralLinear, SpecialOrthogonal};
 
 const THREE: Dim = Dim::Fixed(3);
 
-/// What a motion is read in: momenta of one sort may be added.
+/// The coordinates of the momentum of a motion: momenta of one sort may be added.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Sort {
     /// Turns of three dimensions, by their axis.
@@ -47,8 +47,7 @@ pub(super) enum Way {
     About(SymbolId),
     /// `δQ` is a constant matrix.
     Shift,
-    /// `δX_entry = by`, components of fields: those that such motions add up to are linear maps of all
-    /// fields together.
+    /// `δX_entry = by`, components of fields: combinations of such motions are linear maps of all fields together.
     Mixing { entry: u8, by: Component },
 }
 
@@ -81,7 +80,7 @@ fn in_body(x: &Inputs, i: usize) -> Expr {
     turned(x, i, Side::is_spatial)
 }
 
-/// The node momentum, carried to the other frame if it is stated on this side.
+/// The node momentum, transformed to the other frame if it is stated on this side.
 fn turned(x: &Inputs, i: usize, from: fn(Side) -> bool) -> Expr {
     let s = &x.letters.symbols;
     let c = &x.spec.configurations[i];
@@ -121,9 +120,9 @@ fn parts(x: &Inputs, i: usize, rigid: &dyn Euclidean, way: Way) -> (Expr, Expr) 
     }
 }
 
-/// Sizes of the terms of the angular and of the linear momentum of a rigid motion. About the origin of
-/// space the angular one is that about the body's own origin and that of the linear momentum, which
-/// both grow when the body travels, while their sum stays.
+/// Sizes of the terms of the angular and of the linear momentum of a rigid motion. About the origin of space, the
+/// angular momentum is the sum of two terms: the angular momentum about the body's own origin, and the moment of
+/// the linear momentum. Both can grow when the body travels, although their sum is conserved.
 fn sizes(x: &Inputs, i: usize, rigid: &dyn Euclidean, way: Way) -> [Expr; 2] {
     let s = &x.letters.symbols;
     let c = &x.spec.configurations[i];
@@ -149,7 +148,7 @@ fn ones(shape: Shape) -> Expr {
     expr::sum(units.collect::<Vec<_>>(), shape)
 }
 
-/// What momenta of turns of a space are read in.
+/// The sort of the momenta of turns of a space.
 fn turns(space: Dim) -> Sort {
     match space == THREE {
         true => Sort::Angular,
@@ -157,7 +156,7 @@ fn turns(space: Dim) -> Sort {
     }
 }
 
-/// All motions of all configurations; those as seen from space first.
+/// All motions of all configurations; motions seen from space come first.
 pub(super) fn motions(x: &Inputs) -> Vec<Motion> {
     let mut out: Vec<Motion> = Vec::new();
     let ways = [Way::Space, Way::Spin, Way::Shift, Way::Body];
@@ -325,7 +324,7 @@ fn of_rigid(
     }
 }
 
-/// What a shift of an array of a shape is.
+/// The sort of a shift of an array of this shape.
 fn shifts(shape: Shape) -> Sort {
     match shape == Shape::vector(THREE) {
         true => Sort::Linear,
@@ -334,7 +333,7 @@ fn shifts(shape: Shape) -> Sort {
     }
 }
 
-/// The momenta of linear maps of n dimensions and of the turns among them, given that of all maps.
+/// The momenta of linear maps of n dimensions and of the turns among them, from the momentum of all maps.
 fn of_matrix(
     s: &Symbols,
     n: Dim,

@@ -22,7 +22,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Most single numbers that are combined.
 const NUMBERS: usize = 48;
 
-/// The same of the model at hand: a lattice that is written out has more.
+/// The limit for this model: an expanded chain has a larger one.
 fn numbers() -> usize {
     NUMBERS.saturating_mul(usize::try_from(crate::work::times()).unwrap_or(1))
 }
@@ -32,7 +32,7 @@ pub(super) fn components(x: &Inputs) -> Vec<Vec<usize>> {
     let count = x.spec.configurations.len();
     let mut of: Vec<usize> = (0..count).collect();
     let touched = touched(x);
-    // A reaction couples all that its constraint holds, in whatever terms that stands.
+    // A constraint force couples all configurations in its constraint, in whatever terms they occur.
     let held = x.spec.holds.iter().map(|h| h.value.clone());
     for term in summands(&x.letters.symbols, &x.action.total)
         .into_iter()
@@ -63,7 +63,7 @@ pub(super) fn components(x: &Inputs) -> Vec<Vec<usize>> {
     out
 }
 
-/// For each symbol the configurations that move it: its own, or those that its constraint names.
+/// For each symbol the configurations that move it: its own configuration, or the configurations in its constraint.
 fn touched(x: &Inputs) -> BTreeMap<SymbolId, Vec<usize>> {
     let mut out: BTreeMap<SymbolId, Vec<usize>> = BTreeMap::new();
     for (i, c) in x.spec.configurations.iter().enumerate() {
@@ -83,9 +83,9 @@ fn touched(x: &Inputs) -> BTreeMap<SymbolId, Vec<usize>> {
 /// Noether momenta.
 #[derive(Default)]
 pub(super) struct Momenta {
-    /// Those that single sites of a lattice keep, and single bodies before constraints hold them.
+    /// The invariants of single sites of a chain, and of single bodies without constraint forces.
     pub(super) of_sites: Vec<Invariant>,
-    /// Those as seen from space.
+    /// The invariants seen from space.
     pub(super) space: Vec<Invariant>,
     /// Those that bodies have a part in.
     pub(super) body: Vec<Invariant>,
@@ -142,7 +142,7 @@ fn kernels<'a>(x: &Inputs<'a>, roots: &Roots, columns: &Columns) -> Vec<Kernel<'
     found.take(wanted).collect()
 }
 
-/// What a reading gives of a motion, so many times.
+/// A component of the momentum of a motion, with an integer coefficient.
 #[derive(Clone, Copy)]
 pub(super) struct Term<'s> {
     pub(super) reading: &'s MomentumComponent,
@@ -184,8 +184,8 @@ impl<'a, 's> Search<'a, 's> {
         !self.kernels.is_empty() && all.into_iter().all(|(k, n)| *n >= k.dimension)
     }
 
-    /// Takes out what vanishes and what is the same as one before: a moment about a place, read along
-    /// the axis through it.
+    /// Removes columns that vanish or repeat an earlier column, such as a moment about a position, read along the axis
+    /// through it.
     fn distinct(
         &self,
         columns: Vec<Column<'s>>,
@@ -209,7 +209,7 @@ impl<'a, 's> Search<'a, 's> {
         columns.into_iter().filter(fresh).collect()
     }
 
-    /// What every single site of a lattice keeps, before sums over sites that it spans.
+    /// Finds what every single site of a chain conserves, before any sum over sites that is a combination of these.
     fn of_every_site(&mut self) {
         for reading in self.readings {
             for column in self.columns.of_every_site(reading.sort) {
@@ -247,7 +247,8 @@ impl<'a, 's> Search<'a, 's> {
         let columns = self.distinct(columns, reading);
         let values: Vec<Expr> = columns.iter().map(|c| self.value(reading, c)).collect();
         let mut combinations = samples.combinations(&values);
-        // Of those that say the same that of the fewest motions is told, and of these that about the origin.
+        // Among combinations that are equivalent, the one with the fewest motions is reported, and among these the one
+        // about the origin.
         combinations.sort_by_key(|v| {
             let taken = columns.iter().zip(v).filter(|(_, times)| **times != 0);
             let motions = taken.flat_map(|(c, _)| c.iter());
@@ -371,7 +372,7 @@ impl<'a, 's> Search<'a, 's> {
     }
 }
 
-/// What a reading gives of each motion of a column, so many times.
+/// One term for each motion of a column, with this component and coefficient.
 fn terms_of<'s>(
     reading: &'s MomentumComponent,
     column: &[&'s Motion],
@@ -397,9 +398,9 @@ fn sum(x: &Inputs, terms: &[Term]) -> Expr {
     combined(x, terms, |m| m.value.clone())
 }
 
-/// What the readings give of something that each motion has.
+/// The sum over the terms of their component of `of(motion)`.
 pub(super) fn combined(x: &Inputs, terms: &[Term], of: impl Fn(&Motion) -> Expr) -> Expr {
-    // Readings are linear: of what one reads, the sum is taken first, terms that motions share once.
+    // The components are linear: values that share a component are summed first, so that common terms occur once.
     let mut groups: Vec<(&MomentumComponent, Vec<(Expr, i64)>)> = Vec::new();
     for t in terms {
         let at = groups

@@ -55,7 +55,7 @@ fn passage<'a>(
     completed(x, before)
 }
 
-/// Everything a step starts from: parameters, elements, velocities, what is carried.
+/// Everything a step starts from: parameters, elements, velocities, advected quantities.
 pub(super) fn start<'a>(
     x: &Inputs<'a>,
     roots: &Roots,

@@ -1,6 +1,6 @@
-//! What is read of a momentum: the whole of it, its part about an axis, across an axis, in a plane,
-//! or what keeps a quadratic form. Takes the parameters, which single axes and forms out; gives
-//! linear maps of momenta with their names.
+//! The components of a momentum: the whole of it, its part about an axis, across an axis or in a plane, or the part
+//! that preserves a quadratic form. Takes the parameters, which distinguish axes and forms; gives linear maps of
+//! momenta with their names.
 
 use super::homogeneous;
 use super::motions::{self, Sort};
@@ -21,7 +21,7 @@ const PAIRED: usize = 4;
 /// A linear map of momenta of one sort.
 pub(super) struct MomentumComponent {
     pub(super) sort: Sort,
-    /// What it adds to the name of a momentum; nothing for the whole.
+    /// Its part of the name of a momentum; empty for the whole momentum.
     pub(super) name: String,
     what: What,
     /// How much longer it makes them.
@@ -34,24 +34,25 @@ enum What {
     Across(Expr),
     /// The moment about a homogeneous point.
     About(Expr),
-    /// What keeps an axis a: `|a|² m` less its parts along a.
+    /// The component of turns that fix an axis a: `|a|² m` less its parts along a.
     Keeping(Expr),
     Plane(Expr, Expr),
     /// A number in proportion to a parameter.
     Times(Expr),
-    /// What keeps a quadratic form: for `δQ = ζ Q` with `ζ^T P + P ζ = 0` the skew part of `P⁻¹ m`.
+    /// The component of maps that preserve a quadratic form: for `δQ = ζ Q` with `ζ^T P + P ζ = 0` the skew part of
+    /// `P⁻¹ m`.
     Form(Expr),
     FormRight(Expr),
     /// Shifts of one column, of one row.
     Column(Expr),
     Row(Expr),
-    /// What is left of columns, of rows, across an axis a, times `|a|²`.
+    /// The components of columns, or of rows, orthogonal to an axis a, times `|a|²`.
     AcrossColumns(Expr),
     AcrossRows(Expr),
 }
 
 impl MomentumComponent {
-    /// What it gives of a momentum.
+    /// This component of the momentum `m`.
     pub(super) fn of(&self, x: &Inputs, m: &Expr) -> Expr {
         let s = &x.letters.symbols;
         let m = m.clone();
@@ -193,7 +194,7 @@ pub(super) fn readings(x: &Inputs, sorts: &[Sort]) -> Vec<MomentumComponent> {
                         push(name, What::Along(value), size);
                     }
                 }
-                // What is left when the part along an axis is not kept.
+                // The remaining components, if the component along an axis is not conserved.
                 for a in axes.iter().filter(|a| told(a)) {
                     let across = What::Across(a.value.clone());
                     push(format!("across_{}", a.name), across, a.length.clone());

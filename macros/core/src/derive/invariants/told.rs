@@ -1,5 +1,5 @@
-//! How a Noether momentum is told: its name in tables and emitted code, and why it is conserved. Takes the
-//! combination of motions; gives the words.
+//! Describes a Noether momentum: its name in tables and emitted code, and why it is conserved. Takes the
+//! combination of motions; gives the text.
 
 use super::Inputs;
 use super::mixed::Component;
@@ -27,7 +27,7 @@ fn is_turn(map: &[(Component, Component, i64)]) -> bool {
     map.iter().all(opposite)
 }
 
-/// The name of the momentum of a linear map of components: those that it moves.
+/// The name of the momentum of a linear map of components: the components that it moves.
 fn name_of_map(x: &Inputs, map: &[(Component, Component, i64)]) -> String {
     let mut moved: Vec<Component> = map.iter().flat_map(|(to, by, _)| [*to, *by]).collect();
     moved.sort_by_key(|c| (c.configuration, c.entry));

@@ -122,7 +122,7 @@ fn carriers(x: &Inputs, passages: &[RandomStep]) -> Vec<Carrier> {
                     continue;
                 };
                 let side = |i: usize| x.spec.configurations[i].side;
-                // What is seen from a body turns back, what is seen from space along.
+                // A rotation seen from space is inverted at the start, and one seen from a body at the end.
                 let start = if side(from).is_body() {
                     start
                 } else {
@@ -167,7 +167,7 @@ fn joined(x: &Inputs, carriers: &[Carrier]) -> Vec<Vec<usize>> {
     out
 }
 
-/// What rotations lead to a frame, that frame first.
+/// The bodies that rotations connect to a frame, with these rotations. The frame itself comes first.
 fn in_frame(carriers: &[Carrier], frame: usize) -> Vec<Carried> {
     let mut reached = vec![Carried {
         body: frame,

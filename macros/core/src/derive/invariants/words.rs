@@ -1,6 +1,6 @@
-//! Candidates for Casimirs: scalar products, traces and determinants of words in what the reduced
-//! space is made of, simple ones first. Takes the momenta and advected quantities of a model; gives
-//! numbers that may or may not be Casimirs.
+//! Candidates for Casimirs: scalar products, traces and determinants of words in the momenta and advected
+//! quantities, simple ones first. Takes the momenta and advected quantities of a model; gives numbers that may or
+//! may not be Casimirs.
 
 use super::homogeneous;
 use super::passage::RandomStep;
@@ -85,7 +85,7 @@ pub(super) fn candidates(x: &Inputs, passages: &[RandomStep]) -> Vec<Candidate> 
         let powers = (1..=longest).filter_map(|n| {
             let mut c = trace(&vec![m; n])?;
             if n == 1 {
-                // Eigenvalues are told by `trace_J1`, `trace_J2`, ...
+                // The invariants `trace_J1`, `trace_J2`, ... represent the eigenvalues.
                 c.name = format!("trace_{}", power(&m.name, 1));
             }
             Some(c)
@@ -146,7 +146,7 @@ fn joined(words: &[&Piece]) -> String {
     runs.collect::<Vec<_>>().join("_")
 }
 
-/// `J2` for the square of `J`, `J1_2` for that of `J1`.
+/// `J2` for the square of `J`, `J1_2` for the square of `J1`.
 fn power(name: &str, n: usize) -> String {
     match name.ends_with(|c: char| c.is_ascii_digit()) {
         true => format!("{name}_{n}"),
@@ -177,7 +177,7 @@ fn is_first(letters: &[Piece], word: &[&Piece]) -> bool {
     })
 }
 
-/// All words of a length that are no power of one letter, in order.
+/// All words of this length that are not powers of one letter, in order.
 fn words(letters: &[Piece], length: usize) -> Vec<Vec<&Piece>> {
     let mut out: Vec<Vec<&Piece>> = vec![Vec::new()];
     for _ in 0..length {
@@ -296,7 +296,7 @@ fn areas(vectors: &[Piece]) -> Vec<Candidate> {
 /// Products of three vectors.
 fn products_in_three(vectors: &[Piece]) -> Vec<Candidate> {
     let three = |v: &&Piece| v.value.shape() == Shape::vector(Dim::Fixed(3));
-    // Of many vectors the first are enough: their scalar products are Casimirs already.
+    // If there are many vectors, the first eight are enough: the scalar products of all vectors are Casimirs already.
     let list: Vec<&Piece> = vectors.iter().filter(three).take(8).collect();
     let mut out = Vec::new();
     for (i, u) in list.iter().enumerate() {
@@ -315,8 +315,8 @@ fn products_in_three(vectors: &[Piece]) -> Vec<Candidate> {
     out
 }
 
-/// For SO(n): the part of a momentum that keeps an advected vector `a`, `|a|² μ - a a^T μ - μ a a^T`,
-/// by the squares of its entries and those of its powers.
+/// For SO(n): traces of even powers of the part of a momentum that preserves an advected vector `a`, `|a|² μ - a
+/// a^T μ - μ a a^T`.
 fn across(x: &Inputs, vectors: &[Piece]) -> Vec<Candidate> {
     let s = &x.letters.symbols;
     let mut out = Vec::new();
@@ -349,9 +349,9 @@ fn across(x: &Inputs, vectors: &[Piece]) -> Vec<Candidate> {
     out
 }
 
-/// For GL(n) with an advected form `C`: traces of powers of `C skew(C⁻¹ μ)`, and of its mirror images. Where the velocity is
-/// that of the body they are those of the angular momentum in space, by the metric that is seen from the body; where it is
-/// that of space those of the circulation, by the shape that is seen from there.
+/// For GL(n) with an advected form `C`: traces of powers of `C skew(C⁻¹ μ)`, and of its mirror images. If the
+/// velocity is in body axes, they are traces for the angular momentum in space, with the metric seen from the body.
+/// If the velocity is in spatial axes, they are traces for the circulation, with the shape seen from space.
 fn of_forms(x: &Inputs) -> Vec<Candidate> {
     let s = &x.letters.symbols;
     let mut out = Vec::new();

@@ -1,5 +1,5 @@
-//! What is carried along: the quantity that stands for a segment of a word, known already or
-//! declared with its name, structure, definition and constraint. Takes segments; gives letters.
+//! Advected quantities for segments of words: a quantity that is already declared, or a new one with its name,
+//! structure, definition and constraint. Takes segments; gives letters.
 
 use super::relative::Frame;
 use super::terms::{Carried, Reducer};
@@ -9,7 +9,7 @@ use crate::expr::symbol::{Role, SymbolId};
 use crate::expr::{self, Expr};
 
 impl Reducer<'_> {
-    /// The quantity that stands for a segment: known already, or a new one.
+    /// The quantity that replaces a segment: one that is already declared, or a new one.
     pub(super) fn segment(&mut self, w: &[Factor]) -> Expr {
         // Λ^T hat(z) Λ = hat(Λ^T z).
         if let [first, Factor::Hat(inner), last] = w
@@ -58,7 +58,7 @@ impl Reducer<'_> {
         }
     }
 
-    /// The element of a factor, and whether it is its rotation that stands there.
+    /// The element of a factor, and whether the factor is the element's rotation.
     fn body(&self, f: &Factor) -> Option<Frame> {
         let o = self.occurrence(f)?;
         Some((o.configuration.element, o.rotation))
@@ -77,7 +77,7 @@ impl Reducer<'_> {
         }
     }
 
-    /// `R^T z` by the plane `G^T ι z`, where that is carried.
+    /// `R^T z` by the plane `G^T ι z`, if this plane is advected.
     fn part_of_plane(&self, w: &[Factor]) -> Option<Expr> {
         let plane = self.plane_of(w)?;
         let c = self.carried.iter().find(|c| c.word == plane)?;
@@ -101,7 +101,7 @@ impl Reducer<'_> {
         let name = self.symbols.fresh_name(&self.name(w, &definition));
         let quantity = self.symbols.add(&name, shape, structure, Role::Advected);
         let own = expr::here(&self.symbols, quantity);
-        // Λ becomes Λ Ω: next to the quantity stands the velocity in the mode of the element.
+        // Λ becomes Λ Ω: the velocity, in the mode of the element, is next to the quantity.
         let velocity = |f: &Factor| -> Option<Expr> {
             let o = self.occurrence(f)?;
             let mut v = expr::here(&self.symbols, o.configuration.velocity);

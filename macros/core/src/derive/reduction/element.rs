@@ -1,6 +1,6 @@
-//! Elements of the groups as factors of words: as themselves, as the rotation of a quaternion or a rigid
-//! motion, and as the translation of a rigid motion, which is written by the whole motion. Takes
-//! factors; gives which element stands there, in which mode, and the side that must be absorbed.
+//! Elements of the groups as factors of words: as themselves, as the rotation of a quaternion or a rigid motion,
+//! and as the translation of a rigid motion, which is written by the whole motion. Takes factors; gives the element
+//! of a factor, its mode, and the side that must be absorbed.
 
 use super::terms::Reducer;
 use crate::algebra::{Factor, Source, Word, inclusion_of_space, last_unit};
@@ -11,13 +11,13 @@ use crate::expr::Letter;
 #[derive(Clone, Copy)]
 pub(super) struct Occurrence<'a> {
     pub(super) configuration: &'a Configuration,
-    /// Whether it is the rotation of the element that stands there.
+    /// Whether the factor is the rotation of the element.
     pub(super) rotation: bool,
     pub(super) transposed: bool,
     pub(super) inverted: bool,
 }
 
-/// On which side of an element the index lies that must not be left.
+/// The side of an element that must be absorbed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Open {
     Left,
@@ -25,7 +25,7 @@ pub(super) enum Open {
 }
 
 impl Occurrence<'_> {
-    /// Whether it is the inverse that stands there.
+    /// Whether the factor is the inverse of the element.
     pub(super) fn is_inverse(&self) -> bool {
         let orthogonal = self.rotation || self.configuration.group.structure().is_orthogonal();
         match orthogonal {

@@ -56,7 +56,7 @@ pub(super) fn gathered(spec: &Spec, algebra: &Algebra, ends: &[(Letter, Expr)]) 
     }
     let stated = expr::sum(apart, Shape::SCALAR);
     let together = algebra.shortest(&expr::substitute(s, &stated, ends));
-    // What is left at a node would be taken for a term that was stated there, and divided between its edges.
+    // A remainder at a node would be taken for a term that was stated there, and divided between its edges.
     let stays = split(s, &together).1.is_zero();
     match !algebra.exhausted() && stays && values(&together) < values(&stated) {
         true => expr::sum(others.into_iter().chain([together]), Shape::SCALAR),

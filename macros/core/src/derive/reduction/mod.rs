@@ -1,7 +1,7 @@
-//! Reduction of a model that is stated by its configuration at both ends of a step: `next(Λ)` is
-//! put in as `Λ Ω` (or `ω Λ`), and what is left of `Λ` is absorbed by parameters that are carried
-//! along, as `z` by `Λ^T z`. Takes a checked model; gives the reduced one, with the advected
-//! quantities that the statement holds. Of fields `next(X)` is put in as `X + ΔX`.
+//! Reduction of a model that is stated by its configuration at both ends of a step: `next(Λ)` becomes `Λ Ω` (or `ω
+//! Λ`), and the remaining `Λ` is absorbed by parameters, such as `z`: `Λ^T z` becomes an advected quantity. Takes a
+//! checked model; gives the reduced model, with the advected quantities of the statement. For fields, `next(X)`
+//! becomes `X + ΔX`.
 
 mod carry;
 mod element;
@@ -23,8 +23,8 @@ use crate::expr::{self, Expr, Letter, Shift};
 pub(crate) use increments::is_singular;
 use terms::Reducer;
 
-/// The reduced model; a model that has its velocities already is given back as it is. What no
-/// parameter absorbs is left as it was stated: the configuration stands in the equations then.
+/// The reduced model; a model that has its velocities already is given back as it is. If no parameter absorbs a
+/// configuration, the statement stays as it is: the configuration then occurs in the equations.
 pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
     let ends = increments::ends(&spec);
     let symbols = spec.symbols.clone();
@@ -57,8 +57,8 @@ pub fn reduce(mut spec: Spec) -> Result<Spec, Errors> {
     if algebra.exhausted() {
         return Err(too_large(&spec, &algebra).into());
     }
-    // A plane holds the vector of its normal: with the planes known from the start, the vector is
-    // not carried a second time.
+    // A plane contains the vector of its normal: if planes are known from the start, the vector is not advected a
+    // second time.
     let planes = r.planes();
     if !planes.is_empty() {
         r = Reducer::new(&spec, &algebra);
@@ -132,7 +132,7 @@ fn configurations_at_the_end(spec: &Spec) -> Vec<(Letter, Expr)> {
         .collect()
 }
 
-/// Whether some term of the edge holds the element at its end, in the place of a velocity.
+/// Whether some term of the edge contains the element at its end instead of a velocity.
 fn is_unreduced(spec: &Spec, edge: &Expr) -> bool {
     let groups = spec
         .configurations

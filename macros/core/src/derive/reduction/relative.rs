@@ -1,6 +1,6 @@
-//! Elements of SU(2) and SE(3) that stand only relative to one another: several bodies are written
-//! by the first one and the relative motions, and where the first drops out these are what is
-//! carried. Takes numbers; gives them in relative motions, which it declares.
+//! Elements of SU(2) and SE(3) that occur only relative to one another: several bodies are written by the first one
+//! and the relative motions. If the first one cancels, the relative motions are the advected quantities. Takes
+//! numbers; gives them in relative motions, which it declares.
 
 use super::settle::settled;
 use super::terms::{Carried, Reducer};
@@ -29,7 +29,7 @@ impl<'a> Reducer<'a> {
         if others.is_empty() || !others.iter().all(same) {
             return None;
         }
-        // On trial: the quantities are kept only when they serve.
+        // On trial: the quantities are kept only if they help.
         let known = (self.symbols.clone(), self.carried.len());
         let replaced: Vec<(Letter, Expr)> = others
             .iter()
@@ -52,7 +52,7 @@ impl<'a> Reducer<'a> {
         Some(e)
     }
 
-    /// The element of a body by that of the first one: `G1 (G1^-1 G2)`, or `(G1 G2^-1)^-1 G1`.
+    /// The element of a body, written by the element of the first body: `G1 (G1^-1 G2)`, or `(G1 G2^-1)^-1 G1`.
     fn by_first(&mut self, first: &Configuration, c: &Configuration) -> Expr {
         let between = self.motion_between(first, c);
         let g = expr::here(&self.symbols, first.element);
@@ -63,7 +63,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// The relative motion by those that are carried, or a new one.
+    /// The relative motion, written by advected ones, or a new one.
     fn motion_between(&mut self, a: &Configuration, b: &Configuration) -> Expr {
         if let Some(path) = self.path((a.element, false), (b.element, false)) {
             return expr::product(path);
@@ -101,9 +101,8 @@ impl<'a> Reducer<'a> {
         own
     }
 
-    /// The way from one body's frame to another's by relative elements that are carried already:
-    /// three bodies have two of them, whatever pairs the statement names. Whole elements give
-    /// their rotations as well.
+    /// The path from one body's frame to another's by relative elements that are already advected: three bodies need
+    /// two of them, whatever pairs the statement names. Whole elements also give their rotations.
     pub(super) fn path(&self, from: Frame, to: Frame) -> Option<Vec<Expr>> {
         let mut reached: Vec<(Frame, Vec<Expr>)> = vec![(from, Vec::new())];
         let mut k = 0;
@@ -125,7 +124,7 @@ impl<'a> Reducer<'a> {
         None
     }
 
-    /// A carried relative element as a step between two bodies, in both directions.
+    /// An advected relative element as a step between two bodies, in both directions.
     fn steps(&self, c: &Carried, rotation: bool) -> Vec<(Frame, Frame, Expr)> {
         let [a, b] = c.word.as_slice() else {
             return Vec::new();

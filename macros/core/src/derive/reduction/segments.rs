@@ -1,5 +1,5 @@
-//! Segments of words: an element, constants, an element again or the end. Each is one quantity that
-//! the group carries. Takes words; gives their factors with quantities in place of the segments.
+//! Segments of words: an element, constants, an element again or the end. Each becomes one advected quantity. Takes
+//! words; gives their factors with quantities in place of the segments.
 
 use super::element::Open;
 use super::terms::{LeftOver, Reduced, Reducer};
@@ -87,7 +87,7 @@ impl Reducer<'_> {
         Ok(out)
     }
 
-    /// A factor that is no element: what it holds inside is reduced.
+    /// A factor that is not an element: its contents are reduced.
     fn factor(&mut self, f: &Factor) -> Reduced {
         let transposed_if = |r: &Self, e: Expr, t: bool| match t {
             true => expr::transpose(&r.symbols, e),

@@ -1,12 +1,12 @@
-//! Parts of an expression in which the elements cancel, written without them: `q^T next(q)` is the
-//! velocity wherever it stands, so that the statement keeps the form in which it was typed. Takes
-//! expressions in elements and velocities; gives equal ones.
+//! Parts of an expression in which the elements cancel, written without them: `q^T next(q)` becomes the velocity
+//! wherever it occurs, so that the statement otherwise keeps its form. Takes expressions in elements and
+//! velocities; gives equal ones.
 
 use crate::algebra::{Algebra, Factor, Poly};
 use crate::expr::{self, Expr, Map, Node};
 
-/// The expression with every vector and matrix in it that needs no element written without one;
-/// `holds` says whether an element occurs.
+/// The expression with its vectors and matrices written without elements if possible; `holds` decides whether an
+/// element occurs.
 pub(super) fn settled(algebra: &Algebra, holds: &dyn Fn(&Expr) -> bool, e: &Expr) -> Expr {
     if !holds(e) {
         return e.clone();

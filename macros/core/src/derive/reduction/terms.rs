@@ -1,6 +1,6 @@
-//! Terms of an unreduced Lagrangian: sums and products as they were written, and the numbers in
-//! them by their normal form, word by word. Takes expressions in elements and velocities; gives
-//! them in velocities and carried quantities, or the word that holds an element still.
+//! Terms of an unreduced Lagrangian: sums and products as they were written, and the numbers in them by their
+//! normal form, word by word. Takes expressions in elements and velocities; gives them in velocities and advected
+//! quantities, or the word that still contains an element.
 
 use super::element::Open;
 use super::settle::settled;
@@ -26,12 +26,12 @@ pub(super) struct LeftOver;
 
 pub(super) type Reduced = Result<Expr, LeftOver>;
 
-/// Reduces expressions and collects what is carried along.
+/// Reduces expressions and collects the advected quantities.
 #[derive(Clone)]
 pub(super) struct Reducer<'a> {
     pub(super) spec: &'a Spec,
     pub(super) algebra: &'a Algebra<'a>,
-    /// The symbols, with those of the quantities found.
+    /// The symbols, including the quantities found.
     pub(super) symbols: Symbols,
     pub(super) carried: Vec<Carried>,
 }
@@ -49,7 +49,7 @@ impl<'a> Reducer<'a> {
 }
 
 impl<'a> Reducer<'a> {
-    /// A number: parts in which the elements cancel first, then what is left.
+    /// A number: parts in which the elements cancel come first, then the rest.
     pub(super) fn reduced(&mut self, e: &Expr) -> Reduced {
         let holds = |e: &Expr| self.holds_element(e);
         let e = settled(self.algebra, &holds, e);
@@ -108,7 +108,7 @@ impl<'a> Reducer<'a> {
         })
     }
 
-    /// `(Λ1 u) · (Λ2 v) = u · (Λ1^T Λ2) v` where an element stands before every term of each side.
+    /// `(Λ1 u) · (Λ2 v) = u · (Λ1^T Λ2) v` if an element precedes every term of each side.
     fn dot(&mut self, a: &Expr, b: &Expr) -> Option<Expr> {
         let (first, u) = self.front(a)?;
         let (second, v) = self.front(b)?;
@@ -161,7 +161,7 @@ impl<'a> Reducer<'a> {
         list.find(|c| c.element == symbol && !c.group.is_additive())
     }
 
-    /// Whether a factor is made of constants.
+    /// Whether a factor contains only parameters and the step size.
     pub(super) fn is_constant(&self, f: &Factor) -> bool {
         let term = Term {
             monomial: Vec::new(),
@@ -261,7 +261,7 @@ impl<'a> Reducer<'a> {
         }
     }
 
-    /// `det Q` of an element of GL(n), carried by `det G`.
+    /// `det Q` of an element of GL(n), multiplied in each step by the determinant of the velocity.
     fn determinant(&mut self, l: Letter) -> Expr {
         let element = expr::letter(&self.symbols, l.symbol, l.shift);
         let velocity = self.configuration(l.symbol).map(|c| c.velocity);

@@ -64,7 +64,7 @@ pub(super) fn assumptions(x: &Inputs) -> Vec<Warning> {
     out
 }
 
-/// Values near the given ones that the assumptions admit; the given ones where there are none.
+/// Values near the given ones that the assumptions admit; the given values if there are no such values.
 pub(super) fn admitted(x: &Inputs, values: Assignment) -> Option<Assignment> {
     if x.spec.assumptions.is_empty() {
         return Some(values);

@@ -15,9 +15,9 @@ pub(super) fn is_kept(x: &Inputs, e: &Expr) -> bool {
     kept(x, &smoothed(x, e))
 }
 
-/// The same with a smooth function in the place of jumps, `tanh(u)` for `sign(u)` and `u tanh(u)` for
-/// `abs(u)`: what is constant on both sides of a jump has no derivative there, and is not constant. What
-/// holds for the smooth ones by reasons of shape alone holds for these.
+/// Replaces functions with jumps by smooth ones: `sign(u)` by `tanh(u)` and `abs(u)` by `u tanh(u)`. An expression
+/// that is constant on both sides of a jump has derivative zero, although it is not constant. If a result for the
+/// smooth functions follows from the form alone, it also holds for the original ones.
 fn smoothed(x: &Inputs, e: &Expr) -> Expr {
     let e = expr::rebuild(&x.letters.symbols, e, &mut |c| smoothed(x, c));
     match e.node() {
@@ -30,7 +30,7 @@ fn smoothed(x: &Inputs, e: &Expr) -> Expr {
 fn kept(x: &Inputs, e: &Expr) -> bool {
     x.variations.iter().all(|v| {
         let changes = v.on_outgoing();
-        // Of many bodies a term holds one or two.
+        // If there are many bodies, a term contains one or two of them.
         let apart = !changes.iter().any(|(l, _)| expr::contains(e, *l));
         apart || x.vanishes(&expr::directional(&x.letters.symbols, e, &changes))
     })
@@ -62,10 +62,10 @@ pub(super) fn is_constant(x: &Inputs, e: &Expr) -> bool {
     kept(x, e) && at_the_end(x, e).all(|d| x.vanishes(&d))
 }
 
-/// Whether `e` is `F(q1, h) - F(q0, h)`, a constant among them: no derivative of it mixes its two ends,
-/// it is constant where they meet, and its derivative at its end is that a step later. `false` for what is too
-/// large, and for a difference over which a clock goes on: a clock that stands still in it makes it a force,
-/// `A(t)*(next(X) - X)` that of `-dA/dt`.
+/// Whether `e` is `F(q1, h) - F(q0, h)`, a constant among them: no derivative of it mixes its two ends, it is
+/// constant where they meet, and its derivative at its end is that a step later. `false` for an expression that is
+/// too large, and for a difference over which a clock advances. If the clock in it does not advance, the term is a
+/// force: `A(t)*(next(X) - X)` is the force `-dA/dt`.
 pub(super) fn is_total(x: &Inputs, e: &Expr) -> bool {
     let e = smoothed(x, &on_edge(x, e));
     let pairs = (x.spec.configurations.len() as u64).pow(2);

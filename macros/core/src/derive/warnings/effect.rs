@@ -6,7 +6,7 @@ use crate::expr::symbol::Role;
 use crate::expr::{self, Expr, Function, Node};
 use crate::syntax::unknown;
 
-/// One warning for each parameter that stands in no Lagrangian, constraint or definition.
+/// One warning for each parameter that occurs in no Lagrangian, constraint or definition.
 pub(super) fn parameters(x: &Inputs) -> Vec<Warning> {
     let spec = x.spec;
     let used: Vec<&Expr> = [&spec.typed]
@@ -23,7 +23,7 @@ pub(super) fn parameters(x: &Inputs) -> Vec<Warning> {
     };
     let assumed = spec.assumptions.iter().flat_map(|a| [&a.left, &a.right]);
     let assumed: Vec<&Expr> = assumed.collect();
-    // What an unused definition holds is told with it.
+    // The warning about an unused definition covers the parameters in it.
     let unused = |name: &str| spec.unused_lets.iter().any(|(own, _)| own == name);
     let hidden = spec.lets.iter().filter(|(name, _)| unused(name));
     let hidden: Vec<&Expr> = hidden.map(|(_, value)| value).collect();

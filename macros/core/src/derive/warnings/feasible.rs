@@ -12,7 +12,7 @@ use crate::interpret::{Assignment, Matrix, evaluate};
 use crate::syntax::ast::Comparison;
 use std::cell::Cell;
 
-/// What is asked of the parameters.
+/// A condition on the parameters.
 pub(super) struct Condition {
     difference: Expr,
     bound: Expr,
@@ -22,7 +22,7 @@ pub(super) struct Condition {
 /// Equal to this part of the size of the terms counts as equal.
 const EQUAL: f64 = 1e-9;
 
-/// By this part of the size of the terms an inequality is met, so that rounding is no matter.
+/// The relative margin by which an inequality must hold, so that rounding does not matter.
 const CLEAR: f64 = 1e-6;
 
 impl Condition {
@@ -88,7 +88,7 @@ const MOST: usize = 48;
 const ITERATIONS: usize = 40;
 
 impl<'a> Problem<'a> {
-    /// The problem of some conditions; nothing where too many entries would vary.
+    /// The problem of some conditions; `None` if too many entries would vary.
     pub(super) fn new(
         symbols: &'a Symbols,
         conditions: &'a [Condition],
@@ -121,7 +121,7 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// The parameters that stand in the conditions.
+    /// The parameters that occur in the conditions.
     pub(super) fn letters(&self) -> &[SymbolId] {
         &self.letters
     }
@@ -191,7 +191,7 @@ impl<'a> Problem<'a> {
         finite.then_some((d, bound))
     }
 
-    /// What vanishes where all conditions hold clearly.
+    /// A vector that vanishes if all conditions hold by a clear margin.
     fn residual(&self, values: &Assignment) -> Option<Vec<f64>> {
         let mut out = Vec::new();
         for c in self.conditions {

@@ -1,5 +1,5 @@
-//! Whether the action of a step has a limit of small steps. Takes the limit as derived; gives the
-//! warning that there is none, with what keeps it from having one.
+//! Whether the action of a step has a limit of small steps. Takes the limit as derived; gives the warning if it
+//! does not, with the reason.
 
 use super::terms::{action_of, place, typed};
 use super::{Inputs, Topic, Warning};
@@ -9,13 +9,13 @@ use crate::derive::limit::{self, Limit};
 use crate::diagnostic::Diagnostic;
 use crate::expr::{self, Expr};
 
-/// The warning, if there is no limit.
+/// The warning, if the limit does not exist.
 pub(super) fn limit(x: &Inputs) -> Option<Warning> {
     let why = x.limit.as_ref().err()?;
     if [limit::NOT_QUADRATIC, limit::DRIVEN].contains(&why.as_str()) {
         return None;
     }
-    // Of a model for all matrices those that are symmetric may have one.
+    // A model for all matrices may have a limit for symmetric ones.
     if let Some(action) = x.for_symmetric_matrices(x.action) {
         let algebra = x.engine();
         let special = limit_of(x, &action, &algebra);
@@ -82,7 +82,7 @@ fn limit_of(x: &Inputs, action: &Action, algebra: &Algebra<'_>) -> Result<Limit,
     limit::limit(x.spec, x.letters, action, x.variations, x.assumed, algebra)
 }
 
-/// The first of the terms that has no limit by itself, for the same reason; none where no term has one.
+/// The first term that has by itself no limit, for the same reason; none if this is true of every term.
 fn blamed(x: &Inputs, terms: &[Expr], why: &str) -> Option<Expr> {
     let without = |term: &&Expr| {
         let algebra = x.engine();

@@ -1,7 +1,7 @@
-//! What derives but is hardly meant: no kinetic energy, a wrong sign, a step of first order that
-//! looks symmetric, parameters and terms without effect, assumptions that say nothing. Takes a
-//! derivation's parts; gives warnings, each with its tokens and a way out. Nothing here changes
-//! what is derived, and work is bounded: what is too large to decide is not warned of.
+//! Warns about models that derive but are probably not intended: no kinetic energy, a wrong sign, a step of first
+//! order that looks symmetric, parameters and terms without effect, assumptions that say nothing. Takes a
+//! derivation's parts; gives warnings, each with its tokens and a way out. Nothing here changes the derivation, and
+//! the work is bounded: an expression that is too large to decide gives no warning.
 
 mod assumptions;
 mod difference;
@@ -33,16 +33,16 @@ use crate::expr::shape::Structure;
 use crate::expr::{self, Expr, Letter, Part, Shift};
 use crate::print::document::Remark;
 
-/// What a warning is about.
+/// The topic of a warning.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Topic {
-    /// The action of a step has no limit of small steps.
+    /// The action of a step does not have a limit of small steps.
     NoLimit,
     /// The kinetic energy does not depend on every velocity.
     DegenerateKineticEnergy,
     /// The kinetic energy is not positive.
     SignOfKineticEnergy,
-    /// The step is not symmetric under time reversal, though no rule of one side was asked for.
+    /// The step is not symmetric under time reversal, although the model does not request a one-sided rule.
     FirstOrder,
     /// A parameter that is used nowhere.
     UnusedParameter,
@@ -50,11 +50,11 @@ pub enum Topic {
     UnusedLet,
     /// A potential, or a term, that is constant along every motion.
     ConstantTerm,
-    /// A function that has no derivative somewhere, of what moves.
+    /// A function of a moving quantity that is not differentiable everywhere.
     NotSmooth,
     /// An assumption that every choice of the parameters meets, or none.
     Assumption,
-    /// A term of a lattice that holds one neighbour and not the site itself.
+    /// A term of a chain that contains one neighbour and not the site itself.
     OneNeighbour,
 }
 
@@ -79,7 +79,7 @@ impl Topic {
 /// One warning.
 #[derive(Clone, Debug)]
 pub struct Warning {
-    /// What it is about.
+    /// The topic.
     pub topic: Topic,
     /// Its tokens, its words and the way out.
     pub diagnostic: Diagnostic,
@@ -138,13 +138,13 @@ impl Inputs<'_> {
         }
     }
 
-    /// Whether an expression vanishes for all admitted parameters: at exact points. What is too
-    /// large counts as not vanishing.
+    /// Whether an expression vanishes for all admitted parameters: at exact points. Expressions that are too large
+    /// count as not vanishing.
     fn vanishes(&self, e: &Expr) -> bool {
         e.size() <= LARGEST && assumed::vanishes(&self.letters.symbols, self.assumed, e)
     }
 
-    /// An engine for what is decided once more, on what work is left.
+    /// An engine for further decisions, with the work that is left.
     fn engine(&self) -> Algebra<'_> {
         self.algebra.over(&self.letters.symbols)
     }
@@ -161,9 +161,9 @@ impl Inputs<'_> {
         )
     }
 
-    /// The action with the symmetric part in place of every square matrix among the parameters
-    /// that has no structure: a model for all matrices, as a general left factor, is judged by
-    /// those. Nothing where there is no such parameter.
+    /// The action with the symmetric part in place of every square parameter matrix without structure: a model for all
+    /// matrices, such as one with a general left factor, is judged by symmetric ones. `None` if there is no such
+    /// parameter.
     fn for_symmetric_matrices(&self, action: &Action) -> Option<Action> {
         let s = &self.letters.symbols;
         let symmetric: Vec<(Letter, Expr)> = self
@@ -205,7 +205,7 @@ pub(crate) fn warnings(x: &Inputs) -> Vec<Warning> {
             all.extend(sign::sign(x));
         }
     }
-    // Of a power of the step that is wrong one warning is enough.
+    // If a power of the step size is wrong, one warning is enough.
     let none = |k: &Kinetic| !k.first_order && k.rank.is_some_and(|r| r.0 == 0);
     let has_no_limit = |why: &String| *why != super::limit::DRIVEN;
     let mut power_is_wrong =

@@ -1,6 +1,5 @@
-//! Whether a step that looks symmetric is. Takes the reversal as derived; gives the warning that
-//! the action is not self-adjoint, on the terms that make it so, where that is not what the model
-//! asks for.
+//! Checks whether a step that looks symmetric is symmetric. Takes the reversal as derived; gives the warning that
+//! the action is not self-adjoint, at the terms that cause it, unless the model asks for such a step.
 
 use super::terms::{action_of, place, typed};
 use super::{Inputs, Topic, Warning, difference};
@@ -117,7 +116,7 @@ pub(super) fn order(x: &Inputs) -> Option<Warning> {
     Some(Warning::new(Topic::FirstOrder, d))
 }
 
-/// One text of those that differ by indices of sites alone, `q_{3,k}` and `q_{4,k}`.
+/// Keeps one of several texts that differ by indices of sites only, such as `q_{3,k}` and `q_{4,k}`.
 fn one_of_each(terms: &[String]) -> Vec<&String> {
     let mut seen: Vec<String> = Vec::new();
     let mut out = Vec::new();
@@ -136,9 +135,9 @@ fn one_of_each(terms: &[String]) -> Vec<&String> {
     out
 }
 
-/// Whether the step stands inside a root or an absolute value, as in `sqrt(h^2 - x)`: that is `h` times a
-/// root for positive steps, and its formal reversal is not that of the scheme. Of a functional no parity
-/// is known.
+/// Whether the step size occurs inside a root or an absolute value, as in `sqrt(h^2 - x)`. For positive steps this
+/// is `h` times a root, so that its formal reversal differs from the reversal of the scheme. The parity of a
+/// functional is not known.
 fn is_undecided(x: &Inputs, e: &Expr) -> bool {
     let h = at(x.spec.step, Shift::HERE);
     let inside = match e.node() {
@@ -153,8 +152,8 @@ fn is_undecided(x: &Inputs, e: &Expr) -> bool {
 /// The largest sum that is shown.
 const SHOWN: u32 = 40;
 
-/// What terms and their reverses add up to, in the shorter of two forms, as it comes and in normal form;
-/// nothing where both are too long to be read.
+/// The sum of terms and their reverses, in the shorter of two forms: as it is, or in normal form. `None` if both
+/// are too long to read.
 fn shown(x: &Inputs, terms: &[(Expr, Expr)]) -> Option<Expr> {
     let sums = terms.iter().map(|(_, sum)| sum.clone());
     let sum = expr::sum(sums, Shape::SCALAR);
@@ -167,8 +166,8 @@ fn shown(x: &Inputs, terms: &[(Expr, Expr)]) -> Option<Expr> {
     (shorter.size() <= SHOWN).then_some(shorter)
 }
 
-/// Those among the terms, as typed, that are not self-adjoint, each with the sum of it and its reverse.
-/// Two that are so together are none, and where all terms are, none is named.
+/// The terms, as typed, that are not self-adjoint, each with the sum of the term and its reverse. Terms that are
+/// self-adjoint together are left out, and if all terms are to blame, none is named.
 fn blamed(x: &Inputs, terms: Vec<Expr>) -> Vec<(Expr, Expr)> {
     let count = terms.len();
     let mut found: Vec<(Expr, Expr)> = Vec::new();
@@ -202,7 +201,7 @@ fn left_over(x: &Inputs, term: &Expr) -> Option<Expr> {
     (!difference::is_total(x, &sum)).then_some(sum)
 }
 
-/// The reversal of an action; nothing where the work ran out.
+/// The reversal of an action; `None` if the work limit was reached.
 fn reversed(x: &Inputs, action: &Action) -> Option<Reversal> {
     let algebra = x.engine();
     let found = reversal::reversal(x.spec, action, x.assumed, &algebra);

@@ -1,5 +1,5 @@
-//! Point masses held at a distance: second moments of rank one, whose spin about the line to the
-//! origin has no inertia. What is derived says so, and promises no step and no bounded energy.
+//! Point masses held at a distance: second moments of rank one, so that the spin about the line to the origin is
+//! without inertia. The derivation reports this, and promises neither a step nor a bounded energy.
 
 use super::Topic::DegenerateKineticEnergy;
 use crate::derive::Derivation;

@@ -13,7 +13,7 @@ use crate::expr::{self, Expr, Shift};
 use crate::interpret::{Assignment, evaluate};
 use std::collections::BTreeSet;
 
-/// What is said of signs, wherever a sign is wrong.
+/// The convention of signs, for every warning about a wrong sign.
 const CONVENTION: &str = "the Lagrangian states kinetic minus potential energy: of a body with \
      second moments J write `-tr(J*Ω)/h`, which is +½ ω·Iω times the step with I = tr(J) Id - J; \
      if what is typed is another multiple of the action, say which by `scale`";
@@ -129,7 +129,7 @@ pub(super) fn sign(x: &Inputs) -> Option<Warning> {
     Some(Warning::new(Topic::SignOfKineticEnergy, d))
 }
 
-/// Parameters that stand in products of different velocities only: where they are small enough they take nothing from the
+/// Parameters that occur only in products of different velocities: if they are small enough, they do not change the
 /// sign.
 fn joining(x: &Inputs, gradients: &[Expr]) -> BTreeSet<SymbolId> {
     let s = &x.letters.symbols;

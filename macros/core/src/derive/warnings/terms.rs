@@ -17,7 +17,7 @@ use crate::syntax::ast::NodeRule;
 /// Most nodes of the action, times parameters and pairs of ends, that are differentiated.
 const EVALUATED: u64 = 50_000;
 
-/// What to do about a term that is constant along every motion.
+/// The advice for a term that is constant along every motion.
 fn constant(x: &Inputs) -> &'static str {
     match x.spec.has_only_fields() {
         true => "let it depend on the configuration, or leave it out",
@@ -28,7 +28,7 @@ fn constant(x: &Inputs) -> &'static str {
     }
 }
 
-/// What to do about a term without a quantity that moves.
+/// The advice for a term without a moving quantity.
 fn moved(x: &Inputs) -> String {
     let [_, potential] = x.examples();
     format!("multiply it by a quantity that moves, as in `{potential}`, or leave it out")
@@ -42,8 +42,8 @@ fn moves(x: &Inputs, e: &Expr) -> bool {
     roles.any(|r| !matches!(r, Role::Parameter | Role::Step))
 }
 
-/// The Lagrangian as typed: the terms of its sum as they stand, where it is one, and all of them with
-/// common factors multiplied in.
+/// The Lagrangian as typed: the terms of its sum as they are, if it is a sum, and all terms with common factors
+/// multiplied in.
 pub(super) fn typed(x: &Inputs) -> (Vec<Expr>, Vec<Expr>) {
     let whole = &x.spec.typed;
     let addends = match whole.node() {
@@ -164,7 +164,7 @@ fn pairs<'a>(x: &Inputs, addends: &'a [Expr]) -> Vec<(&'a Expr, &'a Expr)> {
     .collect()
 }
 
-/// Whether a term holds a parameter, in a definition of what is carried too.
+/// Whether a term contains a parameter, possibly in the definition of an advected quantity.
 fn holds(x: &Inputs, term: &Expr, p: SymbolId) -> bool {
     let letters = expr::letters(&by_configuration(x.spec, term));
     letters.iter().any(|l| l.symbol == p)
@@ -278,7 +278,8 @@ pub(super) fn action_of(x: &Inputs, term: &Expr) -> Action {
     })
 }
 
-/// Where a term was typed: that of the same term without signs and divisors, else the Lagrangian.
+/// Where a term was typed: the position of the same term without signs and divisors, else the position of the
+/// Lagrangian.
 pub(super) fn place(x: &Inputs, term: Option<&Expr>) -> Place {
     fn core(e: &Expr) -> &Expr {
         match e.node() {

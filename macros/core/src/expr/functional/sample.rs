@@ -1,5 +1,4 @@
-//! Functionals for tests: each is an ordinary expression in letters of its own, by which it is answered,
-//! and which can be put in its place.
+//! Functionals for tests: each is an ordinary expression in its own letters, which evaluates it and can replace it.
 
 use super::{Applied, Functional, Kind, Reach, derived, given, pairing};
 use crate::expr::shape::{Dim, Shape, Structure};
@@ -207,7 +206,7 @@ fn what_is_answered_is_what_is_opened() {
     let e = s.of("f", &[&expr::here(&s.symbols, x)]);
     let [a, b] = [&e, &s.opened(&e)].map(|e| evaluate(&s.symbols, e, &values).unwrap().data[0]);
     assert!((a - b).abs() < 1e-15 && a.abs() > 0.1, "{a} {b}");
-    // Without a function there is no value.
+    // Without a function, evaluation fails.
     assert!(evaluate(&s.symbols, &e, &Assignment::new()).is_err());
     let along = derived(&s.symbols, s.along("f", &[&expr::here(&s.symbols, x)], &[]));
     assert_eq!(along, e);

@@ -4,7 +4,7 @@
 use super::{shown, skeleton};
 use crate::expr::symbol::GREEK;
 
-/// A row of pieces: what stands on the line, and the scripts of its last piece.
+/// A row of pieces: the text on the line, and the scripts of its last piece.
 #[derive(Default)]
 struct Row {
     line: String,
@@ -68,7 +68,7 @@ fn row(rest: &mut Rest) -> Row {
     out
 }
 
-/// What a script or a command applies to: a group in braces, or one piece.
+/// The argument of a script or a command: a group in braces, or one piece.
 fn argument(rest: &mut Rest) -> String {
     while rest.next_if(|c| c.is_whitespace()).is_some() {}
     match rest.next() {

@@ -1,4 +1,4 @@
-//! What every `let` stands for, put in where its name stands: supports are decided on whole terms.
+//! Replaces the name of every `let` by its expression: supports are decided on whole terms.
 
 use super::LARGEST;
 use crate::diagnostic::{Diagnostic, Errors};
@@ -6,7 +6,7 @@ use crate::lattice::put::any_name;
 use crate::syntax::ast::{Expression, Kind, Model, Name, Statement};
 use std::collections::BTreeMap;
 
-/// What every `let` stands for, others put in.
+/// The expression of every `let`, with other definitions substituted.
 pub(crate) fn definitions(model: &Model) -> Result<BTreeMap<String, Expression>, Errors> {
     let mut out = BTreeMap::new();
     let stated: Vec<(&Name, &Expression)> = model

@@ -55,7 +55,7 @@ impl Writer<'_> {
                 Ok(both) => both,
                 Err(d) => return self.errors.push(*d),
             };
-            // What stands still at both ends of a segment needs no multiplier.
+            // If neither side of the constraint moves, a multiplier is not needed.
             let moving = [&left, &right].iter().any(|e| self.put(site).is_moving(e));
             let Ok(site) = usize::try_from(site) else {
                 continue;
@@ -78,8 +78,9 @@ impl Writer<'_> {
             self.push(stated, docs);
         }
     }
-    /// The offset of the first site that a constraint holds, where that is one before its index: it is counted from there, so
-    /// that `x - prev(x, i)` is the constraint `next(x, i) - x`. Once around a ring that would not be so of fields that grow.
+    /// The offset of the first site of a constraint, if that is before its index: the constraint is counted from there,
+    /// so that `x - prev(x, i)` is the constraint `next(x, i) - x`. Zero for fields that grow once around a ring, for
+    /// which the two differ.
     pub(super) fn first_counted(&self, e: &Expression, letters: &[(Sites, isize)]) -> isize {
         let grows = |n: &str| self.lattice.find(n).is_some_and(|q| q.offset.is_some());
         let first = letters.iter().map(|(_, offset)| *offset).min();

@@ -1,5 +1,5 @@
-//! Functionals of all sites in a model that is written out: with one site, whose letters stand for those of
-//! all, `A(X)` is a function of which the engine knows the reach.
+//! Functionals of all sites in an expanded model: it has one site, and the letters of this site represent all
+//! sites. `A(X)` is a function whose reach the engine knows.
 
 use super::Writer;
 use crate::diagnostic::Diagnostic;

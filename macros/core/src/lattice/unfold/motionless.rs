@@ -1,5 +1,5 @@
-//! Sites of a configuration that no kinetic term reaches, in the words of the statement. Takes the model written out; gives
-//! which sites those are, and what to declare.
+//! Sites of a configuration that no kinetic term reaches, in the words of the statement. Takes the expanded model;
+//! gives which sites those are, and what to declare.
 
 use super::ExpandedModel;
 use crate::check::spec::{Configuration, Spec};

@@ -1,4 +1,5 @@
-//! What does not move: configurations that are given at an end, their velocities, and what follows them.
+//! Quantities that do not move: configurations prescribed at an end, their velocities, and the quantities that
+//! follow them.
 
 use super::definitions::inlined;
 use super::{Writer, velocity_of};
@@ -34,7 +35,8 @@ impl Writer<'_> {
         }
     }
 
-    /// Finds advected quantities that follow what stands still; whether there were more of them than known before.
+    /// Finds advected quantities that follow prescribed ones. Returns whether it found more of them than were known
+    /// before.
     fn followers(&mut self, model: &Model) -> bool {
         let before = self.pinned.len();
         for q in self.lattice.quantities.iter() {
@@ -50,7 +52,7 @@ impl Writer<'_> {
             let Some(update) = update.map(|u| inlined(u, self.lets)) else {
                 continue;
             };
-            // What goes on by itself, as a clock does, follows nothing.
+            // A quantity that advances by itself, such as a clock, does not follow another quantity.
             let follows = |n: &str| n != q.name.text && self.lattice.moving.contains(n);
             if !any_name(&update, &follows) {
                 continue;
@@ -88,8 +90,8 @@ impl Writer<'_> {
         self.pinned.len() > before
     }
 
-    /// Whether the constraint of a copy leaves it as it is: nothing else that moves stands in it, and with what
-    /// is given put in, it gives the copy itself.
+    /// Whether the constraint of a copy leaves it as it is: it contains no other moving quantity, and with prescribed
+    /// values substituted it gives the copy itself.
     fn stands_still(&self, model: &Model, own: &str, update: &Expression, at: isize) -> bool {
         let Ok(put) = self.put(at).put(update) else {
             return false;

@@ -1,5 +1,6 @@
-//! Held constraints on sums over sites, `hold p: sum(m*φ) = X;`: written out they have one multiplier. Takes both
-//! sides as stated; gives the sums over the sites that exist, and what is summed, where the constraint is linear in its sums.
+//! Constraints on sums over sites, `hold p: sum(m*φ) = X;`: in the expanded model they have one multiplier. Takes
+//! both sides as stated; gives the sums over the sites that exist, and what is summed, where the constraint is
+//! linear in its sums.
 
 use super::{LARGEST, Writer};
 use crate::diagnostic::{Diagnostic, Place};
@@ -13,13 +14,13 @@ use crate::syntax::ast::{Expression, Kind, Name, Statement};
 pub struct StatedTotal {
     /// The name of its multiplier.
     pub name: String,
-    /// What is summed, left side less right side; none where the constraint is not linear in its sums.
+    /// The summed terms, left side minus right side; `None` if the constraint is not linear in its sums.
     pub summed: Option<Vec<Summed>>,
-    /// What stands beside the sums, left side less right side.
+    /// The terms outside the sums, left side minus right side.
     pub rest: Expression,
 }
 
-/// What is summed over sites.
+/// A summand and the sites of its sum.
 #[derive(Clone, Debug)]
 pub struct Summed {
     /// It, at the site where it is shown.
@@ -32,7 +33,7 @@ pub struct Summed {
     pub letters: Vec<(Sites, isize)>,
 }
 
-/// Where the letters of a sum stand, and the sites that it states.
+/// The offsets of the letters of a sum, and the sites that it states.
 fn over(lattice: &Lattice, call: &Expression) -> Result<Reach, Diagnostic> {
     match &call.kind {
         Kind::Call(_, arguments) => match arguments.as_slice() {
@@ -52,7 +53,7 @@ fn sum_of(terms: Vec<(bool, Expression)>, place: Place) -> Expression {
     Expression { kind, place }
 }
 
-/// Terms with one sum each or none, with their signs; none where an expression is not linear in its sums.
+/// Terms with one sum each or none, with their signs; `None` if an expression is not linear in its sums.
 fn terms(e: &Expression) -> Option<Vec<(bool, Expression)>> {
     if summand(e).is_some() || !has_sum(e) {
         return Some(vec![(false, e.clone())]);
@@ -87,7 +88,7 @@ fn terms(e: &Expression) -> Option<Vec<(bool, Expression)>> {
     Some(own.collect())
 }
 
-/// What is summed in a term of one sum: the term with the summand in the place of the sum, and the call.
+/// The summand in a term with one sum: the term with the summand in place of the sum, and the call.
 fn opened(term: &Expression) -> (Expression, Option<&Expression>) {
     if let Some(inner) = summand(term) {
         return (inner.clone(), Some(term));
@@ -155,7 +156,7 @@ impl Writer<'_> {
         self.push(stated, docs);
     }
 
-    /// What a term of one sum sums, at the middle of its range.
+    /// The summand of a term with one sum, at the middle of its range.
     fn one_summed(&self, minus: bool, term: &Expression) -> Option<Summed> {
         let (open, call) = opened(term);
         let found = over(self.lattice, call?).ok()?;
@@ -172,7 +173,7 @@ impl Writer<'_> {
         })
     }
 
-    /// An expression with its sums written out.
+    /// An expression with its sums expanded.
     fn summed(&self, e: &Expression) -> Result<Expression, Box<Diagnostic>> {
         let refused = |d: Diagnostic| Err(Box::new(d));
         if let Kind::Name(n) = &e.kind
@@ -195,7 +196,7 @@ impl Writer<'_> {
         }
         let found = over(self.lattice, e).map_err(Box::new)?;
         let range = found.range(self.lattice, self.choice);
-        // Of a name that is not declared the check says more.
+        // For a name that is not declared, the check gives a better message.
         if found.letters.is_empty()
             && names(inner)
                 .iter()

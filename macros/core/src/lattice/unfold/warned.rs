@@ -1,4 +1,4 @@
-//! What derives on a lattice and is hardly meant, in the words of the statement.
+//! Warnings about models that derive on a chain but are probably not intended, in the words of the statement.
 
 use super::ExpandedModel;
 use crate::derive::warnings::{Topic, Warning, unused_let};
@@ -8,7 +8,7 @@ use crate::syntax::ast::{Expression, Extent, Model, Name, Statement};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-/// The sum of such a term starts or ends a site later than that of the same term at the site itself.
+/// The sum of such a term starts or ends one site later than the sum of the same term at the site itself.
 pub(super) fn one_neighbour(stated: &Expression) -> Warning {
     let message = "this term holds a neighbour and not the site itself: it is summed over the sites that have this neighbour, all but the one at the end";
     let d = Diagnostic::new(stated.place, message).help(
@@ -39,8 +39,9 @@ pub(super) fn without_a_ring(offset: &Name) -> Warning {
 }
 
 impl ExpandedModel {
-    /// What is hardly meant, in the words of the statement: of terms first, then what the derivation
-    /// finds. Of a line that is held or short, what is unused or constant there may be neither on others.
+    /// Warnings in the words of the statement: warnings about terms first, then the warnings of the derivation. On a
+    /// short chain, or with prescribed ends, a quantity may be unused or constant although it is neither on other
+    /// chains.
     pub fn told(&self, choice: &Choice, found: &[Warning]) -> Vec<Warning> {
         let shortest = 2 * self.width() + 2;
         // Without neighbours one site tells of all.
@@ -52,7 +53,7 @@ impl ExpandedModel {
             let place = |w: &Warning| format!("{:?}", w.diagnostic.place);
             let known = |o: &Warning| o.topic == w.topic && place(o) == place(w);
             let stated = self.warnings.iter().any(known);
-            // What no statement names is unused on every line.
+            // A parameter that no statement names is unused on every chain.
             let of_every_line =
                 w.topic == Topic::UnusedParameter && self.stands_in(&self.named.not_at_all, w);
             let of_this_choice = of_this_choice && !of_every_line;
@@ -83,7 +84,8 @@ impl ExpandedModel {
         })
     }
 
-    /// Whether what is said of a copy of a quantity is said of all of them: the terms of a line may leave out its last site.
+    /// Whether a warning about one copy of a quantity applies to all its copies: the terms of a chain may leave out its
+    /// last site.
     fn of_all_copies(&self, w: &Warning, found: &[Warning]) -> bool {
         let of = |w: &Warning| {
             let name = w.diagnostic.message.split('`').nth(1)?;
@@ -97,7 +99,7 @@ impl ExpandedModel {
         told.count() >= copies.count()
     }
 
-    /// A text with the names of quantities in the place of those of copies.
+    /// A text with the names of copies replaced by the names of their quantities.
     pub(super) fn without_sites(&self, text: &str) -> String {
         let is_part = |c: char| c.is_alphanumeric() || c == '_';
         let mut out = String::new();
@@ -113,7 +115,7 @@ impl ExpandedModel {
     }
 }
 
-/// What a statement names, whatever the choice.
+/// The names in a statement, whatever the choice.
 #[derive(Clone, Debug)]
 pub(super) struct Named {
     /// Parameters that nothing names.
@@ -170,7 +172,7 @@ fn of_ends(model: &Model) -> BTreeSet<String> {
     found
 }
 
-/// Whether a name stands in an expression of the model, or is what a field grows by or lies in.
+/// Whether a name occurs in an expression of the model, or as the offset or domain of a field.
 fn is_named(model: &Model, name: &str) -> bool {
     let used = |e: &Expression| any_name(e, &|n| n == name);
     model.statements.iter().any(|s| match s {
@@ -182,7 +184,7 @@ fn is_named(model: &Model, name: &str) -> bool {
             };
             offset.iter().chain(lengths).any(|n| n.text == name)
         }
-        // What a function is written out by stands where it is called.
+        // The body of a function counts where the function is called.
         Statement::Given { .. } => false,
         _ => s.expressions().into_iter().any(used),
     })

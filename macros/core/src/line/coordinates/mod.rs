@@ -1,6 +1,6 @@
-//! Linear maps, rotations of the plane and rigid motions along a line in coordinates: a linear map by its entries, a
-//! rotation of the plane by its angle, a rigid motion by its rotation and its place. Takes a model with labels as stated;
-//! gives the same action in fields and rotations, which loops over sites take.
+//! Linear maps, rotations of the plane and rigid motions along a chain in coordinates: a linear map by its entries,
+//! a rotation of the plane by its angle, a rigid motion by its rotation and its position. Takes a model with labels
+//! as stated; gives the same action in fields and rotations, which loops over sites take.
 
 mod motions;
 mod restated;
@@ -20,29 +20,30 @@ use crate::syntax::ast::{Kind, Kindred, Model, Size, Statement};
 pub struct Coordinates {
     /// Its name.
     pub name: String,
-    /// On which side its velocity stands, and its momentum is given.
+    /// The side of its velocity, in whose frame its momentum is given.
     pub side: Side,
-    /// What stands for it.
+    /// Its coordinates.
     pub by: By,
-    /// What the model says of it.
+    /// Its documentation in the model.
     pub doc: String,
 }
 
-/// What stands for an element.
+/// The coordinates of an element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum By {
-    /// Of a linear map its entries, a field of matrices of so many rows and of the same name.
+    /// The entries of a linear map: a field of matrices with this many rows, of the same name.
     Entries(usize),
-    /// Of a rotation of the plane its angle, a field of numbers of this name.
+    /// The angle of a rotation of the plane: a field of numbers with this name.
     Angle(String),
-    /// Of a rigid motion of the plane its angle and its place, fields of these names.
+    /// The angle and the position of a rigid motion of the plane: fields with these names.
     AngleAndPlace(String, String),
-    /// Of a rigid motion of space its rotation and its place, a configuration of `SO<3>` and a field of these names.
+    /// The rotation and the position of a rigid motion of space: a configuration of `SO<3>` and a field, with these
+    /// names.
     TurnAndPlace(String, String),
 }
 
 impl Coordinates {
-    /// The names of what stands for it.
+    /// The names of its coordinates.
     pub fn names(&self) -> Vec<&str> {
         match &self.by {
             By::Entries(_) => vec![&self.name],
@@ -53,7 +54,7 @@ impl Coordinates {
         }
     }
 
-    /// What stands for it, in words.
+    /// A description of its coordinates.
     pub fn words(&self) -> String {
         let name = &self.name;
         match &self.by {
@@ -73,14 +74,14 @@ impl Coordinates {
 struct Stated {
     of: Coordinates,
     velocity: String,
-    /// Of a rotation the name of its velocity.
+    /// For a rotation, the name of its velocity.
     turning: String,
 }
 
-/// The same model in coordinates, and of what; none where nothing along a line asks for them.
+/// The model in coordinates, and the elements concerned; `None` if nothing along the chain requires coordinates.
 ///
 /// # Errors
-/// Mistakes of the model as stated; a form that has no such coordinates.
+/// Mistakes of the model as stated; a form without such coordinates.
 pub(super) fn in_coordinates(
     model: &Model,
     lattice: &Lattice,
@@ -89,7 +90,7 @@ pub(super) fn in_coordinates(
     if all.is_empty() {
         return Ok(None);
     }
-    // What is wrong with the model is said of it as it is stated.
+    // Mistakes are reported for the model as it is stated.
     written(model, lattice, pipeline::representative(model, lattice)?)?;
     let restated = restated::restated(model, &all)?;
     Ok(Some((restated, all.into_iter().map(|x| x.of).collect())))
@@ -100,7 +101,7 @@ pub fn restated(model: &Model, lattice: &Lattice) -> Option<Model> {
     restated::restated(model, &stated(model, lattice)).ok()
 }
 
-/// What is kept in coordinates.
+/// The elements that are written in coordinates.
 fn stated(model: &Model, lattice: &Lattice) -> Vec<Stated> {
     let mut out = Vec::new();
     for (statement, docs) in model.statements.iter().zip(&model.remarks) {
@@ -153,7 +154,7 @@ fn size(of: &Kindred) -> Option<usize> {
     }
 }
 
-/// On which side of a configuration its velocity stands.
+/// The side of a configuration on which its velocity acts.
 fn side_of(model: &Model, element: &str, velocity: &str) -> Option<Side> {
     model.statements.iter().find_map(|s| match s {
         Statement::Constraint { name, value, .. } if name.text == element => {
@@ -175,7 +176,7 @@ fn side_of(model: &Model, element: &str, velocity: &str) -> Option<Side> {
     })
 }
 
-/// A name that the model does not bear, a letter with the name of what it stands for.
+/// An unused name: a letter with the name of the element.
 fn fresh(model: &Model, letter: &str, of: &str) -> String {
     let taken = |name: &str| {
         let mut declared = model.statements.iter().flat_map(Statement::declared);

@@ -1,5 +1,6 @@
-//! Homogeneous matrices taken apart: a product of rigid motions by the rotation and the place of each, a vector that they
-//! carry by its part in space and its last component. Takes expressions as stated; gives them in coordinates.
+//! Homogeneous matrices in parts: a product of rigid motions becomes the rotation and the position of each. A
+//! vector on which they act becomes its part in space and its last component. Takes expressions as stated; gives
+//! them in coordinates.
 
 use super::{By, Stated, size};
 use crate::algebra::Rational;
@@ -68,13 +69,13 @@ impl<'a> Motions<'a> {
         }
     }
 
-    /// Whether a name is that of a motion that moves, or of its velocity.
+    /// Whether this is the name of a motion that moves, or of its velocity.
     pub(super) fn moves(&self, name: &str) -> bool {
         let mut all = self.all.iter();
         all.any(|x| x.of.name == name || x.velocity == name)
     }
 
-    /// The expression, rotations and places in the place of `rot` and `pos` of motions, and of vectors that they carry.
+    /// Replaces `rot` and `pos` of motions, and vectors on which motions act, by rotations and positions.
     pub(super) fn apart(&self, e: &Expression) -> Expression {
         if self.all.is_empty() {
             return e.clone();
@@ -169,7 +170,7 @@ impl<'a> Motions<'a> {
         Some([turn, moved])
     }
 
-    /// A product: an inverse with what follows it by the difference of their places.
+    /// A product: an inverse is combined with the next factor by the difference of their positions.
     fn composed(&self, e: &Expression, list: &[Expression]) -> Option<Two> {
         let mut out: Option<Two> = None;
         let mut rest = list;
@@ -204,7 +205,7 @@ impl<'a> Motions<'a> {
         out
     }
 
-    /// Whether it is a vector that a motion carries.
+    /// Whether it is a vector on which a motion acts.
     fn carries(&self, e: &Expression) -> bool {
         match &e.kind {
             Kind::Product(list) => match list.as_slice() {

@@ -1,4 +1,4 @@
-//! The statements of a model in coordinates: what is declared, what constrains it, what ends hold, and every expression.
+//! The statements of a model in coordinates: declarations, constraints, prescribed ends, and every expression.
 
 use super::motions::{Motions, call, kind, kindred, name, product, sum, turn_by};
 use super::{By, Stated};
@@ -31,7 +31,7 @@ pub(super) fn restated(model: &Model, all: &[Stated]) -> Result<Model, Refused> 
     Ok(out)
 }
 
-/// Quantities that such configurations carry are put in by what they are.
+/// Substitutes the definitions of quantities that such configurations advect.
 fn without_carried(model: &Model, all: &[Stated]) -> Result<Model, Refused> {
     let own = all.iter().flat_map(|x| [&x.of.name, &x.velocity]);
     let mut moved: BTreeSet<String> = own.cloned().collect();
@@ -97,7 +97,7 @@ fn without_carried(model: &Model, all: &[Stated]) -> Result<Model, Refused> {
     Ok(out)
 }
 
-/// The statements that stand for one, their expressions not yet in coordinates.
+/// The statements that replace one statement; their expressions are not yet in coordinates.
 fn in_place_of(statement: &Statement, all: &[Stated]) -> Vec<Statement> {
     let found = |n: &Name| all.iter().find(|x| x.of.name == n.text);
     match statement {
@@ -157,7 +157,7 @@ fn renamed(name: &Name, text: &str) -> Name {
     }
 }
 
-/// What is declared in the place of a group.
+/// The declarations that replace a group.
 fn declared(x: &Stated, own: &Name, at: Option<&At>) -> Vec<Statement> {
     let field = |text: &str, family: &str, n: Option<usize>| Statement::Field {
         names: vec![renamed(own, text)],

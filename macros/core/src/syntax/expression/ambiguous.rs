@@ -1,5 +1,6 @@
-//! What could be read in two ways, or is written as in another language: each is refused with both
-//! ways to write it. Takes what was read and the cursor after it; gives the error, if there is one.
+//! Expressions that could be read in two ways, or that are written as in another language: each is an error that
+//! shows both ways to write it. Takes the parsed expression and the cursor after it; gives the error, if there is
+//! one.
 
 use super::{Cursor, Expression, Kind, Token, unknown};
 use crate::algebra::Rational;
@@ -12,7 +13,7 @@ const SUFFIXES: [&str; 14] = [
     "usize",
 ];
 
-/// What a message calls an operand: as it was written where that is one word.
+/// The name of an operand in a message: as it was written, if that is one word.
 fn spelled(e: &Expression) -> &str {
     match &e.kind {
         Kind::Name(name) => name,
@@ -20,7 +21,7 @@ fn spelled(e: &Expression) -> &str {
     }
 }
 
-/// `x/a b`: nobody knows whether `b` is above or below the line.
+/// `x/a b`: it is unclear whether `b` is in the numerator or in the denominator.
 pub(super) fn after_divisor(c: &Cursor, divisor: &Expression) -> Diagnostic {
     let next = match c.peek() {
         Some(Token::Glued(number, name)) => return glued(c, number, name),
@@ -86,9 +87,9 @@ fn of_another_base(number: &str, name: &str) -> Option<Option<u128>> {
     (number == "0" && all).then(|| u128::from_str_radix(&digits, base).ok())
 }
 
-/// What stands without `*` after a factor: a number (`v[1] 2`, `(a + b)2`: a product, a power, an
-/// index?), or parentheses after what looks like a call, an index or a power (`dot(a, b)(2)`).
-/// `opened` is whether the factor began with a parenthesis.
+/// The error for a missing `*` after a factor, before one of these: a number (`v[1] 2`, `(a + b)2`: a product, a
+/// power, an index?), or parentheses after what looks like a call, an index or a power (`dot(a, b)(2)`). `opened`
+/// is whether the factor began with a parenthesis.
 pub(super) fn after_factor(
     c: &Cursor,
     factor: Option<&Expression>,
@@ -127,7 +128,7 @@ pub(super) fn after_factor(
     Some(Diagnostic::new(factor.place.to(c.place()), what).help(remedy))
 }
 
-/// `sin^2(q)`, `sin^-1(x)`: a function stands before its argument, a power behind it.
+/// `sin^2(q)`, `sin^-1(x)`: a power is written after the argument of the function.
 fn power_of_function(factor: &Kind, place: Place) -> Option<Diagnostic> {
     let Kind::Power(base, q) = factor else {
         return None;

@@ -1,27 +1,27 @@
 //! Functions of other languages: how the language writes them, or that it cannot.
 
-/// There is no function for the angle of a ratio.
+/// The advice for inverses of trigonometric functions.
 const NO_INVERSE: &str = "the language has no inverse of sine, cosine or tangent. Make the angle itself a configuration, for \
     example `field θ: Real;`, so that its potential `k*θ^2/2` can be stated";
 
-/// Cases are made of `abs` and `sign`.
+/// The advice for functions in pieces.
 const NO_CASES: &str = "functions in pieces are not supported yet, except by `abs` and `sign`: `(x + abs(x))/2` is x where x > 0 \
     and 0 elsewhere, `(1 + sign(x))/2` is 1 or 0";
 
 /// A rate of change is a difference.
 const RATE: &str = "the discrete Lagrangian writes a rate of change as a difference over the step: `(next(x) - x)/h`";
 
-/// Angles have no unit.
+/// The advice for units of angles.
 pub(crate) const RADIANS: &str = "angles are in radians: 30 degrees are `30*pi/180`, or `pi/6`";
 
 /// Derivatives and integrals are taken by the engine.
 const ENGINE: &str = "state the Lagrangian itself: derivatives are taken by the engine";
 
-/// There is no sum over pairs of sites.
+/// The advice for sums over pairs of sites.
 pub(crate) const PAIRS: &str = "terms couple neighbours along a label, not all pairs of sites. Declare the bodies one by one, \
     `field x, y, z: Vec<3>;`, and write a term for each pair";
 
-/// How the language writes a function of another language, or what to do where it has none.
+/// How the language writes a function of another language, or what to do if it does not have the function.
 pub(crate) fn function(name: &str) -> Option<&'static str> {
     Some(match name {
         "norm" | "Norm" | "length" | "len" | "magnitude" | "mag" | "hypot" | "modulus" => {

@@ -19,13 +19,13 @@ const CONSTANTS: [(&str, &str); 15] = [
     ("identity", "Id"),
 ];
 
-/// What the time step is called elsewhere.
+/// Names of the time step elsewhere.
 pub(crate) const STEPS: [&str; 7] = ["h", "dt", "Dt", "Δt", "delta_t", "deltat", "tau"];
 
-/// What time is called.
+/// Names of time.
 pub(crate) const TIMES: [&str; 2] = ["t", "time"];
 
-/// What a velocity is called.
+/// Names of a velocity.
 pub(crate) const VELOCITIES: [&str; 5] = ["v", "vel", "velocity", "xdot", "qdot"];
 
 /// Units of angles.
@@ -42,7 +42,7 @@ pub(crate) fn name(name: &str) -> Option<&'static str> {
     found.map(|(_, written)| *written)
 }
 
-/// What other languages call a shape.
+/// The shape that has this name in other languages.
 pub(crate) fn shape(name: &str) -> Option<&'static str> {
     Some(match name {
         "Scalar" | "Number" | "R" | "ℝ" | "f64" | "Float" | "float" | "Double" | "double"

@@ -17,7 +17,7 @@ pub(in crate::syntax) fn ends_expression(c: &Cursor) -> Option<Diagnostic> {
     })
 }
 
-/// What is said of a sign in the place of the `;` of a statement.
+/// The advice for a sign in place of the `;` of a statement.
 pub(in crate::syntax) fn ends_statement(c: &Cursor) -> &'static str {
     match c.peek() {
         Some(Token::Open('(')) => SIZES,
@@ -36,7 +36,7 @@ pub(in crate::syntax) fn ends_statement(c: &Cursor) -> &'static str {
     }
 }
 
-/// What is said of a sign in the place of a quantity.
+/// The error for a sign in place of a quantity.
 pub(in crate::syntax) fn instead_of_operand(c: &Cursor) -> Diagnostic {
     let error = c.unexpected("a quantity, a number or `(`");
     match c.peek() {
@@ -111,7 +111,7 @@ fn point(c: &Cursor) -> Option<Diagnostic> {
     Some(d.help(help))
 }
 
-/// `A @ b`, `(a, b)` and what else stands between quantities elsewhere.
+/// The error for `A @ b`.
 fn product(c: &Cursor) -> Option<Diagnostic> {
     let Some(Token::Punct('@', _)) = c.peek() else {
         return None;

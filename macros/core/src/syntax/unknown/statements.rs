@@ -42,7 +42,8 @@ pub(crate) fn is_force(name: &str) -> bool {
     FORCES.contains(&name) || FRICTION.contains(&name)
 }
 
-/// What a statement that begins with this word may have been meant to be; the cursor stands after the word.
+/// The error for a statement that begins with this word, with the statement that was probably meant. The cursor is
+/// after the word.
 pub(in crate::syntax) fn statement(c: &Cursor, keyword: &Name) -> Diagnostic {
     let word = keyword.text.as_str();
     let force = FORCES.contains(&word);
@@ -57,7 +58,7 @@ pub(in crate::syntax) fn statement(c: &Cursor, keyword: &Name) -> Diagnostic {
     Diagnostic::new(keyword.place, message).help(meant(c, word))
 }
 
-/// Declarations of other languages, with the statement that is meant.
+/// The statement to write instead of a declaration of another language.
 fn declaration(word: &str) -> Option<&'static str> {
     Some(match word {
         "var" | "variable" | "variables" | "state" | "coordinate" | "coordinates" | "coord"
@@ -96,7 +97,7 @@ fn declaration(word: &str) -> Option<&'static str> {
     })
 }
 
-/// What else the word may have been meant for.
+/// The advice for other meanings of the word.
 fn meant(c: &Cursor, word: &str) -> String {
     let assigned = matches!(c.peek(), Some(Token::Punct('=', _)));
     if assigned && let Some(said) = assignment(c, word) {
@@ -119,7 +120,7 @@ fn meant(c: &Cursor, word: &str) -> String {
     }
 }
 
-/// What `word = ...` is meant for, where it is no abbreviation.
+/// The probable meaning of `word = ...`, if it is not an abbreviation.
 fn assignment(c: &Cursor, word: &str) -> Option<String> {
     let number = match (c.peek_at(1), c.peek_at(2)) {
         (Some(Token::Number(n)), Some(Token::Punct(';', _))) => Some(n.as_str()),
@@ -151,7 +152,7 @@ fn assignment(c: &Cursor, word: &str) -> Option<String> {
 /// The words that start statements.
 const STARTS: &str = "statements start with dim, time, label, periodic, end, grid, param, assume, group, field, advected, constraint, hold, given, mesh, let, scale, node or lagrangian";
 
-/// Where a statement should start and no word stands.
+/// The advice if a statement should start but no word follows.
 pub(in crate::syntax) fn no_start(c: &Cursor, error: Diagnostic) -> Diagnostic {
     match c.peek() {
         Some(Token::Punct('%' | '/' | '*', _)) => {
