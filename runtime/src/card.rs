@@ -224,12 +224,10 @@ pub fn chosen_solver(
     }
 }
 
-/// Starts a trajectory from parameters, initial values (each field one vector, row-major) and the
-/// way to step it.
+/// Starts a trajectory from parameters and initial values (each field one vector, row-major).
 ///
 /// # Errors
-/// [`OpenError`] for a wrong number of values, bad parameters, an order that is not offered, or a
-/// refused start.
+/// [`OpenError`] for a wrong number of values, bad parameters, an unknown order, or a failed start.
 pub type Open = &'static (
              dyn Fn(&[Vec<f64>], &[Vec<f64>], Settings) -> Result<Box<dyn Trajectory>, OpenError>
                  + Sync

@@ -74,8 +74,7 @@ pub struct ExpandedModel {
     pub model: Model,
     /// The names of all copies.
     pub copies: Vec<Copied>,
-    /// Parameters of end conditions: the name in the expanded model, the name as stated, and whether it belongs to the
-    /// last site.
+    /// Parameters of end conditions: the name in the expanded model, the stated name, whether it belongs to the last site.
     pub end_parameters: Vec<(String, String, bool)>,
     /// Names of the copies that are given at an end.
     pub given: Vec<String>,

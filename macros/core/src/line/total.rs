@@ -1,6 +1,5 @@
-//! Conserved totals of a chain: sums over sites of one density, which is the same at every site that no end
-//! prescribes; the density may contain positions that ends prescribe. Totals are found on the expanded chain; a
-//! quantity that is not such a sum remains specific to it.
+//! Conserved totals of a chain: sums over sites of one density, the same at every site that no end prescribes. The
+//! density may contain prescribed positions. clebsch finds totals on the expanded chain.
 
 use super::site::BASE;
 use super::{FunctionalForce, Refused, RepresentativeChain, SiteModel};
@@ -43,8 +42,7 @@ pub struct Total {
     pub densities: Vec<Density>,
     /// The letters that an end prescribes, with whether it is the last end:
     pub places: Vec<(Letter, bool)>,
-    /// The end conditions that hold the same configurations as those with which it was found, at the first end and at the
-    /// last. A total of the same name with other densities belongs to other ends.
+    /// The conditions at the first and at the last end that prescribe the same configurations as those of the search.
     pub ends: [Vec<usize>; 2],
 }
 
@@ -111,8 +109,7 @@ pub(super) fn totals(
     };
     let on = |choice: Choice| -> Result<Vec<Total>, Refused> {
         let own = written(choice.clone())?;
-        // A constraint on a sum over all sites may bring the number of sites into a total: a total that a longer chain
-        // does not repeat is not known for every number of sites.
+        // A constraint on a sum may bring the number of sites into a total, which a longer chain then does not repeat.
         match lattice
             .line
             .filter(|_| holds_sums(model) && !own.is_empty())
@@ -152,8 +149,7 @@ fn longer(mut choice: Choice, line: usize) -> Choice {
     choice
 }
 
-/// Choices of ends that prescribe other configurations than this choice, one for each set of prescribed
-/// configurations: the choice that adds the fewest terms.
+/// For each other set of prescribed configurations, the choice of ends that adds the fewest terms.
 fn holding_others(lattice: &Lattice, choice: &Choice) -> Vec<Choice> {
     if choice.periodic {
         return Vec::new();
@@ -362,8 +358,7 @@ fn of_part(
     each.collect()
 }
 
-/// The totals of an expanded chain, by name, with the text of their densities: a sum that leaves sites out does not
-/// count.
+/// The totals of an expanded chain, by name, with the text of their densities. A total includes every site.
 pub fn totals_on(
     lattice: &Lattice,
     choice: &Choice,
@@ -530,8 +525,7 @@ fn only_site(
     found
 }
 
-/// The terms of a sum, with common factors multiplied in. Distances from prescribed positions stay as they are:
-/// expanded, they would round more far from the origin.
+/// The terms of a sum, with common factors multiplied in. Expanded distances would round more, so they stay.
 fn terms(part: &RepresentativeChain, e: &Expr) -> Vec<Expr> {
     if is_from_held(part, e) {
         return vec![e.clone()];
