@@ -6,9 +6,11 @@ use crate::value::Value;
 use clebsch::Real;
 use std::sync::{Arc, OnceLock};
 
+/// Deepest nesting of functions that is followed.
+const DEEPEST: usize = 64;
+
 impl<T: Real> Routine<T> {
-    /// The function over another scalar. Returns nothing if the function loops, or calls something that the scalar
-    /// lacks.
+    /// The function over another scalar; nothing if it loops or calls what that scalar lacks.
     pub fn over<U: Library>(&self, change: fn(T) -> U) -> Option<Routine<U>> {
         Some(Routine {
             places: self.places,
@@ -20,33 +22,18 @@ impl<T: Real> Routine<T> {
 impl<T: Real> Code<T> {
     /// As [`Routine::over`].
     pub fn over<U: Library>(&self, change: fn(T) -> U) -> Option<Code<U>> {
-        let within = None;
-        Change { change, within }.code(self)
-    }
-}
-
-/// A function of the model, and the functions whose bodies call it.
-#[derive(Clone, Copy)]
-struct Within<'a, T: Real> {
-    function: &'a OnceLock<Routine<T>>,
-    by: Option<&'a Within<'a, T>>,
-}
-
-impl<T: Real> Within<'_, T> {
-    fn has(&self, function: &OnceLock<Routine<T>>) -> bool {
-        std::ptr::eq(self.function, function) || self.by.is_some_and(|by| by.has(function))
+        Change { change, depth: 0 }.code(self)
     }
 }
 
 /// A change of the scalar.
 #[derive(Clone, Copy)]
-struct Change<'a, T: Real, U> {
+struct Change<T, U> {
     change: fn(T) -> U,
-    /// The function whose body is changed.
-    within: Option<&'a Within<'a, T>>,
+    depth: usize,
 }
 
-impl<T: Real, U: Library> Change<'_, T, U> {
+impl<T: Real, U: Library> Change<T, U> {
     #[inline(never)]
     fn value(self, value: &Value<T>) -> Option<Value<U>> {
         over(value, &mut |x| (self.change)(x))
@@ -120,19 +107,14 @@ impl<T: Real, U: Library> Change<'_, T, U> {
     }
 
     #[inline(never)]
-    fn routine(self, function: &OnceLock<Routine<T>>) -> Option<Arc<OnceLock<Routine<U>>>> {
-        let Routine { places, body } = function.get()?;
-        let places = *places;
-        // To search for a step that succeeds, an error calls the function that failed. In the changed function this
-        // recursive call returns nothing.
-        let body = match self.within.is_some_and(|within| within.has(function)) {
-            true => Code::Call(|_, _| None, Vec::new(), Vec::new(), "itself".into()),
-            false => {
-                let by = self.within;
-                let within = Some(&Within { function, by });
-                Change { within, ..self }.code(body)?
-            }
+    fn routine(self, routine: &OnceLock<Routine<T>>) -> Option<Arc<OnceLock<Routine<U>>>> {
+        let deeper = Change {
+            depth: self.depth + 1,
+            ..self
         };
+        let routine = routine.get().filter(|_| deeper.depth < DEEPEST)?;
+        let body = deeper.code(&routine.body)?;
+        let places = routine.places;
         Some(Arc::new(OnceLock::from(Routine { places, body })))
     }
 
