@@ -30,5 +30,5 @@ pub use machine::{Frame, Machine, WIDTH};
 pub use operation::{Call, Form, Number, Operation, Pair, Single};
 pub use record::Recorder;
 pub use shape::{Dim, Kind, Shape};
-pub use tape::{Decisions, Function, Guard, Recording, Scalar, Step, Tape, Test, Wanted, Whole};
+pub use tape::{Decisions, Function, Guard, Part, Recording, Scalar, Step, Tape, Test, Whole};
 pub use verify::{Misfit, kind_of};

@@ -181,16 +181,22 @@ impl Tape {
     }
 }
 
-/// Numbers that a part of a tape computes, and the decisions on which they rely.
-pub type Wanted = (Vec<Scalar>, Vec<Guard>);
+/// A part of a tape.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Part {
+    /// The numbers that it computes.
+    pub outputs: Vec<Scalar>,
+    /// The decisions on which they rely.
+    pub guards: Vec<Guard>,
+}
 
 impl Tape {
-    /// The part that computes other numbers, by these decisions.
+    /// A part as a tape of its own.
     #[must_use]
-    pub fn part(&self, outputs: &[Scalar], guards: &[Guard]) -> Tape {
+    pub fn part(&self, part: Part) -> Tape {
         Tape {
-            guards: guards.to_vec(),
-            outputs: outputs.to_vec(),
+            guards: part.guards,
+            outputs: part.outputs,
             ..self.clone()
         }
     }
@@ -198,7 +204,7 @@ impl Tape {
     /// Parts that are computed often with other numbers for the inputs from `late` on. Gives the numbers that they take from
     /// all other inputs, and a tape for each part: its first inputs are these numbers, the next ones the late inputs.
     #[must_use]
-    pub fn behind(&self, late: usize, parts: &[Wanted]) -> (Vec<Scalar>, Vec<Tape>) {
+    pub fn behind(&self, late: usize, parts: &[&Part]) -> (Vec<Scalar>, Vec<Tape>) {
         let mut is_late: Vec<bool> = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
             let by_input = matches!(step, Step::Input(place) if *place as usize >= late);
@@ -206,9 +212,9 @@ impl Tape {
             is_late.push(by_input || by_use);
         }
         let mut met = vec![false; self.steps.len()];
-        let tests = parts.iter().flat_map(|(_, guards)| guards);
+        let tests = parts.iter().flat_map(|part| &part.guards);
         let mut next: Vec<Scalar> = tests.flat_map(|g| g.test.uses()).flatten().collect();
-        next.extend(parts.iter().flat_map(|(outputs, _)| outputs));
+        next.extend(parts.iter().flat_map(|part| &part.outputs));
         let mut given = Vec::new();
         while let Some(at) = next.pop() {
             if std::mem::replace(&mut met[at.step()], true) {
@@ -232,12 +238,12 @@ impl Tape {
         for (k, at) in given.iter().enumerate() {
             steps[at.step()] = Step::Input(place(k));
         }
-        let tape = |(outputs, guards): &Wanted| Tape {
+        let tape = |part: &&Part| Tape {
             steps: steps.clone(),
-            guards: guards.clone(),
+            guards: part.guards.clone(),
             calls: self.calls.clone(),
             functions: self.functions.clone(),
-            outputs: outputs.clone(),
+            outputs: part.outputs.clone(),
         };
         let tapes = parts.iter().map(tape).collect();
         (given, tapes)

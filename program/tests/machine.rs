@@ -2,7 +2,7 @@
 
 mod random_tapes;
 
-use clebsch_program::{Machine, Recording, Step, WIDTH};
+use clebsch_program::{Machine, Part, Recording, Step, WIDTH};
 use random_tapes::{INPUTS, Random, computed, random_tape, same};
 
 /// Random tapes.
@@ -54,10 +54,17 @@ fn a_tape_in_two_parts_gives_the_same_bits() {
     for _ in 0..TAPES {
         let tape = random_tape(&mut random);
         let late = random.below(INPUTS + 1);
-        let whole = (tape.outputs.clone(), tape.guards.clone());
-        let (given, tapes) = tape.behind(late, &[whole]);
+        let whole = Part {
+            outputs: tape.outputs.clone(),
+            guards: tape.guards.clone(),
+        };
+        let (given, tapes) = tape.behind(late, &[&whole]);
         taken += given.len();
-        let first = Machine::new(&tape.part(&given, &[]), late);
+        let first = Part {
+            outputs: given.clone(),
+            guards: Vec::new(),
+        };
+        let first = Machine::new(&tape.part(first), late);
         let second = Machine::new(&tapes[0], given.len() + INPUTS - late);
         let (mut before, mut behind) = (first.frame::<1>(), second.frame::<1>());
         let earlier: Vec<f64> = (0..late).map(|_| random.number()).collect();

@@ -138,7 +138,7 @@ fn every_chapter_is_followed() {
         "chains",
         "fluids",
         "long-runs",
-        // Its code is Python.
+        // Its code runs in `python/tests/test_book.py`.
         "python",
         "programs",
     ];

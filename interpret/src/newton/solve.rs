@@ -90,7 +90,7 @@ impl Iterate<f64> for Solve {
             Value::Search(held) => held,
             _ => return unfit(None),
         };
-        let solved = held.solve(self, node as u64, &mut Around::places(places));
+        let solved = held.solve(self, node as u64, &mut Around::Places(places));
         let shape = held.sought().all();
         let solved = solved.map(|solved| search::told(shape, &solved));
         *unfit(self.search.place_mut(places))? = Value::Search(held);

@@ -2,10 +2,9 @@
 //! and of the trial.
 
 use super::load;
-use super::traced::Traced;
 use crate::code::Places;
 use crate::over::fill;
-use clebsch_program::{Frame, Guard, Machine, Scalar, Tape};
+use clebsch_program::{Frame, Machine, Part, Scalar, Tape};
 
 /// The functions that Newton's method evaluates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,25 +30,6 @@ impl Wanted {
         Self::Convex,
         Self::Alone,
     ];
-}
-
-/// A part of a recording that computes one function, aside from the step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Part {
-    /// The numbers that it computes.
-    pub outputs: Vec<Scalar>,
-    /// How it decided.
-    pub guards: Vec<Guard>,
-}
-
-impl Part {
-    /// The part that computes these numbers.
-    pub fn new(outputs: &[Traced], guards: Vec<Guard>) -> Self {
-        Part {
-            outputs: super::traced::steps(outputs),
-            guards,
-        }
-    }
 }
 
 /// A tape with its registers.
@@ -112,16 +92,18 @@ impl Recorded {
 
     /// The equations, and what the step has to compute for them.
     pub fn equations(self, tape: &Tape, solution: usize) -> (Equations, Vec<Scalar>) {
-        let wanted = |part: &Part| (part.outputs.clone(), part.guards.clone());
-        let parts: Vec<_> = self.parts.iter().flatten().map(wanted).collect();
-        let (given, tapes) = tape.behind(self.inputs, &parts);
+        let recorded: Vec<&Part> = self.parts.iter().flatten().collect();
+        let (given, tapes) = tape.behind(self.inputs, &recorded);
         let inputs = given.len() + solution;
         let mut tapes = tapes.iter().map(|tape| Ready::new(tape, inputs));
         let parts = self.parts.each_ref().map(|part| match part {
             Some(_) => tapes.next(),
             None => None,
         });
-        let around = tape.part(&self.around, &[]);
+        let around = tape.part(Part {
+            outputs: self.around,
+            guards: Vec::new(),
+        });
         let equations = Equations {
             parts,
             given: given.len(),
@@ -187,12 +169,7 @@ pub enum Around<'a> {
     Tapes(&'a mut Equations),
 }
 
-impl<'a> Around<'a> {
-    /// These places.
-    pub fn places(places: &'a mut Places<f64>) -> Self {
-        Around::Places(places)
-    }
-
+impl Around<'_> {
     /// A function at a trial, if a tape computes it there.
     pub fn by_tape(&mut self, wanted: Wanted, trial: &[f64]) -> Option<Vec<f64>> {
         match self {

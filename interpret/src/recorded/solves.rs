@@ -1,7 +1,7 @@
 //! Equations that a step solves on its way, as parts of a recording. A tape ends where Newton's method begins; the next one
 //! takes the solution as inputs.
 
-use super::equations::{Around, Equations, Part, Recorded, Wanted};
+use super::equations::{Around, Equations, Recorded, Wanted};
 use super::form::value_of;
 use super::function::run as run_alone;
 use super::load;
@@ -12,7 +12,7 @@ use crate::opened::at;
 use crate::over::{numbers, over};
 use crate::value::{Struct, Value};
 use clebsch::solvers::newton::{Chart, Solved};
-use clebsch_program::{Frame, Machine, Scalar, Tape};
+use clebsch_program::{Frame, Guard, Machine, Part, Scalar, Tape};
 use std::sync::Arc;
 
 /// Where a recording ends for a while.
@@ -132,7 +132,7 @@ impl Iterate<Traced> for RecordedSolve {
         let solved = held.solve(
             &self.with,
             node.unsigned_abs(),
-            &mut Around::places(&mut seen),
+            &mut Around::Places(&mut seen),
         );
         let solved = unfit(solved.ok())?;
         cut(SolvedHere {
@@ -174,6 +174,11 @@ impl Iterate<Traced> for RecordedSolve {
     }
 }
 
+fn part(numbers: &[Traced], guards: Vec<Guard>) -> Part {
+    let outputs = steps(numbers);
+    Part { outputs, guards }
+}
+
 /// The parts of a recording that evaluate equations, and which numbers of a solution a trial has.
 type Parts = ([Option<Part>; 5], Vec<usize>);
 
@@ -196,13 +201,9 @@ impl RecordedSolve {
         let of_trial: Option<Vec<usize>> = own.iter().map(place).collect();
         let sizes = [&sought.shape, sought.all()].map(|shape| shape.parts().dimension());
         let in_part = self.with.completed_at.is_some();
+        // Tests of a solution evaluate the residual by itself only if a part of the unknowns lacks a scale.
+        let is_asked_alone = !in_part && sought.shape.parts().open.contains(&true);
         let wanted = |wanted: Wanted| {
-            if wanted == Wanted::Alone {
-                let is_asked = !in_part && sought.shape.parts().open.contains(&true);
-                return is_asked
-                    .then(|| self.alone(&trial, sizes, places))
-                    .flatten();
-            }
             let (body, trial_at) = match wanted {
                 Wanted::Residual => (self.residual.as_ref()?, Some(self.with.residual.place)),
                 Wanted::Tangent => (self.tangent.as_ref()?, Some(self.with.tangent.place)),
@@ -211,6 +212,7 @@ impl RecordedSolve {
                     let convex = self.with.convex.as_ref()?;
                     (self.convex.as_ref()?, Some(convex.place))
                 }
+                Wanted::Alone if is_asked_alone => return self.alone(&trial, sizes, places),
                 Wanted::Alone => return None,
             };
             let (numbers, guards) = aside(|| {
@@ -220,7 +222,7 @@ impl RecordedSolve {
                 }
                 told(wanted, value_of(body, &mut places)?, sizes, in_part)
             })?;
-            Some(Part::new(&numbers, guards))
+            Some(part(&numbers, guards))
         };
         Some((Wanted::ALL.map(wanted), of_trial?))
     }
@@ -241,7 +243,7 @@ impl RecordedSolve {
             given.push(trial.clone());
             vector(&run_alone(residual, given)?, all)
         })?;
-        Some(Part::new(&numbers, guards))
+        Some(part(&numbers, guards))
     }
 }
 
@@ -335,7 +337,11 @@ pub fn in_parts(tape: Tape, cuts: Vec<Cut>) -> Option<(Vec<Between>, Tape)> {
         } = cut.solved;
         let guards = tape.guards.get(decided..cut.guards).unwrap_or_default();
         let (equations, given) = equations?.equations(&tape, solution.len());
-        let machine = Machine::new(&tape.part(&given, guards), cut.inputs);
+        let before = Part {
+            outputs: given,
+            guards: guards.to_vec(),
+        };
+        let machine = Machine::new(&tape.part(before), cut.inputs);
         decided = cut.guards;
         all.push(Between {
             frame: machine.frame(),
@@ -369,12 +375,11 @@ impl Between {
     /// of the state; the search is among the `places`.
     pub fn solve(&mut self, own: &mut Vec<f64>, first: i64, places: &mut Places<f64>) -> Went {
         self.begun = false;
-        let given = own.get(..self.machine.inputs()).unwrap_or_default();
+        let Some(given) = own.get(..self.machine.inputs()) else {
+            return Went::Elsewhere;
+        };
         let loaded = load(self.frame.inputs(), given);
-        if given.len() < self.machine.inputs()
-            || loaded.is_none()
-            || !self.machine.run(&mut self.frame)
-        {
+        if loaded.is_none() || !self.machine.run(&mut self.frame) {
             return Went::Elsewhere;
         }
         self.equations
