@@ -1,5 +1,5 @@
-//! A Moser-Veselov equation that is a block by itself: its right side and its solution.
-//! Takes the configuration and the values of what acts at the node; gives expressions.
+//! Moser-Veselov equation that forms a block by itself: its right side and its solution. Takes the configuration and
+//! the values of the forces at the node; gives expressions.
 
 use super::element::{Family, family};
 use super::left_factor::known_at_nodes;
@@ -10,8 +10,8 @@ use crate::derive::Derivation;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// The step times the momentum of an edge, where `rest` is taken from that of the node; in space the other
-/// way round, it is what acts there.
+/// The step size times the edge momentum, which is the node momentum minus `rest`. If `in_space` is set, `rest` is
+/// already the right side, in the frame of space.
 pub(super) fn scaled_momentum(
     d: &Derivation,
     i: usize,
@@ -33,7 +33,7 @@ pub(super) fn scaled_momentum(
     quote!(((#at_node #minus) * #step))
 }
 
-/// The solution of a Moser-Veselov equation that is a block by itself.
+/// The solution of a Moser-Veselov equation that forms a block by itself.
 pub(super) fn alone(
     d: &Derivation,
     n: usize,
@@ -46,7 +46,7 @@ pub(super) fn alone(
     match (factor, rotations) {
         (Some(factor), _) => quote!(rotation_at(&(#factor), &#scaled, work.method)),
         (None, true) => quote!(self.#prepared.rotation(&#scaled, work.method)),
-        // Beside rotations of space the method named may be one of theirs alone.
+        // In a model that also has rotations of space, the chosen method may exist for rotations of space only.
         (None, false) if known_at_nodes(d) => {
             let n = size(&d.letters.symbols, d.spec.configurations[i].group.size());
             quote!(self.#prepared.solve(&skew_part(&#scaled), work.method.serving(#n)))

@@ -1,5 +1,5 @@
-//! The letters of an edge, read off the states at its two ends.
-//! Takes expressions of an edge; gives the parameters, the statements that bind their letters, and the bindings.
+//! The letters of an edge, computed from the states at its two ends. Takes expressions of an edge; gives the
+//! parameters, the statements that bind their letters, and the bindings.
 
 use super::element;
 use super::expression::Bindings;
@@ -12,15 +12,15 @@ use crate::expr::{self, Expr, Shift};
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// What comes before expressions of an edge are evaluated.
+/// The code that precedes the evaluation of expressions of an edge.
 pub(super) struct Edge {
     pub(super) parameters: TokenStream,
     pub(super) locals: TokenStream,
     pub(super) bindings: Bindings,
 }
 
-/// Binds the letters of `wanted` to the states named `before` and `after`; velocities are made from the elements of
-/// both. What is advected is asked of the model, where that is no part of a step.
+/// Binds the letters of `wanted` to the states named `before` and `after`. Velocities are computed from the elements
+/// of both states. If `asks` is set, advected quantities come from the model's own functions.
 pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr], asks: bool) -> Edge {
     let (before, after) = (names.local("before"), names.local("after"));
     let mut needed = letters_of(wanted);
@@ -50,7 +50,7 @@ pub(super) fn edge_between(d: &Derivation, names: &Names, wanted: &[Expr], asks:
     let mut all = with_transports(d, &needed, 0);
     all.extend(with_transports(d, &needed, 1));
     let parameters = parameter_locals(d, quote!(self.parameters), &all);
-    // What advances by its constraint may be made of them.
+    // A quantity that its constraint advances may depend on the other advected quantities.
     let mut locals = asked;
     for (i, c) in d.spec.configurations.iter().enumerate() {
         let (own, name) = (own(d, c.element), tagged(d, names, c.velocity, "matrix"));

@@ -1,6 +1,6 @@
-//! The step of a model whose velocities are found in several blocks: what is known at the node once
-//! for all of them, then each block by its own method, then the way to the next node together.
-//! Takes the derivation; gives the factors that the model keeps, the workspace and `step`.
+//! The step of a model whose velocities are found in several blocks. The values known at the node are computed once
+//! for all blocks, then each block is solved by its own method, then all blocks advance to the next node. Takes the
+//! derivation; gives the factors that the model stores, the workspace and `step`.
 
 use super::alone::{alone, scaled_momentum};
 use super::carried::seen_from_space;
@@ -30,17 +30,17 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeMap;
 
-/// The blocks with their numbers, from 1.
+/// The blocks with their numbers, starting at 1.
 fn numbered(d: &Derivation) -> impl Iterator<Item = (usize, &Block)> {
     d.solve.blocks.iter().enumerate().map(|(i, b)| (i + 1, b))
 }
 
-/// Numbers of the blocks that Newton's method solves.
+/// The blocks that Newton's method solves, with their numbers.
 pub(super) fn by_newton(d: &Derivation) -> impl Iterator<Item = (usize, &Block)> {
     numbered(d).filter(|(_, b)| b.is_newton())
 }
 
-/// The configuration and the equation of a block that is solved by itself.
+/// The configuration and the Moser-Veselov equation of a block with one member.
 fn exact<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a MoserVeselov)> {
     match (&b.method, b.members.as_slice()) {
         (Method::LeftFactor | Method::Davenport, [i]) => match &d.solve.riccati[*i] {
@@ -51,8 +51,8 @@ fn exact<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a MoserVeselov
     }
 }
 
-/// The numbers of the blocks of bodies whose equation has the same constant factor as that of `b`, its own
-/// among them: none of them waits for another, and one call solves all. None where `b` is no such body.
+/// The numbers of the blocks whose bodies have the same constant factor as `b`, including `b`. Since none of them
+/// depends on another, one call solves all. Empty if `b` is not such a block.
 fn alike(d: &Derivation, b: &Block) -> Vec<usize> {
     let of_body = |b: &Block| {
         let own = exact(d, b).filter(|_| matches!(b.method, Method::LeftFactor));
@@ -64,9 +64,9 @@ fn alike(d: &Derivation, b: &Block) -> Vec<usize> {
     all.map(|(n, _)| n).collect()
 }
 
-/// The configuration and the form of a block whose balance is linear.
+/// The configuration and the form of a block with a linear balance.
 fn linear<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a TwoSidedLinear)> {
-    // Of what is held the balance is linear too, and has a multiplier in it.
+    // The balance of a constrained configuration is linear too, but contains a multiplier.
     match (&b.method, b.members.as_slice()) {
         (Method::Linear, [i]) => match &d.solve.riccati[*i] {
             StepEquation::Linear(form) => Some((*i, form)),
@@ -76,7 +76,7 @@ fn linear<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a TwoSidedLin
     }
 }
 
-/// The form of the balance of a field that is solved by itself.
+/// The linear form of the balance of a field that forms a block by itself.
 pub(super) fn linear_field(d: &Derivation, i: usize) -> Option<&TwoSidedLinear> {
     let of_field = matches!(family(&d.spec.configurations[i]), Family::Field(_));
     let all = numbered(d).filter_map(|(_, b)| linear(d, b));
@@ -85,7 +85,7 @@ pub(super) fn linear_field(d: &Derivation, i: usize) -> Option<&TwoSidedLinear> 
         .map(|(_, form)| form)
 }
 
-/// The forms of all configurations in their changes, where they have one.
+/// For each configuration, the form of its balance in the spatial increment, if one exists.
 fn all_displaced(d: &Derivation) -> Vec<Option<SpatialIncrementForm>> {
     let is_linear = |i: usize| numbered(d).any(|(_, b)| linear(d, b).is_some_and(|(j, _)| i == j));
     (0..d.spec.configurations.len())
@@ -93,26 +93,26 @@ fn all_displaced(d: &Derivation) -> Vec<Option<SpatialIncrementForm>> {
         .collect()
 }
 
-/// The names of the inverses that a model keeps for block `n`.
+/// The names of the inverses that the model stores for block `n`.
 fn inverses(n: usize) -> [Ident; 2] {
     ["left", "right"].map(|side| format_ident!("inverse_{n}_{side}"))
 }
 
-/// The factors of a linear balance of a field.
+/// The constant factors of the linear balance of a field.
 fn constant<'a>(d: &'a Derivation, b: &'a Block) -> Option<Constant<'a>> {
     let (i, form) = linear(d, b)?;
     Constant::of(d, i, form)
 }
 
-/// What the model keeps of constant factors that meet the change of a configuration.
+/// The inverse of a constant factor, which the model stores.
 pub(super) struct Inverse {
-    /// Its field.
+    /// The field's name.
     pub name: Ident,
     /// The factor.
     pub of: Expr,
 }
 
-/// The inverses that the model keeps.
+/// The inverses that the model stores.
 pub(super) fn kept_inverses(d: &Derivation) -> Vec<Inverse> {
     let names = &Names::new(d);
     match d.solve.method {
@@ -146,26 +146,26 @@ fn quaternionic<'a>(d: &'a Derivation, b: &'a Block) -> Option<(usize, &'a Quate
     }
 }
 
-/// A constant factor that the model keeps.
+/// A constant factor that the model stores.
 pub(super) struct Factor<'a> {
-    /// Its field.
+    /// The field's name.
     pub name: Ident,
-    /// The configuration it belongs to.
+    /// The configuration to which the factor belongs.
     pub configuration: usize,
     /// The factor.
     pub value: &'a Expr,
-    /// The number that goes with it on SU(2).
+    /// The real number `β` of the equation on SU(2).
     pub real: Option<&'a Expr>,
 }
 
 impl Factor<'_> {
-    /// What it is made of.
+    /// The expressions from which the field is computed.
     pub fn made_of(&self) -> impl Iterator<Item = &Expr> {
         [self.value].into_iter().chain(self.real)
     }
 }
 
-/// The constant factors that the model keeps.
+/// The constant factors that the model stores.
 pub(super) fn factors(d: &Derivation) -> Vec<Factor<'_>> {
     let kept = numbered(d).filter_map(|(n, b)| {
         let own = |configuration, value, real| Factor {
@@ -175,7 +175,7 @@ pub(super) fn factors(d: &Derivation) -> Vec<Factor<'_>> {
             real,
         };
         match b.method {
-            // Bodies that are alike have one factor.
+            // Bodies with equal factors share one field.
             Method::LeftFactor if alike(d, b).first().is_some_and(|first| *first < n) => None,
             Method::LeftFactor => exact(d, b).map(|(i, mv)| own(i, &mv.factor, None)),
             _ => quaternionic(d, b).map(|(i, q)| own(i, &q.edge.factor, Some(&q.real))),
@@ -188,7 +188,7 @@ pub(super) fn search(n: usize) -> Ident {
     format_ident!("search_{n}")
 }
 
-/// A block of Newton's method; `block` is it as a model of its own.
+/// Block `n`, solved by Newton's method; `block` is this block as a model of its own.
 fn together<'a>(
     whole: &'a Derivation,
     names: &'a Names,
@@ -225,9 +225,9 @@ pub(super) fn step(d: &Derivation, names: &Names) -> TokenStream {
     let node = names.local("node");
     let step = variable(s, d.spec.step);
     let work = item(d, "Workspace");
-    // What is known at the node, for all blocks together.
+    // Expressions known at the node, for all blocks.
     let mut known: Vec<Expr> = Vec::new();
-    // Which of it acts on a body that is solved by itself.
+    // Their positions in `known` that are forces on a body of a Moser-Veselov block, with the configuration.
     let mut acting: Vec<(usize, usize)> = Vec::new();
     let by_change = all_displaced(d);
     let mut needed: Vec<Letter> = onwards(d, &by_change);
@@ -408,7 +408,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> TokenStream {
         let block = d.of_block(b);
         let together = together(d, names, n, b, &block);
         let field = search(n);
-        // The others are searched for in the same way.
+        // The search of every other block is copied from its own field.
         let fields = filled(d, |m| match m == n {
             true => quote!(search),
             false => quote!(search.alike()),
@@ -479,7 +479,7 @@ pub(super) fn step(d: &Derivation, names: &Names) -> TokenStream {
     quote!(#step_function #refused #beside)
 }
 
-/// The locals of quantities that are seen from space at a node, for which letters of variations stand.
+/// The locals of quantities seen from space at a node; the letters of variations are bound to them.
 pub(super) fn from_space(
     d: &Derivation,
     names: &Names,
@@ -512,7 +512,7 @@ pub(super) fn from_space(
     out
 }
 
-/// The form of a block in the change of its configuration, where it is found by that.
+/// The spatial increment form of a block, if the block is solved in that form.
 fn changed<'a>(
     d: &Derivation,
     b: &Block,
@@ -522,8 +522,8 @@ fn changed<'a>(
     forms[i].as_ref()
 }
 
-/// The function of this name that says how far the step is beyond a bound, and which one could be made.
-/// `error` is the type of the solver's error, `search` its method that adds that step.
+/// The function `name`, which reports how far the step exceeds a bound and which step size is possible. `error` is
+/// the type of the solver's error, and `search` is its method that adds the possible step size.
 fn refusal(
     d: &Derivation,
     names: &Names,

@@ -1,5 +1,5 @@
-//! The model as data: fields of its parameters, initial values, observables and invariants, and a
-//! way to run it without knowing its type. What the command line and the generic tests use.
+//! The model as data: fields of its parameters, initial values, observables and invariants, and a way to run it
+//! without knowing its type. The command line and the generic tests use it.
 
 use super::element::{self, Family, family};
 use super::formula::formula;
@@ -64,8 +64,8 @@ fn of_symbol(d: &Derivation, id: SymbolId, when: &str) -> FieldOf {
     }
 }
 
-/// The field of a symbol whose value a case gives: elements of groups say so, since they may be given in other ways than
-/// by their matrices.
+/// The field of a symbol whose value a case gives. Its kind names the group of an element, because a case can give
+/// elements in other forms than matrices.
 fn of_given(d: &Derivation, id: SymbolId, when: &str) -> FieldOf {
     let own = of_symbol(d, id, when);
     let kind = match d.letters.symbols.get(id).structure {
@@ -77,7 +77,7 @@ fn of_given(d: &Derivation, id: SymbolId, when: &str) -> FieldOf {
     FieldOf { kind, ..own }
 }
 
-/// What the model says of a symbol, else what its place says.
+/// The symbol's documentation in the model, or `else_words` if there is none.
 fn said(symbol: &Symbol, else_words: &str) -> String {
     match symbol.doc() {
         doc if doc.is_empty() => else_words.to_owned(),
@@ -106,7 +106,7 @@ fn element_field(d: &Derivation, i: usize) -> FieldOf {
             .name
             .clone(),
         shape: match family(c) {
-            // Four components say the same as the matrix.
+            // The four components determine the matrix.
             Family::Quaternion => Shape::vector(c.group.size()),
             _ => c.group.shape(),
         },
@@ -135,7 +135,7 @@ fn momentum_field(d: &Derivation, i: usize, side: Side) -> FieldOf {
     }
 }
 
-/// `CARD` and what stands behind it.
+/// `CARD` and the functions to which it refers.
 pub fn card(d: &Derivation, names: &Names) -> TokenStream {
     let name = item(d, "");
     let preprocessed = super::stepper::preprocessed(d);
@@ -270,7 +270,7 @@ fn discrete_energy(d: &Derivation) -> TokenStream {
     quote!(Invariant::#conserved("discrete_energy", #formula, 1))
 }
 
-/// The named sizes of the model, with the value of this card.
+/// The named sizes of the model, with the values of this card.
 fn dimensions(d: &Derivation) -> Vec<TokenStream> {
     let s = &d.letters.symbols;
     let list = d.spec.dimensions.iter().zip(0u16..);
@@ -285,7 +285,7 @@ fn dimensions(d: &Derivation) -> Vec<TokenStream> {
     .collect()
 }
 
-/// The card at other sizes: one arm for each of them.
+/// The card at other sizes: one match arm per choice of sizes.
 fn sized(d: &Derivation) -> TokenStream {
     let name = item(d, "");
     let mut all: Vec<Vec<u64>> = vec![Vec::new()];

@@ -1,5 +1,5 @@
-//! The momentum of the next node: what acts on the edge is added to the one of this node.
-//! Takes how each momentum is carried, and the values of what acts; gives the statements.
+//! The momentum of the next node: the forces on the edge are added to the momentum of this node. Takes the momentum
+//! updates and the values of the forces; gives the statements.
 
 use super::element::{self, Family, family};
 use super::names::{Names, own, per_configuration, tagged, variable};
@@ -11,15 +11,15 @@ use crate::expr::{self, Expr, Shift};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-/// The value of what acts at one end of an edge.
+/// The value of the force at one end of an edge.
 pub(super) struct Acting {
     pub(super) value: TokenStream,
-    /// Whether it is seen from space, though the momentum is stated in the body.
+    /// Whether the value is in the frame of space although the momentum is stated in the body.
     pub(super) in_space: bool,
 }
 
-/// What acts on a rotation stated in the body, seen from space, where less is turned there: `shift` is
-/// the end of the edge.
+/// The force on a rotation stated in the body, in the frame of space, if that form needs fewer rotations of vectors.
+/// `shift` selects the end of the edge.
 pub(super) fn seen_from_space(d: &Derivation, i: usize, shift: Shift, e: &Expr) -> Option<Expr> {
     let (s, c) = (&d.letters.symbols, &d.spec.configurations[i]);
     let turns = c.side.is_body() && family(c) == Family::Rotation;
@@ -27,30 +27,30 @@ pub(super) fn seen_from_space(d: &Derivation, i: usize, shift: Shift, e: &Expr) 
     turns.then(|| expr::turned(s, &attitude, e)).flatten()
 }
 
-/// The statements of one momentum: those that find it, and those that store it.
+/// The statements that compute one momentum, and those that store it.
 pub(super) struct Carried {
     pub(super) found: TokenStream,
     pub(super) stored: TokenStream,
-    /// The local with its components.
+    /// The local with the components of the momentum.
     pub(super) value: Ident,
 }
 
 /// The names of one configuration in a step.
 struct Body<'a> {
     c: &'a Configuration,
-    /// Its field in the state, and the element at the end of the edge.
+    /// The field of its element in the state, and the element at the end of the edge.
     element: Ident,
     moved: Ident,
-    /// The matrices of both, of a rotation.
+    /// For rotations: the matrices of both elements.
     here: Ident,
     next: Ident,
-    /// What was solved for, of a rigid motion.
+    /// For rigid motions: the velocity that was solved for.
     velocity: Ident,
     /// The field of its momentum.
     field: Ident,
 }
 
-/// The momentum of configuration `i`; `values` gives those of the parts of its carry, in their order.
+/// The momentum of configuration `i`. `values` gives the values of the parts of its momentum update, in order.
 pub(super) fn carried(
     d: &Derivation,
     names: &Names,
@@ -104,7 +104,8 @@ pub(super) fn carried(
     }
 }
 
-/// The momentum of configuration `i` where its change was found: what the edge adds to the rest of it.
+/// The momentum of configuration `i` if it was solved in the spatial increment form: the force of the edge is added
+/// to the momentum that leaves the node.
 pub(super) fn gained(
     d: &Derivation,
     names: &Names,
@@ -125,7 +126,7 @@ pub(super) fn gained(
 }
 
 impl Body<'_> {
-    /// What is added to a momentum that is kept in two numbers. None where it is not a sum.
+    /// The increment of a momentum stored in two numbers. None if the update is not a sum.
     fn acting(&self, u: &MomentumUpdate, parts: &[Option<Acting>]) -> Option<TokenStream> {
         let values = parts.iter().map(|a| a.as_ref().map(|a| a.value.clone()));
         let values: Vec<Option<TokenStream>> = values.collect();
@@ -165,7 +166,7 @@ impl Body<'_> {
         (!all.is_empty()).then_some(acts)
     }
 
-    /// The momentum of the next node as a whole.
+    /// The momentum of the next node.
     fn whole(&self, u: &MomentumUpdate, parts: &[Option<Acting>]) -> TokenStream {
         let Body {
             element,
@@ -211,7 +212,7 @@ impl Body<'_> {
         element::array(c, value)
     }
 
-    /// A covector of the body, added in the frame of space.
+    /// The force on the body, added in the frame of space.
     fn turned(&self, element: &TokenStream, matrix: &Ident, acting: &Acting) -> TokenStream {
         let Acting { value, in_space } = acting;
         match family(self.c) {

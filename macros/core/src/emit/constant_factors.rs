@@ -1,6 +1,6 @@
-//! The linear balance of a field whose factors are made of parameters, as those of a constant metric and constant
-//! second moments of mass: the model keeps their inverses, and a step multiplies. Takes the balance; gives what
-//! is inverted and the solution.
+//! The linear balance of a field whose factors depend on parameters only, such as a constant metric and constant
+//! second moments of mass. The model stores their inverses, and a step multiplies by them. Takes the balance; gives
+//! the factors to invert and the solution.
 
 use super::element::{self, Family, family};
 use super::items::text;
@@ -13,17 +13,16 @@ use crate::expr::{self, Expr};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-/// The factors of `left ΔX right = known`, of parameters. A number in front of everything goes with the only
-/// matrix.
+/// The constant factors of `left ΔX right = known`. A scalar factor is combined with the only matrix.
 pub(super) struct Constant<'a> {
     form: &'a TwoSidedLinear,
-    /// The step times the left factor and the right one, or the step times both together on the side where a
-    /// matrix stands.
+    /// If both factors are matrices: the step size times the left one, and the right one. If one is a number: the
+    /// step size times both factors, on the side of the matrix.
     pub factors: [Option<Expr>; 2],
 }
 
 impl<'a> Constant<'a> {
-    /// Those of configuration `i`; none where numbers alone stand there, which divide, or what changes.
+    /// The factors of configuration `i`. None if both are numbers, by which the step divides, or if a factor varies.
     pub fn of(d: &'a Derivation, i: usize, form: &'a TwoSidedLinear) -> Option<Self> {
         let Family::Field(_) = family(&d.spec.configurations[i]) else {
             return None;
@@ -52,7 +51,7 @@ impl<'a> Constant<'a> {
         })
     }
 
-    /// The solution, with the model's fields for the inverses.
+    /// The solution, computed with the inverses that the model stores.
     pub fn solution(
         &self,
         d: &Derivation,
@@ -74,7 +73,8 @@ impl<'a> Constant<'a> {
     }
 }
 
-/// The solution of a linear balance, with the values of its factors. Those of a field may be numbers.
+/// The solution of a linear balance, given the values of its factors, which may be numbers if the configuration is a
+/// field.
 pub(super) fn linear_solution(
     d: &Derivation,
     i: usize,
@@ -92,7 +92,7 @@ pub(super) fn linear_solution(
     let dims = [shape.rows, shape.cols].map(|n| super::sizes::size(s, n));
     let known = element::array(c, known);
     let [first, second] = &names;
-    // A number in front of everything divides.
+    // The step divides by a scalar factor.
     let is_number = |e: &Expr| e.shape().is_scalar();
     let one = |e: &Expr| *e == expr::integer(1);
     match (is_number(&form.left), is_number(&form.right)) {

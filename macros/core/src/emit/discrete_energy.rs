@@ -1,5 +1,5 @@
-//! `discrete_energy`: how the action of the step between two nodes falls when the step grows.
-//! Takes the derived expression; gives a function of two consecutive states.
+//! `discrete_energy`: the negative derivative of the action of one step, between fixed nodes, with respect to the
+//! step size. Takes the derived expression; gives a function of two consecutive states.
 
 use super::between::{Edge, edge_between};
 use super::expression::program;
@@ -11,9 +11,8 @@ use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// The function.
 pub fn discrete_energy(d: &Derivation, names: &Names) -> TokenStream {
-    // It is divided by the step twice, whatever the action is.
+    // For every action, the discrete energy divides by the step size twice.
     let mut symbols = d.letters.symbols.clone();
     symbols.keep_differences(true);
     let s = &symbols;

@@ -1,6 +1,6 @@
-//! What a step must not leave: the domains of the functions that a model uses, and invertible maps.
-//! Takes the derivation; gives the test of a step, of a step size and of the parameters. A model
-//! without such functions has none of it.
+//! Domains that a step must not leave: those of the functions in the model, and invertible matrices. Takes the
+//! derivation; gives the tests of a step, of a step size and of the parameters. A model without such functions has no
+//! tests.
 
 use super::between::{Edge, edge_between};
 use super::element::{Family, family};
@@ -19,7 +19,7 @@ use crate::schedule;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-/// What a function asks of its argument; the names are those of the runtime.
+/// The domain of an argument; the names are those of the runtime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Domain {
     Positive,
@@ -37,7 +37,7 @@ impl Domain {
     }
 }
 
-/// What has a domain; the names are those of the runtime.
+/// A function or operation with a domain; the names are those of the runtime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Named {
     Log,
@@ -59,20 +59,20 @@ impl Named {
     }
 }
 
-/// Where an argument changes.
+/// What an argument depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
-    /// Made of parameters.
+    /// Parameters only.
     Parameters,
-    /// Of the step and parameters.
+    /// The step size and parameters.
     Step,
-    /// Of what stands at a node.
+    /// Quantities at one node.
     Node,
-    /// Of velocities, or of both ends of an edge.
+    /// Velocities, or both ends of an edge.
     Edge,
 }
 
-/// The argument of a function, and what it must be.
+/// The argument of a function, and its domain.
 #[derive(Clone, Debug, PartialEq)]
 struct Guard {
     domain: Domain,
@@ -87,14 +87,14 @@ impl Guard {
         self.call_in(&text(d, &self.argument))
     }
 
-    /// The same, its argument in these words.
+    /// The function, with `argument` as the text of its argument.
     fn call_in(&self, argument: &str) -> TokenStream {
         let function = self.function.tokens();
         quote!(&domain::Call { function: #function, argument: #argument })
     }
 }
 
-/// All guards of a model, in the order in which its Lagrangian names them, but those of squares.
+/// All guards of a model except those on squares, in the order in which the Lagrangian names them.
 fn guards(d: &Derivation) -> Vec<Guard> {
     let mut all = with_squares(d);
     all.retain(|g| !is_square(&g.argument));
@@ -146,8 +146,8 @@ fn collect(s: &Symbols, e: &Expr, all: &mut Vec<Guard>) {
     }
 }
 
-/// Whether a number is a sum of squares: it then leaves no domain, and where it is zero the step
-/// finds what is infinite by itself; a start there is refused.
+/// Whether a scalar is a sum of squares. Such an argument cannot leave a domain. If it is zero, the step itself
+/// detects the infinite value, and `start` rejects it.
 fn is_square(e: &Expr) -> bool {
     match e.node() {
         Node::Dot(a, b) => a == b,
@@ -163,8 +163,7 @@ fn is_square(e: &Expr) -> bool {
     }
 }
 
-/// The numbers whose squares are factors of this one, and what is left of it, if there are any: of `det(Q^T C Q)` they
-/// are `det(Q)`, and `det(C)` is left.
+/// Factors whose squares occur in `e`, and the remaining factor. For `det(Q^T C Q)` these are `det(Q)` and `det(C)`.
 fn squared(e: &Expr) -> Option<(Vec<Expr>, Expr)> {
     match e.node() {
         Node::Power(a, q) => {
@@ -196,7 +195,7 @@ fn squared(e: &Expr) -> Option<(Vec<Expr>, Expr)> {
 }
 
 fn guard(s: &Symbols, domain: Domain, function: Named, argument: &Expr, all: &mut Vec<Guard>) {
-    // A product is zero where a factor is.
+    // A product is zero if one of its factors is.
     if let (Domain::NotZero, Node::Product(factors)) = (domain, argument.node())
         && factors.iter().all(|f| f.shape().is_scalar())
     {
@@ -205,7 +204,8 @@ fn guard(s: &Symbols, domain: Domain, function: Named, argument: &Expr, all: &mu
         }
         return;
     }
-    // A square leaves no domain, but a step may carry what is squared past zero, where the function is infinite.
+    // A square cannot leave its domain. But a step may move the squared number through zero, where the function is
+    // infinite.
     if domain != Domain::NotNegative
         && let Some((squared, left)) = squared(argument)
     {
@@ -240,7 +240,7 @@ fn guard(s: &Symbols, domain: Domain, function: Named, argument: &Expr, all: &mu
     }
 }
 
-/// Whether it asks that the step is not zero, which it never is.
+/// Whether the guard only requires that the step size is nonzero, which always holds.
 fn is_power_of_step(g: &Guard) -> bool {
     let of_letter = |e: &Expr| matches!(e.node(), Node::Letter(_));
     let power = match g.argument.node() {
@@ -250,24 +250,24 @@ fn is_power_of_step(g: &Guard) -> bool {
     power && g.place == Place::Step && g.domain == Domain::NotZero
 }
 
-/// What a function asks of its argument, as tokens.
+/// A guard as tokens.
 pub(super) struct Tested {
     /// The domain, as the runtime names it.
     pub domain: TokenStream,
     /// The function.
     pub function: TokenStream,
-    /// The function and its argument in words.
+    /// The function and its argument, as the runtime names them.
     pub call: TokenStream,
-    /// The argument in words.
+    /// The argument as text.
     pub text: String,
     /// The argument.
     pub argument: Expr,
-    /// Whether it is made of parameters alone.
+    /// Whether the argument depends on parameters only.
     pub constant: bool,
 }
 
-/// What some expressions of a model ask of what stands at a node, and of parameters; none where they ask
-/// something of velocities.
+/// The guards of some expressions of a model on quantities at a node and on parameters. None if an expression has a
+/// guard on velocities.
 pub(super) fn tested(s: &Symbols, time_index: &str, list: &[Expr]) -> Option<Vec<Tested>> {
     let mut all = Vec::new();
     list.iter().for_each(|e| collect(s, e, &mut all));
@@ -295,7 +295,7 @@ pub(super) fn is_guarded(d: &Derivation) -> bool {
     d.spec.configurations.iter().any(linear) || guards(d).iter().any(tested)
 }
 
-/// The head of the function that makes a step: a tested one stands before it.
+/// The head of the function that makes a step. If the step must be tested, another function wraps it.
 pub(super) fn step_head(d: &Derivation) -> TokenStream {
     match is_guarded(d) {
         true => quote!(fn step_untested),
@@ -303,7 +303,7 @@ pub(super) fn step_head(d: &Derivation) -> TokenStream {
     }
 }
 
-/// Letters and tests of what parameters must be.
+/// The tests of the parameters, and the letters that the tests contain.
 pub(super) fn of_parameters(d: &Derivation) -> (Vec<Letter>, TokenStream) {
     tests_of(d, Place::Parameters)
 }
@@ -324,7 +324,7 @@ fn tests_of(d: &Derivation, place: Place) -> (Vec<Letter>, TokenStream) {
     (letters_of(list.iter().map(|g| &g.argument)), tests)
 }
 
-/// The test of a step size, where the model divides by more of it than itself.
+/// The test of the step size, if the model divides by other functions of the step size than its powers.
 pub(super) fn of_step(d: &Derivation) -> TokenStream {
     let (letters, tests) = tests_of(d, Place::Step);
     if tests.is_empty() {
@@ -337,11 +337,11 @@ pub(super) fn of_step(d: &Derivation) -> TokenStream {
     }
 }
 
-/// The test of the state that a trajectory starts from: there a step finds what is infinite, and no
-/// shorter one helps.
+/// The test of the initial state. An infinite value there fails the first step, and a smaller step size does not
+/// help.
 pub(super) fn of_start(d: &Derivation, names: &Names) -> TokenStream {
     let mut list = with_squares(d);
-    // A root of squares is positive where they are.
+    // The root of a sum of squares is defined everywhere.
     let idle = |g: &Guard| g.domain == Domain::NotNegative && is_square(&g.argument);
     list.retain(|g| g.place == Place::Node && !idle(g));
     if list.is_empty() {
@@ -367,7 +367,7 @@ pub(super) fn of_start(d: &Derivation, names: &Names) -> TokenStream {
     }}
 }
 
-/// What the arguments of functions at the node of `state` are made from, and their values.
+/// The statements that bind the letters of the arguments at the node of `state`, and the values of the arguments.
 fn arguments(d: &Derivation, names: &Names, list: &[Guard]) -> (TokenStream, Vec<TokenStream>) {
     let arguments: Vec<Expr> = list.iter().map(|g| g.argument.clone()).collect();
     let needed = letters_of(&arguments);
@@ -379,8 +379,8 @@ fn arguments(d: &Derivation, names: &Names, list: &[Guard]) -> (TokenStream, Vec
     (quote!(#parameters #locals #lets), values)
 }
 
-/// The test of the momenta in a step. Where the model must be tested they are looked at after its domain: what
-/// left that may be the reason for what is not finite.
+/// The test in a step that its momenta are finite. A model with guards tests the momenta after the domains, because a
+/// left domain may be the cause of a value that is not finite.
 pub(super) fn finite_in_step(d: &Derivation, names: &Names, finite: &[TokenStream]) -> TokenStream {
     if is_guarded(d) {
         return TokenStream::new();
@@ -393,7 +393,7 @@ pub(super) fn finite_in_step(d: &Derivation, names: &Names, finite: &[TokenStrea
     }
 }
 
-/// `step` as it is called, for a model that must be tested.
+/// The public `step` of a model with guards.
 pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
     if !is_guarded(d) {
         return TokenStream::new();
@@ -462,7 +462,7 @@ pub(super) fn tested_step(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
-/// Whether a step stays where the model is defined.
+/// The function that tests whether a step stays in the domain of the model.
 fn inside(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
     let (state, used) = (item(d, "State"), Generics::of(d).used());
@@ -471,7 +471,7 @@ fn inside(d: &Derivation, names: &Names) -> TokenStream {
     let all = guards(d);
     let invertible = d.spec.configurations.iter().filter_map(|c| {
         let (name, own) = (&s.get(c.element).name, own(d, c.element));
-        // A matrix whose determinant must not vanish at a node must not between two of them.
+        // If the determinant of a field must not vanish at a node, it must not vanish between two nodes either.
         let shape = s.get(c.element).shape;
         let det = expr::det(expr::here(s, c.element));
         let inverted =
@@ -489,7 +489,7 @@ fn inside(d: &Derivation, names: &Names) -> TokenStream {
     let (dets, linear): (Vec<Expr>, Vec<TokenStream>) = invertible.unzip();
     let linear = quote!(#(#linear)*);
     let (mut nodal, edge) = (of(d, Place::Node), of(d, Place::Edge));
-    // A determinant that does not vanish on the way keeps the sign that it has at the start, where it is tested.
+    // A determinant that does not vanish during the step keeps its sign, which is tested at the start.
     nodal.retain(|g| !dets.contains(&g.argument));
     let (nodes, arguments) = at_nodes(d, names, &nodal);
     let edges = on_edge(d, names, &edge);
@@ -507,7 +507,7 @@ fn inside(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
-/// The tests at both nodes, and the function that gives the arguments at one.
+/// The tests at both nodes, and the function that gives the arguments at one node.
 fn at_nodes(d: &Derivation, names: &Names, list: &[Guard]) -> (TokenStream, TokenStream) {
     if list.is_empty() {
         return Default::default();
@@ -522,8 +522,8 @@ fn at_nodes(d: &Derivation, names: &Names, list: &[Guard]) -> (TokenStream, Toke
         let i = Literal::usize_unsuffixed(i);
         quote!(#domain.at_nodes(#call, #before[#i], #after[#i], #step)?;)
     });
-    // Where a step starts has been tested: by the step before, or when its workspace was made. It is asked for where an
-    // argument must not change its sign, and to say when a domain was left.
+    // The node at which a step starts was tested by the previous step or when the workspace was made. Its arguments
+    // are computed only if a sign must not change, or to report where the step left a domain.
     let nodes = match list.iter().any(|g| g.domain == Domain::NotZero) {
         true => quote! {{
             let (#before, #after) = (self.domain_arguments(#before, #step), self.domain_arguments(#after, #step));
@@ -556,7 +556,7 @@ fn at_nodes(d: &Derivation, names: &Names, list: &[Guard]) -> (TokenStream, Toke
     (nodes, function)
 }
 
-/// The tests for the velocities.
+/// The tests of arguments that depend on velocities.
 fn on_edge(d: &Derivation, names: &Names, list: &[Guard]) -> TokenStream {
     if list.is_empty() {
         return TokenStream::new();

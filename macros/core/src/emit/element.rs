@@ -1,5 +1,5 @@
-//! What emitted code says of a configuration, by its group: the types of elements and momenta, the
-//! coordinates of covectors, bases of the Lie algebra. One match per question.
+//! Emitted code that depends on the group of a configuration: the types of elements and momenta, the coordinates of
+//! covectors, bases of the Lie algebra.
 
 use super::sizes::size;
 use crate::check::spec::{Configuration, Side};
@@ -9,7 +9,7 @@ use crate::expr::shape::Dim;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-/// How the runtime keeps the elements of a group.
+/// How the runtime stores the elements of a group.
 pub use crate::groups::Kept as Family;
 
 /// The family of a configuration.
@@ -17,18 +17,18 @@ pub fn family(c: &Configuration) -> Family {
     c.group.kept()
 }
 
-/// The configuration with this index. Only indices of the model are asked for.
+/// The family of the configuration with this index, which must be an index of the model.
 fn of(d: &Derivation, i: usize) -> Family {
     family(&d.spec.configurations[i])
 }
 
-/// Whether every configuration is a rotation of space: the emitted code then has vectors only.
+/// Whether every configuration is a rotation of space. If so, the emitted code uses 3-vectors only.
 pub fn only_rotations(d: &Derivation) -> bool {
     let mut all = d.spec.configurations.iter();
     all.all(|c| family(c) == Family::Rotation)
 }
 
-/// The largest value of a size.
+/// The largest value that the model allows for a size.
 pub fn largest(d: &Derivation, n: Dim) -> u64 {
     match n {
         Dim::Fixed(n) => u64::from(n),
@@ -36,7 +36,7 @@ pub fn largest(d: &Derivation, n: Dim) -> u64 {
     }
 }
 
-/// How many coordinates the Lie algebra has, at most, over the sizes the model allows.
+/// The number of coordinates of the Lie algebra, maximized over the sizes that the model allows.
 pub fn most_coordinates(d: &Derivation, i: usize) -> u64 {
     match of(d, i) {
         Family::Rotation | Family::Quaternion => 3,
@@ -53,7 +53,7 @@ pub fn most_coordinates(d: &Derivation, i: usize) -> u64 {
     }
 }
 
-/// Most coordinates of all configurations together, as a literal: the size of work arrays.
+/// The largest number of coordinates of all configurations together, as a literal: the size of work arrays.
 pub fn total(d: &Derivation) -> Literal {
     let sum: u64 = (0..d.spec.configurations.len())
         .map(|i| most_coordinates(d, i))
@@ -61,7 +61,7 @@ pub fn total(d: &Derivation) -> Literal {
     Literal::usize_unsuffixed(usize::try_from(sum).unwrap_or(usize::MAX))
 }
 
-/// How many coordinates the Lie algebra has, as tokens.
+/// The number of coordinates of the Lie algebra, as tokens.
 pub fn coordinates(d: &Derivation, i: usize) -> TokenStream {
     let s = &d.letters.symbols;
     match of(d, i) {
@@ -89,7 +89,7 @@ pub fn coordinates(d: &Derivation, i: usize) -> TokenStream {
     }
 }
 
-/// Coordinates of the configurations before this one, as tokens.
+/// The number of coordinates of the preceding configurations, as tokens.
 pub fn offset(d: &Derivation, i: usize) -> TokenStream {
     if only_rotations(d) {
         let n = Literal::usize_unsuffixed(3 * i);
@@ -109,7 +109,7 @@ pub fn ty(d: &Derivation, i: usize) -> TokenStream {
     ty_over(d, i, &quote!(T))
 }
 
-/// The type of an element over a scalar.
+/// The type of an element over `scalar`.
 pub fn ty_over(d: &Derivation, i: usize, scalar: &TokenStream) -> TokenStream {
     let s = &d.letters.symbols;
     match of(d, i) {
@@ -134,7 +134,7 @@ pub fn ty_over(d: &Derivation, i: usize, scalar: &TokenStream) -> TokenStream {
     }
 }
 
-/// The numbers of an element as a slice.
+/// The entries of an element as a slice.
 pub fn numbers(d: &Derivation, i: usize, element: TokenStream) -> TokenStream {
     match of(d, i) {
         Family::Rotation => quote!(&#element.quaternion()),
@@ -145,8 +145,7 @@ pub fn numbers(d: &Derivation, i: usize, element: TokenStream) -> TokenStream {
     }
 }
 
-/// What expressions take for an element, given the value that the runtime keeps: its matrix, or the
-/// number of a field of numbers.
+/// The value that expressions use for an element: its matrix, or the number of a scalar field.
 pub fn matrix(c: &Configuration, element: TokenStream) -> TokenStream {
     match family(c) {
         Family::Field(shape) if shape.is_scalar() => quote!(#element.matrix()[0]),
@@ -154,7 +153,7 @@ pub fn matrix(c: &Configuration, element: TokenStream) -> TokenStream {
     }
 }
 
-/// What expressions take for a momentum, given the array that the runtime keeps.
+/// The value that expressions use for a momentum, given the array that the runtime stores.
 pub fn value(c: &Configuration, momentum: TokenStream) -> TokenStream {
     match family(c) {
         Family::Field(shape) if shape.is_scalar() => quote!(#momentum[0]),
@@ -162,7 +161,7 @@ pub fn value(c: &Configuration, momentum: TokenStream) -> TokenStream {
     }
 }
 
-/// The other way round: the array that the runtime keeps for the value of a covector.
+/// The inverse of [`value`]: the array that the runtime stores for a covector.
 pub fn array(c: &Configuration, value: TokenStream) -> TokenStream {
     match family(c) {
         Family::Field(shape) if shape.is_scalar() => quote!(SVector::<T, 1>::new(#value)),
@@ -170,7 +169,7 @@ pub fn array(c: &Configuration, value: TokenStream) -> TokenStream {
     }
 }
 
-/// The element at the end of an edge whose velocity is found on a side.
+/// The element at the end of an edge, given its velocity on `side`.
 pub fn advanced(
     c: &Configuration,
     side: Side,
@@ -186,7 +185,7 @@ pub fn advanced(
     }
 }
 
-/// The name of the momentum of a configuration in the frame of a side; a field has one frame.
+/// The name of the momentum of a configuration in the frame of a side. The momentum of a field has one frame only.
 pub fn momentum_field(d: &Derivation, i: usize, side: Side) -> proc_macro2::Ident {
     let base = match of(d, i) {
         Family::Field(_) => "momentum",
@@ -195,7 +194,7 @@ pub fn momentum_field(d: &Derivation, i: usize, side: Side) -> proc_macro2::Iden
     super::names::per_configuration(d, base, i)
 }
 
-/// The method that gives the velocity from one element to the next.
+/// The method that gives the velocity between two elements.
 pub fn velocity_between(c: &Configuration) -> proc_macro2::Ident {
     format_ident!("{}_velocity", c.side.of("body", "spatial"))
 }
@@ -205,7 +204,7 @@ pub fn spatial_momentum_field(d: &Derivation, i: usize) -> proc_macro2::Ident {
     momentum_field(d, i, Side::Spatial)
 }
 
-/// The array that the runtime keeps for a covector.
+/// The type of the array in which the runtime stores a covector.
 pub fn kept_array(d: &Derivation, i: usize) -> TokenStream {
     let s = &d.letters.symbols;
     match of(d, i) {
@@ -217,31 +216,32 @@ pub fn kept_array(d: &Derivation, i: usize) -> TokenStream {
     }
 }
 
-/// Whether the state keeps the momentum about the body's own origin, in the axes of space: that of a
-/// rigid motion whose equations are those of the body.
+/// Whether the state stores the momentum about the body's own origin, in the axes of space. This holds for rigid
+/// motions stated in the body.
 pub fn about_body(c: &Configuration) -> bool {
     c.side.is_body() && c.group.rigid().is_some()
 }
 
-/// Whether the linear momentum of a rigid motion is along its way, so that it has no moment on it.
+/// Whether the linear momentum of a rigid motion is parallel to its displacement, so that its moment does not change
+/// along the edge.
 pub fn is_straight(d: &Derivation, i: usize) -> bool {
     matches!(d.carries[i], MomentumUpdate::Through { straight: true, .. })
 }
 
-/// Whether the state keeps the place of the element in two numbers. A spatial velocity turns the
-/// place about the origin of space, and its momentum is about that: nothing would be gained there.
+/// Whether the state stores the position of the element in two numbers. A spatial velocity rotates the position about
+/// the origin of space, and its momentum is about that origin, so two numbers would not improve it.
 pub fn is_placed(c: &Configuration) -> bool {
     about_body(c) || c.group.is_additive()
 }
 
-/// The fields of the state with the rests of a place and of a momentum that are kept in two numbers.
+/// The fields of the state for the low-order parts of a position and of a momentum that are stored in two numbers.
 pub fn rests(d: &Derivation, i: usize) -> Option<[proc_macro2::Ident; 2]> {
     let kept = is_placed(&d.spec.configurations[i]);
     let names = ["place_rest", "momentum_rest"];
     kept.then(|| names.map(|base| super::names::per_configuration(d, base, i)))
 }
 
-/// The type of the rest of a place.
+/// The type of the low-order part of a position.
 pub fn rest_ty(d: &Derivation, i: usize) -> TokenStream {
     let s = &d.letters.symbols;
     let c = &d.spec.configurations[i];
@@ -282,7 +282,7 @@ pub fn momentum_name(d: &Derivation, i: usize, side: Side) -> TokenStream {
     quote!(#name)
 }
 
-/// The name of the type of the momentum that the state keeps.
+/// The name of the type of the momentum that the state stores.
 pub fn kept_name(d: &Derivation, i: usize) -> TokenStream {
     let c = &d.spec.configurations[i];
     match (about_body(c), family(c)) {
@@ -294,7 +294,7 @@ pub fn kept_name(d: &Derivation, i: usize) -> TokenStream {
     }
 }
 
-/// That type.
+/// The type of the momentum that the state stores.
 pub fn kept(d: &Derivation, i: usize) -> TokenStream {
     match about_body(&d.spec.configurations[i]) {
         true => {
@@ -322,7 +322,7 @@ pub fn momentum(d: &Derivation, i: usize, side: Side) -> TokenStream {
     }
 }
 
-/// The element of the Lie algebra's basis with this index.
+/// The basis element of the Lie algebra with this index.
 pub fn basis(d: &Derivation, i: usize, index: TokenStream) -> TokenStream {
     let s = &d.letters.symbols;
     match of(d, i) {
@@ -348,7 +348,7 @@ pub fn basis(d: &Derivation, i: usize, index: TokenStream) -> TokenStream {
     }
 }
 
-/// The zero of a shape.
+/// Zero of a shape.
 pub fn zero(d: &Derivation, shape: crate::expr::shape::Shape) -> TokenStream {
     if shape.is_scalar() {
         return quote!(T::zero());
@@ -358,7 +358,7 @@ pub fn zero(d: &Derivation, shape: crate::expr::shape::Shape) -> TokenStream {
     quote!(SMatrix::<T, #rows, #cols>::zeros())
 }
 
-/// The covector that is zero.
+/// The zero covector.
 pub fn nothing(d: &Derivation, i: usize) -> TokenStream {
     match of(d, i) {
         Family::Field(shape) => zero(d, shape),
@@ -366,15 +366,14 @@ pub fn nothing(d: &Derivation, i: usize) -> TokenStream {
     }
 }
 
-/// Elements or covectors of all configurations together: an array where their types agree, else a
-/// tuple.
+/// Elements or covectors of all configurations: an array if their types agree, otherwise a tuple.
 pub struct Bundle {
     count: usize,
     array: bool,
 }
 
 impl Bundle {
-    /// That of a model.
+    /// The bundle of a model.
     pub fn of(d: &Derivation) -> Bundle {
         let list = &d.spec.configurations;
         Bundle {
@@ -383,7 +382,7 @@ impl Bundle {
         }
     }
 
-    /// The type, given those of its parts.
+    /// The type, given the types of its parts.
     pub fn ty(&self, parts: &[TokenStream]) -> TokenStream {
         let count = Literal::usize_unsuffixed(self.count);
         match (self.array, parts.first()) {
@@ -400,7 +399,7 @@ impl Bundle {
         }
     }
 
-    /// One part.
+    /// The part with index `i`.
     pub fn part(&self, bundle: TokenStream, i: usize) -> TokenStream {
         let i = Literal::usize_unsuffixed(i);
         match self.array {
@@ -418,7 +417,7 @@ pub fn covectors(d: &Derivation) -> TokenStream {
     Bundle::of(d).ty(&parts)
 }
 
-/// The coordinates of all covectors of a bundle, one configuration after another: each is given by its value.
+/// The coordinates of all covectors, one configuration after another. `values` are the values of the covectors.
 pub fn stacked(d: &Derivation, values: &[TokenStream]) -> TokenStream {
     let bundle = Bundle::of(d);
     let (dimension, covectors, value) = (total(d), covectors(d), bundle.value(values));

@@ -1,5 +1,5 @@
-//! The physical energy of a node: the kinetic energy of the limit of small steps, inverted for the
-//! momentum, and the potential. Takes the limit; gives `energies` and `energy`.
+//! The physical energy of a node: the potential energy, and the kinetic energy of the limit of small steps as a
+//! function of the momentum. Takes the limit; gives `energies` and `energy`.
 
 use super::element::{self, stacked};
 use super::expression::{Bindings, Writer, program};
@@ -14,7 +14,7 @@ use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// `energies` and `energy`.
+/// The functions `energies` and `energy`.
 pub fn energy(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
     match parts(d, limit).as_slice() {
         [_, _, ..] => in_parts(d, names, limit),
@@ -22,7 +22,7 @@ pub fn energy(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
     }
 }
 
-/// Each configuration's node momentum in the frame of its side.
+/// Each configuration's node momentum, in the frame of its side.
 fn momenta(d: &Derivation) -> Vec<TokenStream> {
     let list = d.spec.configurations.iter().enumerate();
     list.map(|(i, c)| {
@@ -32,14 +32,14 @@ fn momenta(d: &Derivation) -> Vec<TokenStream> {
     .collect()
 }
 
-/// Configurations whose velocities stand in one another's momenta: each such part of the kinetic
-/// energy is inverted by itself.
+/// Sets of configurations whose kinetic energies are independent: no momentum contains a velocity of another set.
+/// Each set is inverted by itself.
 fn parts(d: &Derivation, limit: &Limit) -> Vec<Vec<usize>> {
     let s = &d.letters.symbols;
     let letter = |i: usize| at(d.letters.variation[i], Shift::HERE);
     let count = d.spec.configurations.len();
     let all = || vec![(0..count).collect()];
-    // Work arrays of named sizes are as large as the largest: one for all.
+    // Work arrays of named sizes have the largest size, so one array serves all configurations.
     if !d.spec.dimensions.is_empty() {
         return all();
     }
@@ -58,7 +58,7 @@ fn parts(d: &Derivation, limit: &Limit) -> Vec<Vec<usize>> {
     parts
 }
 
-/// The configurations of one part: what the emission of a model asks of all.
+/// Restricts `whole` to the configurations of one part, in the fields that this module reads.
 fn part_of(whole: &mut Derivation, d: &Derivation, members: &[usize]) {
     let pick = |list: &[crate::expr::symbol::SymbolId]| members.iter().map(|i| list[*i]).collect();
     let configurations = members.iter().map(|i| d.spec.configurations[*i].clone());
@@ -67,7 +67,7 @@ fn part_of(whole: &mut Derivation, d: &Derivation, members: &[usize]) {
     whole.letters.direction = pick(&d.letters.direction);
 }
 
-/// `energies` and `energy`, the kinetic energy part by part.
+/// `energies` and `energy`, with the kinetic energy computed part by part.
 fn in_parts(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
     let needed = letters_of([&limit.kinetic, &limit.linear, &limit.potential]);
     let mut bindings = Bindings::new();
@@ -82,7 +82,7 @@ fn in_parts(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
     both(d, body)
 }
 
-/// Twice the kinetic energy in the local `twice`, part by part, at momenta that are given by tokens.
+/// Twice the kinetic energy as the local `twice`, computed part by part from `momenta`.
 pub(super) fn twice_kinetic(
     d: &Derivation,
     bindings: &Bindings,
@@ -92,7 +92,7 @@ pub(super) fn twice_kinetic(
     twice_kinetic_of(d, bindings, limit, momenta, &|_| true)
 }
 
-/// The same of the configurations that are `wanted`, which share theirs with no others.
+/// Twice the kinetic energy of the `wanted` configurations, which must not share kinetic energy with others.
 pub(super) fn twice_kinetic_of(
     d: &Derivation,
     bindings: &Bindings,
@@ -127,7 +127,7 @@ fn potential(d: &Derivation, bindings: &Bindings, limit: &Limit) -> TokenStream 
     }
 }
 
-/// The functions around what is computed.
+/// The functions whose common body is `body`.
 fn both(d: &Derivation, body: TokenStream) -> TokenStream {
     let state = item(d, "State");
     let used = Generics::of(d).used();
@@ -145,7 +145,7 @@ fn both(d: &Derivation, body: TokenStream) -> TokenStream {
     }
 }
 
-/// The momenta along each configuration, of a form in the velocities.
+/// The momentum of each configuration, given a function of the velocities.
 pub(super) fn gradients(d: &Derivation, e: &Expr) -> Vec<Expr> {
     let s = &d.letters.symbols;
     let list = d.spec.configurations.iter().zip(&d.letters.variation);
@@ -156,7 +156,7 @@ pub(super) fn gradients(d: &Derivation, e: &Expr) -> Vec<Expr> {
     .collect()
 }
 
-/// `energies` and `energy`, the kinetic energy by the inertia of all velocities together.
+/// `energies` and `energy`, with one inertia matrix for all velocities.
 fn whole(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
     let linear = gradients(d, &limit.linear);
     let needed = letters_of(linear.iter().chain([&limit.potential]));
@@ -174,7 +174,7 @@ fn whole(d: &Derivation, names: &Names, limit: &Limit) -> TokenStream {
     both(d, body)
 }
 
-/// The momenta on top of each other, less what is linear in the velocity, as the local `momentum`.
+/// The stacked momenta minus the part that is linear in the velocity in the Lagrangian, as the local `momentum`.
 fn momentum(
     d: &Derivation,
     bindings: &Bindings,
@@ -217,8 +217,8 @@ pub(super) fn inertia_alone(d: &Derivation, bindings: &Bindings, kinetic: &[Expr
     }
 }
 
-/// The inertia column by column, as the local `inertia`: the momentum of each unit velocity is the gradient
-/// of the kinetic energy, which costs less than the form on all pairs.
+/// The inertia as the local `inertia`, column by column. Each column is the gradient of the kinetic energy at a unit
+/// velocity, which is cheaper than the form on all pairs.
 pub(super) fn inertia(d: &Derivation, bindings: &Bindings, kinetic: &[Expr]) -> TokenStream {
     let s = &d.letters.symbols;
     let p = schedule::program(s, kinetic, "t");
@@ -259,7 +259,7 @@ pub(super) fn inertia(d: &Derivation, bindings: &Bindings, kinetic: &[Expr]) -> 
     }
 }
 
-/// The kinetic energy of the limit, inverted for the momentum.
+/// The momentum and the inertia as locals, to compute the kinetic energy from the momentum.
 pub(super) fn matrices(
     d: &Derivation,
     bindings: &Bindings,

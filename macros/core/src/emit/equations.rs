@@ -1,6 +1,6 @@
-//! What Newton's method solves: residual and tangent of the equations of one step, at a trial.
-//! Takes the derived momenta of the outgoing edge; gives the code of both. By vectors and
-//! blocks of three where the groups are those of space, by coordinates and columns elsewhere.
+//! The equations that Newton's method solves: residual and tangent of one step at a trial. Takes the derived momenta
+//! of the outgoing edge; gives the code of both. If all groups act on 3-space, the code uses vectors and 3x3 blocks,
+//! otherwise coordinates and columns.
 
 use super::element::{self, Bundle, stacked};
 use super::expression::{Bindings, program};
@@ -20,65 +20,65 @@ use crate::schedule;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-/// Where the equations stand.
+/// The context of the equations.
 pub(super) struct Equations<'a> {
     /// The model.
     pub d: &'a Derivation,
-    /// Its names.
+    /// The model's names.
     pub names: &'a Names,
-    /// What is known at the node.
+    /// The locals of the quantities known at the node.
     pub bindings: &'a Bindings,
-    /// The local that holds the trial.
+    /// The local of the trial.
     pub trial: &'a Ident,
-    /// The local that holds the momenta of the node.
+    /// The local of the node momenta.
     pub momenta: &'a Ident,
-    /// What is solved for beforehand, and where the model keeps the inverses for it.
+    /// The unknowns that are eliminated before the iteration, and the fields of the model with the inverses for that.
     pub eliminated: Option<&'a (SchurReduction, Vec<(Expr, Ident)>)>,
 }
 
 /// The equations as code.
 pub(super) struct Written {
-    /// What both need of the trial.
+    /// The statements that residual and tangent share.
     pub at_trial: TokenStream,
     /// The residual, as the body of a block.
     pub residual: TokenStream,
-    /// The residual of all equations at rest, as the body of a block.
+    /// The residual of all equations at zero velocity, as the body of a block.
     pub at_rest: TokenStream,
     /// The tangent, as the body of a block.
     pub tangent: TokenStream,
-    /// The side from which the velocity is moved in it.
+    /// The side on which the tangent perturbs the velocity.
     pub side: Side,
-    /// Whether it stands times the step.
+    /// Whether the tangent is multiplied by the step size.
     pub times_step: bool,
-    /// The same two, moved from the right and not times the step, without anything computed before.
+    /// Residual and tangent on the body side, without the factor of the step size, and without precomputed values.
     pub alone: Alone,
-    /// The type of the momenta of the node together, over `T`.
+    /// The type of the node momenta together, over `T`.
     pub momenta: TokenStream,
-    /// Those momenta with `change` made to every number.
+    /// The node momenta, with `change` applied to every number.
     pub momenta_over: TokenStream,
-    /// How the rest of a trial is found, where the residual and the tangent are of a part of it.
+    /// How to complete a trial, if residual and tangent cover a part of it only.
     pub part: Option<Part>,
-    /// What has been computed at the node before, for what comes after the solution.
+    /// The values computed at the node before the loop, for the code after the solution.
     pub computed: Option<(schedule::Program, Bindings)>,
 }
 
-/// A trial whose translations are solved for.
+/// A trial whose translations are eliminated.
 pub(super) struct Part {
-    /// What binds the velocities and the trial, given its rotations.
+    /// The statements that bind the velocities and the trial, given its rotations.
     pub at_trial: TokenStream,
-    /// The whole trial as a function of its own: the body.
+    /// The body of a function that computes the whole trial.
     pub alone: TokenStream,
-    /// Which components of the whole residual are left.
+    /// The components of the whole residual that remain.
     pub rows: Vec<usize>,
 }
 
-/// The shape of a vector of space.
+/// The shape of a 3-vector.
 const THREE: Shape = Shape::vector(Dim::Fixed(3));
 
-/// The rotations of a trial whose translations are solved for.
+/// The local with the rotations of a trial whose translations are eliminated.
 pub(super) const TURNED: &str = "turned";
 
-/// The equations by parts of three components, if the groups are those of space.
+/// The equations in parts of three components, if all groups act on 3-space.
 fn by_parts(d: &Derivation, list: &[Expr]) -> Option<(Parts, Vec<Expr>)> {
     let parts = Parts::of(&d.spec, &d.letters)?;
     let s = &parts.symbols;
@@ -91,7 +91,7 @@ fn by_parts(d: &Derivation, list: &[Expr]) -> Option<(Parts, Vec<Expr>)> {
     Some((parts, list))
 }
 
-/// The blocks of the tangent, row by row, with every velocity moved from one side, times a number.
+/// The 3x3 blocks of the tangent, row by row, multiplied by `unit`; every velocity is perturbed on `side`.
 fn blocks_of(parts: &Parts, list: &[Expr], side: Side, unit: &Expr) -> Option<Vec<Expr>> {
     let s = &parts.symbols;
     let direction = Direction {
@@ -110,8 +110,8 @@ fn blocks_of(parts: &Parts, list: &[Expr], side: Side, unit: &Expr) -> Option<Ve
     Some(blocks)
 }
 
-/// What can be solved for before the rest of the equations `list`: where the tangent is the same at every
-/// node, so that a proof that the root is principal asks for no other.
+/// The unknowns that can be eliminated from the equations `list`. None unless the tangent is the same at every node,
+/// so that the proof of the principal root needs one tangent only.
 pub(super) fn eliminated(d: &Derivation, list: &[Expr]) -> Option<SchurReduction> {
     let moves = |c: &crate::check::spec::Configuration| c.group.rigid().is_some();
     if !d.spec.configurations.iter().any(moves) {
@@ -125,25 +125,25 @@ pub(super) fn eliminated(d: &Derivation, list: &[Expr]) -> Option<SchurReduction
         .then_some(found)
 }
 
-/// Residual and tangent as functions of their own, and what they ask of the node.
+/// Residual and tangent as functions of their own, and the values at the node that both need.
 pub(super) struct Alone {
     /// The residual, as the body of a block.
     pub residual: TokenStream,
     /// The tangent, as the body of a block.
     pub tangent: TokenStream,
-    /// Elements and quantities at the node that both need.
+    /// Elements and quantities at the node that both functions need.
     pub given: Vec<Letter>,
 }
 
 impl Equations<'_> {
-    /// The statement that binds the momenta of the node, and the equations: `list` is derived,
-    /// `node` are the values at hand.
+    /// The statement that binds the node momenta, and the equations. `list` is the derived momenta, `node` the values
+    /// of the node momenta.
     pub fn write(&self, list: &[Expr], node: &[TokenStream]) -> (TokenStream, Written) {
         self.in_blocks(list, node)
             .unwrap_or_else(|| self.in_columns(list, node))
     }
 
-    /// Blocks of three; nothing where a group has other coordinates, or no rule gives the tangent.
+    /// The equations in 3x3 blocks. None if a group has other coordinates, or if no rule gives the tangent.
     fn in_blocks(&self, list: &[Expr], node: &[TokenStream]) -> Option<(TokenStream, Written)> {
         let (d, trial, mu) = (self.d, self.trial, self.momenta);
         let (parts, list) = by_parts(d, list)?;
@@ -163,9 +163,9 @@ impl Equations<'_> {
         };
         let blocks = blocks_from(Side::Body, &one)?;
         let step = expr::here(s, d.spec.step);
-        // The same tangent otherwise, of which the loop takes the one that is least work. Where the model
-        // is stated in space its velocities are corrected in the body: from the other side, places far
-        // from the origin came out a few roundings worse in free fall.
+        // Equivalent forms of the tangent; the loop uses the one with the least work. If a model is stated in space,
+        // its velocities are corrected in the body: corrections in space gave positions far from the origin a few
+        // more rounding errors in free fall.
         let in_bodies = d.spec.configurations.iter().all(|c| c.side.is_body());
         let others = [
             (Side::Body, true),
@@ -273,7 +273,7 @@ impl Equations<'_> {
         let varies = |l| parts.varies(l) || eliminated.is_some_and(|found| found.varies(l));
         let mut at_node = schedule::LoopInvariants::new(s, &varies, "k");
         let (side, times_step, blocks) = {
-            // What is known before the loop costs little.
+            // Values computed before the loop add little work.
             let cost = |blocks: &[Expr]| {
                 let mut known = schedule::LoopInvariants::new(s, &varies, "k");
                 let all = list.iter().chain(blocks).map(|e| known.apart(e));
@@ -296,7 +296,7 @@ impl Equations<'_> {
         let steps = eliminated.map_or_else(Vec::new, |found| found.steps());
         let apart = steps.iter().map(|(id, e)| (*id, at_node.apart(e)));
         let apart: Vec<(SymbolId, Expr)> = apart.collect();
-        // The model keeps inverses of constants.
+        // The model stores the inverses of constants.
         let kept = |e: &Expr| {
             let Node::Inverse(a) = e.node() else {
                 return None;
@@ -366,7 +366,8 @@ impl Equations<'_> {
         ))
     }
 
-    /// The translations of a trial of which the rotations are given; `others` ask for Rodrigues vectors too.
+    /// The translations of a trial, given its rotations. `others` are further expressions that may need Rodrigues
+    /// vectors.
     fn completed(
         &self,
         found: &SchurReduction,
@@ -405,7 +406,7 @@ impl Equations<'_> {
         out
     }
 
-    /// The velocities of a trial, translations found.
+    /// The velocities of a trial, once its translations are known.
     fn wholes(&self, found: &SchurReduction) -> Vec<TokenStream> {
         let turned = Ident::new(TURNED, proc_macro2::Span::call_site());
         let each = (0..found.rotations.len()).map(|i| {
@@ -421,7 +422,8 @@ impl Equations<'_> {
         each.collect()
     }
 
-    /// The columns of the tangent along the velocity of configuration `j`, given the values along its direction.
+    /// The columns of the tangent for the velocity of configuration `j`. `values` are the derivatives along its
+    /// direction.
     fn columns(&self, j: usize, lets: TokenStream, values: &[TokenStream]) -> TokenStream {
         let d = self.d;
         let eta = variable(&d.letters.symbols, d.letters.direction[j]);
@@ -446,7 +448,7 @@ impl Equations<'_> {
         }
     }
 
-    /// Coordinates one after the other; the tangent by the derivative along each of them.
+    /// The equations in coordinates, with one column of the tangent per coordinate.
     fn in_columns(&self, list: &[Expr], node: &[TokenStream]) -> (TokenStream, Written) {
         let (d, trial, mu) = (self.d, self.trial, self.momenta);
         let s = &d.letters.symbols;
@@ -487,7 +489,7 @@ impl Equations<'_> {
             let stacked = stacked(d, &parts);
             quote!(#lets #stacked)
         };
-        // The derivative along Ω η for every basis element of every velocity.
+        // The derivative along Ω η, for every basis element η of every velocity.
         let derived: Vec<Vec<Expr>> = (0..bodies)
             .map(|j| {
                 let c = &d.spec.configurations[j];
@@ -512,7 +514,7 @@ impl Equations<'_> {
                 matrix
             }
         };
-        // In the loop what stands at the node has been computed before, what stands at the trial once for all columns.
+        // In the loop, values at the node are computed beforehand, and values at the trial once for all columns.
         let is_velocity = |l: Letter| d.spec.configurations.iter().any(|c| c.velocity == l.symbol);
         let along = |l: Letter| d.letters.direction.contains(&l.symbol);
         let varies = |l: Letter| is_velocity(l) || along(l);
@@ -565,7 +567,7 @@ impl Equations<'_> {
     }
 }
 
-/// The equations of every column with what is known under names.
+/// The equations of every column, with known subexpressions replaced by names.
 fn columns_apart(known: &mut schedule::LoopInvariants, columns: &[Vec<Expr>]) -> Vec<Vec<Expr>> {
     let mut all = Vec::with_capacity(columns.len());
     for column in columns {
@@ -574,7 +576,7 @@ fn columns_apart(known: &mut schedule::LoopInvariants, columns: &[Vec<Expr>]) ->
     all
 }
 
-/// Expressions with other letters.
+/// The expressions after a substitution of letters.
 fn substituted(s: &Symbols, list: &[Expr], by: &[(Letter, Expr)]) -> Vec<Expr> {
     let mut all = Vec::with_capacity(list.len());
     for e in list {
@@ -583,7 +585,7 @@ fn substituted(s: &Symbols, list: &[Expr], by: &[(Letter, Expr)]) -> Vec<Expr> {
     all
 }
 
-/// What stands for something at the node: elements and advected quantities.
+/// The letters of elements and advected quantities in `list`.
 fn at_the_node<'e>(s: &Symbols, list: impl IntoIterator<Item = &'e Expr>) -> Vec<Letter> {
     let at_node = |l: &Letter| matches!(s.get(l.symbol).role, Role::Element | Role::Advected);
     letters_of(list).into_iter().filter(at_node).collect()

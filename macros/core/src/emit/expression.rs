@@ -1,4 +1,4 @@
-//! Expressions and programs as Rust, by their kernels: the locals that hold letters, types and numbers.
+//! Expressions and programs as Rust code, printed from their kernels: the locals of letters, types and numbers.
 
 use super::kernel::{Level, Printer};
 use super::names::variable;
@@ -13,7 +13,7 @@ use clebsch_program::Number;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-/// Which local holds each letter.
+/// The locals of letters.
 #[derive(Clone, Default)]
 pub struct Bindings {
     list: Vec<(Letter, Ident)>,
@@ -22,7 +22,7 @@ pub struct Bindings {
 }
 
 impl Bindings {
-    /// None yet.
+    /// Empty bindings.
     pub fn new() -> Bindings {
         Bindings::default()
     }
@@ -33,31 +33,31 @@ impl Bindings {
         self.list.push((letter, local));
     }
 
-    /// Where the rotation is found that a unit quaternion covers.
+    /// Binds a local to the rotation that a unit quaternion covers.
     pub fn bind_rotation(&mut self, letter: Letter, local: Ident) {
         self.rotations.retain(|(l, _)| *l != letter);
         self.rotations.push((letter, local));
     }
 
-    /// The same, if it is.
+    /// The local of that rotation, if bound.
     pub fn rotation(&self, letter: Letter) -> Option<&Ident> {
         let found = self.rotations.iter().find(|(l, _)| *l == letter);
         found.map(|(_, local)| local)
     }
 
-    /// Where a unit quaternion is found as four numbers, by its real and its imaginary part.
+    /// Binds a local to a unit quaternion as four numbers, its real and its imaginary part.
     pub fn bind_quaternion(&mut self, letter: Letter, local: Ident) {
         self.quaternions.retain(|(l, _)| *l != letter);
         self.quaternions.push((letter, local));
     }
 
-    /// The same, if it is.
+    /// The local of the four numbers, if bound.
     pub fn quaternion(&self, letter: Letter) -> Option<&Ident> {
         let found = self.quaternions.iter().find(|(l, _)| *l == letter);
         found.map(|(_, local)| local)
     }
 
-    /// The local that holds a letter.
+    /// The local of a letter.
     pub fn local(&self, symbols: &Symbols, letter: Letter) -> Ident {
         let found = self.list.iter().find(|(l, _)| *l == letter);
         found.map_or_else(
@@ -118,21 +118,21 @@ impl Inputs for Bindings {
     }
 }
 
-/// Emits expressions over one set of bindings.
+/// Prints expressions with one set of bindings.
 pub struct Writer<'a> {
     /// The symbols.
     pub symbols: &'a Symbols,
-    /// Where letters are found.
+    /// The locals of letters.
     pub bindings: &'a Bindings,
 }
 
 impl Writer<'_> {
-    /// The expression as a Rust expression that can stand as an operand.
+    /// The expression as Rust code, with parentheses if an operand needs them.
     pub fn operand(&self, e: &Expr) -> TokenStream {
         self.at(e, Level::Atom)
     }
 
-    /// The expression.
+    /// The expression as Rust code.
     pub fn write(&self, e: &Expr) -> TokenStream {
         self.at(e, Level::Sum)
     }
@@ -147,7 +147,7 @@ impl Writer<'_> {
         outputs.map(|v| printer.at(*v, level)).collect()
     }
 
-    /// A unit quaternion as four numbers, or the one from such a quaternion to another.
+    /// A unit quaternion as four numbers, or the quaternion that leads from one such quaternion to another.
     pub(super) fn unit(&self, a: &Expr) -> Option<TokenStream> {
         let named = |l: Letter| Inputs::quaternion(self.bindings, l);
         let local = |(_, name): (Letter, String)| format_ident!("{name}");

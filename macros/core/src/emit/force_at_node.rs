@@ -1,6 +1,6 @@
-//! What acts on a field at a node, where the momentum of the next node is that of this one less what acts at both: it
-//! is computed once for each node where it is much work, and the workspace keeps it for the step that starts there.
-//! Takes the derivation; gives the fields of the workspace and the statements.
+//! The force on a field at a node, if the momentum update subtracts the forces at both nodes of the edge. An
+//! expensive force is computed once per node: the workspace stores it for the step that starts there. Takes the
+//! derivation; gives the fields of the workspace and the statements.
 
 use super::blocks::linear_field;
 use super::element;
@@ -17,20 +17,21 @@ use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// Operations from which on a force is kept: to compare the placement and to load it takes about as long as this many.
+/// The number of operations from which on the workspace stores a force. Comparing the field and loading the force
+/// takes about as long.
 const WORTH: u64 = 150;
 
 /// The force of a configuration at a node.
 pub(super) struct AtNode {
     /// The configuration.
     pub configuration: usize,
-    /// The momentum of a node at rest.
+    /// The force that the balance subtracts at the node.
     pub force: Expr,
-    /// What it is made of at the node.
+    /// The letters at the node on which it depends.
     made_of: Vec<Letter>,
 }
 
-/// Those that are much work.
+/// The forces that are worth storing.
 pub(super) fn at_nodes(d: &Derivation) -> Vec<AtNode> {
     (0..d.spec.configurations.len())
         .filter_map(|i| AtNode::of(d, i))
@@ -66,7 +67,7 @@ impl AtNode {
                 .map(|c| c.group.is_additive());
             group.unwrap_or(true) && !s.get(l.symbol).shape.is_scalar()
         });
-        // Others are computed together with what acts elsewhere, of which they may have parts in common.
+        // Scalar and cheap forces are computed with the other forces, with which they may share subexpressions.
         let is_kept = work >= WORTH && arrays && !moving.is_empty() && !force.shape().is_scalar();
         is_kept.then_some(AtNode {
             configuration: i,
@@ -75,7 +76,7 @@ impl AtNode {
         })
     }
 
-    /// What it needs of the node.
+    /// The letters at the node that the force needs.
     pub fn needed(&self) -> Vec<Letter> {
         letters_of(std::slice::from_ref(&self.force))
     }
@@ -89,7 +90,7 @@ impl AtNode {
         format_ident!("force_on_{}", self.element(d))
     }
 
-    /// The fields for what it was computed from.
+    /// The fields of the workspace with the values from which the force was computed.
     fn sources(&self, d: &Derivation) -> Vec<(Letter, Ident)> {
         let element = self.element(d);
         let all = self.made_of.iter();
@@ -102,13 +103,13 @@ impl AtNode {
         .collect()
     }
 
-    /// The local of its value at the start of the edge, or at its end.
+    /// The local of its value at the start (`time` 0) or at the end of the edge.
     pub fn local(&self, d: &Derivation, names: &Names, time: i8) -> Ident {
         let end = if time == 0 { "" } else { "_next" };
         names.local(&format!("force_on_{}{end}", self.element(d)))
     }
 
-    /// Its value at an end of the edge: statements, and an expression behind them.
+    /// The force at an end of the edge: statements followed by an expression.
     fn computed(&self, d: &Derivation, time: i8, bindings: &Bindings) -> TokenStream {
         let s = &d.letters.symbols;
         let force = expr::shift_time(s, &self.force, time);
@@ -117,7 +118,7 @@ impl AtNode {
         quote!(#lets #(#values)*)
     }
 
-    /// The statement that finds it where the step starts.
+    /// The statement that gives it at the start of the step.
     pub fn here(&self, d: &Derivation, names: &Names, bindings: &Bindings) -> TokenStream {
         let (local, value) = (self.local(d, names, 0), self.computed(d, 0, bindings));
         let field = self.field(d);
@@ -128,13 +129,13 @@ impl AtNode {
         quote!(let #local = if #(#known)&&* { work.#field } else { #value };)
     }
 
-    /// The statement that finds it where the step ends.
+    /// The statement that computes it at the end of the step.
     pub fn next(&self, d: &Derivation, names: &Names, bindings: &Bindings) -> TokenStream {
         let (local, value) = (self.local(d, names, 1), self.computed(d, 1, bindings));
         quote!(let #local = { #value };)
     }
 
-    /// The statements that keep it for the next step.
+    /// The statements that store it for the next step.
     pub fn remembered(&self, d: &Derivation, names: &Names, bindings: &Bindings) -> TokenStream {
         let (field, local) = (self.field(d), self.local(d, names, 1));
         let sources = self.sources(d).into_iter().map(|(l, source)| {
@@ -145,8 +146,8 @@ impl AtNode {
     }
 }
 
-/// The fields of the workspace, and their values before anything is known: no placement is equal to one that is no
-/// number.
+/// The fields of the workspace with their types and initial values. The initial values are NaN, which differs from
+/// every field value.
 pub(super) fn fields(d: &Derivation) -> Vec<(Ident, TokenStream, TokenStream)> {
     let s = &d.letters.symbols;
     let mut out = Vec::new();

@@ -1,6 +1,6 @@
-//! The step of a forced Moser-Veselov equation, or of its like on SU(2): a number is found, then the node's torques act.
-//! Takes the derivation; gives the edge momentum and what acts on arrival, of which the runtime's protocol makes the
-//! step; on SU(2) `step` and the words of a refusal themselves.
+//! The step of a forced Moser-Veselov equation, or of its analogue on SU(2): one scalar equation is solved, then the
+//! torques at the node are applied. Takes the derivation; gives the edge momentum and the torques on arrival, from
+//! which the runtime's protocol makes the step. On SU(2) it gives `step` and the error messages too.
 
 use super::element::{Family, family};
 use super::expression::{Bindings, program};
@@ -18,17 +18,17 @@ use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-/// What acts at the nodes.
+/// The torques at the nodes.
 struct Torques {
-    /// At the first node of an edge, on it.
+    /// At the first node of an edge, on that edge.
     leave: Expr,
-    /// At its second node, taken there.
+    /// At the second node of the edge, evaluated there.
     arrive: Expr,
-    /// Both at one node, seen from the body, where they are stated in space.
+    /// Both at one node, in the body frame, if the model states them in space.
     seen: Option<Expr>,
 }
 
-/// The body to solve with.
+/// The prepared factor that the solver takes.
 pub(super) fn body(d: &Derivation) -> TokenStream {
     match items::factor_references(d).is_empty() {
         true => quote!(&self.factor),
@@ -45,7 +45,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
     let used = Generics::of(d).used();
     let torques = Torques {
         leave: expr::neg(mv.rest.clone()),
-        // Known wherever this method is chosen.
+        // This method requires that `arrive` is known.
         arrive: mv
             .arrive
             .clone()
@@ -56,7 +56,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
         let arrived = kept(d, names, &torques);
         return quote!(#begin #arrived);
     }
-    // On SO(3) such a body has a solver of its own.
+    // On SO(3), another module emits the free body.
     let step = match torques.leave.is_zero() && torques.arrive.is_zero() {
         true => super::quaternionic::free(d, names),
         false => kept(d, names, &torques),
@@ -74,7 +74,8 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
     }
 }
 
-/// The edge that starts at a node: for the first step from a state, and for the search of a step.
+/// The function that gives the edge starting at a node, for the first step from a state and for the search of a step
+/// size.
 fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let s = &d.letters.symbols;
     let state = item(d, "State");
@@ -102,7 +103,8 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let (lets, values) = program(&p, &bindings);
     let [kick, space] = ["kick", "space"].map(|base| names.local(base));
     let edge = match c.side.is_body() {
-        // The spatial momentum is not taken through the body frame and back: that would leave rounding in it.
+        // The spatial momentum is used directly. A transformation to the body frame and back would add rounding
+        // errors.
         true if mv.rest.is_zero() => {
             quote!(Edge::new(#element.tr_mul(&state.#momentum.0), state.#momentum.0))
         }
@@ -132,8 +134,8 @@ fn begin(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     }
 }
 
-/// What acts at the node where an edge ends: the function of the next node, on SU(2) the whole step, which finds its
-/// edge in the workspace and leaves the next one there.
+/// The function that gives the next node and applies the torques where an edge ends. On SU(2) it is the whole step,
+/// which takes its edge from the workspace and stores the next one there.
 fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     let (leave, arrive) = (&torques.leave, &torques.arrive);
     let s = &d.letters.symbols;
@@ -144,8 +146,8 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     let [edge, following, space, momentum_next, node] =
         ["edge", "edge_next", "space", "momentum_next", "node"].map(|base| names.local(base));
     let step = variable(s, d.spec.step);
-    // Everything acts at the new node: what arrives there, and what leaves it on the next edge.
-    // Where the two are equal, half their sum is each of them.
+    // All torques act at the new node: those that arrive, and those that leave on the next edge. If the two are
+    // equal, each is half their sum.
     let leave = expr::shift_time(s, leave, 1);
     let wanted: Vec<Expr> = if leave == *arrive {
         vec![prescaled(s, &expr::scale(Rational::integer(2), leave), &[])]
@@ -163,11 +165,11 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         quote!(state.#r)
     };
     let (at_node, onwards) = (at(c.element, Shift::HERE), at(c.element, Shift::NEXT));
-    // Used two times and more: once formed, the matrix costs less than turning each vector.
+    // The matrix is used at least twice, and forming it once costs less than rotating each vector.
     let solved = |_| quote!(#moved.matrix());
     let mut attitude = TokenStream::new();
     if quaternion {
-        // Most quantities know of a quaternion its rotation only.
+        // Most quantities depend on a quaternion only through its rotation.
         let own = std::mem::replace(&mut next, names.local("turn_next"));
         let turn = solved(0);
         attitude.extend(quote!(let #next = #turn;));
@@ -189,13 +191,14 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     let seen = torques.seen.as_ref();
     let seen = seen.filter(|e| !(quaternion && stands_alone(e, at_node)));
     let seen = seen.map(|e| seen_from_body(d, names, e, &next, &needed));
-    // Of a momentum in space that is known only at the end, the body would have to wait.
+    // The spatial momentum is known only at the end of the step. With the torque in the body frame, the next edge
+    // need not wait for it.
     let from_body = |left: TokenStream| match &seen {
         Some((_, torque)) => quote!(#next.tr_mul(&#space) + #torque),
         None => quote!(#next.tr_mul(&#left)),
     };
     let seen_lets = seen.as_ref().map(|(lets, _)| lets);
-    // What acts, then the momentum at the node, unless it has a name already, and the edge that begins there.
+    // The torques, then the momentum at the node unless it already has a name, then the edge that starts there.
     let (act, momentum_there, edge_there) = match values.as_slice() {
         [both] if c.side.is_body() => {
             let [torque, kick] = ["torque", "kick"].map(|base| names.local(base));
@@ -263,7 +266,7 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
         return arrived(d, names, &moved, &body);
     }
     let factor = body(d);
-    // References do not change: what moves is written where it is, and not read back.
+    // References are constant. The fields that change are written in place and not read back.
     let follow = follow(d, names);
     let named = momentum_there.map(|momentum| quote!(let #momentum_next = #momentum;));
     let [turned, arrival] = ["turned", "arrival"].map(|base| names.local(base));
@@ -293,7 +296,7 @@ fn kept(d: &Derivation, names: &Names, torques: &Torques) -> TokenStream {
     )
 }
 
-/// The step size, and the workspace made anew where it is that of another state.
+/// The step size, and a renewed workspace if it belongs to another state.
 pub(super) fn follow(d: &Derivation, names: &Names) -> TokenStream {
     let (node, step) = (
         names.local("node"),
@@ -301,7 +304,7 @@ pub(super) fn follow(d: &Derivation, names: &Names) -> TokenStream {
     );
     let references = items::factor_references(d);
     let another = (!references.is_empty()).then(|| {
-        // Compositions move the attitude in every step, and the body is the same.
+        // Compositions change the attitude in every step while the body stays the same.
         let same = unmoved(d, &references);
         quote! {
             if !(#(#same)&*) {
@@ -323,7 +326,7 @@ pub(super) fn follow(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
-/// Whether each of these is in the state what it is in the workspace.
+/// Tests whether each reference has the same value in the state and in the workspace.
 fn unmoved(d: &Derivation, references: &[SymbolId]) -> Vec<TokenStream> {
     let one = |id: &SymbolId| {
         let field = own(d, *id);
@@ -335,7 +338,7 @@ fn unmoved(d: &Derivation, references: &[SymbolId]) -> Vec<TokenStream> {
     references.iter().map(one).collect()
 }
 
-/// Whether the workspace is that of another state.
+/// Whether the workspace belongs to another state.
 fn moved_away(d: &Derivation) -> TokenStream {
     let element = own(d, d.spec.configurations[0].element);
     let momentum = per_configuration(d, "momentum", 0);
@@ -346,7 +349,7 @@ fn moved_away(d: &Derivation) -> TokenStream {
     }
 }
 
-/// What follows once the turn of the edge is known.
+/// The function for the rest of the step, given the solved rotation of the edge.
 fn arrived(d: &Derivation, names: &Names, moved: &Ident, body: &TokenStream) -> TokenStream {
     let (state, used) = (item(d, "State"), Generics::of(d).used());
     let (edge, step) = (
@@ -362,7 +365,7 @@ fn arrived(d: &Derivation, names: &Names, moved: &Ident, body: &TokenStream) -> 
     }
 }
 
-/// Whether a unit quaternion stands in an expression otherwise than by the rotation it covers.
+/// Whether a unit quaternion occurs in an expression other than through the rotation that it covers.
 fn stands_alone(e: &Expr, element: Letter) -> bool {
     let is_element = |e: &Expr| matches!(e.node(), Node::Letter(l) if *l == element);
     match e.node() {
@@ -372,8 +375,8 @@ fn stands_alone(e: &Expr, element: Letter) -> bool {
     }
 }
 
-/// What acts at the new node, seen from the body, as a local and its name: the edge that begins
-/// there need not wait for the momentum in space.
+/// The torque at the new node in the body frame, as a local and its name. The edge that starts there then need not
+/// wait for the momentum in space.
 fn seen_from_body(
     d: &Derivation,
     names: &Names,
@@ -397,7 +400,7 @@ fn seen_from_body(
         if letters.iter().any(|l| l.symbol == id) {
             let (field, local) = (own(d, id), tagged(d, names, id, "reference"));
             bindings.bind(at(id, Shift::HERE), local.clone());
-            // The value at the node has needed it already.
+            // The value at the node has bound the other references already.
             if !known.iter().any(|l| l.symbol == id) {
                 references.extend(quote!(let #local = state.#field;));
             }
@@ -415,14 +418,13 @@ fn seen_from_body(
     )
 }
 
-/// Twice an expression, with the numbers as [`prescaled`] puts them.
+/// Twice an expression, in the form of [`prescaled`].
 pub(super) fn doubled(s: &Symbols, e: &Expr) -> Expr {
     prescaled(s, &expr::scale(Rational::integer(2), e.clone()), &[])
 }
 
-/// The same expression with its numbers multiplied into the constant factor of a vector product
-/// rather than into the product: they need not wait for the new node. `references` are constant
-/// quantities too.
+/// The expression with numeric factors multiplied into the constant factor of a vector product instead of the
+/// product, so that they need not wait for the new node. `references` count as constants.
 fn prescaled(s: &Symbols, e: &Expr, references: &[SymbolId]) -> Expr {
     let constant = |e: &Expr| {
         expr::letters(e).iter().all(|l| {

@@ -1,6 +1,5 @@
-//! The formulas that the card shows of invariants: those that the emitted functions compute, in the
-//! letters of the model. Takes an invariant; gives plain text that says everything it takes to
-//! evaluate it.
+//! The formulas of invariants on the card: those that the emitted functions compute, in the letters of the model.
+//! Takes an invariant; gives plain text that contains everything needed to evaluate it.
 
 use super::items::text;
 use crate::algebra::Rational;
@@ -11,7 +10,7 @@ use crate::derive::{Derivation, lie};
 use crate::expr::shape::Shape;
 use crate::expr::{self, Expr, Letter, Shift};
 
-/// How an invariant is documented.
+/// The formula of an invariant.
 pub fn formula(d: &Derivation, v: &Invariant) -> String {
     match (&v.kind, &v.value, d.limit.as_ref(), &d.continuous) {
         (Kind::Spectrum, _, _, _) => {
@@ -28,8 +27,8 @@ pub fn formula(d: &Derivation, v: &Invariant) -> String {
     }
 }
 
-/// `½ (μ - l)·ζ + V`, and the momentum `μ = I ζ + l` at the velocity `ζ`, which gives `ζ`: the
-/// inertia `I` has an inverse that can be written in a line for a few models only.
+/// `½ (μ - l)·ζ + V`, followed by the momentum `μ = I ζ + l` at the velocity `ζ`, which determines `ζ`. The inverse
+/// of the inertia `I` fits on one line for a few models only.
 fn energy(d: &Derivation, limit: &Limit, continuous: &Continuous) -> String {
     let s = &d.letters.symbols;
     let zeta: Vec<(Letter, Expr)> = d
@@ -42,7 +41,7 @@ fn energy(d: &Derivation, limit: &Limit, continuous: &Continuous) -> String {
     let own = d.spec.configurations.iter().enumerate();
     let terms = own.map(|(i, c)| {
         let mu = expr::here(s, d.letters.node_momentum[i]);
-        // The part of the momentum that stays at rest: the gradient of the linear part.
+        // The momentum at zero velocity, which is the gradient of the linear part.
         let xi = lie::letter(d.letters.variation[i]);
         let still = expr::gradient(s, &limit.linear, xi);
         let still = c.group.of_gradient(s, expr::substitute(s, &still, &zeta));

@@ -1,4 +1,4 @@
-//! The functionals that a model is given, by paths of Rust.
+//! The functionals and functions that a model names by Rust paths.
 
 #[cfg(test)]
 mod tests;
@@ -9,8 +9,8 @@ use crate::expr::symbol::Symbols;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// What the model is given by paths, under its names in the model. Not used where a model holds none of its
-/// values, as by a factor of zero.
+/// Imports of the functions of one point, under their names in the model. An import may be unused, for example if the
+/// function is multiplied by zero.
 pub(super) fn paths(s: &Symbols) -> TokenStream {
     let at_points = s.functionals().iter().filter(|f| f.reach == Reach::Point);
     let each = at_points.filter_map(|f| {
@@ -21,7 +21,7 @@ pub(super) fn paths(s: &Symbols) -> TokenStream {
     each.collect()
 }
 
-/// A path of Rust, from the root of a crate.
+/// A Rust path, starting at the root of a crate.
 pub(super) fn path(text: &str) -> Option<TokenStream> {
     let own = ["crate", "self", "super"].contains(&text.split("::").next()?);
     let path = match own {

@@ -1,6 +1,6 @@
-//! Held constraints in a stepper: their multipliers in the state, the projection of the momentum on
-//! arrival, what initial data must obey, and the rates of change of what is held.
-//! Takes the derivation; gives the statements and functions. A model without constraints has none of it.
+//! Constraints in a stepper: multipliers in the state, projection of the momentum on arrival, conditions on initial
+//! data, and the rates of change of the constraints. Takes the derivation; gives the statements and functions. Empty
+//! for a model without constraints.
 
 use super::element::{self, Family, family};
 use super::expression::{Bindings, Writer, program, ty};
@@ -16,12 +16,12 @@ use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// The field of a state with the multiplier of the step that ended there.
+/// The field of the state with the multiplier of the step that ended there.
 fn multiplier(d: &Derivation, hold: &Hold) -> Ident {
     own(d, hold.multiplier)
 }
 
-/// The field with the impulse that the constraint gave on arrival.
+/// The field with the impulse of the constraint on arrival.
 fn arrival(d: &Derivation, hold: &Hold) -> Ident {
     format_ident!("{}_arrival", multiplier(d, hold))
 }
@@ -41,7 +41,7 @@ pub(super) fn names_of_fields(d: &Derivation) -> Vec<Ident> {
         .collect()
 }
 
-/// The fields of the state, and functions that show them.
+/// The fields of the state, and the functions that return them.
 pub(super) fn fields(d: &Derivation) -> (Vec<TokenStream>, Vec<TokenStream>) {
     let s = &d.letters.symbols;
     let each = d.spec.holds.iter().map(|hold| {
@@ -75,12 +75,13 @@ pub(super) fn at_start(d: &Derivation) -> Vec<TokenStream> {
     each.collect()
 }
 
-/// Whether the momentum is projected on arrival: the velocities that belong to it are then known.
+/// Whether the momentum is projected on arrival. This requires the limit of small steps, which gives the velocities
+/// for a momentum.
 fn projects(d: &Derivation) -> bool {
     !d.spec.holds.is_empty() && d.limit.is_ok()
 }
 
-/// What a step stores of its multipliers, once everything else is stored.
+/// The statements that store the multipliers, after everything else is stored.
 pub(super) fn after_step(d: &Derivation, names: &Names) -> TokenStream {
     if d.spec.holds.is_empty() {
         return TokenStream::new();
@@ -106,14 +107,14 @@ pub(super) fn after_step(d: &Derivation, names: &Names) -> TokenStream {
     quote!(#(#found)* #project)
 }
 
-/// The equations of the projection: the momenta of the velocities and of the impulses, and the rates of
-/// change of what is held.
+/// The equations of the projection: the momenta of the velocities and of the impulses, and the rates of change of the
+/// constraints.
 struct Projection {
     /// The derivation with multipliers as further velocities.
     whole: Derivation,
-    /// The rate of change of what each constraint holds.
+    /// The rate of change of each constraint.
     rates: Vec<Expr>,
-    /// The momenta along each configuration that the impulses give.
+    /// The momentum of each configuration due to the impulses.
     kicks: Vec<Expr>,
 }
 
@@ -152,7 +153,7 @@ impl Projection {
     }
 }
 
-/// The momenta of the state as covectors in the frame of each side.
+/// The momenta of the state as covectors, each in the frame of its side.
 fn momenta(d: &Derivation) -> Vec<TokenStream> {
     let list = d.spec.configurations.iter().enumerate();
     list.map(|(i, c)| {
@@ -162,7 +163,7 @@ fn momenta(d: &Derivation) -> Vec<TokenStream> {
     .collect()
 }
 
-/// Part of a list of coordinates as a number or a vector.
+/// Some coordinates of a list, as a number or a vector.
 fn part(d: &Derivation, shape: Shape, list: TokenStream, offset: &TokenStream) -> TokenStream {
     if shape.is_scalar() {
         return quote!(#list[#offset]);
@@ -171,7 +172,7 @@ fn part(d: &Derivation, shape: Shape, list: TokenStream, offset: &TokenStream) -
     quote!(SVector::<T, #rows>::from_fn(|i, _| #list[#offset + i]))
 }
 
-/// The functions: the projection, the test of initial data, and the rates of change.
+/// The projection, and one function per constraint for its rate of change.
 pub(super) fn functions(d: &Derivation, names: &Names) -> TokenStream {
     let Some(projection) = Projection::of(d).filter(|_| projects(d)) else {
         return TokenStream::new();
@@ -236,7 +237,7 @@ fn project(d: &Derivation, names: &Names, projection: &Projection) -> TokenStrea
     }
 }
 
-/// The momentum of configuration `i` less a covector at the node.
+/// The momentum of configuration `i` minus the covector `value` at the node.
 fn update(d: &Derivation, names: &Names, i: usize, value: TokenStream) -> TokenStream {
     let c: &Configuration = &d.spec.configurations[i];
     let (element, field) = (own(d, c.element), per_configuration(d, "momentum", i));
@@ -267,7 +268,7 @@ fn update(d: &Derivation, names: &Names, i: usize, value: TokenStream) -> TokenS
     }
 }
 
-/// One function for every constraint: the rate of change of what it holds at a state.
+/// One function per constraint: its rate of change at a state.
 fn rates(d: &Derivation, names: &Names, projection: &Projection) -> TokenStream {
     let s = &d.letters.symbols;
     let Ok(limit) = &d.limit else {
@@ -316,7 +317,7 @@ fn rates(d: &Derivation, names: &Names, projection: &Projection) -> TokenStream 
     each.collect()
 }
 
-/// Adds to `rate` what each coordinate of `velocity` gives.
+/// Adds the contribution of each coordinate of `velocity` to `rate` and `scale`.
 fn sums(d: &Derivation, rate: &Expr, bindings: &Bindings) -> TokenStream {
     let s = &d.letters.symbols;
     let writer = Writer {
@@ -353,7 +354,8 @@ fn sums(d: &Derivation, rate: &Expr, bindings: &Bindings) -> TokenStream {
     each.collect()
 }
 
-/// The test of a state at node 0: it must be on the constraints, and its momentum along them.
+/// The test of a state at node 0: its configuration must satisfy the constraints, and its momentum must be tangent to
+/// them.
 pub(super) fn admitted(d: &Derivation, names: &Names) -> TokenStream {
     if d.spec.holds.is_empty() {
         return TokenStream::new();
@@ -420,7 +422,7 @@ pub(super) fn admitted(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
-/// The size of what a projection changed, and that of the momenta.
+/// The size of the change of the momenta by the projection, and the size of the momenta.
 fn lengths(d: &Derivation, projected: &Ident) -> TokenStream {
     let fields = (0..d.spec.configurations.len()).map(|i| per_configuration(d, "momentum", i));
     let fields: Vec<Ident> = fields.collect();
@@ -443,12 +445,12 @@ fn equation(d: &Derivation, hold: &Hold) -> String {
     format!("{} = {}", text(d, &hold.left), text(d, &hold.right))
 }
 
-/// Whether what a constraint holds is a number.
+/// Whether a constraint is scalar.
 pub(super) fn is_number(d: &Derivation, j: usize) -> bool {
     shape(d, &d.spec.holds[j]).is_scalar()
 }
 
-/// How many numbers it is.
+/// The number of components of a constraint.
 pub(super) fn rows(d: &Derivation, j: usize) -> TokenStream {
     match is_number(d, j) {
         true => quote!(1usize),
@@ -462,7 +464,7 @@ pub(super) fn rate_scale(d: &Derivation, j: usize) -> TokenStream {
     quote!({ let (_, scale) = self.#method(state); scale })
 }
 
-/// The function that gives the rate of change with the size of its terms.
+/// The function that returns the rate of change and the sum of the sizes of its terms.
 fn rate_and_scale(d: &Derivation, hold: &Hold) -> Ident {
     let name = &d.letters.symbols.get(hold.multiplier).ascii;
     format_ident!("constraint_rate_and_scale_{name}")

@@ -1,6 +1,6 @@
-//! Momenta by which invariants are measured: of a body at equilibrium, impulses that cancel leave their rounding as its
-//! momentum, which is no scale.
-//! Takes the derivation; gives a state whose momenta are not less than the impulses of its node.
+//! Momenta as scales of invariants. At equilibrium, impulses cancel, and the momentum is only their rounding error,
+//! which is not a scale. Takes the derivation; gives a state whose momenta are at least as large as the impulses at
+//! its node.
 
 use super::expression::{Bindings, program};
 use super::names::{Names, item, per_configuration, variable};
@@ -15,14 +15,14 @@ use crate::schedule;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-/// Some rows of a momentum, and the size of the impulse that they get at a node.
+/// Some rows of a momentum, and the size of their impulse at a node.
 pub(super) struct Impulse {
     configuration: usize,
     rows: TokenStream,
     pub size: Expr,
 }
 
-/// What has a value at a node whose state is known.
+/// Whether a symbol with this role has a value at a node once its state is known.
 fn stands(role: Role) -> bool {
     matches!(
         role,
@@ -30,8 +30,8 @@ fn stands(role: Role) -> bool {
     )
 }
 
-/// The two parts of the impulse of a balance at its node, where they depend on what stands there alone; letters of
-/// reactions are put to `rest`.
+/// The two parts of the impulse of a balance at its node, if they depend on quantities at that node only. The letters
+/// of multipliers are replaced by `rest`.
 pub(super) fn at_node(s: &Symbols, rest: &[(Letter, Expr)], b: &Balance) -> Vec<Expr> {
     let stands_at_node = |e: &Expr| {
         let letters = expr::letters(e);
@@ -48,13 +48,14 @@ pub(super) fn at_node(s: &Symbols, rest: &[(Letter, Expr)], b: &Balance) -> Vec<
         .collect()
 }
 
-/// A place that a constraint holds is known to its rounding, about 1e-16 of it. A step corrects that, and what is left of
-/// such corrections is the momentum of a body at rest. It is measured by the momentum of a step to the place from the
-/// origin, in parts of so many: `not_less` takes that for momenta of 1e-9 of it, which are 1e-18 of the step, below any
-/// correction.
+/// The position of a constrained body has a relative rounding error of about 1e-16. A step corrects that error, and
+/// the corrections leave a momentum even at equilibrium. The scale of that momentum is the momentum of a step from
+/// the origin to the position, divided by this number. `not_less` uses that scale for momenta below 1e-9 of it, that
+/// is, 1e-18 of the step, which is smaller than any correction.
 const CORRECTED: i64 = 1_000_000_000;
 
-/// The momentum of an edge that leads from the origin to the place, of a body that a constraint holds.
+/// The magnitude of the momentum of an edge from the origin to the position, divided by [`CORRECTED`]. None if no
+/// constraint contains the configuration.
 fn correction(
     d: &Derivation,
     configuration: usize,
@@ -71,7 +72,7 @@ fn correction(
         return None;
     }
     let size = expr::magnitude(s, &expr::substitute(s, edge, multipliers));
-    // At rest: places are those of the node, attitudes do not turn.
+    // At zero velocity: positions are those of the node, and attitudes do not rotate.
     let at_rest = expr::letters(&size).into_iter().filter_map(|l| {
         let own = |c: &&Configuration| c.velocity == l.symbol;
         match d.spec.configurations.iter().find(own) {
@@ -88,10 +89,10 @@ fn correction(
     stands.then(|| expr::quotient(size, expr::integer(CORRECTED)))
 }
 
-/// The impulses that what stands at a node gives, where they depend on nothing else, and what constraints correct.
+/// The impulses at a node that depend only on quantities there, together with the corrections by constraints.
 pub(super) fn impulses(d: &Derivation) -> Vec<Impulse> {
     let s = &d.letters.symbols;
-    // Reactions of what is held balance the rest: they are as large.
+    // Multipliers are set to zero: at equilibrium, the constraint forces are as large as the others.
     let multipliers: Vec<(Letter, Expr)> = d
         .spec
         .holds
@@ -134,7 +135,8 @@ pub(super) fn impulses(d: &Derivation) -> Vec<Impulse> {
     all
 }
 
-/// `state`, its momenta not less than such impulses; what the impulses are made of is bound.
+/// Statements that replace `state` by a state whose momenta are at least as large as the impulses. `bindings` must
+/// bind the letters of the impulses.
 pub(super) fn not_less_than_impulses(
     d: &Derivation,
     names: &Names,

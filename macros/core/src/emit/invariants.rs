@@ -1,4 +1,4 @@
-//! The derived invariants as functions of the state, with their natural scales.
+//! The derived invariants as functions of the state, with their scales.
 
 use super::element::{self, Family};
 use super::expression::{Bindings, Writer, dims, program, ty};
@@ -14,7 +14,7 @@ use crate::schedule;
 use proc_macro2::{TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
-/// Locals for the node momenta among the letters.
+/// Locals for the node momenta in `needed`.
 fn momenta(d: &Derivation, needed: &[Letter], bindings: &mut Bindings) -> TokenStream {
     let mut out = TokenStream::new();
     for (i, (c, id)) in d
@@ -37,19 +37,19 @@ fn momenta(d: &Derivation, needed: &[Letter], bindings: &mut Bindings) -> TokenS
     out
 }
 
-/// How the numbers of an invariant lie in what its function gives.
+/// The layout of the components of an invariant in the result of its function.
 pub enum Form {
-    /// It is one.
+    /// A single number.
     Number,
     /// The entries of a vector or matrix.
     Entries,
     /// The coordinates of a skew matrix.
     Skew,
-    /// The coefficients of a pencil that do not vanish.
+    /// The coefficients of a matrix pencil that do not vanish identically.
     Spectrum,
 }
 
-/// The form of an invariant.
+/// The layout of an invariant.
 pub fn form(d: &Derivation, v: &Invariant) -> Form {
     let skew = |i: usize| {
         let family = element::family(&d.spec.configurations[i]);
@@ -70,7 +70,7 @@ pub fn form(d: &Derivation, v: &Invariant) -> Form {
     }
 }
 
-/// How many numbers an invariant is, as tokens.
+/// The number of components of an invariant, as tokens.
 pub fn rows(d: &Derivation, v: &Invariant) -> TokenStream {
     let s = &d.letters.symbols;
     match (&v.kind, &v.value) {
@@ -89,13 +89,13 @@ pub fn rows(d: &Derivation, v: &Invariant) -> TokenStream {
     }
 }
 
-/// The size of the matrices of a spectrum.
+/// The size of the matrices of the Lax pencil.
 fn spectrum_size(d: &Derivation) -> TokenStream {
     let group = d.spec.configurations.first().map(|c| c.group.size());
     group.map_or_else(|| quote!(0), |n| size(&d.letters.symbols, n))
 }
 
-/// The momentum and the square of the factor of a Lax form, with the locals they need.
+/// The momentum and the squared factor of a Lax form, with the locals that they need.
 fn lax_parts(d: &Derivation, names: &Names) -> [TokenStream; 3] {
     let (Some(lax), Some(c)) = (&d.integrability.lax, d.spec.configurations.first()) else {
         return Default::default();
@@ -116,7 +116,7 @@ fn lax_parts(d: &Derivation, names: &Names) -> [TokenStream; 3] {
     ]
 }
 
-/// The coefficients as one matrix: their number depends on the size, which may have only a name.
+/// The coefficients as one matrix. Their number depends on the size of the group, which may be a named size.
 fn spectrum(d: &Derivation, names: &Names, v: &Invariant) -> TokenStream {
     let state = item(d, "State");
     let used = Generics::of(d).used();
@@ -136,7 +136,7 @@ fn spectrum(d: &Derivation, names: &Names, v: &Invariant) -> TokenStream {
     }
 }
 
-/// The scales of the coefficients.
+/// The scales of the spectral coefficients.
 pub fn spectrum_scales(d: &Derivation, names: &Names) -> TokenStream {
     let n = spectrum_size(d);
     let [locals, momentum, square] = lax_parts(d, names);
@@ -158,7 +158,7 @@ fn momentum_rows(d: &Derivation, i: usize) -> TokenStream {
     }
 }
 
-/// Whether an invariant is a function of the step too, as that of a momentum with a power of it.
+/// Whether an invariant depends on the step size.
 pub fn holds_step(d: &Derivation, v: &Invariant) -> bool {
     match (&v.kind, &v.value) {
         (Kind::Value | Kind::ConstraintRate(_), Some(value)) => {
@@ -169,8 +169,8 @@ pub fn holds_step(d: &Derivation, v: &Invariant) -> bool {
     }
 }
 
-/// Whether steps may be composed of others of other lengths: the action is reversible, and what is invariant is
-/// so for every length.
+/// Whether steps of different sizes may be composed: the action must be reversible, and no invariant may depend on
+/// the step size.
 pub fn composes(d: &Derivation) -> bool {
     d.reversible && !d.invariants.iter().any(|v| holds_step(d, v))
 }
@@ -228,7 +228,7 @@ pub fn invariants(d: &Derivation, names: &Names) -> TokenStream {
     functions
 }
 
-/// The scales of all components of all invariants, written to `out` one after the other.
+/// The scales of all components of all invariants, written to `out` in order.
 pub fn scales(d: &Derivation, names: &Names) -> TokenStream {
     let s = &d.letters.symbols;
     let list: Vec<Expr> = d
@@ -254,7 +254,7 @@ pub fn scales(d: &Derivation, names: &Names) -> TokenStream {
         let rows = rows(d, v);
         let alike = |value: TokenStream| match form(d, v) {
             Form::Number => Sizes::Number(value),
-            // Arrays of a length that is computed from a named size are not stable Rust.
+            // Stable Rust does not allow an array length that is computed from a named size.
             _ if d.spec.dimensions.is_empty() => Sizes::Several(quote!([#value; #rows])),
             _ => Sizes::Several(quote!(::core::iter::repeat_n(#value, #rows))),
         };
@@ -290,7 +290,7 @@ pub fn scales(d: &Derivation, names: &Names) -> TokenStream {
             put(out, #last);
         }
     });
-    // Scales are taken on plain numbers.
+    // Scales are computed in `f64`.
     let body = quote!(#locals #energies #enlarged #measured #mu #lets #written);
     let scalar = names_scalar(&body).then(|| {
         quote!(
@@ -302,13 +302,13 @@ pub fn scales(d: &Derivation, names: &Names) -> TokenStream {
 
 /// The scales of one invariant.
 enum Sizes {
-    /// That of a number.
+    /// Of a scalar invariant.
     Number(TokenStream),
-    /// Those of several.
+    /// Of an invariant with several components.
     Several(TokenStream),
 }
 
-/// Whether the scalar `T` stands somewhere.
+/// Whether the scalar type `T` occurs in the tokens.
 fn names_scalar(tokens: &TokenStream) -> bool {
     tokens.clone().into_iter().any(|tree| match tree {
         TokenTree::Ident(name) => name == "T",

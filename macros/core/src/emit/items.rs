@@ -1,5 +1,5 @@
-//! Items that hold data: the parameters and the validated model; and the locals with which every
-//! emitted function starts.
+//! Items that hold data, which are the parameters and the validated model, and the locals at the beginning of every
+//! emitted function.
 
 use super::expression::{Bindings, Writer, ty};
 use super::names::{Names, field, item, own, tagged, variable};
@@ -22,8 +22,8 @@ pub fn text(d: &Derivation, e: &Expr) -> String {
     expression(e, &d.letters.symbols, &style, Format::Text)
 }
 
-/// The Moser-Veselov factor, if the stepper solves that equation: in the body where it is constant
-/// there.
+/// The Moser-Veselov factor if the stepper solves that equation; the factor in the body frame if that is the constant
+/// one.
 pub fn factor(d: &Derivation) -> Option<&Expr> {
     match (&d.solve.method, d.solve.riccati.first()) {
         (Method::FreeMoserVeselov | Method::ForcedMoserVeselov, Some(StepEquation::Exact(mv))) => {
@@ -37,7 +37,7 @@ pub fn factor(d: &Derivation) -> Option<&Expr> {
     }
 }
 
-/// The number that goes with the factor on SU(2); made of parameters.
+/// The real number in the equation on SU(2). It depends on parameters only.
 fn real(d: &Derivation) -> Option<&Expr> {
     match (&d.solve.method, d.solve.riccati.first()) {
         (Method::UnitQuaternions, Some(StepEquation::Quaternionic(q))) => Some(&q.real),
@@ -60,7 +60,7 @@ fn prepared(d: &Derivation, e: &Expr) -> (TokenStream, TokenStream) {
     }
 }
 
-/// An expression in parameters.
+/// An expression in parameters, as Rust code.
 fn written(d: &Derivation, e: &Expr) -> TokenStream {
     let none = Bindings::new();
     let writer = Writer {
@@ -70,7 +70,7 @@ fn written(d: &Derivation, e: &Expr) -> TokenStream {
     writer.write(e)
 }
 
-/// The type of the body of the equation in unit quaternions, and its constructor applied to `A` and `β`.
+/// The type of the body for the equation in unit quaternions, and its constructor applied to `A` and `β`.
 fn body_of_quaternions(d: &Derivation, a: &Expr, real: &Expr) -> (TokenStream, TokenStream) {
     let label = text(d, if a.is_zero() { real } else { a });
     let (a, real) = (written(d, a), written(d, real));
@@ -80,7 +80,7 @@ fn body_of_quaternions(d: &Derivation, a: &Expr, real: &Expr) -> (TokenStream, T
     )
 }
 
-/// The type of the factor that steps are solved with.
+/// The type of the factor that the solver takes.
 pub fn factor_type(d: &Derivation) -> TokenStream {
     match real(d) {
         Some(_) => quote!(QuaternionBody<T>),
@@ -88,8 +88,8 @@ pub fn factor_type(d: &Derivation) -> TokenStream {
     }
 }
 
-/// The quantities whose values at the identity make the factor: it belongs to a trajectory then,
-/// else to the model.
+/// The quantities whose reference values determine the factor. If there are any, the factor belongs to a trajectory,
+/// otherwise to the model.
 pub fn factor_references(d: &Derivation) -> Vec<SymbolId> {
     let letters = factor(d).map(expr::letters).unwrap_or_default();
     let list = kept(d).into_iter();
@@ -97,7 +97,7 @@ pub fn factor_references(d: &Derivation) -> Vec<SymbolId> {
         .collect()
 }
 
-/// `factor`, as a function of the state, where it belongs to a trajectory.
+/// The function `factor` of the state, if the factor belongs to a trajectory.
 pub fn factor_of_state(d: &Derivation) -> TokenStream {
     let references = factor_references(d);
     let (Some(e), false) = (factor(d), references.is_empty()) else {
@@ -124,7 +124,7 @@ pub fn factor_of_state(d: &Derivation) -> TokenStream {
     }
 }
 
-/// A quantity that the state keeps beside elements and momenta.
+/// The quantities that the state stores besides elements and momenta.
 pub fn kept(d: &Derivation) -> Vec<SymbolId> {
     let all = d.spec.advected.iter().zip(&d.transports);
     all.filter(|(_, t)| !matches!(t, AdvectionRule::Defined(_)))
@@ -132,7 +132,7 @@ pub fn kept(d: &Derivation) -> Vec<SymbolId> {
         .collect()
 }
 
-/// A word on the structure of a parameter.
+/// The structure of a parameter as text.
 pub fn structure_text(structure: Structure) -> &'static str {
     match structure {
         Structure::General | Structure::Invertible => "",
@@ -174,7 +174,7 @@ pub fn parameters(d: &Derivation) -> TokenStream {
     }
 }
 
-/// Shape of a symbol in words.
+/// The shape of a symbol as text.
 pub fn shape_text(d: &Derivation, id: SymbolId) -> String {
     let s = &d.letters.symbols;
     let shape = s.get(id).shape;
@@ -188,7 +188,7 @@ pub fn shape_text(d: &Derivation, id: SymbolId) -> String {
     }
 }
 
-/// `let Parameters { a, b, .. } = self.parameters;` for those that the expressions use.
+/// `let Parameters { a, b, .. } = self.parameters;` for the parameters in `needed`.
 pub fn parameter_locals(d: &Derivation, source: TokenStream, needed: &[Letter]) -> TokenStream {
     let used: Vec<_> = d
         .spec
@@ -204,7 +204,7 @@ pub fn parameter_locals(d: &Derivation, source: TokenStream, needed: &[Letter]) 
     quote!(let #name { #(#used,)* .. } = #source;)
 }
 
-/// Letters of several expressions together.
+/// The letters of several expressions, sorted.
 pub fn letters_of<'a>(list: impl IntoIterator<Item = &'a Expr>) -> Vec<Letter> {
     let mut all: Vec<Letter> = list.into_iter().flat_map(expr::letters).collect();
     all.sort();
@@ -212,8 +212,7 @@ pub fn letters_of<'a>(list: impl IntoIterator<Item = &'a Expr>) -> Vec<Letter> {
     all
 }
 
-/// Expressions that give the advected quantities among `needed` at this level, and everything
-/// they need in turn.
+/// `needed` and the letters of the expressions that define its advected quantities at this level.
 pub fn with_transports(d: &Derivation, needed: &[Letter], level: i8) -> Vec<Letter> {
     let mut all = needed.to_vec();
     for (a, t) in d.spec.advected.iter().zip(&d.transports) {
@@ -239,8 +238,8 @@ pub fn with_transports(d: &Derivation, needed: &[Letter], level: i8) -> Vec<Lett
     all
 }
 
-/// The quantities that no constant reference carries: their constraint advances them, from the
-/// values at the node and the velocity.
+/// The quantities without a constant reference value. Their constraint advances them from the values at the node and
+/// the velocity.
 pub fn advanced(d: &Derivation) -> impl Iterator<Item = &Advected> {
     let pairs = d.spec.advected.iter().zip(&d.transports);
     pairs
@@ -248,8 +247,8 @@ pub fn advanced(d: &Derivation) -> impl Iterator<Item = &Advected> {
         .map(|(a, _)| a)
 }
 
-/// The clocks that go on by an amount that nothing which moves enters, with the field of the state for their rest: as
-/// places they are kept in two numbers.
+/// The clocks whose increment depends only on parameters and the step size. Each comes with its increment and with
+/// the field of the state for the low-order part of its value, since a clock is stored in two numbers.
 pub fn ticks(d: &Derivation, names: &Names) -> Vec<(SymbolId, Expr, Ident)> {
     let s = &d.letters.symbols;
     let own_amount = |a: &Advected| {
@@ -264,9 +263,8 @@ pub fn ticks(d: &Derivation, names: &Names) -> Vec<(SymbolId, Expr, Ident)> {
         .collect()
 }
 
-/// Locals for what is known at one node: matrices of the elements and advected quantities, as far
-/// as `needed` asks for them. `element(i)` gives the matrix, `reference(id)` the
-/// value at the identity.
+/// Locals for the values at one node: matrices of elements, and the advected quantities in `needed`. `element(i)`
+/// gives the matrix of an element, `reference(id)` the reference value of a quantity.
 pub fn node_locals(
     d: &Derivation,
     names: &Names,
@@ -316,7 +314,8 @@ pub fn node_locals(
     out
 }
 
-/// The value of an advected quantity at a node where everything that it is made of is bound, and what comes before it.
+/// The statements before an advected quantity at a node, and its value. `bindings` must bind all letters of its
+/// definition.
 pub fn advected_value(
     d: &Derivation,
     names: &Names,
@@ -363,7 +362,7 @@ fn assumption(d: &Derivation, a: &Assumption) -> TokenStream {
     holds(&d.letters.symbols, &d.spec.time_index, a, &none)
 }
 
-/// The test that an assumption holds, its letters bound.
+/// The test of an assumption whose letters are bound.
 pub(super) fn holds(
     s: &Symbols,
     time_index: &str,
@@ -384,8 +383,8 @@ pub(super) fn holds(
         Comparison::AtMost => ("≤", Some(quote!(#difference.greatest() <= 0.0))),
     };
     let holds = shown.unwrap_or_else(|| {
-        // Equal to the rounding of a few operations on numbers of the size of the terms, which may
-        // cancel: a difference of large terms is no small number.
+        // Equality up to the rounding of a few operations on numbers as large as the terms, because large terms may
+        // cancel.
         let bound = w.operand(&expr::magnitude(
             s,
             &expr::sub(a.left.clone(), a.right.clone()),
@@ -401,7 +400,7 @@ pub(super) fn holds(
     quote!(validate::assumption(#holds, #message)?;)
 }
 
-/// The tests of a value at this place that is given for a quantity of this shape and structure.
+/// The tests of a value given for a quantity of this shape and structure; `label` is its name in errors.
 pub(super) fn admitted(
     label: &str,
     shape: Shape,
@@ -533,7 +532,7 @@ pub fn model(d: &Derivation, documented: bool) -> TokenStream {
     }
 }
 
-/// The test of the const parameters: a size that the model does not admit does not build.
+/// The test of the const parameters: a size outside its range is a compile-time error.
 fn sizes(d: &Derivation) -> TokenStream {
     let names = super::sizes::constants(&d.letters.symbols);
     let tests: Vec<TokenStream> = d

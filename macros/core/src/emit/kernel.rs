@@ -1,5 +1,5 @@
-//! Kernels as Rust: named values are locals, others stand where they are used. Matrices are nalgebra's, passed by
-//! value.
+//! Kernels as Rust code: named values become locals, all others are written where they are used. Matrices are those
+//! of nalgebra and are passed by value.
 
 use super::expression::number;
 use super::names::local_name;
@@ -10,24 +10,24 @@ use clebsch_program::{Call, Form, Kernel, Operation, Pair, Single, Value};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-/// How tightly an expression holds together: what binds less stands in parentheses.
+/// The precedence of an expression. An operand of lower precedence gets parentheses.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// A sum.
     Sum,
     /// A product.
     Product,
-    /// A negative.
+    /// A negation.
     Prefix,
-    /// A call, a name, an entry.
+    /// A call, a name or an entry.
     Atom,
 }
 
 /// Prints one kernel.
 pub struct Printer<'a> {
-    /// The model's symbols: names of sizes and functionals.
+    /// The model's symbols, for the names of sizes and functionals.
     pub symbols: &'a Symbols,
-    /// What is printed.
+    /// The kernel.
     pub kernel: &'a Kernel,
 }
 
@@ -44,7 +44,7 @@ impl Printer<'_> {
         lets
     }
 
-    /// The value where at least this level is wanted.
+    /// The value as an expression of at least the precedence `wanted`.
     pub fn at(&self, v: Value, wanted: Level) -> TokenStream {
         let (tokens, level) = match &self.kernel.line(v).name {
             Some(name) => {
@@ -64,7 +64,7 @@ impl Printer<'_> {
         quote!(&#value)
     }
 
-    /// The operation of a value.
+    /// The operation of a value, and its precedence.
     fn made(&self, v: Value) -> (TokenStream, Level) {
         let line = self.kernel.line(v);
         let dims = |shape: Shape| {
@@ -185,7 +185,8 @@ impl Printer<'_> {
         }
     }
 
-    /// Rows or columns taken from a matrix or put into a larger one; `own` is the size that stays.
+    /// Rows or columns that are extracted from a matrix or inserted into a larger one. `own` selects the size of the
+    /// part.
     fn taken(
         &self,
         name: &str,
@@ -204,9 +205,9 @@ impl Printer<'_> {
         quote!(#name::<T, #rows, #cols, #kept>(#a, #at))
     }
 
-    /// A functional as a call of a method of the model's own: `f.value(&x, &y)`, `f.along_1(&x, &y, &u)` and
-    /// `f.pull_back_1(&x, &y, &s)`. Arguments are counted from 1, and each derivative has a method of its own,
-    /// since the types of directions and seeds differ.
+    /// A functional as a call of a method of its type: `f.value(&x, &y)`, `f.along_1(&x, &y, &u)` and
+    /// `f.pull_back_1(&x, &y, &s)`. Arguments are counted from 1. Each derivative has its own method because
+    /// directions and seeds have different types.
     fn functional(&self, call: &Call) -> TokenStream {
         let s = self.symbols;
         let f = local_name(s, &s.functionals()[call.functional].name);

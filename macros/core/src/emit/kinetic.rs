@@ -1,5 +1,5 @@
-//! The inertia at a state, by which the runtime judges once, when a trajectory starts, whether the kinetic energy is
-//! positive there. Takes the quadratic form of the kinetic energy; gives `inertia_at`.
+//! The inertia at a state. When a trajectory starts, the runtime tests once whether the kinetic energy is positive
+//! there. Takes the quadratic form of the kinetic energy; gives `inertia_at`.
 
 use super::element;
 use super::energy::{gradients, inertia_alone};
@@ -13,12 +13,12 @@ use crate::derive::kinetic::Kinetic;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// The form that is judged, where it is known; a Lagrangian of first order needs none.
+/// The form that the runtime tests, if it is known. A Lagrangian of first order has none.
 pub fn judged(d: &Derivation) -> Option<&Kinetic> {
     d.kinetic.as_ref().filter(|k| !k.first_order)
 }
 
-/// `inertia_at`; nothing where there is no form to judge.
+/// `inertia_at`; empty if there is no form to test.
 pub fn inertia_at(d: &Derivation, names: &Names) -> TokenStream {
     let Some(form) = judged(d) else {
         return TokenStream::new();

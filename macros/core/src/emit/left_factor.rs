@@ -1,6 +1,6 @@
-//! The step of a Moser-Veselov equation whose left factor is constant, in either frame, or known at
-//! the node: the edge momentum, the solver named at the start, the node's torques. Takes the
-//! derivation; gives what the workspace keeps, `start_with`, `step` and the words of a refusal.
+//! The step of a Moser-Veselov equation whose left factor is constant in either frame, or known at the node: the edge
+//! momentum, the selected solver, the torques at the node. Takes the derivation; gives the fields of the workspace,
+//! `start_with`, `step` and the error messages.
 
 use super::element::{self, Family, family};
 use super::expression::{Bindings, Writer, program, ty as quantity};
@@ -24,7 +24,7 @@ fn ty(d: &Derivation, i: usize) -> TokenStream {
     quote!(LeftFactor<#n, T>)
 }
 
-/// The type of the prepared factor of a configuration, and its constructor applied to the factor.
+/// The type of the prepared factor of a configuration, and the constructor of the factor.
 pub(super) fn prepared(d: &Derivation, i: usize, e: &Expr) -> (TokenStream, TokenStream) {
     let none = Bindings::new();
     let writer = Writer {
@@ -38,7 +38,7 @@ pub(super) fn prepared(d: &Derivation, i: usize, e: &Expr) -> (TokenStream, Toke
     )
 }
 
-/// Whether the solver can be chosen.
+/// Whether the user can choose the solver.
 fn chooses(d: &Derivation) -> bool {
     match d.solve.method {
         Method::FreeMoserVeselov
@@ -50,7 +50,7 @@ fn chooses(d: &Derivation) -> bool {
     }
 }
 
-/// The solver that `start` takes.
+/// The default solver.
 fn default(d: &Derivation) -> TokenStream {
     let n = size(&d.letters.symbols, d.spec.configurations[0].group.size());
     match d.solve.method {
@@ -68,18 +68,18 @@ fn default(d: &Derivation) -> TokenStream {
     }
 }
 
-/// Whether a block has a factor that is known at each node only.
+/// Whether a block has a factor that varies from node to node.
 pub(super) fn known_at_nodes(d: &Derivation) -> bool {
     let mut blocks = d.solve.blocks.iter();
     blocks.any(|b| matches!(b.method, Method::Davenport))
 }
 
-/// The solver that `open` takes, where one can be chosen.
+/// The default solver, if the user can choose one.
 pub(super) fn default_solver(d: &Derivation) -> Option<TokenStream> {
     chooses(d).then(|| default(d))
 }
 
-/// What the model keeps of the solver: a field, its value, and the function that changes it.
+/// The model's field for the solver, and its initial value.
 pub(super) fn of_model(d: &Derivation) -> (TokenStream, TokenStream) {
     let Some(default) = default_solver(d) else {
         return Default::default();
@@ -87,7 +87,7 @@ pub(super) fn of_model(d: &Derivation) -> (TokenStream, TokenStream) {
     (quote!(method: Method,), quote!(method: #default,))
 }
 
-/// The names of the solvers that can be chosen, the one taken otherwise first.
+/// The names of the available solvers, the default one first.
 pub(super) fn offered(d: &Derivation) -> Option<TokenStream> {
     let mut exact = d.solve.blocks.iter().filter(|b| b.has_factor());
     let of_space = |i: &usize| family(&d.spec.configurations[*i]) == Family::Rotation;
@@ -115,7 +115,7 @@ pub(super) fn offered(d: &Derivation) -> Option<TokenStream> {
     })
 }
 
-/// The advected quantities by whose references the factor is made.
+/// The advected quantities in the factor.
 fn references(e: &Expr, d: &Derivation) -> Vec<SymbolId> {
     let mut list: Vec<SymbolId> = expr::letters(e).iter().map(|l| l.symbol).collect();
     list.retain(|id| d.letters.symbols.get(*id).role == Role::Advected);
@@ -124,7 +124,7 @@ fn references(e: &Expr, d: &Derivation) -> Vec<SymbolId> {
     list
 }
 
-/// The values of those references in a state.
+/// The reference values of those quantities in a state.
 fn made_of(d: &Derivation, turned: &Expr) -> TokenStream {
     let list = references(turned, d).into_iter().map(|id| {
         let field = own(d, id);
@@ -133,7 +133,7 @@ fn made_of(d: &Derivation, turned: &Expr) -> TokenStream {
     quote!((#(#list,)*))
 }
 
-/// The fields of the workspace and its documentation.
+/// The fields of the workspace, and its documentation.
 pub(super) fn work(d: &Derivation) -> (TokenStream, &'static str) {
     let Some(turned) = &d.solve.turned else {
         return (quote!(method: Method,), " The step and the solver's name.");
@@ -149,7 +149,7 @@ pub(super) fn work(d: &Derivation) -> (TokenStream, &'static str) {
     )
 }
 
-/// The values of those fields at the start.
+/// The initial values of those fields.
 pub(super) fn work_init(d: &Derivation) -> TokenStream {
     let Some(turned) = &d.solve.turned else {
         return quote!(method,);
@@ -162,7 +162,7 @@ pub(super) fn work_init(d: &Derivation) -> TokenStream {
     }
 }
 
-/// The factor at a node, or seen from the body.
+/// The function that gives the factor at a node, or in the body frame.
 fn factor_at(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let s = &d.letters.symbols;
     let state = item(d, "State");
@@ -217,7 +217,7 @@ fn factor_at(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     }
 }
 
-/// The momentum of the edge in the frame in which the equation is solved.
+/// The edge momentum, in the frame in which the equation is solved.
 fn edge_momentum(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStream {
     let s = &d.letters.symbols;
     let (state, used) = (item(d, "State"), Generics::of(d).used());
@@ -323,7 +323,7 @@ pub(super) fn step(d: &Derivation, names: &Names, mv: &MoserVeselov) -> TokenStr
     let matrix = uses_velocity.then(|| {
         let name = tagged(d, names, c.velocity, "matrix");
         bindings.bind(velocity, name.clone());
-        // What was solved for may be the velocity seen from the body.
+        // The solver may have found the velocity in the body frame.
         match d.solve.turned {
             Some(_) => {
                 let own = own(d, c.element);

@@ -1,6 +1,6 @@
-//! From a derivation to Rust: parameters, state, workspace, `start`, `step`, the residual, the
-//! invariants and the description of the model. Emission makes no decisions and cannot fail; what
-//! this version has no stepper for is refused before, in [`refusal`].
+//! From a derivation to Rust: parameters, state, workspace, `start`, `step`, the residual, the invariants and the
+//! description of the model. Emission makes no decisions and cannot fail. [`refusal`] rejects models without a
+//! stepper beforehand.
 
 mod alone;
 mod between;
@@ -53,42 +53,43 @@ use names::Names;
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
-/// Coordinates of the largest Lie algebras of groups: SO(8).
+/// The largest number of coordinates of the Lie algebra of a group other than a field: that of SO(8).
 const MOST_COORDINATES: u64 = 28;
 
-/// What a stepper solves together, at most.
+/// Limits on the unknowns that a stepper solves together.
 struct Most {
-    /// Coordinates whose tangents are kept as dense work arrays.
+    /// The number of coordinates, since their tangent is a dense array.
     coordinates: u64,
-    /// Bodies of different groups.
+    /// The number of configurations, if their groups differ.
     different: usize,
-    /// What becomes of the stepper.
+    /// The verb for the stepper in the error message.
     made: &'static str,
 }
 
-/// Where the stepper is compiled: arrays of these sizes stand on the stack, products of groups are types.
+/// The limits of a compiled stepper, which stores these arrays on the stack and represents products of groups as
+/// types.
 const BUILT: Most = Most {
     coordinates: MOST_COORDINATES,
     different: 6,
     made: "emits",
 };
 
-/// Where it is read and executed: a step takes the cube of the number of coordinates.
+/// The limits of an interpreted stepper, whose step costs the cube of the number of coordinates.
 const READ: Most = Most {
     coordinates: 256,
     different: 256,
     made: "runs",
 };
 
-/// Most sizes for which one model is compiled and described.
+/// The largest number of sizes for which a model is compiled and described.
 const MOST_SIZES: u64 = 32;
 
-/// Why no stepper is emitted for this model, if so.
+/// The reason why clebsch emits no stepper for this model, if any.
 pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
     refused(d, &BUILT)
 }
 
-/// Why none is read from its text and executed, if so.
+/// The reason why a model file cannot be run, if any.
 pub fn refusal_of_read(d: &Derivation) -> Option<Diagnostic> {
     refused(d, &READ)
 }
@@ -130,14 +131,15 @@ fn refused(d: &Derivation, most: &Most) -> Option<Diagnostic> {
     names::refusal(d)
 }
 
-/// The refusal of a block that is too large for a dense tangent, or of more groups than a product has.
+/// Rejects a block that is too large for a dense tangent, or that has more configurations than a product of groups
+/// can have.
 fn too_many_together(d: &Derivation, most: &Most) -> Option<Diagnostic> {
     let Most {
         coordinates: admitted,
         different,
         made,
     } = *most;
-    // Multipliers stand behind the velocities.
+    // Multipliers follow the velocities.
     let bodies = d.spec.configurations.len();
     let held: Vec<usize> = (0..d.spec.holds.len()).collect();
     let d = &d.with_multipliers(&held);
@@ -187,13 +189,13 @@ fn too_many_together(d: &Derivation, most: &Most) -> Option<Diagnostic> {
     )
 }
 
-/// The Rust items of a model. `documented` puts the whole derivation into the rustdoc of the model.
+/// The Rust items of a model. If `documented` is set, the rustdoc of the model contains the whole derivation.
 pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     let names = Names::new(d);
     let module = format_ident!("{}", names.module);
     let visibility = d.spec.public.then(|| quote!(pub));
     let [configuration, balance] = residual::balance(d, &names);
-    // What is asked of states, beside the step.
+    // Functions of states besides the step.
     let asked = [
         balance,
         kinetic::inertia_at(d, &names),
@@ -233,9 +235,9 @@ pub fn emit(d: &Derivation, documented: bool) -> TokenStream {
     }
 }
 
-/// The errors, and types under the model's names that are themselves errors already reported, so
-/// that code which uses the model adds no errors of its own. The first error stands inside such a
-/// type: a projection with a faulty argument, the one form that stable Rust takes without a word.
+/// The compile errors of a rejected model, and placeholder types under the names of its items. The placeholders are
+/// erroneous themselves, so that code using the model causes no further errors. The first error is placed inside such
+/// a type as a projection with a faulty argument, which is the only form for which stable Rust reports nothing else.
 pub fn fallback(tokens: &TokenStream, errors: &Errors) -> TokenStream {
     let mut after_model = false;
     let mut name: Option<Ident> = None;

@@ -1,5 +1,5 @@
-//! Names of emitted items and locals: the model's own as written, all others chosen so that no
-//! name of the model hides them.
+//! Names of emitted items and locals. The model's names stay as written, and no name of the model shadows another
+//! emitted name.
 
 use crate::derive::Derivation;
 use crate::diagnostic::Diagnostic;
@@ -8,9 +8,9 @@ use crate::expr::symbol::{Role, SymbolId, Symbols};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// Names of one model.
+/// The names of one model.
 pub struct Names {
-    /// Name of the module that holds the items.
+    /// The name of the module that contains the items.
     pub module: String,
     taken: Vec<String>,
 }
@@ -34,7 +34,7 @@ impl Names {
         }
     }
 
-    /// A local name that no local variable of the model bears.
+    /// The name of a local that differs from every local of the model.
     pub fn local(&self, base: &str) -> Ident {
         let mut name = base.to_owned();
         while self.taken.contains(&name) {
@@ -44,12 +44,12 @@ impl Names {
     }
 }
 
-/// The symbol's own name, which its field or method bears.
+/// The symbol's own name, which is the name of its field or method.
 pub fn own(d: &Derivation, id: SymbolId) -> Ident {
     format_ident!("{}", d.letters.symbols.get(id).name)
 }
 
-/// Types, traits and variants that emitted code calls by a plain name: no model can bear one.
+/// Types, traits and variants that emitted code uses by their plain names. A model cannot have one of these names.
 const TYPES: [&str; 58] = [
     "AboutBody",
     "Additive",
@@ -111,7 +111,7 @@ const TYPES: [&str; 58] = [
     "Vec",
 ];
 
-/// Whether emitted code calls a type or a trait by this name: one of [`TYPES`], or of a group's own.
+/// Whether emitted code uses a type or a trait with this name: one of [`TYPES`], or a type of a group.
 pub(super) fn is_a_type(name: &str) -> bool {
     if !name.starts_with(|c: char| c.is_ascii_uppercase()) {
         return false;
@@ -130,8 +130,9 @@ pub(super) fn is_a_type(name: &str) -> bool {
     of_groups || TYPES.contains(&name)
 }
 
-/// The model, or a configuration or an advected quantity that bears the name of an invariant; names that
-/// every model's stepper needs are refused where they are declared. Parameters and velocities are free: they become fields and locals only.
+/// Rejects a model with a reserved name, and a configuration or an advected quantity with the name of an invariant.
+/// Names that every stepper needs are rejected at their declaration. Parameters and velocities may have any other
+/// name, since they become fields and locals only.
 pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
     let spec = &d.spec;
     let model = spec.name.as_str();
@@ -165,8 +166,8 @@ pub fn refusal(d: &Derivation) -> Option<Diagnostic> {
     None
 }
 
-/// What emitted functions call by a plain name besides [`TYPES`], and what they name themselves: a
-/// local of the model under such a name would hide it. The test of hygiene states a model with all of them.
+/// Functions and locals that emitted code uses by their plain names, besides [`TYPES`]; a local of the model with
+/// such a name would shadow them. The hygiene test states a model with all of these names.
 const INSIDE: [&str; 126] = [
     "all",
     "all_finite",
@@ -296,8 +297,8 @@ const INSIDE: [&str; 126] = [
     "verdict",
 ];
 
-/// The symbol's name as a local variable: its own, unless the emitted code needs that one itself; the
-/// scalar `T` is a type and stands in nobody's way.
+/// The symbol's name as a local variable: its own, unless emitted code uses that name. The scalar `T` is a type, so a
+/// local may have its name.
 pub fn variable(symbols: &Symbols, id: SymbolId) -> Ident {
     let own = &symbols.get(id).name;
     match symbols.get(id).role == Role::Step && own == "h" {
@@ -330,17 +331,17 @@ pub fn field(d: &Derivation, id: SymbolId) -> TokenStream {
     }
 }
 
-/// The symbol's name at another time level or in another guise.
+/// The symbol's name at another time level or in another role.
 pub fn tagged(d: &Derivation, names: &Names, id: SymbolId, tag: &str) -> Ident {
     names.local(&format!("{}_{tag}", d.letters.symbols.get(id).name))
 }
 
-/// An item that belongs to the model: `HeavyTopState`.
+/// An item of the model, such as `HeavyTopState`.
 pub fn item(d: &Derivation, suffix: &str) -> Ident {
     format_ident!("{}{suffix}", d.spec.name)
 }
 
-/// `base` for one configuration, `base_Λ1` for several.
+/// `base` if there is one configuration, otherwise `base_Λ1`.
 pub fn per_configuration(d: &Derivation, base: &str, i: usize) -> Ident {
     match d.spec.configurations.as_slice() {
         [_] => format_ident!("{base}"),
@@ -353,8 +354,8 @@ pub fn per_configuration(d: &Derivation, base: &str, i: usize) -> Ident {
     }
 }
 
-/// The module of a model: its name in lower case, away from words of Rust (`model Loop`) and from
-/// crates whose names the user's code may need (`model Core`).
+/// The module of a model: its name in lower case. It is changed if it is a Rust keyword (`model Loop`) or a crate
+/// that the user's code may need (`model Core`).
 pub(super) fn module(model: &str) -> String {
     let mut name = snake(model);
     let crates = [
@@ -399,7 +400,7 @@ fn separated(name: &str, separator: char) -> String {
     out
 }
 
-/// Whether a number of dimensions stands there, the `2D` of `ShallowWater2D`, which is a word.
+/// Whether a number of dimensions starts at `i`, such as the `2D` of `ShallowWater2D`, which counts as a word.
 fn is_dimensions(chars: &[char], i: usize) -> bool {
     let after_word = i > 0 && chars[i - 1].is_lowercase();
     let ends = chars.get(i + 2).is_none_or(|c| c.is_uppercase());

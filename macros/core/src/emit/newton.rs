@@ -1,6 +1,6 @@
-//! The equations of velocities that are found together by Newton's method: residual and tangent are
-//! both derived. Takes the derivation and what is solved together, the whole model or a block of
-//! it; gives the loop that solves, the functions beside it, and the step where that is all.
+//! The equations of velocities that Newton's method finds together: residual and tangent are both derived. Takes the
+//! derivation and the unknowns, which are the whole model or a block of it; gives the loop of the solver and its
+//! functions, and the step if the block is the whole model.
 
 use super::blocks::Inverse;
 use super::element::{self, Bundle, Family, family};
@@ -22,34 +22,34 @@ use crate::schedule;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-/// What is solved together.
+/// The unknowns that Newton's method finds together.
 pub(super) struct Together<'a> {
     /// The model.
     pub whole: &'a Derivation,
-    /// What is solved, as a model of its own; the model where that is all of it.
+    /// The unknowns as a model of their own; the model itself if it is a single block.
     pub block: &'a Derivation,
-    /// Which configurations of the model these are.
+    /// The indices of their configurations in the model.
     pub members: &'a [usize],
-    /// Its number, from 1, where there are several blocks.
+    /// The number of the block, starting at 1, if there are several.
     pub number: Option<usize>,
     /// The names of the model.
     pub names: &'a Names,
 }
 
-/// The code of it.
+/// The code of the solver.
 pub(super) struct Loop {
-    /// The statements of what is known at the node.
+    /// The statements that compute the values known at the node.
     pub known: TokenStream,
-    /// The same as a program, and where it is found, for what comes after the solution.
+    /// The same values as a program with its bindings, for the code after the solution.
     pub computed: Option<(schedule::Program, Bindings)>,
-    /// An expression: the solution found, or an error returned.
+    /// An expression that gives the solution or returns an error.
     pub solve: TokenStream,
-    /// The functions of the stepper that this calls.
+    /// The functions of the stepper that the loop calls.
     pub functions: TokenStream,
 }
 
 impl Together<'_> {
-    /// A name of the block: the same as in a model of one block, with its number behind.
+    /// A name of the block: the name in a model of one block, followed by the number of this block.
     pub fn name(&self, base: &str) -> Ident {
         match self.number {
             Some(n) => self.names.local(&format!("{base}_{n}")),
@@ -57,7 +57,7 @@ impl Together<'_> {
         }
     }
 
-    /// The type of the velocities together.
+    /// The type of all velocities together.
     pub fn elements(&self) -> TokenStream {
         let d = self.block;
         let count = d.spec.configurations.len();
@@ -65,7 +65,7 @@ impl Together<'_> {
         Bundle::of(d).ty(&types)
     }
 
-    /// What is solved for beforehand, and where the model keeps the inverses for it.
+    /// The unknowns that are eliminated beforehand, and the fields of the model with the inverses for that.
     pub fn eliminated(&self) -> Option<(SchurReduction, Vec<(Expr, Ident)>)> {
         let found = equations::eliminated(self.block, &self.momenta())?;
         let mut constants: Vec<Expr> = Vec::new();
@@ -80,8 +80,8 @@ impl Together<'_> {
         Some((found, named))
     }
 
-    /// The type of what Newton's method finds and of all velocities, with the numbers of their coordinates:
-    /// what a search has behind its scalar.
+    /// The type and dimension of the unknowns of Newton's method, then of all velocities: the parameters of the
+    /// search type after its scalar.
     fn kinds(&self, eliminated: Option<&SchurReduction>) -> TokenStream {
         let elements = self.elements();
         let dimension = element::total(self.block);
@@ -95,21 +95,21 @@ impl Together<'_> {
         }
     }
 
-    /// The type of the search of one solution after the other.
+    /// The type of the search, which extrapolates from step to step.
     pub fn search_type(&self) -> TokenStream {
         let eliminated = self.eliminated();
         let kinds = self.kinds(eliminated.as_ref().map(|(found, _)| found));
         quote!(newton::Search<T, #kinds>)
     }
 
-    /// The side on which a velocity is found.
+    /// The side on which the velocity is found.
     pub fn side(&self, i: usize) -> Side {
         let c = &self.block.spec.configurations[i];
         let turned = self.block.solve.seen_from_body.is_some() && !c.group.is_additive();
         if turned { Side::Body } else { c.side }
     }
 
-    /// The momenta of the outgoing edge that are solved for.
+    /// The momenta of the outgoing edge in the equations.
     pub fn momenta(&self) -> Vec<Expr> {
         let d = self.block;
         match &d.solve.seen_from_body {
@@ -118,7 +118,7 @@ impl Together<'_> {
         }
     }
 
-    /// What the equations need of the node.
+    /// The letters at the node that the equations need.
     pub fn needed(&self) -> Vec<Letter> {
         let mut needed = letters_of(&self.momenta());
         for (i, c) in self.block.spec.configurations.iter().enumerate() {
@@ -134,8 +134,8 @@ impl Together<'_> {
         Bundle::of(self.block).part(solution, i)
     }
 
-    /// The matrices of the velocities in the frames in which they are stated; `after` learns their
-    /// names.
+    /// Locals for the matrices of the velocities in the frames in which the model states them; binds their names in
+    /// `after`.
     pub fn matrices(&self, solved: &Ident, after: &mut Bindings) -> TokenStream {
         let d = self.whole;
         let mut out = TokenStream::new();
@@ -155,8 +155,8 @@ impl Together<'_> {
         out
     }
 
-    /// Whether the root is the only one, since the action is convex in the velocities: the local that
-    /// says so, and the condition with what else shows it behind.
+    /// If the action is convex in the velocities, the root is unique. Gives the local with that result, and the
+    /// condition as a further alternative.
     fn convex(&self, bindings: &Bindings) -> (TokenStream, TokenStream) {
         let d = self.block;
         let s = &d.letters.symbols;
@@ -181,8 +181,8 @@ impl Together<'_> {
         (decided, quote!(#convex ||))
     }
 
-    /// The code. `bindings` know what stands at the node; `search` is the field of the workspace, `tried`
-    /// the workspace of a trial step `h` with a given `search`.
+    /// The code. `bindings` contains the values at the node; `search` is the field of the workspace; `tried` is the
+    /// workspace of a trial step `h` with a given `search`.
     pub fn code(&self, bindings: &Bindings, search: &Ident, tried: &TokenStream) -> Loop {
         let (d, names) = (self.block, self.names);
         let s = &d.letters.symbols;
@@ -199,7 +199,7 @@ impl Together<'_> {
         let node_momenta: Vec<TokenStream> = (0..d.spec.configurations.len())
             .map(|i| match self.members.get(i) {
                 Some(member) => node_momentum(self.whole, *member, self.side(i)),
-                // What a constraint holds is zero at the end of the step.
+                // The residual of a constraint is zero at the end of the step.
                 None => element::nothing(d, i),
             })
             .collect();
@@ -242,7 +242,8 @@ impl Together<'_> {
         let of_work = chosen.map(|_| quote!(, work.method));
         let (decided, only_root) = self.convex(bindings);
         let at_whole = &equations.at_trial;
-        // The tangent of all equations at rest is the same at every node where a part of them is solved.
+        // If a part of the equations is eliminated, the tangent of all equations at zero velocity is the same at
+        // every node.
         let is_principal = match &equations.part {
             Some(_) => quote! {
                 is_part_of_principal(&#solved.element, &{ #at_rest }, || {
@@ -304,8 +305,8 @@ impl Together<'_> {
                 }
             }
         };
-        // What cold functions are given is copied where they are called: a value whose address is taken
-        // anywhere in the loop would live in memory.
+        // The arguments of cold functions are copied at the call: a value whose address is taken inside the loop
+        // would live in memory.
         let functions = quote! {
             /// The solution to be taken where the one found is not known to be principal, or none was
             /// found. None where the iteration begins again, at the principal root.
@@ -362,8 +363,8 @@ impl Together<'_> {
         }
     }
 
-    /// A root beyond the edge of the domain is no principal one: what was met is said, where the
-    /// whole motion of the step is known.
+    /// A root outside the domain is not the principal one. The error reports the domain that was left, if the whole
+    /// motion of the step is known.
     fn contact(&self, step: &Ident, newton: &Ident) -> Option<TokenStream> {
         let d = self.block;
         if self.number.is_some() {
@@ -389,8 +390,8 @@ impl Together<'_> {
         })
     }
 
-    /// The same of a block: whether a map of its own loses its inverse; how the others move is not
-    /// known.
+    /// The same for a block, whose other configurations are not known: tests whether a linear map of the block
+    /// becomes singular.
     fn lost_inverse(&self, step: &Ident) -> Option<TokenStream> {
         let d = self.block;
         let maps = d.spec.configurations.iter().enumerate();
@@ -412,7 +413,7 @@ impl Together<'_> {
     }
 }
 
-/// What the step needs of the node beside the equations: to go on from there.
+/// The letters at the node that the step needs besides the equations, in order to advance.
 pub(super) fn onwards(d: &Derivation, by_change: &[Option<SpatialIncrementForm>]) -> Vec<Letter> {
     let carries = d.carries.iter().enumerate();
     let acting = carries.flat_map(|(i, carry)| match by_change.get(i) {
@@ -424,7 +425,7 @@ pub(super) fn onwards(d: &Derivation, by_change: &[Option<SpatialIncrementForm>]
     needed
 }
 
-/// All velocities together; `block` has the multipliers among them.
+/// All velocities together; `block` contains the multipliers too.
 fn all<'a>(
     d: &'a Derivation,
     block: &'a Derivation,
@@ -446,19 +447,19 @@ fn with_all_multipliers(d: &Derivation) -> Derivation {
     d.with_multipliers(&holds)
 }
 
-/// The type of the search where all velocities are found together.
+/// The type of the search if all velocities are found together.
 pub(super) fn search_of_all(d: &Derivation, names: &Names) -> TokenStream {
     let members: Vec<usize> = (0..d.spec.configurations.len()).collect();
     all(d, &with_all_multipliers(d), names, &members).search_type()
 }
 
-/// The inverses that the model keeps for what is solved for beforehand, where all velocities are found together.
+/// The inverses that the model stores for the elimination, if all velocities are found together.
 pub(super) fn kept_inverses(d: &Derivation, names: &Names) -> Vec<Inverse> {
     let members: Vec<usize> = (0..d.spec.configurations.len()).collect();
     inverses(&all(d, &with_all_multipliers(d), names, &members))
 }
 
-/// The same of what is solved together.
+/// The inverses that the model stores for the elimination of one block.
 pub(super) fn inverses(together: &Together) -> Vec<Inverse> {
     let fields = together
         .eliminated()
@@ -469,7 +470,7 @@ pub(super) fn inverses(together: &Together) -> Vec<Inverse> {
         .collect()
 }
 
-/// `step`, where all velocities are found together.
+/// `step`, if all velocities are found together.
 pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     let members: Vec<usize> = (0..d.spec.configurations.len()).collect();
     let block = with_all_multipliers(d);
@@ -491,7 +492,7 @@ pub fn step(d: &Derivation, names: &Names) -> TokenStream {
     } = all.code(&bindings, &search, &quote!(#work { h, search }));
     let [found, solved, node] = ["found", "solved", "node"].map(|base| names.local(base));
     let elements = all.elements();
-    // What comes after the solution asks for it too.
+    // The code after the solution uses these values too.
     let (known, solve) = match computed.is_some() {
         true => (known, solve),
         false => (TokenStream::new(), quote!(#known #solve)),

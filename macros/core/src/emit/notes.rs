@@ -1,6 +1,6 @@
-//! The warnings of a model as warnings of rustc. Stable Rust lets a macro warn in one way only: it
-//! emits the use of a deprecated item, here a constant whose name is the topic and whose note is
-//! the warning, on the tokens concerned. `#[allow(deprecated)]` on a module around silences them.
+//! The warnings of a model as warnings of rustc. Stable Rust gives a macro one way to warn: it emits the use of a
+//! deprecated item. Here the item is a constant whose name is the topic and whose note is the warning, with the span
+//! of the tokens concerned. `#[allow(deprecated)]` on an enclosing module silences the warnings.
 
 use crate::derive::Derivation;
 use proc_macro2::TokenStream;

@@ -1,6 +1,5 @@
-//! Functions that the search for the principal root calls: residual and tangent of one step at given values of its node,
-//! over any scalar.
-//! Takes the equations; gives the functions.
+//! Functions that the search for the principal root calls: residual and tangent of one step as functions of the
+//! values at its node, over any scalar. Takes the equations; gives the functions.
 
 use super::element::{self, Bundle};
 use super::equations::{TURNED, Written};
@@ -13,32 +12,32 @@ use crate::expr::{Letter, Shift};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-/// Where the functions come from.
+/// The context of the functions.
 pub(super) struct Principal<'a> {
     /// The model.
     pub d: &'a Derivation,
-    /// Where values at the node are found.
+    /// The locals of the values at the node.
     pub bindings: &'a Bindings,
     /// The equations.
     pub equations: &'a Written,
-    /// The local that holds the momenta of the node.
+    /// The local of the node momenta.
     pub momenta: &'a Ident,
-    /// The local that holds the trial.
+    /// The local of the trial.
     pub trial: &'a Ident,
-    /// The names of the functions.
+    /// The name of the residual.
     pub residual_at: &'a Ident,
-    /// The tangent.
+    /// The name of the tangent.
     pub tangent_at: &'a Ident,
-    /// The bounds of rounding.
+    /// The name of the function that bounds the rounding errors.
     pub rounding: &'a Ident,
-    /// The search for the principal root.
+    /// The name of the search for the principal root.
     pub principal: &'a Ident,
-    /// What finds the rest of a trial of which a part is given.
+    /// The name of the function that completes a partial trial.
     pub completed_at: &'a Ident,
 }
 
 impl Principal<'_> {
-    /// Values at the node, one inside the other.
+    /// Values at the node as nested pairs.
     pub fn packed(&self, letters: &[Letter]) -> TokenStream {
         let s = &self.d.letters.symbols;
         letters.iter().rev().fold(quote!([]), |rest, l| {
@@ -51,7 +50,7 @@ impl Principal<'_> {
         })
     }
 
-    /// Their type.
+    /// The type of those pairs.
     pub fn packed_type(d: &Derivation, letters: &[Letter]) -> TokenStream {
         let s = &d.letters.symbols;
         letters.iter().rev().fold(quote!([T; 0]), |rest, l| {
@@ -64,7 +63,7 @@ impl Principal<'_> {
         })
     }
 
-    /// `let` statements that take them apart.
+    /// `let` statements that unpack them.
     fn unpacked(&self, source: &Ident, letters: &[Letter]) -> TokenStream {
         let s = &self.d.letters.symbols;
         let mut at = quote!(#source);
@@ -154,7 +153,7 @@ impl Principal<'_> {
             quote!(#to = #to.over(&mut newton::Numbers::of(&#from).put(lane));)
         });
         let part = equations.part.as_ref();
-        // What a part is completed by rounds as well.
+        // The completion of a partial trial has rounding errors too.
         let completed = part.map(|part| {
             let (turned, body, count) = (format_ident!("{TURNED}"), &part.alone, part.rows.len() / 3);
             let count = Literal::usize_unsuffixed(count);

@@ -1,5 +1,5 @@
-//! The step of a free body in unit quaternions: one equation for a number, and no torque at the node.
-//! Takes the derivation; gives `step`.
+//! The step of a free body in unit quaternions: one scalar equation, and no torque at the node. Takes the derivation;
+//! gives `step`.
 
 use super::forced::{body, follow};
 use super::names::{Names, own, tagged, variable};
@@ -8,7 +8,7 @@ use crate::derive::Derivation;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// The spatial momentum stays what it is; the body's follows from the velocity.
+/// The step keeps the spatial momentum; the body momentum follows from the velocity.
 pub(super) fn free(d: &Derivation, names: &Names) -> TokenStream {
     let c = &d.spec.configurations[0];
     let element = own(d, c.element);

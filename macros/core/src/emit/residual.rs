@@ -1,6 +1,5 @@
-//! `balance`: the residual of the discrete Euler-Lagrange equations at three consecutive
-//! configurations, which need not solve them. It is what oracles compare with the variation of
-//! the action.
+//! `balance`: the residual of the discrete Euler-Lagrange equations at three consecutive configurations, which need
+//! not be a solution. Oracles compare it with the variation of the action.
 
 use super::element::{self, stacked};
 use super::expression::{Bindings, program, ty};
@@ -53,7 +52,7 @@ pub fn balance(d: &Derivation, names: &Names) -> [TokenStream; 2] {
             let e = own(d, c.element);
             element::matrix(c, quote!(#source.#e))
         };
-        // Quantities without a definition are given at every node.
+        // Quantities without a definition are arguments at every node.
         let mut given = TokenStream::new();
         for id in kept(d) {
             let local = match level {
@@ -153,7 +152,7 @@ pub fn balance(d: &Derivation, names: &Names) -> [TokenStream; 2] {
     [data, function]
 }
 
-/// What the components of the residual are.
+/// The documentation of the components of the residual.
 fn components(d: &Derivation) -> Vec<&'static str> {
     if element::only_rotations(d) {
         return vec![

@@ -1,5 +1,5 @@
-//! Named sizes of matrices (`dim n in 3..=8`) as const parameters of the emitted items.
-//! Takes the model's dimensions; gives the generic parameters of every item and sizes as tokens.
+//! Named sizes of matrices (`dim n in 3..=8`) as const parameters of the emitted items. Takes the model's dimensions;
+//! gives the generic parameters of every item, and sizes as tokens.
 
 use crate::derive::Derivation;
 use crate::expr::shape::Dim;
@@ -7,8 +7,8 @@ use crate::expr::symbol::Symbols;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-/// The const parameter of a named dimension: its name in capitals (`n` as `N`), away from the type
-/// parameter `T` and from those of dimensions declared before it.
+/// The const parameter of a named dimension: its name in capitals (`n` becomes `N`), made distinct from the type
+/// parameter `T` and from the parameters of earlier dimensions.
 pub fn constant(s: &Symbols, index: u16) -> Ident {
     let mut taken = vec!["T".to_owned(), "Self".to_owned()];
     for i in 0..=index {
@@ -41,44 +41,44 @@ pub fn size(s: &Symbols, d: Dim) -> TokenStream {
     }
 }
 
-/// Generic parameters of the emitted items.
+/// The generic parameters of the emitted items.
 pub struct Generics {
     constants: Vec<Ident>,
 }
 
 impl Generics {
-    /// Those of a model.
+    /// The parameters of a model.
     pub fn of(d: &Derivation) -> Generics {
         Generics {
             constants: constants(&d.letters.symbols),
         }
     }
 
-    /// As a struct declares them: `<const N: usize, T = f64>`.
+    /// In the declaration of a struct: `<const N: usize, T = f64>`.
     pub fn declared(&self) -> TokenStream {
         let list = &self.constants;
         quote!(<#(const #list: usize,)* T = f64>)
     }
 
-    /// As an `impl` binds them: `<const N: usize, T: Real>`.
+    /// In an `impl`: `<const N: usize, T: Real>`.
     pub fn bound(&self) -> TokenStream {
         let list = &self.constants;
         quote!(<#(const #list: usize,)* T: Real>)
     }
 
-    /// As a type takes them: `<N, T>`.
+    /// As arguments of a type: `<N, T>`.
     pub fn used(&self) -> TokenStream {
         let list = &self.constants;
         quote!(<#(#list,)* T>)
     }
 
-    /// As a type over another scalar takes them: `<N, U>`.
+    /// As arguments of a type over another scalar: `<N, U>`.
     pub fn used_over_tokens(&self, scalar: &TokenStream) -> TokenStream {
         let list = &self.constants;
         quote!(<#(#list,)* #scalar>)
     }
 
-    /// As an `impl` over plain numbers binds them: `<const N: usize>`, or nothing.
+    /// In an `impl` over `f64`: `<const N: usize>`, or empty.
     pub fn sizes_bound(&self) -> TokenStream {
         let list = &self.constants;
         match list.is_empty() {
@@ -87,7 +87,7 @@ impl Generics {
         }
     }
 
-    /// As a type over plain numbers takes them: `<N, f64>`.
+    /// As arguments of a type over `f64`: `<N, f64>`.
     pub fn plain(&self) -> TokenStream {
         let list = &self.constants;
         quote!(<#(#list,)* f64>)

@@ -1,6 +1,6 @@
-//! How a trajectory begins: the state at node 0 from initial data, and the workspace of its steps.
-//! Takes the derivation; gives the two functions of which the runtime's protocol makes `start`. Of forced steps it makes
-//! the second one itself, around what tests the start.
+//! The start of a trajectory: the state at node 0 from initial data, and the workspace of its steps. Takes the
+//! derivation; gives the two functions from which the runtime's protocol builds `start`. For forced steps, the
+//! protocol builds the second one itself and calls the tests.
 
 use super::element::{self, Family, family};
 use super::expression::{Bindings, Writer};
@@ -15,19 +15,19 @@ use crate::expr::{self, Shift};
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// What may be chosen about the steps of a model.
+/// The choice that a model leaves to the user.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Choice {
     /// The order, by modified moments.
     Order,
-    /// The solver, the model's own unless another is named.
+    /// The solver; the model's own by default.
     Solver,
     /// Nothing.
     Nothing,
 }
 
 impl Choice {
-    /// What this model leaves open.
+    /// The choice of this model.
     pub fn of(d: &Derivation) -> Choice {
         if super::stepper::preprocessed(d) {
             Choice::Order
@@ -38,7 +38,7 @@ impl Choice {
         }
     }
 
-    /// What the protocol calls it.
+    /// The protocol's word for the choice.
     pub fn word(self) -> TokenStream {
         match self {
             Choice::Order => quote!(order),
@@ -47,7 +47,7 @@ impl Choice {
         }
     }
 
-    /// Its type.
+    /// The type of the choice.
     fn ty(self) -> TokenStream {
         match self {
             Choice::Order => quote!(Order),
@@ -57,7 +57,7 @@ impl Choice {
     }
 }
 
-/// `begin` and `prepared`, of which the runtime's protocol makes `start` and `workspace`.
+/// `begin` and `prepared`, from which the runtime's protocol builds `start` and `workspace`.
 pub(super) fn start(d: &Derivation, names: &Names) -> TokenStream {
     let (initial, state) = (item(d, "Initial"), item(d, "State"));
     let work = item(d, "Workspace");
@@ -105,13 +105,13 @@ pub(super) fn start(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
-/// What the protocol makes the state at node 0 of, where that holds elements and momenta alone.
+/// The fields from which the protocol builds the state at node 0, if the state contains elements and momenta only.
 pub(super) fn plain(d: &Derivation, names: &Names) -> Option<TokenStream> {
     let list = d.spec.configurations.iter().enumerate();
     let alone = items::kept(d).is_empty()
         && items::ticks(d, names).is_empty()
         && d.spec.holds.is_empty()
-        // The momentum of a rotation of higher dimensions is a skew matrix.
+        // On SO(n), n > 3, the momentum is a skew matrix.
         && list.clone().all(|(_, c)| !matches!(family(c), Family::Orthogonal(_)));
     let each = list.clone().map(|(i, c)| {
         let (element, momentum) = (own(d, c.element), per_configuration(d, "momentum", i));
@@ -164,7 +164,7 @@ fn state_of(d: &Derivation, names: &Names) -> TokenStream {
         let zero = element::zero(d, amount.shape());
         quote!(#rest: #zero)
     }));
-    // References: the inverse element acts on the value given at node 0.
+    // Reference values: the inverse element acts on the value given at node 0.
     let mut references = TokenStream::new();
     for (a, t) in d.spec.advected.iter().zip(&d.transports) {
         let own_name = own(d, a.quantity);
@@ -229,19 +229,19 @@ fn state_of(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
-/// Whether something is asked of a step or of the state where it starts.
+/// Whether the model tests the step size or the initial state.
 pub(super) fn is_tested(d: &Derivation) -> bool {
     !tests(d, &Names::new(d)).is_empty()
 }
 
-/// What is asked of steps of `h`, and of the state that a trajectory starts from.
+/// The tests of the step size and of the initial state.
 fn tests(d: &Derivation, names: &Names) -> TokenStream {
     let admitted = super::domain::of_step(d);
     let defined = super::domain::of_start(d, names);
     quote!(#admitted #defined)
 }
 
-/// The workspace of steps of `h` from a state, as the body of a function of both and of the choice.
+/// The workspace of steps of size `h` from a state, as the body of a function of the state, `h` and the choice.
 fn workspace_of(d: &Derivation, names: &Names) -> TokenStream {
     let work = item(d, "Workspace");
     let tests = tests(d, names);
@@ -274,7 +274,7 @@ fn fields_of_workspace(d: &Derivation) -> TokenStream {
                 #(#references: state.#references,)*
             }
         }
-        // Written by the protocol.
+        // The protocol writes these fields.
         Method::ForcedMoserVeselov => TokenStream::new(),
         Method::UnitQuaternions => {
             let factor = (!items::factor_references(d).is_empty())

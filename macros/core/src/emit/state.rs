@@ -1,5 +1,5 @@
-//! What moves: initial data, the state at a node and the workspace of a step.
-//! Takes the derivation; gives the structs and their accessors.
+//! Initial data, the state at a node and the workspace of a step. Takes the derivation; gives the structs and their
+//! accessors.
 
 use super::element;
 use super::expression::ty;
@@ -134,7 +134,7 @@ pub fn state(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
-/// The fields of the workspace behind the step size, and what they are for.
+/// The fields of the workspace after the step size, and their documentation.
 fn workspace(d: &Derivation, names: &Names) -> (TokenStream, &'static str) {
     let s = &d.letters.symbols;
     let state = item(d, "State");
@@ -182,7 +182,7 @@ fn workspace(d: &Derivation, names: &Names) -> (TokenStream, &'static str) {
     }
 }
 
-/// The names of the fields of the workspace, all of which are saved.
+/// The names of the fields of the workspace; snapshots contain all of them.
 pub(super) fn remembered(d: &Derivation, names: &Names) -> Vec<Ident> {
     let (fields, _) = workspace(d, names);
     [format_ident!("h")]
@@ -191,7 +191,7 @@ pub(super) fn remembered(d: &Derivation, names: &Names) -> Vec<Ident> {
         .collect()
 }
 
-/// The names of the fields in `a: A, b: B<C>,`: what stands before a single colon.
+/// The names of the fields in `a: A, b: B<C>,`: the identifiers before a single colon.
 fn fields_of(fields: &TokenStream) -> Vec<Ident> {
     let trees: Vec<TokenTree> = fields.clone().into_iter().collect();
     let names = trees.windows(3).filter_map(|three| match three {

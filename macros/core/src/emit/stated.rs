@@ -1,5 +1,5 @@
-//! What is known before an equation is solved, as statements. Takes names and their values; gives the code, where each
-//! is found, and the same as a program, for what is computed after.
+//! Values known before an equation is solved, as statements. Takes names and their values; gives the code, the locals
+//! of the names, and the same values as a program for later expressions.
 
 use super::expression::{Bindings, program};
 use super::names::variable;
@@ -10,17 +10,17 @@ use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// What is known under names.
+/// Known values and their names.
 pub(super) struct Stated {
-    /// The statements that compute it.
+    /// The statements that compute the values.
     pub statements: TokenStream,
-    /// Where it is found.
+    /// The locals of the values.
     pub bindings: Bindings,
-    /// The same as a program.
+    /// The values as a program.
     pub computed: schedule::Program,
 }
 
-/// The statements of what is known; `prefix` starts the names of what is shared.
+/// The statements of the known values; `prefix` starts the names of shared subexpressions.
 pub(super) fn stated(
     s: &Symbols,
     known: Vec<(SymbolId, Expr)>,
@@ -34,7 +34,7 @@ pub(super) fn stated(
     let results = std::mem::take(&mut p.results);
     for ((name, result), value) in names.into_iter().zip(results).zip(values) {
         match result.node() {
-            // Another name for what has one already.
+            // The value already has a local.
             Node::Letter(l) => found.bind(at(name, Shift::HERE), variable(&p.symbols, l.symbol)),
             _ => {
                 let local = variable(s, name);

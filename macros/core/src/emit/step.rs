@@ -1,5 +1,5 @@
-//! `step`: the momentum of the edge from that of the node, the solve, the new element, the momentum of
-//! the next node.
+//! `step`: the momentum of the edge from the node momentum, the solution, the new element, and the momentum of the
+//! next node.
 
 use super::carried::{Acting, carried, gained, seen_from_space};
 use super::element::{self, Family, family};
@@ -23,7 +23,7 @@ pub(super) fn at(symbol: crate::expr::symbol::SymbolId, shift: Shift) -> Letter 
     Letter { symbol, shift }
 }
 
-/// `start` and `step`.
+/// The functions `start` and `step`, and the accessors.
 pub fn start_and_step(d: &Derivation, names: &Names) -> TokenStream {
     let name = item(d, "");
     let start = super::start::start(d, names);
@@ -85,7 +85,7 @@ fn free_step(d: &Derivation, names: &Names) -> TokenStream {
         .into_iter()
         .map(|id| own(d, id))
         .collect();
-    // A state of another trajectory, hence perhaps of another body.
+    // The state may belong to another trajectory and therefore to another body.
     let another = (!references.is_empty()).then(|| {
         quote! {
             if !(#(same(&work.#references, &state.#references))&*) {
@@ -131,8 +131,8 @@ pub(super) fn here(
     node_locals(d, names, 0, needed, &element, &reference, bindings)
 }
 
-/// The same for functions of a state that are asked for beside the step, with the parameters that are needed: what is
-/// advected they ask of the model.
+/// Locals and parameters for functions of a state other than the step. They call the model's functions for advected
+/// quantities.
 pub(super) fn seen(
     d: &Derivation,
     names: &Names,
@@ -152,11 +152,11 @@ pub(super) fn seen(
     }
     let parameters = parameter_locals(d, quote!(self.parameters), &others);
     let locals = here(d, names, &others, bindings);
-    // What advances by its constraint may be made of what was asked for.
+    // A quantity that its constraint advances may depend on those values.
     quote!(#parameters #asked #locals)
 }
 
-/// The momentum of configuration `i` at the node where the step starts, on a side.
+/// The momentum of configuration `i` at the node where the step starts, in the frame of `side`.
 pub(super) fn node_momentum(d: &Derivation, i: usize, side: Side) -> TokenStream {
     let c = &d.spec.configurations[i];
     let momentum = per_configuration(d, "momentum", i);
@@ -171,17 +171,17 @@ pub(super) fn node_momentum(d: &Derivation, i: usize, side: Side) -> TokenStream
     }
 }
 
-/// What has been computed at the node where a step starts.
+/// Values computed at the node where a step starts.
 pub(super) struct AtTheStart<'a> {
-    /// The forms in their changes of the configurations of which the change was solved for.
+    /// The spatial increment forms of the configurations that were solved in that form.
     pub by_change: &'a [Option<SpatialIncrementForm>],
-    /// What acts on fields at one node as at the next, kept from step to step.
+    /// The forces on fields at a node that the workspace stores from step to step.
     pub forces: &'a [AtNode],
-    /// Everything else that has a name.
+    /// The other named values.
     pub computed: &'a schedule::Program,
 }
 
-/// The tail of every step: new elements, next node's quantities, momenta, the finite test.
+/// The end of every step: new elements, quantities of the next node, momenta, and the test that they are finite.
 pub(super) fn finish(
     d: &Derivation,
     names: &Names,
@@ -194,7 +194,7 @@ pub(super) fn finish(
     let forms = known.by_change;
     let force_on = |i: usize| known.forces.iter().find(|f| f.configuration == i);
     let by_change = |i: usize| forms.get(i).and_then(Option::as_ref);
-    // What acts, and where it may be seen from space.
+    // The forces, and the nodes at which their form in the frame of space may be used.
     let parts = d.carries.iter().enumerate();
     let parts = parts.flat_map(|(i, carry)| match (by_change(i), carry) {
         (Some(form), _) => vec![(None, &form.added)],
@@ -223,7 +223,7 @@ pub(super) fn finish(
         let moved = tagged(d, names, c.element, "moved");
         let element = own(d, c.element);
         let omega = solved(i);
-        // What was solved for may be the velocity seen from the body.
+        // The solver may have found the velocity in the body frame.
         let side = match d.solve.finds_body_velocity(i) {
             true => Side::Body,
             false => c.side,
@@ -231,7 +231,7 @@ pub(super) fn finish(
         assignments.extend(quote!(state.#element = #moved;));
         if let Some([rest, _]) = element::rests(d, i) {
             let left = tagged(d, names, c.element, "rest");
-            // The momentum of a rigid motion asks for its velocity once more.
+            // The momentum of a rigid motion needs its velocity again.
             let velocity = tagged(d, names, c.element, "velocity");
             let asked = c.group.rigid().is_some() && !element::is_straight(d, i);
             let (named, velocity) = match asked {

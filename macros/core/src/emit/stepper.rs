@@ -1,6 +1,5 @@
-//! The model as something that steps: the protocol of the runtime around `begin`, `prepared` and `step`.
-//! Takes the derivation; gives the one call that names the model's types, their fields, its way of stepping and what
-//! it shows.
+//! The interface of a stepper: the runtime's protocol around `begin`, `prepared` and `step`. Takes the derivation;
+//! gives one macro call that names the model's types with their fields, the kind of step, and the observables.
 
 use super::element::{self, Family, family};
 use super::invariants::Form;
@@ -14,12 +13,12 @@ use crate::derive::select_solver::Method;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// Whether the stepper's order is chosen by modified moments.
+/// Whether modified moments can raise the order of the stepper.
 pub(super) fn preprocessed(d: &Derivation) -> bool {
     matches!(d.solve.method, Method::FreeMoserVeselov)
 }
 
-/// The protocol, and a short way to try a step where blocks or Newton's method find it.
+/// The protocol, and a short way to try a step if Newton's method or blocks solve it.
 pub fn protocol(d: &Derivation, names: &Names) -> TokenStream {
     let [name, parameters, initial, state, work] =
         ["", "Parameters", "Initial", "State", "Workspace"].map(|suffix| item(d, suffix));
@@ -59,12 +58,12 @@ pub fn protocol(d: &Derivation, names: &Names) -> TokenStream {
     }
 }
 
-/// Whether the protocol makes its steps, around the model's edges and what acts at nodes.
+/// Whether the protocol makes the steps, from the model's edges and its torques at the nodes.
 pub(super) fn is_forced(d: &Derivation) -> bool {
     matches!(d.solve.method, Method::ForcedMoserVeselov)
 }
 
-/// How a forced step is solved, what its factor is made of and what a start is tested for.
+/// The solution of a forced step, the quantities in its factor, and the tests at the start.
 fn forced(d: &Derivation) -> TokenStream {
     let how = d.how_solved();
     let references = factor_references(d).into_iter().map(|id| own(d, id));
@@ -74,7 +73,7 @@ fn forced(d: &Derivation) -> TokenStream {
     quote!((#how #of #tests))
 }
 
-/// What is observed, in the order of the card.
+/// The observables, in the order of the card.
 fn observables(d: &Derivation) -> Vec<TokenStream> {
     let mut all = Vec::new();
     for (i, c) in d.spec.configurations.iter().enumerate() {
@@ -96,13 +95,13 @@ fn observables(d: &Derivation) -> Vec<TokenStream> {
     all
 }
 
-/// Where the numbers of an invariant are found.
+/// The value of an invariant, in the syntax of the protocol.
 fn invariant(d: &Derivation, v: &Invariant) -> TokenStream {
     if let Kind::SpatialMomentum(i) = v.kind {
         let c = &d.spec.configurations[i];
         let (element, momentum) = (own(d, c.element), element::spatial_momentum_field(d, i));
-        // The state keeps the spatial momentum; what shows a drift is the momentum that the solver iterates in the
-        // body, seen from space.
+        // The state stores the spatial momentum. A drift shows in the momentum that the solver iterates in the body,
+        // transformed to space.
         return match (&d.solve.method, family(c)) {
             (Method::FreeMoserVeselov, _) => quote!(work.#element.#momentum),
             (_, Family::Orthogonal(_)) => quote!(state.#momentum as skew),
@@ -121,11 +120,11 @@ fn invariant(d: &Derivation, v: &Invariant) -> TokenStream {
     }
 }
 
-/// How a step is made, in the words of the protocol, and the fields of the state that it moves.
+/// The kind of step in the protocol, and the fields of the state that it changes.
 fn form(d: &Derivation) -> (Ident, Vec<Ident>) {
     let c = &d.spec.configurations[0];
     let moved = [own(d, c.element), per_configuration(d, "momentum", 0)];
-    // Lanes side by side pass by what is tested after a step.
+    // Steps in parallel lanes skip the tests after a step.
     let guarded = super::domain::is_guarded(d);
     let (form, moved) = match d.solve.method {
         Method::FreeMoserVeselov => ("free", moved.to_vec()),
@@ -167,7 +166,7 @@ fn fields(d: &Derivation) -> [Vec<Ident>; 3] {
     [parameters, initial, state]
 }
 
-/// A short way to try a step, where it has one.
+/// A function that tries one step, if the step has that form.
 pub fn attempt(d: &Derivation) -> TokenStream {
     if form(d).0 != "tried" {
         return TokenStream::new();

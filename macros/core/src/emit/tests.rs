@@ -1,6 +1,6 @@
-//! Emitted expressions mean what they were made of: operators and parentheses as Rust reads them.
-//! Takes random trees of sums, products, quotients, powers and signs; a small reader of Rust's
-//! precedence evaluates what is emitted. Letters of matrices stand for numbers here, which commute.
+//! Emitted expressions have the value of the original expression, with operators and parentheses as Rust reads them.
+//! The tests use random trees of sums, products, quotients, powers and signs. A small parser with Rust's precedence
+//! evaluates the emitted tokens. Letters of matrices have numbers as values here, which commute.
 
 use super::expression::{Bindings, Writer};
 use crate::algebra::Rational;
@@ -10,10 +10,10 @@ use crate::expr::{self, Expr, Node};
 use proc_macro2::{TokenStream, TokenTree};
 use std::collections::BTreeMap;
 
-/// Names, and the values they have.
+/// Names and their values.
 type Values = BTreeMap<String, f64>;
 
-/// Reads tokens as Rust does; `grouped` says whether parentheses count.
+/// Parses tokens as Rust does. If `grouped` is false, it ignores parentheses.
 struct Reader<'a> {
     trees: Vec<TokenTree>,
     at: usize,
@@ -141,7 +141,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The tokens, without their parentheses where those do not count; arguments of calls stay.
+/// The tokens; if `grouped` is false, without parentheses except those of calls.
 fn flatten(tokens: TokenStream, grouped: bool, out: &mut Vec<TokenTree>) {
     for t in tokens {
         let call = matches!(out.last(), Some(TokenTree::Ident(_)));
@@ -152,7 +152,7 @@ fn flatten(tokens: TokenStream, grouped: bool, out: &mut Vec<TokenTree>) {
     }
 }
 
-/// The value of a tree, letters by their values.
+/// The value of a tree, given the values of its letters.
 fn meaning(s: &Symbols, e: &Expr, values: &Values) -> f64 {
     let go = |x: &Expr| meaning(s, x, values);
     match e.node() {
@@ -167,7 +167,7 @@ fn meaning(s: &Symbols, e: &Expr, values: &Values) -> f64 {
     }
 }
 
-/// A stream of small numbers.
+/// A stream of small pseudo-random numbers.
 struct Draws(u64);
 
 impl Draws {
@@ -180,7 +180,7 @@ impl Draws {
     }
 }
 
-/// A tree of numbers, or of multiples and sums of matrices.
+/// A random scalar tree, or sums and multiples of matrices.
 fn grown(
     s: &Symbols,
     letters: &[Vec<SymbolId>; 2],
@@ -256,7 +256,8 @@ fn what_is_emitted_has_the_value_of_the_tree() {
         let tokens = writer.write(&e);
         let found = Reader::value(&tokens, &values, true);
         let scale = wanted.abs().max(1.0);
-        // Sums of sums in another order: rounding, magnified where they cancel in a divisor.
+        // Nested sums may be evaluated in another order, and cancellation in a divisor amplifies the difference in
+        // rounding.
         assert!(
             (found - wanted).abs() < 1e-6 * scale,
             "{tokens} is {found}, not {wanted}"
@@ -265,7 +266,7 @@ fn what_is_emitted_has_the_value_of_the_tree() {
         let bare = Reader::value(&tokens, &values, false);
         told_apart += i32::from((bare - wanted).abs() > 1e-3 * scale);
     }
-    // The values tell a lost parenthesis: without any, many a tree is another number.
+    // The values would reveal a missing parenthesis: many trees have another value if parentheses are ignored.
     assert!(tried > 3_000 && told_apart > 1_000, "{tried} {told_apart}");
 }
 
@@ -291,7 +292,7 @@ fn no_model_bears_a_name_that_emitted_code_imports() {
     let lines = imports.split(';').filter(|s| s.contains("pub use"));
     let words = lines.flat_map(|line| line.split(|c: char| !c.is_alphanumeric() && c != '_'));
     let named = |w: &&str| w.starts_with(char::is_uppercase);
-    // Imported for their functions only.
+    // Traits that are imported for their methods only.
     let unnamed = ["Model", "OfScalars", "One", "Zero"];
     let mut seen = 0;
     for word in words.filter(named).filter(|w| !unnamed.contains(w)) {

@@ -1,5 +1,5 @@
-//! The workspace of a model whose velocities are found in several blocks: the searches of Newton's method, the solver's
-//! name and what acts at the node. Takes the derivation; gives its fields and their values.
+//! The workspace of a model whose velocities are found in several blocks: the searches of Newton's method, the
+//! solver, and the forces at the node. Takes the derivation; gives its fields and their values.
 
 use super::blocks::{by_newton, each_newton, search};
 use super::force_at_node;
@@ -10,7 +10,7 @@ use crate::derive::select_solver::Method;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-/// The fields of the workspace and its documentation.
+/// The fields of the workspace, and its documentation.
 pub(super) fn work(d: &Derivation, names: &Names) -> (TokenStream, &'static str) {
     let method = default_solver(d).map(|_| quote!(method: Method,));
     let searches = each_newton(d, names, |n, t| {
@@ -33,7 +33,7 @@ pub(super) fn work(d: &Derivation, names: &Names) -> (TokenStream, &'static str)
     (quote!(#method #(#searches)* #forces), doc)
 }
 
-/// The values of those fields, every search made by `made`, the solver's name in a local.
+/// The values of those fields. `made` gives the value of each search, and the solver is in a local.
 pub(super) fn filled(d: &Derivation, made: impl Fn(usize) -> TokenStream) -> TokenStream {
     let method = default_solver(d).map(|_| quote!(method,));
     let searches = by_newton(d).map(|(n, _)| {
@@ -45,13 +45,13 @@ pub(super) fn filled(d: &Derivation, made: impl Fn(usize) -> TokenStream) -> Tok
     quote!(#method #(#searches)* #(#forces)*)
 }
 
-/// The values of those fields at the start.
+/// The initial values of those fields.
 pub(super) fn work_init(d: &Derivation) -> TokenStream {
     filled(d, |_| quote!(newton::Search::from_rest()))
 }
 
-/// The workspace of a trial step `h` of a model that Newton's method or several blocks solve, with the
-/// model's solver: each search by the constructor named.
+/// The workspace of a trial step `h` of a model that Newton's method or several blocks solve, with the model's
+/// solver. `constructor` is the constructor of each search.
 pub(super) fn trial(d: &Derivation, constructor: &str) -> TokenStream {
     let work = item(d, "Workspace");
     let constructor = format_ident!("{constructor}");

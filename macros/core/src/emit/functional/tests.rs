@@ -64,7 +64,7 @@ fn a_functional_is_computed_once_for_its_arguments() {
     ] {
         assert_eq!(text.matches(call).count(), 1, "{call} in {lets}");
     }
-    // Each is a stage: a temporary, also where it is used once.
+    // Each functional is a temporary, even if it is used once.
     let stages = p
         .temporaries
         .iter()
