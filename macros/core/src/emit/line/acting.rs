@@ -1,5 +1,5 @@
-//! Kernels of what acts on a site at a node: its own potential and what neighbours add, before the node
-//! and after it; of blocks of fields, what the edge adds. The loop over sites that puts it all to the momenta.
+//! Kernels of the force on a site at a node: its own potential and the neighbour forces, before and after the node.
+//! For blocks of fields, also the force of the edge. The loop over sites adds these forces to the momenta.
 
 use super::arguments::{Argument, seen_at};
 use super::lanes::{Windows, are_together};
@@ -13,16 +13,15 @@ use crate::line::SiteSolve;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// What acts at a node.
+/// The form of the force at a node.
 pub(super) enum Acting {
-    /// One covector: half of it before the node, half of it after.
+    /// One covector: half of it acts before the node, half after.
     Halves,
-    /// Two covectors.
+    /// One covector before the node and one after.
     Both,
 }
 
-/// What acts of the site itself at a node: at the end of the edge that comes, at the start of the one
-/// that leaves.
+/// The site's own forces at a node: at the end of the incoming edge, and at the start of the outgoing edge.
 fn own(m: &Moving) -> [Expr; 2] {
     let d = m.outline();
     let s = &d.letters.symbols;
@@ -40,7 +39,8 @@ fn own(m: &Moving) -> [Expr; 2] {
 }
 
 impl Lines<'_> {
-    /// Whether halves act: the shares are equal, of the site itself and of its neighbours.
+    /// [`Acting::Halves`] if the two shares of every force are equal, both of the site's own forces and of neighbour
+    /// forces.
     pub(super) fn acting(&self, m: &Moving) -> Acting {
         let [arrive, leave] = own(m);
         let [before, after] = self.line.shares;
@@ -50,7 +50,7 @@ impl Lines<'_> {
         }
     }
 
-    /// What neighbours add to a configuration at a site, term by term.
+    /// The forces of neighbours and functionals on a configuration at a site, term by term.
     fn pulled(&self, name: &str) -> Vec<Pulled> {
         let mut terms: Vec<Pulled> = Vec::new();
         for (n, pull) in self.line.pulls.iter().enumerate() {
@@ -73,16 +73,16 @@ impl Lines<'_> {
         terms
     }
 
-    /// The same as it is read at a site.
+    /// The values of those forces at a site.
     pub(super) fn collected(&self, name: &str) -> Vec<TokenStream> {
         self.pulled(name).iter().map(Pulled::value).collect()
     }
 }
 
-/// What a term of neighbours, or a functional, adds at a site.
+/// The force of one neighbour term, or of a functional, at a site.
 struct Pulled {
     array: Ident,
-    /// How many places on from that of the site it stands.
+    /// The offset of its position in the array from the site.
     by: usize,
     field: Option<Ident>,
 }
@@ -96,7 +96,7 @@ impl Pulled {
         }
     }
 
-    /// In the window of its list.
+    /// The value in the window of its list.
     fn seen(&self) -> TokenStream {
         let (at, field) = (seen_at(&self.window(), self.by), self.field.iter());
         quote!(#at #(.#field)*)
@@ -106,7 +106,7 @@ impl Pulled {
         format_ident!("__at_{}", self.array)
     }
 
-    /// Its name in the kernel: stated names do not begin so.
+    /// Its name in the kernel. No name of a model starts with `__`.
     fn name(&self) -> Ident {
         match &self.field {
             Some(field) => format_ident!("__{}_{field}", self.array),
@@ -120,7 +120,7 @@ pub(super) fn kernel(m: &Moving) -> Ident {
     format_ident!("acted_{}", m.mover.name)
 }
 
-/// The name of the kernel of what the edge adds.
+/// The name of the kernel of the force of the edge.
 pub(super) fn edge_kernel(m: &Moving) -> Ident {
     format_ident!("added_{}", m.mover.name)
 }
@@ -140,7 +140,7 @@ pub(super) fn acting(l: &Lines) -> TokenStream {
     quote!(impl<T: Real> #name<T> { #(#each)* #(#added)* #(#arrived)* #(#arrivals)* } #(#stages)*)
 }
 
-/// What acts of the site itself, as it is computed: the whole of it where halves act.
+/// The site's own forces as the kernel computes them: the whole force if the two halves are equal.
 fn wanted(l: &Lines, m: &Moving) -> Vec<Expr> {
     let s = &m.outline().letters.symbols;
     let [arrive, leave] = own(m);
@@ -154,14 +154,14 @@ fn wanted(l: &Lines, m: &Moving) -> Vec<Expr> {
         .collect()
 }
 
-/// What the kernel reads of its site.
+/// The arguments of the kernel at its site.
 fn reads(l: &Lines, m: &Moving) -> Vec<Argument> {
     let d = m.outline();
     let letters = l.of_site(d, &wanted(l, m));
     l.read(&d.letters.symbols, &letters).arguments
 }
 
-/// What acts at a site, the places of all found at `at`.
+/// The force on a site; `at` is the list of all positions.
 pub(super) fn call(l: &Lines, m: &Moving, at: &TokenStream) -> TokenStream {
     let kernel = kernel(m);
     let at = Places {
@@ -245,7 +245,7 @@ fn one(l: &Lines, m: Moving) -> TokenStream {
     }
 }
 
-/// What the edge adds to a momentum that is found together with others.
+/// The kernel of the force of the edge, for a momentum that is solved in a block.
 fn added(l: &Lines, m: Moving) -> TokenStream {
     let Some(added) = m.mover.how.added() else {
         return TokenStream::new();
@@ -311,8 +311,8 @@ fn added(l: &Lines, m: Moving) -> TokenStream {
     }
 }
 
-/// The kernel of what is done with what acts: the momentum at the node and that of the edge that leaves, given that
-/// of the edge that came.
+/// The kernel that applies the force: from the momentum of the incoming edge it gives the node momentum and the
+/// momentum of the outgoing edge.
 fn arrived(l: &Lines, m: &Moving) -> TokenStream {
     let (kernel, t) = (arrived_kernel(m), m.covector());
     let turned = m.is_rotation().then(|| quote!(turn *));
@@ -352,7 +352,7 @@ fn arrived_kernel(m: &Moving) -> Ident {
     format_ident!("arrived_{}", m.mover.name)
 }
 
-/// The name of the loop over the sites at which a momentum arrives.
+/// The name of the loop over the sites that computes their momenta on arrival.
 fn arriving(m: &Moving) -> Ident {
     format_ident!("arrive_{}", m.mover.name)
 }
@@ -367,7 +367,7 @@ fn arrived_call(m: &Moving, acting: &TokenStream) -> TokenStream {
     }
 }
 
-/// The same of several sites together: an item of its own.
+/// The kernel for several sites together, as an item of its own.
 fn stage(l: &Lines, m: &Moving) -> Option<TokenStream> {
     if m.system().is_some() || !are_together(&wanted(l, m)) {
         return None;
@@ -406,8 +406,8 @@ fn stage_name(l: &Lines, m: &Moving) -> Ident {
     l.item(&format!("ArrivedTogether_{}", m.mover.name))
 }
 
-/// The loop, of a configuration whose velocity is found site by site. A method of its own: what it reads is told apart from
-/// what it writes, so that it can be made several sites at a time.
+/// The loop for a configuration whose velocity is found site by site. As a separate method, it keeps inputs and
+/// outputs distinct, so that it can process several sites at a time.
 fn arrival(l: &Lines, m: Moving) -> Option<TokenStream> {
     if m.system().is_some() {
         return None;
@@ -445,7 +445,7 @@ fn arrival(l: &Lines, m: Moving) -> Option<TokenStream> {
     })
 }
 
-/// The momenta of one configuration at the next node, and those of the edges that leave it.
+/// The momenta of one configuration at the next node, and those of the edges that start there.
 pub(super) fn arrive(l: &Lines, m: &Moving) -> TokenStream {
     let (name, text) = (m.name(), &m.mover.name);
     let range = super::step::range_name(m);

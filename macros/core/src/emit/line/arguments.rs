@@ -1,5 +1,5 @@
-//! What a kernel is given: the values that its expressions read at sites, each with the list that it stands in, from which a
-//! loop over single sites reads it, and one over several in a window.
+//! The arguments of a kernel: the values at sites in its expressions. Each argument names its list, which a loop over
+//! single sites indexes, and a loop over several sites reads through a window.
 
 use super::locals::{Known, Places};
 use super::{Lines, Moving, number};
@@ -10,44 +10,44 @@ use crate::lattice::Kind;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// What letters stand for in a kernel.
+/// The values of letters in a kernel.
 #[derive(Default)]
 pub(super) struct Read {
-    /// Parameters of the whole line.
+    /// Parameters of the whole chain.
     pub lets: TokenStream,
-    /// What stands at sites.
+    /// Values at sites.
     pub arguments: Vec<Argument>,
     pub bindings: Bindings,
 }
 
-/// What a kernel reads at a site.
+/// A value at a site that a kernel reads.
 #[derive(Clone)]
 pub(super) struct Argument {
     pub name: Ident,
     field: Ident,
     list: List,
-    /// How many sites on from that of the kernel.
+    /// The number of sites after the kernel's own.
     pub on: usize,
-    /// Whether at the next node in time.
+    /// Whether it is the value at the next node in time.
     next: bool,
     ty: TokenStream,
-    /// What is read of the value.
+    /// The part of the value that the kernel uses.
     part: TokenStream,
 }
 
-/// The list that an argument is read from.
+/// The list that contains an argument.
 #[derive(Clone, Copy, PartialEq)]
 enum List {
     /// Parameters of sites.
     Given,
-    /// Places of fields.
+    /// Positions of fields.
     Field,
     /// Attitudes.
     Turning,
 }
 
 impl Argument {
-    /// A place that is read as a whole, of what turns its matrix.
+    /// A whole position; for rotations, its matrix.
     pub(super) fn place(m: &Moving, name: Ident) -> Argument {
         let (list, ty, part) = match m.is_rotation() {
             true => (List::Turning, quote!(SMatrix<T, 3, 3>), quote!(.matrix())),
@@ -107,7 +107,7 @@ impl Argument {
         format_ident!("at_{}", self.field)
     }
 
-    /// Its list, as the stage of a loop finds it.
+    /// Its list, as named in a loop over several sites.
     pub(super) fn list(&self) -> TokenStream {
         let field = &self.field;
         match self.list {
@@ -117,7 +117,7 @@ impl Argument {
     }
 }
 
-/// The value in a window, so many sites on.
+/// The value in a window, `on` sites after the kernel's own.
 pub(super) fn seen_at(window: &Ident, on: usize) -> TokenStream {
     match on {
         0 => quote!(#window.at(site)),
@@ -129,7 +129,7 @@ pub(super) fn seen_at(window: &Ident, on: usize) -> TokenStream {
 }
 
 impl Lines<'_> {
-    /// What letters stand for: parameters of the whole line in lets, what stands at sites as arguments.
+    /// The values of letters: parameters of the whole chain as `let` statements, values at sites as arguments.
     pub(super) fn read(&self, s: &Symbols, letters: &[Known]) -> Read {
         let mut read = Read::default();
         let mut used = Vec::new();

@@ -1,10 +1,10 @@
-//! The places beyond the last site of a ring: copies of those from its beginning, grown by offsets.
+//! The positions beyond the last site of a ring: copies of the first ones, plus the offset of the ring.
 
 use super::{Lines, Moving, number};
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// The sites beyond the last one, those from the beginning of a ring.
+/// The function that sets the positions beyond the last site.
 pub(super) fn around(l: &Lines, moving: &[Moving]) -> TokenStream {
     let places = l.item("Places");
     let beyond = number(l.line.beyond());

@@ -1,5 +1,5 @@
-//! Conserved totals of a line: sums over sites of one density. Takes what is summed; gives a function for each name, in which
-//! the ends decide where places that ends hold make a total another sum.
+//! Conserved totals of a chain: sums of densities over sites. Takes the totals; gives one function per name. If end
+//! conditions prescribe positions, the sum may differ, and the function selects it by the ends.
 
 use super::locals::{Known, Places, Stands};
 use super::pulls::known;
@@ -19,7 +19,7 @@ pub(super) fn totals(l: &Lines) -> TokenStream {
         .collect()
 }
 
-/// The function of a total and of those of its name that other ends have.
+/// The function of a total, and of the totals of the same name for other end conditions.
 fn function(l: &Lines, t: &Total, rest: &[Total]) -> TokenStream {
     let s = &l.line.representative.d.letters.symbols;
     let (method, state) = (format_ident!("{}", t.name), l.item("State"));
@@ -42,7 +42,7 @@ fn function(l: &Lines, t: &Total, rest: &[Total]) -> TokenStream {
     }
 }
 
-/// Whether the ends hold what those of a total do.
+/// Tests whether the ends are those of a total.
 fn held_as(l: &Lines, t: &Total) -> TokenStream {
     let ends = l.item("Ends");
     let fields = [false, true].into_iter().filter_map(|last| {

@@ -1,4 +1,4 @@
-//! What is told of constraints at a state, over all sites: how far it is off them and how fast it leaves them.
+//! Functions of a state that report on the constraints of all sites: their residuals and their rates of change.
 
 use super::reactions::{count, count_of, none_moving, none_reached, ring, sides};
 use super::step::range_name;
@@ -7,8 +7,7 @@ use crate::line::ChainConstraint;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-/// What is told of constraints at a state: how far it is off them and how fast it leaves them, over all sites, and the sizes
-/// that these are measured by.
+/// The residuals and rates of change of the constraints at a state, over all sites, and the scales for both.
 pub(super) fn told(l: &Lines) -> TokenStream {
     if !l.is_held() {
         return TokenStream::new();

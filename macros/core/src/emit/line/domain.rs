@@ -1,5 +1,4 @@
-//! What a step along a line must not leave: the domains of functions, at every site and in every term of
-//! neighbours.
+//! Domains that a step along a chain must not leave: those of functions, at every site and in every neighbour term.
 
 use super::locals::{Known, step};
 use super::pulls::{known, range_of};
@@ -12,18 +11,18 @@ use crate::line::{By, EndTerm, Line, SiteModel};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-/// What the terms of one loop ask.
+/// The guards on the terms of one loop.
 struct Asked {
     tests: Vec<Tested>,
     /// `let (first, last)`.
     range: TokenStream,
-    /// The quantity that an error names.
+    /// The quantity in the error message.
     quantity: String,
-    /// Locals and values of the arguments.
+    /// The locals and values of the arguments.
     body: (TokenStream, Vec<TokenStream>),
 }
 
-/// Why no loop over sites tests what the model asks, if so.
+/// The reason why no loop over sites can test the domains of a model, if any.
 pub(in crate::emit) fn refusal(line: &Line) -> Option<String> {
     let lone = line
         .lone
@@ -97,7 +96,7 @@ fn asked(l: &Lines) -> Vec<Asked> {
     lone.chain(pulls).collect()
 }
 
-/// What the terms of one loop ask of what stands at a node, if anything.
+/// The guards on the terms of one loop at a node; None if there are none.
 fn one(
     l: &Lines,
     d: &Outline,
@@ -121,7 +120,7 @@ fn one(
     })
 }
 
-/// The kernels of arguments, and the call of the test in a step.
+/// The kernels of the arguments, and the calls of the tests in a step.
 pub(super) fn domain(l: &Lines) -> (TokenStream, TokenStream) {
     let (name, places) = (l.item(""), l.item("Places"));
     let h = step(&l.line.representative.d);
@@ -168,7 +167,7 @@ pub(super) fn domain(l: &Lines) -> (TokenStream, TokenStream) {
     (kernels.unwrap_or_default(), calls)
 }
 
-/// The test that a linear map is invertible all along a step.
+/// The test that a linear map stays invertible during a step.
 fn invertible(l: &Lines, name: &str) -> TokenStream {
     let (field, count) = (format_ident!("{name}"), l.count_of(name));
     quote! {{
@@ -187,7 +186,7 @@ fn invertible(l: &Lines, name: &str) -> TokenStream {
     }}
 }
 
-/// Tests of parameters that stand in functions with a domain, those of sites apart.
+/// Tests of the functions whose arguments depend on parameters only. Parameters of sites are tested site by site.
 pub(super) fn of_parameters(l: &Lines) -> TokenStream {
     let mut out = TokenStream::new();
     let mut seen: Vec<String> = Vec::new();

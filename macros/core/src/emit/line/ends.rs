@@ -1,4 +1,4 @@
-//! What end conditions add: put where a site at the end collects what its neighbours add.
+//! The forces of end conditions. They are added to the neighbour forces of the sites at the ends.
 
 use super::items::End;
 use super::locals::{Known, Places, Stands};
@@ -13,7 +13,7 @@ use crate::line::EndTerm;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// Calls `body` with every end condition that adds something, in the place where it holds.
+/// Calls `body` for every end condition with a force, and selects its result if that condition applies.
 fn each_end(
     l: &Lines,
     body: &mut dyn FnMut(&EndTerm) -> Option<TokenStream>,
@@ -38,7 +38,7 @@ fn each_end(
     Some(out)
 }
 
-/// An end condition, its parameters in locals of their own.
+/// The pattern of an end condition, which binds its parameters to locals.
 pub(super) fn pattern(ty: &Ident, end: &End) -> TokenStream {
     let variant = &end.variant;
     let fields = end.parameters.iter().map(|p| {
@@ -51,12 +51,12 @@ pub(super) fn pattern(ty: &Ident, end: &End) -> TokenStream {
     }
 }
 
-/// The local of a parameter of an end: stated names do not begin so.
+/// The local of a parameter of an end condition. No name of a model starts with `__`.
 pub(super) fn end_local(name: &str) -> Ident {
     format_ident!("__end_{name}")
 }
 
-/// The function of what the end conditions add.
+/// The function that adds the forces of end conditions.
 pub(super) fn ends(l: &Lines) -> TokenStream {
     let (places, pulls) = (l.item("Places"), l.item("Pulls"));
     let step = super::locals::step(&l.line.representative.d);
@@ -71,7 +71,7 @@ pub(super) fn ends(l: &Lines) -> TokenStream {
     }
 }
 
-/// The function of their potential energy; none where the step stays in it.
+/// The function of the potential energy of end conditions. None if an energy depends on the step size.
 pub(super) fn energies(l: &Lines) -> Option<TokenStream> {
     let places = l.item("Places");
     let out = each_end(l, &mut |end| {
@@ -99,7 +99,7 @@ pub(super) fn energies(l: &Lines) -> Option<TokenStream> {
     })
 }
 
-/// The site of a quantity so far from the end.
+/// The index of a site, counted from an end.
 pub(super) fn place(l: &Lines, last: bool, of: &str, from_end: usize) -> TokenStream {
     let n = number(from_end);
     match last {
@@ -111,7 +111,7 @@ pub(super) fn place(l: &Lines, last: bool, of: &str, from_end: usize) -> TokenSt
     }
 }
 
-/// Expressions of an end: what stands before them, and their values.
+/// Expressions of an end condition: the statements before them, and their values.
 fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenStream>) {
     let s = &end.symbols;
     let values: Vec<Expr> = values
@@ -127,7 +127,7 @@ fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenS
             continue;
         }
         match end.letters.iter().find(|(known, ..)| known == letter) {
-            // A parameter of the end, bound by the pattern.
+            // A parameter of the end condition, which the pattern binds.
             Some((_, of, None)) => bindings.bind(*letter, end_local(of)),
             Some((_, of, Some(site))) => {
                 let at = place(l, end.last, of, *site);
@@ -147,7 +147,7 @@ fn values(l: &Lines, end: &EndTerm, values: &[Expr]) -> (TokenStream, Vec<TokenS
     (quote!(#locals #lets), results)
 }
 
-/// A local for what stands at one place of the line, whose name ends in `name`.
+/// Locals for the values at one site of the chain; their names end in `name`.
 pub(super) fn held_at(
     l: &Lines,
     s: &Symbols,

@@ -1,5 +1,5 @@
-//! Energies of a line: the kinetic energy of every site, and the potential of sites, of neighbours and
-//! of ends, summed over all of them.
+//! Energies of a chain, summed over sites: the kinetic energy of every site, and the potentials of sites, of
+//! neighbour terms and of end conditions.
 
 use super::locals::Places;
 use super::pulls::{known, range_of};
@@ -27,7 +27,7 @@ pub(super) fn energy(l: &Lines, of_meshes: Option<&OfMeshes>) -> TokenStream {
     quote!(impl<T: Real> #name<T> { #energies #(#momenta)* #totals })
 }
 
-/// `energies` and `energy`, where every part has a limit of small steps.
+/// `energies` and `energy`. None if a part has no limit of small steps.
 fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
     let [places, momenta, state] = ["Places", "Momenta", "State"].map(|suffix| l.item(suffix));
     let part = &l.line.representative;
@@ -121,7 +121,7 @@ fn energies(l: &Lines, of_meshes: Option<&OfMeshes>) -> Option<TokenStream> {
     })
 }
 
-/// The expression in a form without the step.
+/// The expression in a form without the step size, if one exists.
 pub(super) fn without_step(algebra: &Algebra, e: &Expr, h: &Expr) -> Option<Expr> {
     let s = algebra.symbols();
     let step = expr::letters(h).first().copied()?;
@@ -131,7 +131,7 @@ pub(super) fn without_step(algebra: &Algebra, e: &Expr, h: &Expr) -> Option<Expr
         return Some(collected);
     }
     let shortest = Some(algebra.shortest(e)).filter(free);
-    // Multiplied out it may round more far from the origin.
+    // The expanded form may have larger rounding errors far from the origin.
     let stated = of_order(algebra, e, step, Rational::ZERO);
     let is_nearer = |expanded: &Expr| {
         cancellation::error(algebra, &stated) < cancellation::error(algebra, expanded)
@@ -142,8 +142,8 @@ pub(super) fn without_step(algebra: &Algebra, e: &Expr, h: &Expr) -> Option<Expr
     }
 }
 
-/// The kinetic energy of one site, that of the limit inverted for its momenta; what is found together along the line
-/// is left out.
+/// The kinetic energy of one site as a function of its momenta, from the limit of small steps. Without configurations
+/// whose velocities are coupled along the chain.
 fn kinetic_of_site(l: &Lines, lone: &SiteModel, limit: &Limit) -> Option<TokenStream> {
     let is_apart = |i: usize| {
         let own = lone.blocks.iter().find(|b| b.contains(&i));
@@ -178,8 +178,8 @@ fn kinetic_of_site(l: &Lines, lone: &SiteModel, limit: &Limit) -> Option<TokenSt
     })
 }
 
-/// The momenta that belong to velocities of a field of a fluid, where no other field stands in them: those of the limit of
-/// small steps, what a vector potential adds included.
+/// The function from velocities to momenta of a field in a fluid model, in the limit of small steps. It includes the
+/// contribution of a vector potential. None if the momentum depends on another field.
 fn momenta_of_velocities(l: &Lines, m: &Moving) -> Option<TokenStream> {
     l.extent()?;
     if l.moving().any(|other| other.is_rotation()) {

@@ -1,27 +1,27 @@
-//! The form in which a kernel of neighbours is computed: numbers gathered, common factors taken out,
-//! the rotation or the quaternion from one site to the next made once.
+//! The form in which a kernel of neighbours is computed: numeric factors are collected, common factors are factored
+//! out, and the relative rotation or quaternion of two sites is computed once.
 
 use crate::expr::shape::Structure;
 use crate::expr::symbol::{Role, SymbolId, Symbols};
 use crate::expr::{self, Expr, Letter, Node};
 use std::collections::BTreeMap;
 
-/// Expressions of a kernel with what is made before them.
+/// The expressions of a kernel, with the values computed before them.
 pub(super) struct Forms {
-    /// The symbols, those of relative rotations among them.
+    /// The symbols, including those of relative rotations.
     pub symbols: Symbols,
-    /// Rotations or quaternions from the frame of one letter to that of another, with their values.
+    /// Rotations or quaternions from the frame of one letter to the frame of another, with their values.
     pub relative: Vec<(SymbolId, Expr)>,
     /// The expressions.
     pub values: Vec<Expr>,
 }
 
-/// The pair `X^T Y` of two rotations or quaternions in one order, and whether that is transposed.
+/// The product `X^T Y` of two rotations or quaternions in a fixed order, and whether the occurrence is its transpose.
 type Pair = ((Letter, Letter), bool);
 
 /// The form of several expressions that are computed together.
 pub(super) fn forms(s: &Symbols, values: &[Expr], prefix: &str) -> Forms {
-    // Twice: what comes out of a bracket may be an outer product, whose axial vector is a cross product.
+    // Twice, because factoring may produce an outer product, whose axial vector becomes a cross product.
     let once = |e: &Expr| expr::factored(s, e);
     let values: Vec<Expr> = values.iter().map(|e| once(&once(e))).collect();
     let mut met: BTreeMap<(Letter, Letter), usize> = BTreeMap::new();
@@ -55,12 +55,13 @@ pub(super) fn forms(s: &Symbols, values: &[Expr], prefix: &str) -> Forms {
     }
 }
 
-/// Whether it is a unit quaternion, whose product with another is no product of matrices.
+/// Whether a letter is a unit quaternion. The product of two unit quaternions is not computed as a product of
+/// matrices.
 fn is_quaternion(s: &Symbols, l: &Letter) -> bool {
     s.get(l.symbol).structure == Structure::UnitQuaternion
 }
 
-/// Whether two factors side by side are such a pair.
+/// The pair of two adjacent factors, if they form one.
 fn pair(s: &Symbols, a: &Expr, b: &Expr) -> Option<Pair> {
     let Node::Transpose(x) = a.node() else {
         return None;

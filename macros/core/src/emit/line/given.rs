@@ -1,5 +1,5 @@
-//! Tests of what is given beside parameters and initial data: assumptions, parameters of ends, offsets, and
-//! that a line is long enough for what its ends look at.
+//! Tests of other inputs than parameters and initial data: assumptions, parameters of end conditions, offsets, and
+//! whether the chain has all sites that its end conditions use.
 
 use super::Lines;
 use super::ends::{end_local, pattern};
@@ -11,7 +11,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 impl Lines<'_> {
-    /// Tests of assumptions, on parameters that are the same at all sites.
+    /// Tests of assumptions on parameters that are equal at all sites.
     pub(super) fn assumptions(&self) -> TokenStream {
         let d = &self.line.representative.d;
         let s = &d.letters.symbols;
@@ -32,7 +32,7 @@ impl Lines<'_> {
         out
     }
 
-    /// Tests of parameters of ends, of offsets, and of the length of the line.
+    /// Tests of the parameters of end conditions, of offsets, and of the length of the chain.
     pub(super) fn ends_given(&self) -> TokenStream {
         let ends = self.item("Ends");
         let mut out = TokenStream::new();
@@ -80,7 +80,7 @@ impl Lines<'_> {
         out
     }
 
-    /// That an end finds all the sites that it looks at.
+    /// Tests that the chain has all sites that an end condition uses.
     fn long_enough(&self, last: bool, which: usize) -> TokenStream {
         let all = self.line.ends.iter();
         let own = all.filter(|e| e.last == last && e.which == which);

@@ -1,4 +1,4 @@
-//! Kernels of constraints that are held: what one of them holds and its derivatives, and what impulses give to a
+//! Kernels of the constraints: the residual of one constraint and its derivatives, and the effect of impulses on a
 //! configuration.
 
 use super::locals::Places;
@@ -15,26 +15,26 @@ use quote::{format_ident, quote};
 pub(super) struct Bodies<'a> {
     pub members: Vec<Moving<'a>>,
     pub unit: &'a ConstraintResponse,
-    /// How many components their velocities have.
+    /// The number of components of their velocities.
     pub n: usize,
-    /// Whether they answer to an impulse by a multiple of it.
+    /// Whether their response to an impulse is a scalar multiple of it.
     pub scalar: bool,
 }
 
 impl Bodies<'_> {
-    /// The field of what is kept of them, and the end of the names of their kernels.
+    /// The field of their data, and the suffix of the names of their kernels.
     pub(super) fn field(&self) -> Ident {
         self.members
             .first()
             .map_or_else(|| format_ident!("none"), Moving::name)
     }
 
-    /// The first of them.
+    /// The first member.
     pub(super) fn first(&self) -> Option<&Moving<'_>> {
         self.members.first()
     }
 
-    /// The type of how they answer to an impulse.
+    /// The type of the response to an impulse.
     pub(super) fn response(&self) -> TokenStream {
         let n = number(self.n);
         match self.scalar {
@@ -43,7 +43,7 @@ impl Bodies<'_> {
         }
     }
 
-    /// No answer.
+    /// A response of zero.
     pub(super) fn none(&self) -> TokenStream {
         let n = number(self.n);
         match self.scalar {
@@ -52,12 +52,12 @@ impl Bodies<'_> {
         }
     }
 
-    /// Whether it takes velocities to know how they answer in a step.
+    /// Whether the response in a step depends on velocities.
     pub(super) fn takes_velocities(&self) -> bool {
         self.members.iter().any(|m| m.system().is_some())
     }
 
-    /// Whether they answer in a step, or at a node, as parameters say alone.
+    /// Whether the response, in a step or at a node, depends on parameters and the step size only.
     pub(super) fn is_steady(&self, at_node: bool) -> bool {
         let Some(m) = self.first() else { return false };
         let s = &m.outline().letters.symbols;
@@ -74,7 +74,7 @@ impl Bodies<'_> {
         })
     }
 
-    /// The row at which the velocity of a member begins, and how many it has.
+    /// The first row of a member's velocity, and its number of rows.
     pub(super) fn rows(&self, on: &str) -> Option<[usize; 2]> {
         let mut row = 0;
         for m in &self.members {
@@ -88,12 +88,12 @@ impl Bodies<'_> {
 }
 
 impl Lines<'_> {
-    /// Whether constraints are held.
+    /// Whether the model has constraints.
     pub(super) fn is_held(&self) -> bool {
         !self.line.holds.is_empty()
     }
 
-    /// What constraints reach.
+    /// The bodies of all sites on which constraints may act.
     pub(super) fn bodies(&self) -> Vec<Bodies<'_>> {
         let mut out = Vec::new();
         for (lone, units) in self.line.lone.iter().zip(&self.line.units) {
@@ -116,7 +116,7 @@ impl Lines<'_> {
         out
     }
 
-    /// The bodies that a configuration is one of, where impulses move it.
+    /// The body that contains a configuration, if any.
     pub(super) fn body_of(&self, name: &str) -> Option<Bodies<'_>> {
         let mut all = self.bodies().into_iter();
         all.find(|b| b.members.iter().any(|m| m.mover.name == name))
@@ -128,30 +128,30 @@ impl Lines<'_> {
         all.any(|r| r.on == name)
     }
 
-    /// How many multipliers a site has.
+    /// The number of multipliers per site.
     pub(super) fn held_components(&self) -> usize {
         self.line.holds.iter().map(|h| h.components).sum()
     }
 
-    /// Where those of a constraint begin among them.
+    /// The row of the first multiplier of a constraint.
     pub(super) fn held_row(&self, held: &ChainConstraint) -> usize {
         let before = self.line.holds.iter().take_while(|h| h.name != held.name);
         before.map(|h| h.components).sum()
     }
 
-    /// Constraints with their numbers.
+    /// The constraints with their numbers, starting at 1.
     pub(super) fn holds(&self) -> impl Iterator<Item = (usize, &ChainConstraint)> {
         (1..).zip(&self.line.holds)
     }
 }
 
-/// A derivative as it is kept.
+/// How the derivative of a constraint is stored.
 pub(super) enum Kept {
-    /// A number that stands where it is used.
+    /// A constant, written where it is used.
     Fixed(TokenStream),
-    /// A number of each site.
+    /// A number per site.
     Number,
-    /// A matrix of each site.
+    /// A matrix per site.
     Matrix,
 }
 
@@ -163,7 +163,7 @@ pub(super) fn field(r: &Reach) -> Ident {
 pub(super) fn kept(l: &Lines, r: &Reach) -> Kept {
     match &r.columns {
         Matrix::Columns(_) => Kept::Matrix,
-        // Of a sum the derivative vanishes at sites that there are not.
+        // The derivative of a sum vanishes beyond the ends of the chain, so it is stored.
         Matrix::Multiple(e) if crate::expr::letters(e).is_empty() && !r.in_sum => {
             let s = &l.line.representative.d.letters.symbols;
             let (_, value) = l.program(s, std::slice::from_ref(e), &Bindings::new());
@@ -173,7 +173,7 @@ pub(super) fn kept(l: &Lines, r: &Reach) -> Kept {
     }
 }
 
-/// The size of a derivative, in the list of what is held at a site.
+/// The size of a derivative at a site, read from the list of its constraint.
 pub(super) fn size_of(l: &Lines, r: &Reach, list: &Ident) -> TokenStream {
     let own = field(r);
     let number = match kept(l, r) {
@@ -184,7 +184,7 @@ pub(super) fn size_of(l: &Lines, r: &Reach, list: &Ident) -> TokenStream {
     quote!((#number * #number).sqrt())
 }
 
-/// A matrix of the columns that were computed; those that vanish are left out.
+/// A matrix from its computed columns; all other entries are zero.
 pub(super) fn filled(
     (rows, cols): (usize, usize),
     columns: &[(usize, usize, usize, TokenStream)],
@@ -201,7 +201,7 @@ pub(super) fn filled(
     })
 }
 
-/// Structures and kernels.
+/// The structures and kernels of all constraints.
 pub(super) fn held(l: &Lines) -> TokenStream {
     if !l.is_held() {
         return TokenStream::new();
@@ -264,7 +264,7 @@ pub(super) fn held(l: &Lines) -> TokenStream {
     }
 }
 
-/// What is held at one index and its derivatives.
+/// The structure and the kernel of one constraint: its residual and its derivatives at one site.
 fn of_hold(l: &Lines, k: usize, h: &ChainConstraint) -> (TokenStream, TokenStream) {
     let part = &l.line.representative;
     let s = &part.d.letters.symbols;
@@ -345,7 +345,7 @@ fn of_hold(l: &Lines, k: usize, h: &ChainConstraint) -> (TokenStream, TokenStrea
     (structure, kernel)
 }
 
-/// What is held as an array.
+/// The residual as an array.
 fn array(h: &ChainConstraint, value: TokenStream) -> TokenStream {
     match h.value.shape().is_scalar() {
         true => quote!(SMatrix::<T, 1, 1>::new(#value)),
@@ -362,7 +362,8 @@ fn components(l: &Lines, on: &str) -> usize {
     own.map_or(0, |m| m.components())
 }
 
-/// What the impulses around a site give to the momentum of one configuration.
+/// The kernel of the constraint forces on one configuration: the contribution to its momentum of the impulses around
+/// a site.
 fn reacted(l: &Lines, m: &Moving) -> TokenStream {
     let name = &m.mover.name;
     let (kernel, t, reached) = (
@@ -400,7 +401,7 @@ fn reacted(l: &Lines, m: &Moving) -> TokenStream {
     }
 }
 
-/// The sweep over all that is held, and the repetition along a ring.
+/// The function that evaluates all constraints, with the periodic copies of a ring.
 fn sweep(l: &Lines) -> TokenStream {
     let (places, reached) = (l.item("Places"), l.item("Reached"));
     let each = l.holds().map(|(k, h)| {

@@ -1,6 +1,6 @@
-//! Momenta by which totals of a line are measured: of a line at rest, impulses of neighbours that cancel leave their
-//! rounding as momenta, which is no scale.
-//! Gives a state whose momenta are not less than the impulses of its node.
+//! Momenta as scales of the totals of a chain. At equilibrium, neighbour forces cancel, and the momenta are only
+//! their rounding errors, which are not a scale. Gives a state whose momenta are at least as large as the impulses at
+//! its node.
 
 use super::{Lines, Moving};
 use crate::emit::impulses::at_node;
@@ -8,7 +8,7 @@ use crate::expr;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// The function; none where nothing acts at a node.
+/// The function; None if no force acts at a node.
 pub(super) fn not_less_than_impulses(l: &Lines) -> Option<TokenStream> {
     let each: Vec<TokenStream> = l.moving().filter_map(|m| of_mover(l, &m)).collect();
     if each.is_empty() {

@@ -1,5 +1,5 @@
-//! The kinetic energy of velocities that are found together along the line: kernels of the momenta of a site and of a term
-//! of neighbours, linear in velocities, which the runtime inverts for all sites.
+//! The kinetic energy of velocities that are coupled along the chain. Kernels give the momenta of a site and of a
+//! neighbour term, which are linear in the velocities; the runtime inverts this relation for all sites.
 
 use super::locals::{Known, Places};
 use super::pulls::{known, range_of};
@@ -14,7 +14,7 @@ use crate::line::{Inertia, inertia_of_site};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-/// The kernels, and the energy; none where it has no limit.
+/// The kernels, and the energy. None if there is no limit of small steps.
 pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
     let (_, n, members) = super::tied::block(l)?;
     let first = members.first()?;
@@ -134,10 +134,12 @@ pub(super) fn kinetic(l: &Lines) -> Option<(TokenStream, TokenStream)> {
     Some((kernels, energy))
 }
 
-/// Puts a column of derivatives: the sites of its block, the first row, the number of rows and which column it is.
+/// Stores a column of derivatives. The arguments are the two sites of its block; its first row, number of rows and
+/// column index; the expression; and its value.
 type Put<'a> = dyn FnMut([usize; 2], [usize; 3], &Expr, TokenStream) -> TokenStream + 'a;
 
-/// Fills `made` by configurations with their site in the kernel, first row and number of rows, and puts their derivatives.
+/// Fills `made` and stores the derivatives. `sites` gives, for each configuration, its site in the kernel, its first
+/// row and its number of rows.
 fn filled(
     l: &Lines,
     s: &Symbols,

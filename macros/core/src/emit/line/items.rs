@@ -1,4 +1,4 @@
-//! What is given: parameters, numbers of sites and end conditions, and the model that checks them.
+//! The inputs of a model: parameters, numbers of sites and end conditions, and the constructor that validates them.
 
 use super::{Lines, Moving, number};
 use crate::check::parameter_shape;
@@ -19,7 +19,7 @@ pub(super) struct Given<'a> {
 }
 
 impl Lines<'_> {
-    /// The parameters in order of declaration, those of ends and offsets apart.
+    /// The parameters in the order of declaration, without those of end conditions and offsets.
     pub(super) fn given(&self) -> Vec<Given<'_>> {
         let part = &self.line.representative;
         let s = &part.d.letters.symbols;
@@ -55,7 +55,7 @@ impl Lines<'_> {
         out
     }
 
-    /// The alternatives of an end: the name of their type, and each with its parameters.
+    /// The alternatives for one end: the name of their type, and each alternative with its parameters.
     pub(super) fn alternatives(&self, last: bool) -> Option<(Ident, Vec<End>)> {
         let list = &self.line.lattice.ends[usize::from(last)];
         if list.is_empty() {
@@ -85,21 +85,21 @@ impl Lines<'_> {
     }
 }
 
-/// One way to end a line.
+/// An end condition.
 pub(super) struct End {
     pub variant: Ident,
     pub given: Vec<String>,
     pub parameters: Vec<Parameter>,
 }
 
-/// A parameter of an end.
+/// A parameter of an end condition.
 pub(super) struct Parameter {
     pub name: Ident,
     pub shape: Shape,
     pub structure: Structure,
 }
 
-/// `clamped` as the name of a variant.
+/// The name of an end condition as the name of a variant (`clamped` becomes `Clamped`).
 fn variant(name: &str) -> Ident {
     let words = name.split('_').map(|w| {
         let mut letters = w.chars();
@@ -147,7 +147,7 @@ pub(super) fn parameters(l: &Lines) -> TokenStream {
     }
 }
 
-/// The sites of a kind in words.
+/// The kind of sites in words.
 pub(super) fn words(sites: Sites) -> &'static str {
     match sites {
         Sites::Nodes => "nodes",
@@ -156,7 +156,7 @@ pub(super) fn words(sites: Sites) -> &'static str {
     }
 }
 
-/// How many sites, and how a line ends.
+/// The numbers of sites, and the end conditions.
 pub(super) fn sites(l: &Lines) -> TokenStream {
     let (name, ends) = (l.item("Sites"), l.item("Ends"));
     let s = &l.line.representative.d.letters.symbols;
@@ -210,7 +210,7 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
             false => " How the line begins.",
             true => " How the line ends.",
         };
-        // Scalars that no alternative has.
+        // A marker variant that uses the scalar type if no alternative does.
         let none = alternatives.iter().all(|a| a.parameters.is_empty());
         let marker = none.then(|| quote!(#[doc(hidden)] Scalar(::core::marker::PhantomData<T>),));
         types.extend(quote! {
@@ -261,7 +261,7 @@ pub(super) fn sites(l: &Lines) -> TokenStream {
 }
 
 impl Lines<'_> {
-    /// Offsets around the ring, each once, with a field that has it.
+    /// The offsets of a ring without repetition, each with a field that has it.
     pub(super) fn offsets(&self) -> Vec<(String, Moving<'_>)> {
         let mut out: Vec<(String, Moving)> = Vec::new();
         for m in self.moving() {
@@ -275,7 +275,7 @@ impl Lines<'_> {
         out
     }
 
-    /// The pattern of a ring, with the offsets that are asked for.
+    /// The pattern of a ring that binds the given offsets.
     pub(super) fn ring_pattern(&self, offsets: &[String]) -> TokenStream {
         let ends = self.item("Ends");
         match (self.offsets().is_empty(), offsets) {
@@ -407,7 +407,7 @@ pub(super) fn model(l: &Lines) -> TokenStream {
     }
 }
 
-/// The factors of rotations and of unit quaternions: one, or one for each site where a parameter of sites stands in it.
+/// The factors of rotations and unit quaternions: one factor, or one per site if it depends on a parameter of sites.
 fn factors(l: &Lines, fields: &mut TokenStream, init: &mut TokenStream, made: &mut TokenStream) {
     for m in l.moving() {
         let SiteSolve::Rotation { factor, real, .. } = &m.mover.how else {

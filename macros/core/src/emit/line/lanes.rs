@@ -1,5 +1,5 @@
-//! What a loop over sites computes of several sites together: the windows of lists that its kernel reads, as wide as its
-//! neighbours are far, and the value of one site.
+//! Loops that process several sites together: the windows of the lists that a kernel reads, which extend to the
+//! farthest neighbour, and the value of one site.
 
 use super::arguments::Argument;
 use super::number;
@@ -7,8 +7,8 @@ use crate::expr::{Expr, Function, Node};
 use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
-/// Whether values of several sites are computed together. What calls a function of the library of mathematics is computed one
-/// after the other anyway, and wide registers would have to be put away around each call.
+/// Whether the values of several sites are computed together. Calls of a mathematical library are made one after the
+/// other, and vector registers would have to be saved around each call.
 pub(super) fn are_together(values: &[Expr]) -> bool {
     values.iter().all(is_free_of_calls)
 }
@@ -29,7 +29,7 @@ pub(super) struct Windows {
 }
 
 impl Windows {
-    /// Those of what a kernel reads.
+    /// The windows of the arguments of a kernel.
     pub(super) fn of(arguments: &[Argument]) -> Windows {
         let mut windows = Windows::default();
         for one in arguments {
@@ -38,7 +38,7 @@ impl Windows {
         windows
     }
 
-    /// A list, read so many sites on from that of the kernel.
+    /// Adds a list that is read up to `on` sites after the kernel's own.
     pub(super) fn add(&mut self, name: Ident, list: TokenStream, on: usize) {
         match self.all.iter_mut().find(|(known, ..)| *known == name) {
             Some((.., farthest)) => *farthest = on.max(*farthest),
@@ -46,7 +46,8 @@ impl Windows {
         }
     }
 
-    /// As the runtime's `in_lanes!` takes them: how many sites each is read beyond those that are computed.
+    /// The windows in the syntax of the runtime's `in_lanes!`: each with the number of sites beyond the computed
+    /// ones.
     pub(super) fn stated(&self) -> TokenStream {
         let each = self.all.iter().map(|(name, list, on)| {
             let on = number(*on);

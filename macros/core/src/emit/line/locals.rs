@@ -1,4 +1,4 @@
-//! The locals with which a kernel begins: what its expressions read of parameters and places.
+//! The locals at the start of a kernel: the parameters and positions in its expressions.
 
 use super::Lines;
 use crate::derive::Outline;
@@ -11,7 +11,7 @@ use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-/// A letter as stated: the quantity, and how many sites on from the site of the kernel.
+/// A letter as stated: its quantity, and the number of sites after the kernel's own.
 pub(super) struct Known {
     pub letter: Letter,
     pub of: String,
@@ -19,19 +19,19 @@ pub(super) struct Known {
     pub stands: Stands,
 }
 
-/// How a unit quaternion stands in expressions.
+/// How expressions use a unit quaternion.
 #[derive(Clone, Copy, Default, Debug)]
 pub(super) struct Stands {
-    /// By itself, as a matrix of four rows.
+    /// As a matrix of four rows.
     pub alone: bool,
-    /// By the rotation that it covers.
+    /// Through the rotation that it covers.
     pub turned: bool,
-    /// By its parts, or by those of the quaternion from it to another.
+    /// Through its real and imaginary parts, or those of its relative quaternion to another.
     pub parted: bool,
 }
 
 impl Stands {
-    /// How a letter stands in these.
+    /// How `list` uses a letter.
     pub(super) fn of(s: &Symbols, letter: Letter, list: &[Expr]) -> Stands {
         let mut out = Stands::default();
         list.iter().for_each(|e| out.look(s, letter, e));
@@ -52,7 +52,7 @@ impl Stands {
     }
 }
 
-/// Whether it is the quaternion from one that moves to another, `q^T p`.
+/// Whether the expression is the relative quaternion `q^T p` of two configurations.
 pub(super) fn is_between(s: &Symbols, e: &Expr) -> bool {
     let Node::Product(two) = e.node() else {
         return false;
@@ -73,14 +73,14 @@ pub(super) fn is_between(s: &Symbols, e: &Expr) -> bool {
     moves(a) && moves(b) && a != b
 }
 
-/// Where places at the node and at the next one are found.
+/// The lists of positions at the node and at the next node.
 pub(super) struct Places {
     pub here: TokenStream,
     pub next: TokenStream,
 }
 
 impl Places {
-    /// Those of one node, in the argument `at` of a kernel.
+    /// The positions of one node, in the argument `at` of a kernel.
     pub(super) fn of_node() -> Places {
         let (here, next) = (quote!(at), quote!(at));
         Places { here, next }
@@ -88,7 +88,7 @@ impl Places {
 }
 
 impl Lines<'_> {
-    /// Expressions of what stands at one node: what comes before them, and their values.
+    /// Expressions of values at one node: the statements before them, and their values.
     pub(super) fn computed(
         &self,
         s: &Symbols,
@@ -100,7 +100,7 @@ impl Lines<'_> {
         (quote!(#locals #lets), values)
     }
 
-    /// Expressions whose letters are bound, with their temporaries.
+    /// Expressions whose letters are bound: the statements of their temporaries, and their values.
     pub(super) fn program(
         &self,
         s: &Symbols,
@@ -110,7 +110,7 @@ impl Lines<'_> {
         program(&schedule::program(s, values, &self.temporary), bindings)
     }
 
-    /// Lets for letters, and their bindings. `site` is the index of the kernel.
+    /// `let` statements for letters, and their bindings. `site` is the index of the kernel.
     pub(super) fn locals(
         &self,
         s: &Symbols,
@@ -146,7 +146,7 @@ impl Lines<'_> {
     }
 }
 
-/// The name of the step as a local.
+/// The step size as a local.
 pub(super) fn step(d: &Outline) -> proc_macro2::Ident {
     variable(&d.letters.symbols, d.spec.step)
 }

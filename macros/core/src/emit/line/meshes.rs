@@ -1,6 +1,6 @@
-//! Functionals of all sites in a step: their values at the new places, the seeds of their pull-backs, and
-//! what they add to momenta. Each occurrence of a value or a pull-back is an array over its sites, filled by the
-//! runtime's functional or by a loop over sites.
+//! Functionals of all sites in a step: their values at the new positions, the seeds of their pull-backs, and their
+//! forces. Each value and each pull-back is an array over its sites. The runtime's functional or a loop over sites
+//! fills it.
 
 use super::locals::step;
 use super::pulls::known;
@@ -16,42 +16,42 @@ use crate::syntax::ast::Extent;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// An array of values of a functional, or of its pull-back.
+/// The array of the values of a functional, or of its pull-back.
 struct Array {
-    /// The letter that stands for it.
+    /// The letter for one element.
     symbol: SymbolId,
-    /// The expression that it is.
+    /// The expression of one element.
     of: Expr,
     /// The field of the workspace.
     field: Ident,
-    /// Its functional, by number.
+    /// The index of its functional.
     mesh: usize,
     /// The label of its sites.
     label: usize,
-    /// Of a pull-back, the seed.
+    /// The seed, if the array is a pull-back.
     seed: Option<Expr>,
 }
 
-/// What a step computes of functionals.
+/// The arrays that a step computes for functionals.
 struct Plan<'a> {
     l: &'a Lines<'a>,
     symbols: Symbols,
     arrays: Vec<Array>,
 }
 
-/// The local of an array: stated names do not begin so.
+/// The local of an array. No name of a model starts with `__`.
 fn local(field: &Ident) -> Ident {
     format_ident!("__{field}")
 }
 
 impl<'a> Lines<'a> {
-    /// The field of places in its domain, and the number of its directions.
+    /// The field of particle positions with its domain, and the number of dimensions.
     pub(super) fn extent(&self) -> Option<(&Extent, usize)> {
         let q = self.line.lattice.places()?;
         Some((q.domain.as_ref()?, q.shape.components()?))
     }
 
-    /// What the numbers of sites say beside: the domain and the grid.
+    /// The fields of the domain, next to the numbers of sites.
     pub(super) fn extent_fields(&self) -> TokenStream {
         let Some((extent, directions)) = self.extent() else {
             return TokenStream::new();
@@ -68,7 +68,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The function of the setting of functionals.
+    /// The function that gives the domain, the grid and the number of particles.
     pub(super) fn setting(&self) -> TokenStream {
         let Some((extent, directions)) = self.extent() else {
             return TokenStream::new();
@@ -108,7 +108,7 @@ impl Plan<'_> {
         (f.reach == Reach::Sites).then_some(at)
     }
 
-    /// The label of the sites of a functional, and of what it is made of.
+    /// The label of the sites of a functional, and the label of its argument.
     fn labels(&self, mesh: &Mesh) -> Option<[usize; 2]> {
         let lattice = &self.l.line.lattice;
         let own = lattice.find(&mesh.name.text)?.label;
@@ -119,7 +119,7 @@ impl Plan<'_> {
         Some([own, of])
     }
 
-    /// The expression with a letter in the place of each value and each pull-back.
+    /// The expression in which a letter replaces each value and each pull-back.
     fn placed(&mut self, e: &Expr) -> Expr {
         let (applied, seed) = match e.node() {
             Node::Given(a) => (a, None),
@@ -138,7 +138,7 @@ impl Plan<'_> {
         if let Some(known) = self.arrays.iter().find(|a| a.of == *e) {
             return expr::here(&self.symbols, known.symbol);
         }
-        // What it is made of is computed before.
+        // The argument of the functional is computed first.
         if let Some(first) = applied.arguments.first() {
             self.placed(first);
         }
@@ -177,7 +177,7 @@ impl Plan<'_> {
         expr::here(&self.symbols, symbol)
     }
 
-    /// The value of an expression at one site, and what stands before it.
+    /// An expression at one site: the statements before it, and its value.
     fn computed(&self, e: &Expr) -> (TokenStream, TokenStream) {
         let values = std::slice::from_ref(e);
         let is_array = |id: SymbolId| self.arrays.iter().find(|a| a.symbol == id);
@@ -204,7 +204,7 @@ impl Plan<'_> {
         (quote!(#locals #lets #more), value)
     }
 
-    /// What a functional is made of, as an array: places at this node, or values of another one.
+    /// The argument of a functional as an array: positions at this node, or the values of another functional.
     fn argument(&self, mesh: &Mesh) -> TokenStream {
         match &mesh.of {
             Source::Field(name) => {
@@ -227,7 +227,7 @@ impl Plan<'_> {
     }
 }
 
-/// Letters of sites, those of arrays apart.
+/// The letters of sites, without those of arrays.
 fn known_letters(
     l: &Lines,
     values: &[Expr],
@@ -243,24 +243,24 @@ fn known_letters(
     known(l, &own)
 }
 
-/// Everything that is emitted of functionals.
+/// The emitted code of functionals.
 pub(super) struct Emitted {
     /// The structure of functionals and arrays, and the functions of the model.
     pub items: TokenStream,
-    /// Fields of what is collected for the momenta: their declarations and their first values.
+    /// The declarations of the fields for the forces of functionals.
     pub fields: TokenStream,
-    /// Their values where nothing acts.
+    /// The values of those fields without forces.
     pub zeros: TokenStream,
-    /// The terms as energies: kernels, and the sums.
+    /// The terms as energies: kernels and sums.
     pub energy: Option<(TokenStream, Vec<TokenStream>)>,
 }
 
-/// The field of what functionals add to a configuration.
+/// The field of the forces of functionals on a configuration.
 pub(super) fn collected(on: &str) -> Ident {
     format_ident!("mesh_{on}")
 }
 
-/// What is emitted of the functionals of a line, if it has any.
+/// The emitted code of the functionals of a chain, if it has any.
 pub(super) fn meshes(l: &Lines) -> Option<Emitted> {
     let meshed = l.line.meshed.as_ref()?;
     let part = &l.line.representative;
@@ -280,7 +280,7 @@ pub(super) fn meshes(l: &Lines) -> Option<Emitted> {
             Some((*label, super::energy::without_step(&algebra, &energy, &h)?))
         })
         .collect();
-    // Values first, in the order in which they are declared.
+    // Values first, in the order of their declaration.
     for (_, e) in &meshed.terms {
         plan.placed(e);
     }
@@ -479,7 +479,7 @@ fn written(
     }
 }
 
-/// The type of what computes a functional.
+/// The type that computes a functional.
 fn type_of(mesh: &Mesh, directions: &proc_macro2::Literal) -> TokenStream {
     let path = path(&mesh.path).unwrap_or_default();
     match mesh.kind {
@@ -489,7 +489,8 @@ fn type_of(mesh: &Mesh, directions: &proc_macro2::Literal) -> TokenStream {
 }
 
 impl Plan<'_> {
-    /// Fields of one component that functionals are made of: places hold arrays of one, functionals take numbers.
+    /// Scalar fields that are arguments of functionals. Positions are stored as arrays of length one, but functionals
+    /// take numbers.
     fn numbers(&self) -> Vec<String> {
         let mut out: Vec<String> = Vec::new();
         for a in &self.arrays {
@@ -526,7 +527,7 @@ impl Plan<'_> {
         }
     }
 
-    /// What is asked of a state: the values of each functional.
+    /// Functions of a state that return the values of each functional.
     fn asked(&self) -> TokenStream {
         let state = self.l.item("State");
         let each = self.arrays.iter().filter(|a| a.seed.is_none()).map(|a| {
@@ -550,7 +551,7 @@ impl Plan<'_> {
         each.collect()
     }
 
-    /// The terms as energies: the functionals' values at the places of a state, then sums over sites.
+    /// The terms as energies: the values of the functionals at the positions of a state, then sums over sites.
     fn energy(
         &self,
         list: &[(usize, Expr)],

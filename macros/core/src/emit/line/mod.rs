@@ -1,6 +1,5 @@
-//! The stepper of a model with labels, for every number of sites: kernels of one site and of one term
-//! of neighbours; loops, threads and errors with sites are the runtime's (`clebsch::line`).
-//! Takes a [`Line`]; gives Rust items.
+//! The stepper of a model with labels, for every number of sites. Takes a [`Line`]; gives Rust items: kernels of one
+//! site and of one neighbour term. The runtime (`clebsch::line`) provides loops, threads and errors that name a site.
 
 mod acting;
 mod arguments;
@@ -42,11 +41,11 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeSet;
 
-/// A line with the names of what is emitted.
+/// A chain, with the names that the emitted code uses.
 struct Lines<'a> {
     line: &'a Line,
     source: &'a str,
-    /// What names of temporaries and of relative rotations begin with.
+    /// The prefixes of the names of temporaries and of relative rotations.
     temporary: String,
     relative: String,
     /// Every name that the model states.
@@ -94,7 +93,7 @@ pub fn emit_line(line: &Line, source: &str) -> TokenStream {
     }
 }
 
-/// Why no stepper with loops over sites is emitted, if so.
+/// The reason why clebsch emits no stepper with loops over sites, if any.
 pub fn refusal_of_line(line: &Line) -> Option<String> {
     let names = unique::refusal(line);
     names
@@ -102,7 +101,7 @@ pub fn refusal_of_line(line: &Line) -> Option<String> {
         .or_else(|| walls::refusal(line))
 }
 
-/// A configuration with the derivation of its site.
+/// A configuration, with the derivation of its site.
 #[derive(Clone, Copy)]
 struct Moving<'a> {
     lone: &'a SiteModel,
@@ -122,7 +121,7 @@ impl Moving<'_> {
         format_ident!("{}", self.mover.name)
     }
 
-    /// Whether it turns: a rotation or a unit quaternion.
+    /// Whether it is a rotation or a unit quaternion.
     fn is_rotation(&self) -> bool {
         let c = &self.d().spec.configurations[self.mover.index];
         matches!(c.group.kept(), Kept::Rotation | Kept::Quaternion)
@@ -133,7 +132,7 @@ impl Moving<'_> {
         matches!(self.mover.how, SiteSolve::Rotation { real: Some(_), .. })
     }
 
-    /// Rows and columns of a field; of a rotation those of its momentum.
+    /// Rows and columns of a field; for a rotation, those of its momentum.
     fn dims(&self) -> (TokenStream, TokenStream) {
         let c = &self.d().spec.configurations[self.mover.index];
         match c.group.kept() {
@@ -142,13 +141,13 @@ impl Moving<'_> {
         }
     }
 
-    /// The type of its momentum, and of what acts on it.
+    /// The type of its momentum and of forces on it.
     fn covector(&self) -> TokenStream {
         let (rows, cols) = self.dims();
         quote!(SMatrix<T, #rows, #cols>)
     }
 
-    /// The type of a value of a field as users give it.
+    /// The type of the value of a field in initial data.
     fn value(&self) -> TokenStream {
         match self.is_number() {
             true => quote!(T),
@@ -156,7 +155,7 @@ impl Moving<'_> {
         }
     }
 
-    /// The type of the list of its places.
+    /// The type of the list of its positions.
     fn places(&self) -> TokenStream {
         match self.is_rotation() {
             true => quote!(line::Attitudes<T>),
@@ -167,7 +166,7 @@ impl Moving<'_> {
         }
     }
 
-    /// The type of the list of the momenta of its edges.
+    /// The type of the list of its edge momenta.
     fn edges(&self) -> TokenStream {
         match self.is_rotation() {
             true => quote!(line::Edges<T>),
@@ -175,7 +174,7 @@ impl Moving<'_> {
         }
     }
 
-    /// A part of such a list, to be filled.
+    /// A mutable part of such a list.
     fn part(&self, list: &TokenStream) -> TokenStream {
         match self.is_rotation() {
             true => quote!(#list.part(first..last)),
@@ -183,7 +182,7 @@ impl Moving<'_> {
         }
     }
 
-    /// The value of such a list at a site.
+    /// The element of such a list at a site.
     fn at(&self, list: &TokenStream, site: &TokenStream) -> TokenStream {
         match self.is_rotation() {
             true => quote!(#list.at(#site)),
@@ -191,7 +190,7 @@ impl Moving<'_> {
         }
     }
 
-    /// The type of what turns, as users give it.
+    /// The type of a rotation or unit quaternion in initial data.
     fn element(&self) -> TokenStream {
         match self.is_quaternion() {
             true => quote!(UnitQuaternion<T>),
@@ -199,13 +198,13 @@ impl Moving<'_> {
         }
     }
 
-    /// Whether it is a number.
+    /// Whether it is a scalar field.
     fn is_number(&self) -> bool {
         let c = &self.d().spec.configurations[self.mover.index];
         c.group.shape().is_scalar()
     }
 
-    /// A value of its shape as an array.
+    /// A value of its shape, as an array.
     fn array(&self, value: TokenStream) -> TokenStream {
         match self.is_number() {
             true => quote!(SMatrix::<T, 1, 1>::new(#value)),
@@ -213,7 +212,7 @@ impl Moving<'_> {
         }
     }
 
-    /// The block that it belongs to, where several velocities or components are found together.
+    /// The block of velocities or components that contains it, if they are solved together.
     fn system(&self) -> Option<&[usize]> {
         self.mover.how.added()?;
         let mut blocks = self.lone.blocks.iter();
@@ -223,12 +222,12 @@ impl Moving<'_> {
 }
 
 impl<'a> Lines<'a> {
-    /// `NameSuffix`.
+    /// The item `NameSuffix`.
     fn item(&self, suffix: &str) -> Ident {
         format_ident!("{}{}", self.line.model.name.text, suffix)
     }
 
-    /// Everything that moves.
+    /// All configurations.
     fn moving(&self) -> impl Iterator<Item = Moving<'a>> + use<'a> {
         let line = self.line;
         line.lone
@@ -236,13 +235,13 @@ impl<'a> Lines<'a> {
             .flat_map(|lone| lone.movers.iter().map(move |mover| Moving { lone, mover }))
     }
 
-    /// The field that says how many segments or sites a label has.
+    /// The field with the number of segments or sites of a label.
     fn count_field(&self, label: usize) -> Ident {
         let label = self.line.lattice.labels.get(label);
         format_ident!("{}", label.map_or("", |l| l.count.text.as_str()))
     }
 
-    /// How many sites a kind has, of the model found at `of`.
+    /// The number of sites of a kind, in the model `of`.
     fn count_in(&self, of: TokenStream, label: usize, sites: Sites) -> TokenStream {
         let field = self.count_field(label);
         if self.line.lattice.is_grid(label) {
@@ -254,7 +253,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// How many sites a kind has.
+    /// The number of sites of a kind.
     fn count(&self, label: usize, sites: Sites) -> TokenStream {
         self.count_in(quote!(self), label, sites)
     }
@@ -266,7 +265,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The name of the number of segments of the line.
+    /// The name of the number of segments of the chain.
     fn segments(&self) -> Option<Ident> {
         let label = self.line.lattice.line_label()?;
         Some(format_ident!("{}", label.count.text))

@@ -1,5 +1,5 @@
-//! Kernels of terms of neighbours: what one term adds to the sites that it touches, evaluated once for
-//! all of them, and the loop over all terms.
+//! Kernels of neighbour terms, and the loop over all terms. One evaluation gives the forces of a term on all its
+//! sites.
 
 use super::arguments::Argument;
 use super::forms::forms;
@@ -16,17 +16,18 @@ use crate::print::{Format, Style, expression};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// The field of what a term adds to a site.
+/// The field of the force of a term on a site.
 pub(super) fn field(on: &str, site: usize) -> Ident {
     format_ident!("{on}_{site}")
 }
 
-/// The farthest site that a term adds to: so many places stand before the first term.
+/// The largest site offset on which a term exerts a force, which is the number of padding entries before the first
+/// term.
 pub(super) fn front(pull: &NeighbourForce) -> usize {
     pull.forces.iter().map(|f| f.site).max().unwrap_or(0)
 }
 
-/// The fields of what neighbours add, nothing yet.
+/// The fields of the neighbour forces, all zero.
 pub(super) fn none_yet(l: &Lines) -> Vec<TokenStream> {
     let each = l.line.pulls.iter().enumerate().map(|(n, pull)| {
         let (field, t) = (
@@ -40,7 +41,7 @@ pub(super) fn none_yet(l: &Lines) -> Vec<TokenStream> {
     each.collect()
 }
 
-/// Structures and kernels.
+/// The structures and kernels of all terms.
 pub(super) fn pulls(l: &Lines) -> TokenStream {
     let name = l.item("");
     let mut structs = TokenStream::new();
@@ -130,7 +131,7 @@ fn of_pull(l: &Lines, n: usize, pull: &NeighbourForce) -> [TokenStream; 3] {
     [structure, kernel, over_sites]
 }
 
-/// How many numbers a term adds.
+/// The number of components of the forces of a term.
 pub(super) fn numbers(l: &Lines, pull: &NeighbourForce) -> TokenStream {
     let moving: Vec<_> = l.moving().collect();
     let counts = pull.forces.iter().filter_map(|f| {
@@ -140,7 +141,7 @@ pub(super) fn numbers(l: &Lines, pull: &NeighbourForce) -> TokenStream {
     quote!({ #(#counts)+* })
 }
 
-/// The same of several sites together.
+/// The kernel for several sites together, as an item of its own.
 fn stage(l: &Lines, n: usize, arguments: &[Argument]) -> TokenStream {
     let (model, places) = (l.item(""), l.item("Places"));
     let [name, made] = ["PullsTogether", "Pull"].map(|x| l.item(&format!("{x}{n}")));
@@ -157,7 +158,7 @@ fn stage(l: &Lines, n: usize, arguments: &[Argument]) -> TokenStream {
     }
 }
 
-/// Expressions of neighbours in the form in which they are computed.
+/// Expressions of neighbours, in the form of [`forms`].
 pub(super) fn computed(
     l: &Lines,
     s: &Symbols,
@@ -190,14 +191,14 @@ pub(super) fn computed(
     (lets, results)
 }
 
-/// The terms of a pull, letters seen from their first site.
+/// The terms of a neighbour force as text, with letters relative to their first site.
 fn term_text(l: &Lines, pull: &NeighbourForce) -> String {
     let d = &l.line.representative.d;
     let style = Style::new(&d.spec.time_index);
     expression(&pull.terms, &d.letters.symbols, &style, Format::Text)
 }
 
-/// Letters of a term of neighbours.
+/// The letters of a neighbour term.
 pub(super) fn known(l: &Lines, values: &[Expr]) -> Vec<Known> {
     let part = &l.line.representative;
     let letters = letters_of(values).into_iter();
@@ -219,7 +220,7 @@ pub(super) fn known(l: &Lines, values: &[Expr]) -> Vec<Known> {
         .collect()
 }
 
-/// `let (first, last)`: the indices of a term, the one after the last.
+/// `let (first, last)`: the range of indices of a term, `last` excluded.
 pub(super) fn range_of(l: &Lines, label: usize, from: usize, to: isize) -> TokenStream {
     let count = l.count_field(label);
     let last = match (to, to.unsigned_abs()) {
@@ -234,7 +235,7 @@ pub(super) fn range_of(l: &Lines, label: usize, from: usize, to: isize) -> Token
         }
     };
     let start = number(from);
-    // A line may be too short for any such term.
+    // A chain may be too short for any such term.
     let last = match from {
         0 => last,
         _ => quote!(#last.max(#start)),
@@ -252,7 +253,7 @@ pub(super) fn range_of(l: &Lines, label: usize, from: usize, to: isize) -> Token
     }
 }
 
-/// The loop over all terms of a kind, and the repetition along a ring.
+/// The loop over all terms of a kind, with the periodic copies of a ring.
 fn over_sites(
     l: &Lines,
     n: usize,
@@ -304,7 +305,7 @@ fn over_sites(
     }
 }
 
-/// The sweep over all terms.
+/// The function that evaluates all terms.
 fn sweep(l: &Lines, loops: &TokenStream) -> TokenStream {
     let (places, pulls) = (l.item("Places"), l.item("Pulls"));
     let step = super::locals::step(&l.line.representative.d);

@@ -1,5 +1,5 @@
-//! The part of a step that constraints have: the search for the impulses of the node where it begins, the projection of the
-//! momentum on arrival, and the tests of initial data.
+//! The constraints in a step: the search for the impulses at its start node, the projection of the momentum on
+//! arrival, and the tests of initial data.
 
 use super::held::Bodies;
 use super::pulls::range_of;
@@ -10,7 +10,7 @@ use crate::print::{Format, Style, formula};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// Fields of the workspace.
+/// Their fields in the workspace.
 pub(super) fn fields(l: &Lines) -> Option<TokenStream> {
     if !l.is_held() {
         return None;
@@ -35,7 +35,7 @@ pub(super) fn fields(l: &Lines) -> Option<TokenStream> {
     })
 }
 
-/// How many indices a constraint has; on a sum it is one.
+/// The number of indices of a constraint; one for a constraint on a sum.
 pub(super) fn count(l: &Lines, h: &ChainConstraint) -> TokenStream {
     if h.beside.is_some() {
         return quote!(1);
@@ -44,7 +44,7 @@ pub(super) fn count(l: &Lines, h: &ChainConstraint) -> TokenStream {
     quote!({ #range last - first })
 }
 
-/// Values of all that is held, none of it made yet.
+/// Empty values and derivatives of all constraints.
 pub(super) fn none_reached(l: &Lines) -> TokenStream {
     let reached = l.item("Reached");
     let lists = l.holds().map(|(k, h)| {
@@ -71,7 +71,7 @@ pub(super) fn count_of(l: &Lines, b: &Bodies) -> TokenStream {
         .unwrap_or_default()
 }
 
-/// Their values.
+/// The initial values of the fields.
 pub(super) fn values(l: &Lines, edges: &TokenStream) -> Option<TokenStream> {
     if !l.is_held() {
         return None;
@@ -128,7 +128,7 @@ pub(super) fn ring(l: &Lines) -> TokenStream {
     }
 }
 
-/// Multipliers at the start.
+/// The multipliers at the start.
 pub(super) fn no_multipliers(l: &Lines) -> TokenStream {
     let ty = l.item("Multipliers");
     let each = l.holds().map(|(_, h)| {
@@ -199,7 +199,7 @@ pub(super) fn equation(l: &Lines, h: &ChainConstraint) -> String {
     format!("{left} = {right}")
 }
 
-/// Fills a list of what moves over its sites; around a ring once more behind the last.
+/// Fills a list of a body over its sites; on a ring, the first value is repeated at the end.
 fn over(
     l: &Lines,
     b: &Bodies,
@@ -226,7 +226,7 @@ fn over(
     }
 }
 
-/// What is filled once for a workspace: answers to impulses that parameters say alone.
+/// The values that a workspace computes once: responses to impulses that depend on parameters only.
 pub(super) fn once(l: &Lines) -> TokenStream {
     let mut out = TokenStream::new();
     for b in &l.bodies() {
@@ -244,7 +244,7 @@ pub(super) fn once(l: &Lines) -> TokenStream {
     out
 }
 
-/// The call of the kernel of how what moves answers in a step.
+/// The call of the kernel for the response in a step.
 fn response(b: &Bodies) -> TokenStream {
     let kernel = format_ident!("response_{}", b.field());
     match (&b.unit.of_edge, b.takes_velocities()) {
@@ -260,7 +260,7 @@ fn response(b: &Bodies) -> TokenStream {
     }
 }
 
-/// The edges of one configuration with the reactions of the impulses.
+/// The edge momenta of one configuration, including the constraint forces.
 fn kicked(l: &Lines, m: &Moving) -> TokenStream {
     let (name, range) = (m.name(), range_name(m));
     if !l.is_reached(&m.mover.name) {
@@ -291,7 +291,7 @@ fn kicked(l: &Lines, m: &Moving) -> TokenStream {
     }
 }
 
-/// The search for the impulses, around what finds places.
+/// The search for the impulses; `solved` is the code that computes the positions.
 pub(super) fn search(l: &Lines, solved: &TokenStream) -> TokenStream {
     let bodies = l.bodies();
     let members = bodies.iter().flat_map(|b| &b.members);
@@ -349,7 +349,7 @@ pub(super) fn search(l: &Lines, solved: &TokenStream) -> TokenStream {
     }
 }
 
-/// The derivatives of what is held at places `there` by impulses that act at `here`.
+/// The derivatives of the constraints at the positions `there` with respect to impulses at `here`.
 fn held_rows(
     l: &Lines,
     there: &TokenStream,
@@ -368,7 +368,7 @@ fn held_rows(
     }
 }
 
-/// The edges with reactions are those of the step.
+/// The edge momenta with constraint forces become those of the step.
 pub(super) fn edges(l: &Lines) -> TokenStream {
     let bodies = l.bodies();
     let names = bodies.iter().flat_map(|b| &b.members).map(Moving::name);
@@ -377,7 +377,7 @@ pub(super) fn edges(l: &Lines) -> TokenStream {
         .collect()
 }
 
-/// The impulses that the momenta of a node are projected with.
+/// The impulses that project the momenta of a node.
 fn projected(
     l: &Lines,
     at: &TokenStream,
@@ -422,7 +422,7 @@ fn projected(
     }
 }
 
-/// The projection of the momenta on arrival, and the multipliers of the step; `state` then has both.
+/// The projection of the momenta on arrival, and the multipliers of the step; stores both in `state`.
 pub(super) fn project(l: &Lines) -> TokenStream {
     let projected = projected(
         l,
@@ -491,7 +491,7 @@ pub(super) fn project(l: &Lines) -> TokenStream {
     }
 }
 
-/// The refusal of a state at a site, or for what a sum over sites holds.
+/// The error for a constraint at a site, or for a constraint on a sum.
 fn refused_at(l: &Lines, h: &ChainConstraint) -> TokenStream {
     let label = &h.name;
     match l.holds_sums() {
@@ -500,8 +500,8 @@ fn refused_at(l: &Lines, h: &ChainConstraint) -> TokenStream {
     }
 }
 
-/// The tests of a state at node 0: it must be on the constraints, its momenta along them. What rounding leaves across is
-/// taken away.
+/// The tests of a state at node 0: it must satisfy the constraints, and its momenta must be tangent to them. The
+/// projection then removes the rounding error of the normal component.
 pub(super) fn admitted(l: &Lines) -> TokenStream {
     let sums = l.holds_sums();
     let tests = l.holds().map(|(k, h)| {

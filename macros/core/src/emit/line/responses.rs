@@ -1,5 +1,5 @@
-//! Kernels of how what moves answers to the impulses of constraints: at the end of an edge by one at its start, and at a node,
-//! in the limit of small steps.
+//! Kernels for the response of configurations to the impulses of constraints. The response in a step is at the end of
+//! an edge, to an impulse at its start. The response at a node is that of the limit of small steps.
 
 use super::held::{Bodies, filled};
 use super::locals::Places;
@@ -10,7 +10,7 @@ use crate::line::Matrix;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-/// The kernels of what moves: how it answers in a step and at a node, and its velocity there.
+/// The kernels of a body: its response in a step, its response at a node, and its velocity at a node.
 pub(super) fn kernels(l: &Lines, b: &Bodies) -> TokenStream {
     let Some(first) = b.first() else {
         return TokenStream::new();
@@ -84,7 +84,7 @@ pub(super) fn kernels(l: &Lines, b: &Bodies) -> TokenStream {
     }
 }
 
-/// The momenta at rest, taken from those of a node.
+/// Subtracts the momenta at zero velocity from those of a node.
 fn at_rest(l: &Lines, b: &Bodies) -> Option<TokenStream> {
     let m = b.first()?;
     let d = m.outline();
@@ -110,7 +110,7 @@ fn at_rest(l: &Lines, b: &Bodies) -> Option<TokenStream> {
     })
 }
 
-/// The inverse of the derivative of momenta by velocities.
+/// The inverse of the derivative of the momenta with respect to the velocities.
 fn inverse(l: &Lines, b: &Bodies, list: &[Matrix], with_velocities: bool) -> TokenStream {
     let Some(first) = b.first() else {
         return TokenStream::new();
@@ -173,12 +173,13 @@ fn inverse(l: &Lines, b: &Bodies, list: &[Matrix], with_velocities: bool) -> Tok
     }
 }
 
-/// The tests that impulses find an inertia at every site, for where reactions are not found.
+/// The tests that the response of every body to an impulse is defined; if an inertia is missing, the constraint
+/// forces are not determined.
 pub(super) fn tests_of_inertia(l: &Lines) -> TokenStream {
     l.bodies().iter().map(test_of_inertia).collect()
 }
 
-/// The test of one of them.
+/// The test for one body.
 fn test_of_inertia(b: &Bodies) -> TokenStream {
     let Some(first) = b.first() else {
         return TokenStream::new();

@@ -1,5 +1,5 @@
-//! Kernels of the system for the impulses of all sites: what is held at one, its derivatives by the impulses of the site
-//! before, of the site and of the one after, and its rate of change.
+//! Kernels of the linear system for the impulses of all sites: the residuals at a site, their derivatives with
+//! respect to the impulses of the previous site, the site and the next one, and their rates of change.
 
 use super::held::{Bodies, Kept, field, kept};
 use super::{Lines, number};
@@ -35,8 +35,8 @@ fn factor(l: &Lines, r: &Reach, list: &str, k: usize, at: &TokenStream) -> Facto
     }
 }
 
-/// The kernels of the system: what is held and the sizes of its terms, its derivatives by the impulses of the site before,
-/// of the site and of the one after, and its rate of change.
+/// The kernels of the system: the residuals and the sizes of their terms, their derivatives with respect to the
+/// impulses of the previous site, the site and the next one, and their rates of change.
 pub(super) fn rows(l: &Lines, bodies: &[Bodies]) -> TokenStream {
     let [reached, responses, velocities] =
         ["Reached", "Responses", "Velocities"].map(|x| l.item(x));
@@ -88,7 +88,7 @@ pub(super) fn rows(l: &Lines, bodies: &[Bodies]) -> TokenStream {
                     quote!(#g.tr_mul(&(#response.fixed_view::<#rows, #n>(#at_row, 0).into_owned())))
                 }
             };
-            // Of one configuration alone its whole response.
+            // For a body with one member: its whole response.
             let value = match (b.scalar, b.members.len()) {
                 (false, 1) => match &left {
                     Factor::Multiple(g) => quote!(#response * #g),

@@ -1,12 +1,12 @@
-//! Where a trajectory starts: signs of unit quaternions that meet their neighbours.
+//! The signs of unit quaternions in neighbour terms, at the start of a trajectory.
 
 use super::Lines;
 use super::ends::{end_local, pattern, place};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-/// Signs of unit quaternions that meet their neighbours, made to agree from site to site and with what an end gives,
-/// the first one before the last.
+/// Makes the signs of unit quaternions in neighbour terms agree from site to site, and with the values of end
+/// conditions. The first end takes precedence over the last.
 pub(super) fn agreed(l: &Lines) -> TokenStream {
     let ends = l.item("Ends");
     let mut out = TokenStream::new();

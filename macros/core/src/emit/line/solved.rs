@@ -1,5 +1,5 @@
-//! Kernels of the velocities of a site: from the momentum that leaves a node to the place at the next
-//! one.
+//! Kernels of the velocities of a site: from the momentum of the edge that leaves a node to the position at the next
+//! node.
 
 use super::arguments::Argument;
 use super::lanes::Windows;
@@ -16,8 +16,8 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 impl Lines<'_> {
-    /// Blocks of fields that are solved together: the field of their velocities, the number of
-    /// components, and their members in order.
+    /// Blocks of fields that are solved together: the field of their velocities, the number of components, and their
+    /// members in order.
     pub(super) fn systems(&self) -> Vec<(Ident, usize, Vec<Moving<'_>>)> {
         let mut out: Vec<(Ident, usize, Vec<Moving>)> = Vec::new();
         for m in self.moving() {
@@ -37,7 +37,7 @@ impl Lines<'_> {
         out
     }
 
-    /// The block of a configuration whose velocity is found together with others.
+    /// The block that contains a configuration, if its velocity is solved together with others.
     pub(super) fn system_of(&self, m: &Moving) -> Option<(Ident, usize, Vec<Moving<'_>>)> {
         let mut systems = self.systems().into_iter();
         systems.find(|(.., members)| members.iter().any(|o| o.mover.name == m.mover.name))
@@ -45,7 +45,7 @@ impl Lines<'_> {
 }
 
 impl Moving<'_> {
-    /// How many components its velocity has.
+    /// The number of components of its velocity.
     pub(super) fn components(&self) -> usize {
         let most = element::most_coordinates(self.d(), self.mover.index);
         usize::try_from(most).unwrap_or(0)
@@ -125,7 +125,7 @@ fn field(l: &Lines, m: Moving) -> TokenStream {
     let [left, right] = results.as_slice() else {
         return TokenStream::new();
     };
-    // The array around a number is made where it is solved for.
+    // The solution wraps a scalar in an array.
     let known = match m.is_number() {
         true => quote!(edge[0]),
         false => quote!(edge),
@@ -164,7 +164,7 @@ fn field(l: &Lines, m: Moving) -> TokenStream {
     }
 }
 
-/// Whether the momentum is a number times the velocity.
+/// Whether the momentum is a scalar multiple of the velocity.
 fn is_divided(form: &TwoSidedLinear) -> bool {
     [&form.left, &form.right].map(|e| e.shape().is_scalar()) == [true; 2]
 }
@@ -173,7 +173,7 @@ fn at_once(m: &Moving) -> Ident {
     format_ident!("at_once_{}", m.mover.name)
 }
 
-/// What the kernel of a field reads of its site beside place and edge.
+/// The arguments of the kernel of a field at its site, besides position and edge momentum.
 fn reads_of_field(l: &Lines, m: &Moving) -> Option<Vec<Argument>> {
     let SiteSolve::Field { form, .. } = &m.mover.how else {
         return None;
@@ -183,7 +183,7 @@ fn reads_of_field(l: &Lines, m: &Moving) -> Option<Vec<Argument>> {
     Some(l.read(&d.letters.symbols, &l.of_site(d, &values)).arguments)
 }
 
-/// The same of several sites together: an item of its own.
+/// The kernel for several sites together, as an item of its own.
 fn stage(l: &Lines, m: &Moving) -> Option<TokenStream> {
     let arguments = reads_of_field(l, m)?;
     let (model, places, t) = (l.item(""), l.item("Places"), m.covector());
@@ -252,7 +252,7 @@ pub(super) fn loop_over_sites(l: &Lines, m: &Moving) -> TokenStream {
     }
 }
 
-/// The velocities of a block, stacked.
+/// The kernel of the stacked velocities of a block.
 fn system(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     let Some(first) = members.first() else {
         return TokenStream::new();
@@ -311,7 +311,7 @@ fn system(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     }
 }
 
-/// The velocities of a block whose momenta are not linear in them, stacked: the kernel, and that of the momenta
+/// The kernels of a block whose momenta are not linear in the velocities: the stacked velocities, and the momenta
 /// with their derivative.
 fn newton(l: &Lines, n: usize, members: &[Moving]) -> TokenStream {
     let Some(first) = members.first() else {

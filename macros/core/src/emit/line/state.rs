@@ -1,4 +1,4 @@
-//! What moves: initial data, places and momenta at a node, and what a step keeps for the next one.
+//! Initial data, positions and momenta at a node, and the values that a step stores for the next one.
 
 use super::items::words;
 use super::{Lines, OfMeshes, number};

@@ -1,5 +1,6 @@
-//! `start`, `workspace` and `step` of a line: the order of its loops. All places first, then what
-//! neighbours add at the new places, then all momenta; the state changes when everything has worked.
+//! `start`, `workspace` and `step` of a chain: the order of its loops. A step computes all positions, then the
+//! neighbour forces at the new positions, then all momenta. It changes the state only after all of this has
+//! succeeded.
 
 use super::acting::{self, Acting};
 use super::{Lines, Moving, OfMeshes, number, reactions, solved, tied};
@@ -150,8 +151,8 @@ pub(super) fn step(
             }
         }
     });
-    // Functionals hold most of the memory of a trajectory: the first step is tried in the state itself, with a workspace
-    // that is gone before the one that is kept is made.
+    // Functionals use most of the memory of a trajectory. The first step is therefore tried in the state itself, and
+    // its workspace is freed before the lasting one is created.
     let alone = of_meshes.is_some() && !l.is_held();
     let first_alone = alone.then(|| {
         quote! {
@@ -307,7 +308,8 @@ pub(super) fn step(
     }
 }
 
-/// What finds the places of these at the next node, from the momenta of their edges in a field of the workspace.
+/// The code that computes the positions of `moving` at the next node, from the edge momenta in a field of the
+/// workspace.
 fn found(
     l: &Lines,
     moving: &[&Moving],
@@ -326,12 +328,12 @@ fn found(
     quote!(#(#of_systems)* #(#solves)*)
 }
 
-/// The name of the function of the sites that move.
+/// The name of the function that gives the range of moving sites.
 pub(super) fn range_name(m: &Moving) -> Ident {
     format_ident!("moving_{}", m.mover.name)
 }
 
-/// Which sites of a configuration move: all but those that an end holds.
+/// The range of the sites of a configuration that move: all except those that an end condition prescribes.
 fn range(l: &Lines, m: &Moving) -> TokenStream {
     let (name, ends, count) = (range_name(m), l.item("Ends"), l.count_of(&m.mover.name));
     let held = |last: bool| {
@@ -404,7 +406,7 @@ fn check(l: &Lines, m: &Moving) -> TokenStream {
     }
 }
 
-/// The places of one configuration at the next node.
+/// The positions of one configuration at the next node.
 fn solve(l: &Lines, m: &Moving, edges: &Ident) -> TokenStream {
     let (name, text, range) = (m.name(), &m.mover.name, range_name(m));
     let count = l.count_of(text);
@@ -465,8 +467,8 @@ fn solve(l: &Lines, m: &Moving, edges: &Ident) -> TokenStream {
     }
 }
 
-/// The test of the edges that begin at a start. A step would find what is not finite at the neighbours too, and name the first of
-/// them.
+/// The test of the edges at the start. A step would detect a value that is not finite also at the neighbours, and
+/// report the first of those sites.
 fn defined(l: &Lines, moving: &[Moving]) -> TokenStream {
     let [state, work] = ["State", "Workspace"].map(|suffix| l.item(suffix));
     let tests = moving.iter().map(|m| {
@@ -512,7 +514,7 @@ fn solve_system(field: &Ident, members: &[Moving], edges: &Ident) -> TokenStream
     }
 }
 
-/// The momentum of the edge that begins at a state.
+/// The edge momenta at the start of a step.
 fn begin(l: &Lines, m: &Moving) -> TokenStream {
     let name = m.name();
     let acted = acting::call(l, m, &quote!(state.places));

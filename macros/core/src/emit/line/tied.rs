@@ -1,5 +1,5 @@
-//! Velocities of all sites together, where terms of neighbours hold velocities: kernels of one such term, the
-//! equations of all sites, and what the edge adds to momenta.
+//! Velocities that neighbour terms couple, so that all sites are solved together: kernels of one such term, the
+//! equations of all sites, and the force of the edge.
 
 use super::locals::{Places, step};
 use super::pulls::{known, range_of};
@@ -14,24 +14,24 @@ use crate::schedule;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-/// Whether velocities of neighbours stand in the momenta of a block.
+/// Whether the momenta of a block depend on velocities of neighbours.
 pub(super) fn is_tied(l: &Lines, members: &[Moving]) -> bool {
     members.iter().any(|m| l.line.is_tied(&m.mover.name))
 }
 
-/// The block of those, if there is one: the field of its velocities, its components, its members.
+/// The block with coupled velocities, if any: the field of its velocities, its number of components, and its members.
 pub(super) fn block<'a>(l: &'a Lines) -> Option<(Ident, usize, Vec<Moving<'a>>)> {
     let mut systems = l.systems().into_iter();
     systems.find(|(.., members)| is_tied(l, members))
 }
 
-/// Whether terms depend on the places too, so that they add to momenta on the way.
+/// Whether a coupling term depends on positions too, so that it exerts a force on the edge.
 fn adds(l: &Lines) -> bool {
     let mut parts = l.line.ties.iter().flat_map(|t| &t.parts);
     parts.any(|p| !p.added.is_zero())
 }
 
-/// The fields of the workspace.
+/// Its fields in the workspace.
 pub(super) fn band_field(l: &Lines) -> Option<TokenStream> {
     let (_, n, members) = block(l)?;
     let n = number(n);
@@ -40,7 +40,7 @@ pub(super) fn band_field(l: &Lines) -> Option<TokenStream> {
     Some(quote!(band: line::Band<T, #n, #rotations>, #tied))
 }
 
-/// Their values.
+/// The initial values of those fields.
 pub(super) fn band_value(l: &Lines) -> Option<TokenStream> {
     let (_, n, members) = block(l)?;
     let n = number(n);
@@ -57,7 +57,7 @@ pub(super) fn band_value(l: &Lines) -> Option<TokenStream> {
     Some(quote!(band: line::Band::<T, #n, #rotations>::new(#count, #ring, #constant)#turns, #tied))
 }
 
-/// Room for the rotations of a velocity, by a third of the component at which their vectors begin.
+/// The number of slots for rotations in a velocity. The slot of a rotation is a third of the first row of its vector.
 fn rotations(members: &[Moving]) -> Literal {
     let rows = members.iter().filter(|m| m.is_rotation()).map(|m| {
         let (row, _) = rows_of(members, &m.mover.name);
@@ -72,7 +72,7 @@ pub(super) fn velocity(n: usize, members: &[Moving]) -> TokenStream {
     quote!(line::Velocity<T, #n, #rotations>)
 }
 
-/// Which components of a velocity are those of the vector of a rotation.
+/// Which components of a velocity belong to the vector of a rotation.
 pub(super) fn turns(members: &[Moving]) -> TokenStream {
     let each = members.iter().flat_map(|m| {
         let turns = m.is_rotation();
@@ -81,7 +81,7 @@ pub(super) fn turns(members: &[Moving]) -> TokenStream {
     quote!([#(#each),*])
 }
 
-/// Whether the derivatives of momenta are the same at all places and velocities: they are factored once.
+/// Whether the derivatives of the momenta depend on parameters and the step size only. They are then factored once.
 fn is_constant(l: &Lines, members: &[Moving]) -> bool {
     if members.iter().any(Moving::is_rotation) {
         return false;
@@ -119,7 +119,7 @@ pub(super) fn ring(l: &Lines) -> TokenStream {
     }
 }
 
-/// The sites that the term of an index touches, the ring closed.
+/// The sites that a term touches, with the ring closed.
 pub(super) fn touched(l: &Lines, tie: &VelocityCoupling, count: &TokenStream) -> TokenStream {
     match (tie.width, l.line.lattice.periodic.is_some()) {
         (0, _) => quote!([site]),
@@ -128,7 +128,7 @@ pub(super) fn touched(l: &Lines, tie: &VelocityCoupling, count: &TokenStream) ->
     }
 }
 
-/// The velocities of all sites.
+/// The code that solves for the velocities of all sites.
 pub(super) fn solve(l: &Lines, field: &Ident, members: &[Moving]) -> TokenStream {
     let Some(first) = members.first() else {
         return TokenStream::new();
@@ -192,7 +192,7 @@ pub(super) fn solve(l: &Lines, field: &Ident, members: &[Moving]) -> TokenStream
     }
 }
 
-/// What those terms add to the momentum of a configuration on the way.
+/// The force of those terms on a configuration along the edge.
 pub(super) fn added(l: &Lines, m: &Moving) -> Option<TokenStream> {
     if !adds(l) || !l.line.is_tied(&m.mover.name) {
         return None;
@@ -221,11 +221,11 @@ pub(super) fn tied(l: &Lines) -> TokenStream {
     quote!(impl<T: Real> #name<T> { #(#each)* })
 }
 
-/// The derivatives that a term of neighbours adds: those of the momenta of one of its sites by the velocities of another
-/// that are not zero.
+/// The nonzero derivatives of a neighbour term: those of the momenta of one of its sites with respect to the
+/// velocities of another.
 pub(super) struct Derivatives {
     n: usize,
-    /// The two sites of a block, from the index of the term, and what is put into it.
+    /// For each block, its two sites relative to the index of the term, and its columns.
     blocks: Vec<([usize; 2], Vec<Columns>)>,
 }
 
@@ -239,13 +239,13 @@ struct Columns {
 }
 
 impl Derivatives {
-    /// None yet, of velocities with `n` components.
+    /// No derivatives yet; velocities have `n` components.
     pub(super) fn new(n: usize) -> Self {
         let blocks = Vec::new();
         Self { n, blocks }
     }
 
-    /// Puts columns into the block of two sites: where their rows begin in it, how many they are, and the first column.
+    /// Adds columns to the block of two sites: their first row, their number of rows, and the first column.
     pub(super) fn put(
         &mut self,
         pair: [usize; 2],
@@ -269,7 +269,7 @@ impl Derivatives {
         }
     }
 
-    /// What makes the blocks, and the list of them.
+    /// The statements that compute the blocks, and the list of the blocks.
     pub(super) fn emitted(&self) -> (TokenStream, TokenStream) {
         let size = number(self.n);
         let (mut lets, mut list) = (TokenStream::new(), TokenStream::new());
@@ -296,13 +296,13 @@ impl Derivatives {
         (lets, quote!([#list]))
     }
 
-    /// How many there are.
+    /// The number of blocks.
     pub(super) fn count(&self) -> Literal {
         number(self.blocks.len())
     }
 }
 
-/// Where the rows of a field begin in its block, and how many there are.
+/// The first row of a configuration in its block, and its number of rows.
 pub(super) fn rows_of(members: &[Moving], on: &str) -> (usize, usize) {
     let before = members.iter().take_while(|o| o.mover.name != on);
     let own = members.iter().find(|o| o.mover.name == on);
@@ -375,7 +375,8 @@ fn of_tie(
     }
 }
 
-/// Values in places and velocities of the sites of a term; rotations may be known beside those.
+/// Values that depend on positions and velocities of the sites of a term. If `known_turns` is set, the rotations are
+/// available.
 fn computed(
     l: &Lines,
     tie: &VelocityCoupling,

@@ -1,5 +1,5 @@
-//! Kernels of constraints on sums over sites: what a sum holds, what its multiplier gives to what moves at a site, and the
-//! system for the few multipliers of all sums, itself a sum over sites.
+//! Kernels of constraints on sums over sites: the residual of a sum, the effect of its multiplier on the
+//! configurations of a site, and the small system for the multipliers of all sums, itself a sum over sites.
 
 use super::held::{Bodies, Kept, field, kept};
 use super::pulls::range_of;
@@ -10,7 +10,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 impl Lines<'_> {
-    /// Whether sums over sites are held, and nothing at single sites.
+    /// Whether the constraints are on sums over sites; such a model has none at single sites.
     pub(super) fn holds_sums(&self) -> bool {
         self.line.holds.iter().any(|h| h.beside.is_some())
     }
@@ -114,7 +114,7 @@ fn name_of(b: &Bodies) -> proc_macro2::Ident {
     format_ident!("answering_{}", b.field())
 }
 
-/// What the multipliers of sums give to the momenta of what moves at a site, a column each.
+/// The kernel of the effect of the multipliers on the momenta at a site, one column per multiplier.
 fn answering(l: &Lines, b: &Bodies) -> TokenStream {
     let (n, size, reached) = (number(b.n), number(l.held_components()), l.item("Reached"));
     let mut put = Vec::new();
@@ -157,12 +157,12 @@ fn answering(l: &Lines, b: &Bodies) -> TokenStream {
     }
 }
 
-/// Fills what the search takes of constraints on sums.
+/// Stores the residuals of the sums for the search.
 pub(super) fn held() -> TokenStream {
     quote!(work.held[0] = self.held_sums(&work.there);)
 }
 
-/// Its derivatives.
+/// Stores the derivatives of the sums for the search.
 pub(super) fn rows(
     there: &TokenStream,
     here: &TokenStream,
@@ -171,7 +171,7 @@ pub(super) fn rows(
     quote!(work.held_rows[0] = self.held_sums_row(#there, #here, #responses);)
 }
 
-/// Its rates of change.
+/// Stores the rates of change of the sums for the search.
 pub(super) fn rates(reached: &TokenStream) -> TokenStream {
     quote!(work.held_rates[0] = self.held_sums_rate(#reached, &work.velocities);)
 }
@@ -193,7 +193,7 @@ pub(super) fn on_constraints(l: &Lines) -> TokenStream {
     each.collect()
 }
 
-/// What is told of constraints on sums at a state.
+/// Functions of a state that report on constraints on sums.
 pub(super) fn told(
     l: &Lines,
     none_reached: &TokenStream,

@@ -1,5 +1,5 @@
-//! Names of locals in kernels: none is that of another quantity of the model, of a temporary, or of what
-//! every kernel has.
+//! Names of locals in kernels. A local has neither the name of another quantity of the model, nor that of a
+//! temporary, nor one that every kernel uses.
 
 use super::Lines;
 use crate::line::Line;
@@ -7,7 +7,7 @@ use proc_macro2::Ident;
 use quote::format_ident;
 use std::collections::BTreeSet;
 
-/// What kernels and the functions around them call their own.
+/// The names that kernels and the surrounding functions use.
 const KERNEL: [&str; 69] = [
     "a",
     "acting",
@@ -80,7 +80,7 @@ const KERNEL: [&str; 69] = [
     "weights",
 ];
 
-/// A name of the model that emitted code has for something else, if so.
+/// The reason why a name of the model conflicts with the emitted code, if any.
 pub(super) fn refusal(line: &Line) -> Option<String> {
     let part = &line.representative;
     let step = &part.d.letters.symbols.get(part.d.spec.step).name;
@@ -106,7 +106,7 @@ pub(super) fn refusal(line: &Line) -> Option<String> {
 }
 
 impl<'a> Lines<'a> {
-    /// The names of a line that is emitted.
+    /// The names for the emitted code of a chain.
     pub(super) fn new(line: &'a Line, source: &'a str) -> Lines<'a> {
         let stated = stated(line);
         let prefix = |base: &str| {
@@ -125,7 +125,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// A name for the letter of `own` that no other one has; `used` are those of the same kernel.
+    /// A unique name for the letter of `own`. `used` contains the names already in the kernel.
     pub(super) fn unique(&self, own: &str, base: &str, used: &mut Vec<String>) -> Ident {
         let mut name = base.to_owned();
         let made = [&self.temporary, &self.relative];
@@ -153,7 +153,7 @@ fn stated(line: &Line) -> BTreeSet<String> {
     of_sites.chain(of_ends).chain(once).cloned().collect()
 }
 
-/// Whether a name is the prefix with a number behind it.
+/// Whether a name is `prefix` followed by a number.
 fn is_numbered(name: &str, prefix: &str) -> bool {
     let number = name.strip_prefix(prefix);
     number.is_some_and(|n| n.parse::<u32>().is_ok())

@@ -1,6 +1,6 @@
-//! Velocities of a block as they are found: numbers one below the other, a rotation by the vector `v` of its Cayley
-//! transform `Ω = (Id - hat(v)/2)^-1 (Id + hat(v)/2)`. Derivatives are along `Ω hat(η)`: the runtime turns `η` into
-//! changes of `v`.
+//! The velocities of a block as stacked numbers. A rotation is represented by the vector `v` of its Cayley transform
+//! `Ω = (Id - hat(v)/2)^-1 (Id + hat(v)/2)`. Derivatives are along `Ω hat(η)`; the runtime converts `η` to changes of
+//! `v`.
 
 use super::locals::Known;
 use super::{Moving, number};
@@ -11,8 +11,8 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 impl Moving<'_> {
-    /// Its velocity in the stacked numbers `all`, where its own begin at `row`; of a line whose velocities are found together
-    /// rotations are `known` beside them.
+    /// Its velocity, read from the stacked numbers `all` starting at `row`. If the velocities of all sites are solved
+    /// together, the rotations are available (`known`).
     pub(super) fn velocity(&self, all: &TokenStream, row: usize, known: bool) -> TokenStream {
         let (row, rows) = (number(row), number(self.components()));
         match (self.is_number(), self.is_rotation()) {
@@ -24,7 +24,7 @@ impl Moving<'_> {
     }
 }
 
-/// How many columns an expression has.
+/// The number of columns of an expression.
 pub(super) fn width(e: &Expr) -> usize {
     match e.shape().cols {
         Dim::Fixed(n) => usize::try_from(n).unwrap_or(1),
@@ -32,7 +32,7 @@ pub(super) fn width(e: &Expr) -> usize {
     }
 }
 
-/// A value as an array: numbers are put into one.
+/// A value as an array; a number becomes an array of length one.
 pub(super) fn as_array(e: &Expr, value: TokenStream) -> TokenStream {
     match e.shape().is_scalar() {
         true => quote!(SMatrix::<T, 1, 1>::new(#value)),
@@ -40,7 +40,7 @@ pub(super) fn as_array(e: &Expr, value: TokenStream) -> TokenStream {
     }
 }
 
-/// Lets that take the velocities of a block apart, those among `letters`, and their bindings.
+/// `let` statements that extract the velocities in `letters` from a block, and their bindings.
 pub(super) fn taken_apart(
     members: &[Moving],
     letters: &[Known],

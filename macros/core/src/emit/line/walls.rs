@@ -1,5 +1,6 @@
-//! Reflection at the walls of a box: places that a step brings beyond a wall are put back by their mirror image, and
-//! the momentum of their edge by that of its kinetic part, what a vector potential adds taken at either place.
+//! Reflection at the walls of a box. A position beyond a wall is replaced by its mirror image, and so is the kinetic
+//! part of its edge momentum. The contribution of a vector potential is taken at the position before and after the
+//! reflection.
 
 use super::locals::Places;
 use super::{Lines, Moving, acting, number};
@@ -10,15 +11,16 @@ use crate::syntax::ast::Extent;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// What is emitted of walls.
+/// The emitted code of walls.
 pub(super) struct Walls {
     /// The kernel of the vector potential.
     pub items: TokenStream,
-    /// What a step does once all places have moved.
+    /// The statements of a step after all positions have moved.
     pub call: TokenStream,
 }
 
-/// The momentum of a configuration at rest, by its place: what its vector potential adds.
+/// The momentum of a configuration at zero velocity as a function of its position, which is the contribution of a
+/// vector potential.
 fn at_rest(m: &Moving) -> Option<Expr> {
     let limit = m.lone.d.limit.as_ref().ok()?;
     let xi = Letter {
@@ -33,7 +35,7 @@ fn at_rest(m: &Moving) -> Option<Expr> {
     ))
 }
 
-/// Why walls are not emitted, if so.
+/// The reason why clebsch cannot emit the walls, if any.
 pub(super) fn refusal(line: &Line) -> Option<String> {
     let boxed = |name: &str| {
         let q = line.lattice.find(name);
@@ -61,8 +63,8 @@ pub(super) fn refusal(line: &Line) -> Option<String> {
     })
 }
 
-/// Whether each component of the momentum at rest belongs to the same component of the velocity alone: then a mirror
-/// image of the momentum is that of the velocity.
+/// Whether each component of the kinetic momentum depends on the same component of the velocity only, so that
+/// reflecting the momentum reflects the velocity.
 fn is_turned_by_itself(m: &Moving) -> bool {
     let d = m.d();
     let Ok(limit) = &d.limit else {
@@ -97,7 +99,7 @@ fn kernel(m: &Moving) -> Ident {
     format_ident!("at_rest_{}", m.mover.name)
 }
 
-/// The walls of a box, if there is one.
+/// The walls of a box, if there are any.
 pub(super) fn walls(l: &Lines) -> Option<Walls> {
     let (extent, directions) = l.extent()?;
     if !matches!(extent, Extent::Box(_)) {
