@@ -1,4 +1,4 @@
-//! Domains that a step must not leave: those of the functions in the model, and invertible matrices. Takes the
+//! Domains that a step must not leave: the domains of functions in the model, and invertible matrices. Takes the
 //! derivation; gives the tests of a step, of a step size and of the parameters. A model without such functions has no
 //! tests.
 
@@ -19,7 +19,7 @@ use crate::schedule;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-/// The domain of an argument; the names are those of the runtime.
+/// The domain of an argument; the names are the runtime's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Domain {
     Positive,
@@ -37,7 +37,7 @@ impl Domain {
     }
 }
 
-/// A function or operation with a domain; the names are those of the runtime.
+/// A function or operation with a domain; the names are the runtime's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Named {
     Log,
@@ -59,7 +59,7 @@ impl Named {
     }
 }
 
-/// What an argument depends on.
+/// The dependence of an argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     /// Parameters only.

@@ -72,7 +72,7 @@ fn correction(
         return None;
     }
     let size = expr::magnitude(s, &expr::substitute(s, edge, multipliers));
-    // At zero velocity: positions are those of the node, and attitudes do not rotate.
+    // At zero velocity: positions are the node's positions, and attitudes do not rotate.
     let at_rest = expr::letters(&size).into_iter().filter_map(|l| {
         let own = |c: &&Configuration| c.velocity == l.symbol;
         match d.spec.configurations.iter().find(own) {

@@ -302,9 +302,9 @@ pub fn scales(d: &Derivation, names: &Names) -> TokenStream {
 
 /// The scales of one invariant.
 enum Sizes {
-    /// Of a scalar invariant.
+    /// The scale of a scalar invariant.
     Number(TokenStream),
-    /// Of an invariant with several components.
+    /// The scales of an invariant with several components.
     Several(TokenStream),
 }
 

@@ -1,6 +1,6 @@
 //! The step of a Moser-Veselov equation whose left factor is constant in either frame, or known at the node: the edge
 //! momentum, the selected solver, the torques at the node. Takes the derivation; gives the fields of the workspace,
-//! `start_with`, `step` and the error messages.
+//! `step` and the error messages.
 
 use super::element::{self, Family, family};
 use super::expression::{Bindings, Writer, program, ty as quantity};

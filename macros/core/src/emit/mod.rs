@@ -53,7 +53,7 @@ use names::Names;
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
-/// The largest number of coordinates of the Lie algebra of a group other than a field: that of SO(8).
+/// The largest number of coordinates of the Lie algebra of a group other than a field, attained by SO(8).
 const MOST_COORDINATES: u64 = 28;
 
 /// Limits on the unknowns that a stepper solves together.

@@ -445,7 +445,7 @@ fn arrival(l: &Lines, m: Moving) -> Option<TokenStream> {
     })
 }
 
-/// The momenta of one configuration at the next node, and those of the edges that start there.
+/// The momenta of one configuration at the next node, and the momenta of the edges that start there.
 pub(super) fn arrive(l: &Lines, m: &Moving) -> TokenStream {
     let (name, text) = (m.name(), &m.mover.name);
     let range = super::step::range_name(m);

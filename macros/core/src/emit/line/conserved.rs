@@ -42,7 +42,7 @@ fn function(l: &Lines, t: &Total, rest: &[Total]) -> TokenStream {
     }
 }
 
-/// Tests whether the ends are those of a total.
+/// Tests whether the end conditions agree with those of a total.
 fn held_as(l: &Lines, t: &Total) -> TokenStream {
     let ends = l.item("Ends");
     let fields = [false, true].into_iter().filter_map(|last| {

@@ -1,4 +1,4 @@
-//! Domains that a step along a chain must not leave: those of functions, at every site and in every neighbour term.
+//! Domains that a step along a chain must not leave: the domains of functions, at every site and in every neighbour term.
 
 use super::locals::{Known, step};
 use super::pulls::{known, range_of};

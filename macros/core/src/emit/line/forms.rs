@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 /// The expressions of a kernel, with the values computed before them.
 pub(super) struct Forms {
-    /// The symbols, including those of relative rotations.
+    /// The symbols, including the symbols of relative rotations.
     pub symbols: Symbols,
     /// Rotations or quaternions from the frame of one letter to the frame of another, with their values.
     pub relative: Vec<(SymbolId, Expr)>,

@@ -19,7 +19,7 @@ pub(super) struct Given<'a> {
 }
 
 impl Lines<'_> {
-    /// The parameters in the order of declaration, without those of end conditions and offsets.
+    /// The parameters in the order of declaration, without the parameters of end conditions and offsets.
     pub(super) fn given(&self) -> Vec<Given<'_>> {
         let part = &self.line.representative;
         let s = &part.d.letters.symbols;

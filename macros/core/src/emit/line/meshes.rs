@@ -227,7 +227,7 @@ impl Plan<'_> {
     }
 }
 
-/// The letters of sites, without those of arrays.
+/// The letters of sites, without the letters of arrays.
 fn known_letters(
     l: &Lines,
     values: &[Expr],

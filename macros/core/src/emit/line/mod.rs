@@ -132,7 +132,7 @@ impl Moving<'_> {
         matches!(self.mover.how, SiteSolve::Rotation { real: Some(_), .. })
     }
 
-    /// Rows and columns of a field; for a rotation, those of its momentum.
+    /// Rows and columns of a field; for a rotation, the rows and columns of its momentum.
     fn dims(&self) -> (TokenStream, TokenStream) {
         let c = &self.d().spec.configurations[self.mover.index];
         match c.group.kept() {
