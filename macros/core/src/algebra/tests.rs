@@ -1,4 +1,4 @@
-//! Quaternions and rigid motions: identities that hold, and neighbours of them that do not.
+//! Quaternions and rigid motions: identities that hold, and similar equations that do not.
 
 use super::rational::Rational;
 use super::{Algebra, Decision};
@@ -59,11 +59,11 @@ fn quaternions_turn_vectors() {
     assert_eq!(found, Some(Decision::NormalForm));
     let backward = expr::mul(l.t(rot(q.clone())), v.clone());
     assert_eq!(l.known(expr::imaginary(conjugated), backward), None);
-    // A homomorphism, and one that orthogonality alone would not give.
+    // A homomorphism; orthogonality alone would not suffice.
     let both = expr::mul(q.clone(), p.clone());
     let product = expr::mul(rot(q.clone()), rot(p.clone()));
     assert_eq!(l.known(rot(both), product), Some(Decision::NormalForm));
-    // R v = (w^2 - |x|^2) v + 2 (x.v) x + 2 w x × v, only by |q| = 1.
+    // R v = (w^2 - |x|^2) v + 2 (x.v) x + 2 w x × v, only if |q| = 1.
     let (w, x) = (expr::real(q.clone()), expr::imaginary(q.clone()));
     let two = || expr::integer(2);
     let square = |e: Expr| expr::mul(e.clone(), e);
@@ -119,7 +119,7 @@ fn imaginary_parts_are_projections_and_products_those_of_hamilton() {
     assert_eq!(l.known(back, minus(q.clone())), Some(Decision::NormalForm));
     let back = expr::imaginary(l.t(k.clone()));
     assert_eq!(l.known(back, minus(k.clone())), Some(Decision::NormalForm));
-    // The skew part of a quaternion is made of its imaginary part, that of a matrix is not.
+    // The skew part of a quaternion depends on its imaginary part only; for a general matrix this is false.
     let skew = |e: &Expr| expr::part(expr::Part::Skew, e.clone());
     let pure = |e: &Expr| expr::pure(expr::imaginary(e.clone()));
     assert_eq!(l.known(skew(&q), pure(&q)), Some(Decision::NormalForm));
@@ -141,7 +141,7 @@ fn rigid_motions_are_decided_in_blocks() {
         Some(Decision::NormalForm)
     );
     assert_eq!(l.known(pos(&expr::mul(f, g.clone())), moved), None);
-    // The inverse: R^T and -R^T x.
+    // The inverse has the parts R^T and -R^T x.
     let back = l.inverse(g.clone());
     assert_eq!(
         l.known(rot(&back), l.t(rot(&g))),
@@ -149,7 +149,7 @@ fn rigid_motions_are_decided_in_blocks() {
     );
     let opposite = expr::neg(expr::mul(l.t(rot(&g)), pos(&g)));
     assert_eq!(l.known(pos(&back), opposite), Some(Decision::NormalForm));
-    // Not orthogonal as a whole, orthogonal in its block.
+    // A rigid motion is not orthogonal, but its rotation block is.
     let one = expr::identity(Dim::Fixed(4));
     assert_eq!(l.known(expr::mul(l.t(g.clone()), g.clone()), one), None);
     let energy = |r: Expr| expr::trace(expr::product([r.clone(), j.clone(), l.t(r)]));
@@ -175,7 +175,7 @@ fn products_of_quaternions_are_taken_apart() {
         back.clone(),
         expr::product([between.clone(), pure(&v)]),
         expr::product([back.clone(), pure(&u), between.clone()]),
-        // What turns a vector that is turned back goes behind it.
+        // A rotation followed by a relative rotation of the vector moves to the other side of it.
         expr::product([
             between.clone(),
             pure(&seen(&expr::mul(rot(&q), u.clone()), &p)),
@@ -208,7 +208,7 @@ fn products_of_quaternions_are_taken_apart() {
             }
         }
     }
-    // A rigid motion is none.
+    // A rigid motion is not a quaternion.
     let motion = expr::trace(l.at("G"));
     assert_eq!(expr::quaternion_components(&l.symbols, &motion), motion);
 }
@@ -217,7 +217,7 @@ fn parts_vanish(l: &Letters, e: &Expr) -> bool {
     l.known(e.clone(), expr::zero(e.shape())).is_some()
 }
 
-/// Whether parts are taken of single quaternions, and of quaternions from one to another, alone.
+/// Whether parts are taken only of single quaternions and of relative quaternions.
 fn is_parted(e: &Expr) -> bool {
     match e.node() {
         expr::Node::Map(expr::Map::Real | expr::Map::Imaginary, a) => match a.node() {
@@ -238,7 +238,7 @@ fn diagonals_are_those_of_the_entries() {
     let (k, v) = (l.at("K"), l.at("J"));
     let diagonal = |e: Expr| expr::part(expr::Part::Diagonal, e);
     let agree = |a: Expr, b: Expr| assert!(l.known(a, b).is_some());
-    // diag(A) = diag(A^T), tr diag(A) = tr A, tr(diag(A) B) = tr(diag(A) diag(B)), diag of it once more.
+    // diag(A) = diag(A^T), tr diag(A) = tr A, tr(diag(A) B) = tr(diag(A) diag(B)), diag(diag(A)) = diag(A).
     for a in [k.clone(), v.clone()] {
         let d = diagonal(a.clone());
         let turned = diagonal(l.t(a.clone()));
@@ -252,7 +252,7 @@ fn diagonals_are_those_of_the_entries() {
     }
 }
 
-/// Fractional powers of a sum, of a multiple and of a trace multiply to the whole powers of the same.
+/// Products of fractional powers of a sum, a multiple and a trace are integer powers of them.
 #[test]
 fn fractional_powers_multiply_to_whole_ones() {
     let l = Letters::new();
@@ -283,8 +283,8 @@ fn fractional_powers_multiply_to_whole_ones() {
     }
 }
 
-/// A product of orthogonal letters that cancels to the identity has the trace 3, also where the product
-/// comes out of two axial vectors.
+/// A product of orthogonal letters that cancels to the identity has trace 3, even if the product comes from two axial
+/// vectors.
 #[test]
 fn squares_of_axial_vectors_keep_the_trace_of_the_identity() {
     let mut symbols = Symbols::default();

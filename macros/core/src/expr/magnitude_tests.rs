@@ -1,5 +1,6 @@
-//! Sizes beside what expressions change by when their letters are rounded: never much less, and at most a thousand times
-//! as much, also where factors nearly vanish. Products of norms are larger by up to twenty orders there.
+//! Compares magnitudes with the change of an expression when its letters are rounded. A magnitude is never much
+//! smaller, and at most a thousand times as large, even if factors nearly vanish. There, products of norms are larger
+//! by up to twenty orders of magnitude.
 
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{Role, Symbols};
@@ -48,7 +49,8 @@ fn values(gap: f64) -> Assignment {
     v
 }
 
-/// What the expression changes by, in units of rounding, when every entry of every letter does.
+/// The change of the expression, in units of rounding, when every entry of every letter changes by one rounding
+/// error.
 fn change(s: &Symbols, e: &Expr, v: &Assignment) -> f64 {
     let each = letters(e).into_iter().map(|l| {
         let slope = evaluate(s, &gradient(s, e, l), v).unwrap();

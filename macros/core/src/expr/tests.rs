@@ -1,5 +1,4 @@
-//! The constructors keep no term beside its opposite, whatever surrounds them, and keep all else
-//! in its place.
+//! The constructors cancel terms with opposite signs, in any context, and keep all other terms in order.
 
 use super::shape::{Dim, Shape, Structure};
 use super::symbol::{Role, Symbols};
@@ -48,7 +47,7 @@ fn only_pairs_vanish_and_the_rest_keeps_its_order() {
     assert_eq!(left.children(), [&b, &a, &b]);
     let twice = sum([neg(a.clone()), neg(a.clone()), a.clone()], shape);
     assert_eq!(twice, neg(a.clone()));
-    // Negative controls: equal signs, other factors, products in another order.
+    // Negative controls: equal signs, different factors, products in another order.
     assert!(!add(a.clone(), a.clone()).is_zero());
     assert!(!sub(scale(Rational::integer(2), a.clone()), a.clone()).is_zero());
     assert!(!sub(mul(a.clone(), b.clone()), mul(b, a)).is_zero());
@@ -116,7 +115,8 @@ fn the_gradient_of_a_logarithm_of_a_determinant_is_the_transposed_inverse() {
     assert!(!algebra.equal(&gradient, &inverse(&s, a)));
 }
 
-/// What stands under a determinant that is a product is told by its factors: nothing is inverted that cancels.
+/// The derivative of the determinant of a product is expressed by its factors, and factors that cancel are not
+/// inverted.
 #[test]
 fn derivatives_of_the_determinant_of_a_product_are_those_of_its_factors() {
     let mut s = Symbols::default();
@@ -141,7 +141,7 @@ fn derivatives_of_the_determinant_of_a_product_are_those_of_its_factors() {
     let across = transpose(&s, inverse(&s, q.clone()));
     assert!(algebra.equal(&of_log, &scale(Rational::integer(2), across.clone())));
     assert!(!super::contains_role(&s, &of_log, Role::Parameter));
-    // d det(Q^T C Q) = 2 det(C) det(Q)^2 Q^-T, of which the cofactors have a value everywhere.
+    // d det(Q^T C Q) = 2 det(C) det(Q)^2 Q^-T. Its cofactors are defined for every Q.
     let of_det = gradient(&det(form.clone()));
     let twice = super::product([det(c), det(q.clone()), det(q.clone()), across]);
     assert!(algebra.equal(&of_det, &scale(Rational::integer(2), twice)));
@@ -156,7 +156,7 @@ fn derivatives_of_the_determinant_of_a_product_are_those_of_its_factors() {
         false
     };
     assert!(!inverts(&of_det));
-    // Along a direction the same, and as the polynomial has it.
+    // The same along a direction, and the same as the derivative of the polynomial.
     let along = [(letter, v.clone())];
     let change = super::directional(&s, &det(form.clone()), &along);
     let paired = |g: Expr| super::trace(mul(transpose(&s, g), v.clone()));
@@ -164,7 +164,7 @@ fn derivatives_of_the_determinant_of_a_product_are_those_of_its_factors() {
     let log = call(Function::Log, det(form.clone()));
     let change = super::directional(&s, &log, &along);
     assert!(algebra.equal(&change, &paired(of_log)));
-    // What is computed has no determinant of a product.
+    // The computed form contains no determinant of a product.
     let plain = super::with_plain_determinants(&s, &det(form.clone()));
     assert_ne!(plain, det(form.clone()));
     assert!(algebra.equal(&plain, &det(form)));

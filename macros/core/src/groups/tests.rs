@@ -1,5 +1,5 @@
-//! The laws of the table: what every record says of its group is one and the same group, by its
-//! inclusion of the Lie algebra into matrices. A further group is tested by its line.
+//! The laws of the table: all fields of a record describe the same group, given the inclusion of its Lie algebra into
+//! matrices. A new line of the table is tested automatically.
 
 use super::{Group, TABLE};
 use crate::algebra::exact::vanishes;
@@ -33,7 +33,7 @@ fn letters(group: Group) -> Letters {
     }
 }
 
-/// The groups of the table, those of any size in two to four dimensions.
+/// The groups of the table; groups of any size in two to four dimensions.
 fn groups() -> Vec<Group> {
     let sizes = |line: &super::Line| match line.size {
         Some(n) => vec![n],

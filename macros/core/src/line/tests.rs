@@ -1,4 +1,4 @@
-//! Lines as programs: the shipped models and what is refused.
+//! Chain models as programs: the shipped models, and models that are rejected.
 
 use super::{Line, Refused, SiteSolve};
 use crate::pipeline;
@@ -22,7 +22,7 @@ fn shipped_lattices_are_programs() {
         ("geometrically-exact-rod", 2, 2),
         ("quaternion-rod", 2, 2),
         ("hanging-chain", 0, 1),
-        // Between sections, and where an end pushes.
+        // Between sections, and where an end condition exerts a force.
         ("kirchhoff-rod", 2, 2),
     ] {
         let line = match line(&shipped(name)) {
@@ -96,7 +96,7 @@ fn what_is_held_reaches_its_site_and_the_next() {
     assert_eq!(multiples, [true, true, false]);
 }
 
-/// Quaternions along a line with this kinetic energy and this coupling.
+/// A chain of quaternions with this kinetic energy and this coupling.
 fn quaternions(kinetic: &str, coupling: &str) -> Result<Line, Refused> {
     line(&format!(
         "model Spins {{ label i in 0..N; periodic; param A, K: Sym<3>; param b, c: Real;
@@ -145,7 +145,8 @@ fn quaternions_with_another_kinetic_energy_are_refused() {
     assert!(why.contains("a quadratic form of im"), "{why}");
 }
 
-/// A model of numbers at nodes with this constraint, and why it is refused.
+/// A chain of fields at nodes with this statement of a constraint; gives the reason for its rejection, empty if it is
+/// accepted.
 fn held(statement: &str) -> String {
     let text = format!(
         "model Beads {{ label i in 0..N; param m, a: Real; field X: Vec<2> at nodes; field Y: Mat<2> at nodes; {statement}
@@ -165,7 +166,7 @@ fn constraints_that_loops_do_not_take_are_refused_with_their_names() {
         ""
     );
     assert_eq!(held("hold k: dot(X, X) = a^2;"), "");
-    // Counted from the site before.
+    // Indices counted from the previous site.
     assert_eq!(
         held("hold k: dot(X - prev(X, i), X - prev(X, i)) = a^2;"),
         ""
@@ -201,7 +202,7 @@ fn constraints_that_loops_do_not_take_are_refused_with_their_names() {
     }
 }
 
-/// Bodies with this Lagrangian of their own, and these terms of neighbours.
+/// Bodies with these terms of their own and these neighbour terms.
 fn bodies(own: &str, neighbours: &str) -> Result<Line, Refused> {
     line(&format!(
         "model Bodies {{ label i in 0..N; periodic; param J, C: Sym<3>; param d, g: Vec<3>; param b, e, m: Real;
@@ -312,7 +313,7 @@ fn what_no_definition_gives_is_refused_where_a_site_sees_it() {
     }
 }
 
-/// Beads in space that springs join, with these ends at either side.
+/// Beads in space connected by springs, with these end conditions.
 fn strung(first: &str, last: &str) -> Line {
     let text = format!(
         "model Strung {{ label i in 0..N; param m, k, l: Real; field X: Vec<3> at nodes; let d = next(X, i) - X;

@@ -1,4 +1,5 @@
-//! Identities that hold at random points of a prime field, values at zero, inverses and quaternions of given matrices.
+//! Identities that hold at random points of a prime field; values at zero; inverses and quaternions of given
+//! matrices.
 
 use super::*;
 use crate::expr::symbol::Role;
@@ -57,7 +58,7 @@ fn identities_of_three_dimensions_vanish() {
 
 #[test]
 fn inverses_are_found_where_the_diagonal_is_zero() {
-    // Rows that change places twice, and once more below the first.
+    // Permutations of rows: two exchanges, one below the first row, one with it.
     let turned = |rows: [usize; 3]| Matrix::from_fn(3, 3, |i, j| u64::from(rows[i] == j));
     for (rows, det) in [
         ([1, 2, 0], 1),
@@ -77,7 +78,7 @@ fn functions_have_their_values_at_zero() {
     let mut add = |name| s.add(name, shape, Structure::General, Role::Parameter);
     let (u, v) = (add("u"), add("v"));
     let (u, v) = (expr::here(&s, u), expr::here(&s, v));
-    // A number that is zero, and is not written so.
+    // An expression that is zero but not written as zero.
     let zero = expr::dot(u.clone(), expr::cross(u, v));
     let call = |f| expr::call(f, zero.clone());
     for f in [Function::Sin, Function::Sinh, Function::Tanh] {
@@ -96,7 +97,7 @@ fn matrices_of_quaternions_give_their_parts() {
         add(turned.at(i, j), if i == j { w } else { 0 })
     });
     assert_eq!(quaternion(&a), [28, 8, 12, 20]);
-    // The real part is the mean of the whole diagonal.
+    // The real part is the mean of the diagonal.
     let a = Matrix::from_fn(4, 4, |i, j| if i == j { 1 << i } else { 0 });
     assert_eq!(quaternion(&a), [15, 0, 0, 0]);
 }

@@ -1,5 +1,5 @@
-//! Values of functionals are letters: the same for equal arguments, others for others, and nothing but
-//! linearity is known of their derivatives.
+//! Values of functionals are letters: equal for equal arguments, different for others. Linearity is the only known
+//! property of their derivatives.
 
 use crate::algebra::{Algebra, Decision, Rational};
 use crate::expr::functional::tests::Table;
@@ -17,7 +17,7 @@ fn equal_arguments_give_equal_values_and_others_do_not() {
     let g = |x: &Expr, y: &Expr| t.sample.of("g", &[x, y]);
     let two = |e: Expr| expr::scale(Rational::integer(2), e);
     let more = expr::add(x.clone(), y.clone());
-    // (x + y) + (x - y) is 2 x by its normal form alone.
+    // (x + y) + (x - y) is 2 x only in normal form.
     let twice = expr::sum([more.clone(), x.clone(), expr::neg(y.clone())], x.shape());
     let turned = expr::cross(expr::neg(y.clone()), x.clone());
     for (a, b) in [
@@ -67,12 +67,12 @@ fn equal_arguments_give_equal_values_and_others_do_not() {
         assert!(!algebra.agree(&a, &b), "{a:?} {b:?}");
     }
     assert!(!algebra.exhausted());
-    // Of no sign, of no range.
+    // Its sign and range are unknown.
     let bounds = range::range(&f(&x));
     assert!(!bounds.is_not_negative() && !bounds.is_not_positive() && !bounds.overflows());
 }
 
-/// A matrix of rank one, whose determinant vanishes whatever the functional is.
+/// A matrix of rank one, whose determinant vanishes for every functional.
 fn g_outer(t: &Table) -> Expr {
     let g = t.sample.of("g", &[&t.at(t.x), &t.at(t.y)]);
     expr::mul(g.clone(), expr::transpose(&t.sample.symbols, g))
@@ -144,7 +144,7 @@ fn derivatives_are_linear_symmetric_and_transposed() {
     );
     let q = sample.of("q", &[&square]);
     assert!(!algebra.equal(&q, &expr::transpose(s, q.clone())));
-    // Its inverse and determinant are those of a letter.
+    // Inverse and determinant follow the rules for a letter.
     normal(
         expr::mul(expr::inverse(s, q.clone()), q.clone()),
         expr::identity(q.shape().rows),
@@ -197,7 +197,7 @@ fn structures_of_values_and_sizes_with_names_hold_at_points() {
     assert_eq!(expr::transpose(s, w.clone()), expr::neg(w.clone()));
     assert!(algebra.is_zero(&expr::sub(expr::hat(expr::vee(w.clone())), w.clone())));
     assert!(!algebra.is_zero(&w));
-    // <s, D l(a)[u]> = <(D l(a))^T[s], u> where no entries can be written.
+    // <s, D l(a)[u]> = <(D l(a))^T[s], u> for a size without known entries.
     let applied = |along: Vec<(u8, Expr)>| Applied {
         functional: long,
         arguments: vec![a.clone()],
@@ -211,7 +211,7 @@ fn structures_of_values_and_sizes_with_names_hold_at_points() {
         Some(Decision::ExactEvaluation)
     );
     assert!(!algebra.is_zero(&left));
-    // What sees other sites has no value at a point, and no number of a site comes out of it.
+    // A functional of all sites has no value at a point, and its scalar factors do not move out.
     let over = |along, seed: &Expr| {
         let a = Applied {
             functional: sites,

@@ -1,4 +1,4 @@
-//! Balances that are linear in several velocities together are told from those that are not.
+//! Distinguishes balances that are linear in several velocities together from those that are not.
 
 use crate::derive_source;
 
@@ -23,7 +23,7 @@ fn one_linear_system_is_named_so() {
     }
     let quartic = reason(&format!("{pair} + dot(d, d)^2/h^3;"));
     assert!(!quartic.contains("linear system"), "{quartic}");
-    // One pair of factors: two small systems, no Newton's method.
+    // With one pair of factors, the balance separates into two small systems and needs no Newton iteration.
     let one_term = reason(
         "field X: Mat<2, 3>; let d = next(X) - X; lagrangian = tr(d^T*A*d*B)/(2*h) - h*tr(X^T*X);",
     );

@@ -1,5 +1,5 @@
-//! The proof refuses derivations that are wrong. Takes derivations of models, one part of each
-//! falsified as a mistake of the engine would; asserts that the certificate is not given.
+//! The certificate rejects wrong derivations. Each test changes one part of a correct derivation, as an error in the
+//! engine would, and asserts that no certificate is given.
 
 use super::{Inputs, certify};
 use crate::algebra::Algebra;
@@ -41,7 +41,7 @@ const MODELS: [(&str, &str); 5] = [
     ),
 ];
 
-/// The refusal, or nothing where the derivation is certified.
+/// The reason for the rejection; None if the derivation is certified.
 fn refusal(d: &Derivation) -> Option<String> {
     let algebra = Algebra::new(&d.letters.symbols);
     let certificate = certify(&Inputs {
@@ -65,10 +65,10 @@ fn doubled(e: &mut Expr) {
     *e = expr::scale(crate::algebra::Rational::integer(2), e.clone());
 }
 
-/// What is false in a derivation, and what makes it so.
+/// The description of a mistake, and the change that introduces it.
 type Mistake = (&'static str, fn(&mut Derivation));
 
-/// One mistake of each part of a derivation.
+/// One mistake for each part of a derivation.
 fn mistakes() -> Vec<Mistake> {
     vec![
         ("the outgoing velocity varies the other way", |d| {

@@ -1,5 +1,5 @@
-//! What is said to be convex is so at random points, and what is not, or cannot be told by its form, is
-//! left to the proof of each step.
+//! Actions reported as convex are convex at random points. Actions that are not convex, or whose form does not decide
+//! it, are left to the proof of each step.
 
 use super::convexity;
 use crate::derive::variation::at;
@@ -15,7 +15,7 @@ fn derived(body: &str) -> Derivation {
     derive_source(&text).unwrap_or_else(|e| panic!("{text}: {e:?}"))
 }
 
-/// Signs that decide: those that must be positive, those that must not be negative.
+/// The coefficients whose signs decide: those that must be positive, then those that must not be negative.
 fn signs(d: &Derivation) -> Option<[Vec<String>; 2]> {
     let s = &d.letters.symbols;
     let found = convexity(&d.spec, s, &d.action)?;
@@ -27,7 +27,7 @@ fn signs(d: &Derivation) -> Option<[Vec<String>; 2]> {
     Some([text(&found.positive), text(&found.not_negative)])
 }
 
-/// The second derivative of the action of an edge along a velocity at a random point.
+/// The second derivative of the action of an edge along a velocity, at a random point.
 fn curvature(d: &Derivation, seed: u64) -> f64 {
     let s = &d.letters.symbols;
     let edge = expr::substitute(s, &d.action.edge, &d.spec.end_of_edge());
@@ -54,7 +54,7 @@ fn curvature(d: &Derivation, seed: u64) -> f64 {
             _ => 1,
         };
         let (rows, cols) = (count(symbol.shape.rows), count(symbol.shape.cols));
-        // Numbers are coefficients or the step, and positive.
+        // Scalars are coefficients or the step size, and are positive.
         let data: Vec<f64> = (0..rows * cols)
             .map(|_| match rows * cols {
                 1 if symbol.name.len() == 1 => 0.1 + random(),
@@ -121,11 +121,11 @@ fn what_is_not_convex_by_its_form_is_left_to_the_proof() {
             "{more}"
         );
     }
-    // Nothing keeps the part of Y: no square of its velocity.
+    // The velocity of Y has no square of its own, so its coefficient is not bounded from below.
     let body = "field X, Y: Vec<3>; let d = next(X) - X; let e = next(Y) - Y; \
          lagrangian = m*dot(d, d)/(2*h) + (n/h^3)*dot(d + e, d + e)^2;";
     assert!(signs(&derived(body)).is_none());
-    // A motion of a group is not convex in anything.
+    // The velocity of a group is not an additive unknown, so no convexity is reported.
     let group = "group R: SO<3> velocity V; constraint next(R) = R*V; \
          lagrangian = -m*tr(V)/h + (b/h)*tr(M*V)^2;";
     assert!(signs(&derived(group)).is_none());

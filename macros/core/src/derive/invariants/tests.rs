@@ -1,5 +1,4 @@
-//! Which invariants are found, and which are refused. Takes models as text; compares the names of
-//! what is found.
+//! Which invariants are found and which are not. Takes models as text; compares the names of the invariants.
 
 mod lattices;
 mod mixed_fields;
@@ -16,7 +15,7 @@ fn derive(text: &str) -> Derivation {
     derive_source(text).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Names of the invariants, bounded ones with a mark.
+/// The names of the invariants, with a mark on bounded ones.
 fn names(d: &Derivation) -> Vec<String> {
     let list = d.invariants.iter();
     list.map(|v| format!("{}{}", v.name, if v.exact { "" } else { "~" }))
@@ -27,7 +26,7 @@ fn found(text: &str) -> Vec<String> {
     names(&derive(text))
 }
 
-/// The heavy top with what is assumed of its parameters.
+/// The heavy top with assumptions on its parameters.
 fn top(assumed: &str) -> String {
     format!(
         "model Top {{
@@ -56,7 +55,7 @@ fn a_symmetric_top_keeps_the_momentum_about_its_axis_when_that_is_assumed() {
         let all = [&general[..], &["momentum_E3"]].concat();
         assert_eq!(found(&top(assumed)), all, "{assumed}");
     }
-    // Half of it is not enough, nor is the wrong axis.
+    // One assumption is not enough, and neither is a wrong axis.
     for assumed in [
         "assume J*hat(E3) == hat(E3)*J;",
         "assume cross(gU, E3) == 0;",
@@ -66,8 +65,8 @@ fn a_symmetric_top_keeps_the_momentum_about_its_axis_when_that_is_assumed() {
     ] {
         assert_eq!(found(&top(assumed)), general, "{assumed}");
     }
-    // An axis that is a parameter. It may be zero, and then nothing is said of gU: the momentum
-    // about n is conserved all the same, that about gU is not.
+    // The axis is a parameter, which may be zero; the assumption then does not restrict gU. The momentum about n is
+    // always conserved, the momentum about gU is not.
     let axis = "param n: Vec<3>; assume J*hat(n) == hat(n)*J; assume cross(gU, n) == 0;";
     let all = [&general[..], &["momentum_n"]].concat();
     assert_eq!(found(&top(axis)), all);
@@ -168,7 +167,7 @@ fn the_spatial_side_has_the_eigenvalues_of_what_it_carries() {
         constraint next(Λ) = ω*Λ; constraint next(J) = ω*J*ω^T;
         lagrangian = -tr(ω*J)/h;
     }";
-    // The energy of the free body is exact, seen from space as well; |m| is no Casimir there.
+    // The energy of the free body is exact in the spatial form too, but |m| is not a Casimir there.
     let d = derive(free);
     let wanted = [
         "energy",
@@ -202,7 +201,7 @@ fn free_bodies_have_manakov_integrals_in_every_dimension() {
         assert_eq!(d.integrability.rank(), Some(rank));
         assert!(d.integrability.lax.is_some());
     }
-    // A factor without symmetry has no Lax form: the momentum and its Casimirs alone are left.
+    // A factor without symmetry has no Lax form: only the momentum and its Casimirs remain.
     let d = derive(
         "model Body {
             param C: Mat<4>; group Λ: SO<4> velocity Ω;
@@ -275,12 +274,12 @@ fn the_bracket_of_body_and_space_differ_in_sign() {
     // {μ_1, μ_2} = -μ_3 and {m_1, m_2} = m_3.
     assert_eq!(entry(&body, 0, 1), Ok(-4.0));
     assert_eq!(entry(&space, 0, 1), Ok(4.0));
-    // {J, m_3} = [hat(e_3), J]: its entry (1, 1) is -2 J_12.
+    // {J, m_3} = [hat(e_3), J], whose entry (1, 1) is -2 J_12.
     assert_eq!(entry(&space, 3, 2), Ok(-4.0));
     assert_eq!(entry(&space, 2, 3), Ok(4.0));
 }
 
-/// A body in a fluid, with what is said of its surroundings.
+/// A body in a fluid, with these declarations for its surroundings and this potential.
 fn body_in_fluid(declared: &str, potential: &str) -> Derivation {
     derive(&format!(
         "model Body {{
@@ -305,7 +304,7 @@ fn a_body_in_a_fluid_keeps_what_its_surroundings_leave_alone() {
     ];
     assert_eq!(names(&free), wanted);
     assert_eq!(free.integrability.rank(), Some((6, 4)));
-    // Its weight balanced by buoyancy: only the vertical direction is told.
+    // Neutral buoyancy: the potential depends on the vertical direction only.
     let upright = body_in_fluid(
         "param b, z: Vec<3>; advected Γ: Vec<3> = rot(G)^T*z; constraint next(Γ) = rot(V)^T*Γ;",
         " - h*dot(b, Γ)",
@@ -320,7 +319,7 @@ fn a_body_in_a_fluid_keeps_what_its_surroundings_leave_alone() {
     ];
     assert_eq!(names(&upright), wanted);
     assert_eq!(upright.integrability.rank(), Some((9, 6)));
-    // A net weight: the height is told, horizontal translations are not.
+    // A net weight: the potential depends on the height and not on horizontal translations.
     let heavy = body_in_fluid(
         "param b, Z: Vec<4>; advected P: Vec<4> = G^T*Z; constraint next(P) = V^T*P;",
         " - h*dot(b, P)",
@@ -335,7 +334,7 @@ fn a_body_in_a_fluid_keeps_what_its_surroundings_leave_alone() {
     assert_eq!(names(&heavy), wanted);
     assert_eq!(heavy.integrability.rank(), Some((10, 8)));
     assert_eq!(casimirs(&heavy), [(None, 2, 2)]);
-    // Held by a spring to a point: its weight never changes, and the moment about it is kept.
+    // A spring to a fixed point instead of a weight: the moment about that point is conserved.
     let held = body_in_fluid(
         "param K: Sym<4>; param X: Vec<4>; advected Q: Vec<4> = G^-1*X; constraint next(Q) = V^-1*Q;",
         " - h*dot(Q, K*Q)",
@@ -350,7 +349,7 @@ fn a_body_in_a_fluid_keeps_what_its_surroundings_leave_alone() {
     assert_eq!(held.integrability.rank(), Some((10, 8)));
 }
 
-/// How many Casimirs were found of how many there are, size by size.
+/// For each size: the number of Casimirs found, and their total number.
 fn casimirs(d: &Derivation) -> Vec<(Option<usize>, usize, usize)> {
     match &d.integrability.casimirs {
         Known::Counted(counts) => counts.iter().map(|c| (c.size, c.found, c.all())).collect(),
@@ -379,7 +378,7 @@ fn casimirs_of_a_named_size_are_counted_at_every_size() {
         flat.contains("for n = 7 it is 18 of 21, and there are 3 independent Casimirs"),
         "{text}"
     );
-    // Beyond what is tried the document says so.
+    // Beyond the sizes that are tried, the document says so.
     let wide = body_of("dim n in 3..=12;", "n", "Mat", "");
     assert_eq!(casimirs(&wide).last(), Some(&(Some(8), 4, 4)));
     let none = body_of("", "12", "Mat", "");
@@ -401,7 +400,7 @@ fn a_symmetric_factor_makes_the_step_reversible() {
         let assumed = of("Mat", "assume C^T == C;");
         assert!(matches!(assumed.reversal, Reversal::Assumed));
         assert!(assumed.reversible && assumed.limit.is_ok());
-        // Another assumption does not do it.
+        // An unrelated assumption does not suffice.
         let other = of("Mat", "assume tr(C) == 1;");
         assert!(!other.reversible && other.limit.is_err());
     }
@@ -409,7 +408,7 @@ fn a_symmetric_factor_makes_the_step_reversible() {
 
 #[test]
 fn the_discrete_energy_has_no_term_that_is_zero() {
-    // The action at rest, which the energy takes off, has a term in the velocity less the identity.
+    // The discrete energy subtracts the action at zero velocity, which has a term in the velocity minus the identity.
     let d = derive(
         "model Body {
             param J: Sym<3>; param d, g: Vec<3>;
@@ -431,13 +430,13 @@ fn the_discrete_energy_has_no_term_that_is_zero() {
             crate::expr::identity(crate::expr::shape::Dim::Fixed(3)),
         )],
     );
-    // tr(J) off, tr(J Ω) and the coupling: three terms, and none is left at rest.
+    // tr(J), tr(J Ω) and the coupling are three terms, and their sum is zero at zero velocity.
     assert_eq!(value.children().len(), 3, "{value:?}");
     assert!(still.is_zero(), "{still:?}");
 }
 
-/// `A` and its inverse are both carried, and `tr(A A⁻¹)` is 3 whatever moves; a matrix with an empty last row has
-/// determinant zero. The length of what is carried is listed, though a given model has one value of it.
+/// `A` and its inverse are both advected, and `tr(A A⁻¹)` is 3 in every state. A matrix with an empty last row has
+/// determinant zero. The length of an advected vector is listed, although it is constant in a given model.
 #[test]
 fn what_is_the_same_number_for_every_state_is_not_listed() {
     let metrics = derive(
@@ -464,7 +463,7 @@ fn what_is_the_same_number_for_every_state_is_not_listed() {
     let listed = names(&spring);
     assert!(!listed.iter().any(|n| n.starts_with("det_")), "{listed:?}");
     assert_eq!(same(&spring), [(2, 1)]);
-    // Of length 1 in every state, and the length of a reference of any other.
+    // A reference of length 1 in every state has no listed length; any other reference has one.
     let top = found(&top("").replace("Λ^T*z", "Λ^T*E3"));
     assert_eq!(top, ["energy~", "momentum_Gamma", "Gamma_squared"]);
 }

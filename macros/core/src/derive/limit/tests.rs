@@ -1,10 +1,10 @@
-//! Lagrangians that are not quadratic in the velocity: no quadratic limit is made of them. Takes statements; gives reasons.
+//! Lagrangians that are not quadratic in the velocity have no quadratic limit. Takes statements; gives reasons.
 
 use super::{DRIVEN, NOT_QUADRATIC};
 use crate::derive_source;
 use crate::print::{Format, Style, expression};
 
-/// Why the model of this statement has no limit; nothing if it has one.
+/// The reason why the model of this statement has no limit; None if it has one.
 fn reason(statement: &str) -> Option<String> {
     let source = format!("model M {{ param a, b: Real; {statement} }}");
     let derived = derive_source(&source).unwrap_or_else(|e| panic!("{statement}: {e}"));
@@ -32,7 +32,7 @@ fn powers_beyond_the_second_that_stay_are_not_dropped() {
     }
 }
 
-/// The series of a function of the velocity over the step has all powers: the relativistic particle among them.
+/// The series of a function of velocity over step size has all powers. The relativistic particle is an example.
 #[test]
 fn functions_of_the_velocity_over_the_step_are_not_cut_off_at_its_square() {
     for statement in [
@@ -69,7 +69,7 @@ fn powers_that_vanish_with_the_step_are() {
     }
 }
 
-/// Polynomials of differences, which multiplied out lose all that two places have in common.
+/// Polynomials of differences. Multiplied out, they would lose the digits that two positions have in common.
 #[test]
 fn potentials_of_differences_are_told_by_differences() {
     let potential = |term: &str| {
@@ -91,14 +91,14 @@ fn potentials_of_differences_are_told_by_differences() {
         ),
         ("h*(a*(u - v - l)^2/2 + b*(u - v)^4/4)", half),
         ("h*a*(next(u) - next(v) - l)^4", "a (u_k - v_k - l)⁴"),
-        // A place of its own has nothing in common with another.
+        // A single position shares no digits with another.
         ("h*a*(u + l)^2", "2 a l u_k + a l² + a u_k²"),
     ] {
         assert_eq!(potential(term), expected);
     }
 }
 
-/// Of a Lagrangian that depends on time no energy is told, whatever the clock stands in, and none is warned of.
+/// If the Lagrangian depends on time, clebsch lists no energy and gives no warning, wherever the clock occurs.
 #[test]
 fn what_a_clock_drives_has_no_energy() {
     let clock = "advected τ: Real; constraint next(τ) = τ + h;";
@@ -110,7 +110,7 @@ fn what_a_clock_drives_has_no_energy() {
         format!("{point} lagrangian = a*dot(d, d)/(2*h) - h*b*sin(a*τ)*dot(w, X);"),
         format!("{point} {behind} lagrangian = a*dot(d, d)/(2*h) - h*b*y*dot(w, X);"),
         format!("{BODY} {clock} lagrangian = -tr(J*V)/h - h*a*b*τ*dot(R*E1, E2);"),
-        // Of steps counted, or doubled.
+        // A counter of steps as the clock.
         format!("{POINT} {counted} lagrangian = a*dot(d, d)/(2*h) - h*b*sin(n)*dot(w, X);"),
     ] {
         let source = format!("model M {{ param a, b: Real; {statement} }}");
@@ -122,11 +122,12 @@ fn what_a_clock_drives_has_no_energy() {
         );
         assert_eq!(d.discrete_energy(), ("not conserved", DRIVEN));
         assert!(d.warnings.is_empty(), "{statement}");
-        // The scheme is what it was; a sum over the times of steps, and their number, do not return with a step back.
+        // The clock does not change the symmetry of the scheme. But a sum over time and a counter of steps are not
+        // restored by a step back.
         let returns = ![behind, counted].iter().any(|x| statement.contains(x));
         assert_eq!(d.reversible, returns, "{statement}");
     }
-    // A clock that drives nothing.
+    // A clock on which the Lagrangian does not depend.
     let idle = format!("{point} lagrangian = a*dot(d, d)/(2*h) - h*b*dot(w, X);");
     assert_eq!(reason(&idle), None);
 }

@@ -1,5 +1,5 @@
-//! What the reduction finds and what it leaves. Takes unreduced statements; compares definitions,
-//! constraints and what still stands.
+//! Quantities that the reduction finds, and configurations that remain. Takes unreduced statements; compares
+//! definitions, constraints and the remaining letters.
 
 use crate::derive::Derivation;
 use crate::expr;
@@ -10,7 +10,7 @@ fn derive(text: &str) -> Derivation {
     derive_source(text).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Names and constraints of the quantities that were found.
+/// Names and constraints of the quantities found.
 fn found(d: &Derivation) -> Vec<String> {
     let s = &d.letters.symbols;
     let show = |e| expression(e, s, &Style::new("k"), Format::Text);
@@ -60,7 +60,7 @@ fn parameters_absorb_the_configuration_on_either_side() {
     );
 }
 
-/// Whether the configuration itself stands in the reduced action.
+/// Whether the configuration itself occurs in the reduced action.
 fn stands(d: &Derivation, element: &str) -> bool {
     let s = &d.letters.symbols;
     let letters = expr::letters(&d.action.total);
@@ -109,7 +109,7 @@ fn reduced_statements_are_left_as_they_are() {
     assert!(d.spec.reduction.is_none() && found(&d).is_empty());
 }
 
-/// The unit quaternion body, and what is added to its action.
+/// The unit quaternion body, with further terms in its action.
 fn quaternion(update: &str, terms: &str) -> String {
     format!(
         "model Quaternion {{
@@ -122,7 +122,7 @@ fn quaternion(update: &str, terms: &str) -> String {
     )
 }
 
-/// A body with mass, and what is added to its action.
+/// A body with mass, with further terms in its action.
 fn motion(update: &str, terms: &str) -> String {
     format!(
         "model Motion {{
@@ -143,14 +143,14 @@ fn lagrangian(d: &Derivation) -> String {
 #[test]
 fn the_quaternion_body_is_reduced_on_both_sides() {
     let d = derive(&quaternion("q*W", " - h*dot(z, rot(q)*g)"));
-    // The form in which it was typed is kept, with the velocity for `q^T*next(q)`.
+    // The form of the statement is kept, with the velocity in place of `q^T*next(q)`.
     assert_eq!(
         lagrangian(&d),
         "-4 c re(W_k)/h + 2 im(W_k)·((I - c Id) im(W_k))/h - h g·z_{body,k}"
     );
     let carried = "z_body = rot(q_k)ᵀ z; rot(W_k)ᵀ z_{body,k}";
     assert_eq!(found(&d), [carried]);
-    // The same weight by products of quaternions.
+    // The same weight as a product of quaternions.
     let products = quaternion("q*W", " + h*re(q*quat(g)*q^T*quat(z))");
     assert_eq!(found(&derive(&products)), [carried]);
     let d = derive(&quaternion("W*q", " - h*tr(K*q)"));
@@ -171,7 +171,7 @@ fn bodies_with_mass_are_reduced_on_both_sides() {
             " - h*dot(b, G^T*Z)",
             vec!["Z_body = G_kᵀ Z; V_kᵀ Z_{body,k}"],
         ),
-        // The plane holds its normal: one quantity for the height and the vertical.
+        // A plane contains its normal, so one quantity gives both the height and the vertical.
         (
             " - h*dot(z, rot(G)*g) - h*dot(z, pos(G))",
             vec!["z_body = G_kᵀ [z; 0]; V_kᵀ z_{body,k}"],
@@ -261,7 +261,7 @@ fn several_bodies_are_carried_relative_to_one_another() {
             "relative_B_C = B_k⁻¹ C_k; vB_k⁻¹ relative_{B,C,k} vC_k"
         ]
     );
-    // A force that holds one body to space is no relative one: planes and points beside them.
+    // A force from space on one body has no relative form; it adds planes and points.
     let held = format!("{springs} + dot(d, pos(A))");
     let d = derive(&coupled("SE<3>", drift, &held, body));
     assert_eq!(found(&d).len(), 3, "{:?}", found(&d));
@@ -286,7 +286,7 @@ fn a_number_that_stands_linearly_is_divided_for() {
     assert!(!quartic.contains("division"), "{quartic}");
 }
 
-/// Terms over the step stay on the edge on which they were stated, whatever cancels between them when they are multiplied out.
+/// Terms over the step size stay on the edge of their statement, even if terms cancel when they are multiplied out.
 #[test]
 fn terms_of_an_edge_are_not_divided_between_nodes() {
     let reduced = |kinetic: &str| {

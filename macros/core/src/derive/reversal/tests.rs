@@ -1,10 +1,10 @@
-//! Self-adjoint actions and their sided neighbours on every group, stated in the body and in space.
+//! Self-adjoint actions, and one-sided variants of them, on every group, stated in the body and in space.
 
 use super::Reversal;
 use crate::derive::warnings::Topic;
 use crate::pipeline::derive_source;
 
-/// Parameters and group, the kinetic term and a potential, by the configuration `G` at both ends.
+/// Parameters and group, the kinetic term, and a potential of the configuration `G`; the tests take it at either end.
 const GROUPS: [(&str, &str, &str); 6] = [
     (
         "param J: Sym<3>; param z, g: Vec<3>; group G: SO<3> velocity V;",
@@ -41,7 +41,7 @@ const GROUPS: [(&str, &str, &str); 6] = [
     ),
 ];
 
-/// Whether the step is symmetric, and whether it is warned of as of first order.
+/// Whether the step is symmetric, and whether clebsch warns that it is of first order.
 fn found(model: &str) -> (bool, bool) {
     match derive_source(model) {
         Ok(d) => {
@@ -98,7 +98,7 @@ fn bodies_on_both_sides() {
 
 #[test]
 fn a_carried_point_has_a_weight_by_its_definition_only() {
-    // Given at the start and not defined, its last component need not be that of `b`.
+    // Without a definition, `p` is initial data, and its last component may differ from that of `b`.
     let point = |declared: &str| {
         format!(
             "model M {{ param J: Sym<3>; param b: Vec<4>; param c: Vec<4>; group G: SE<3> velocity V;

@@ -1,4 +1,4 @@
-//! Models that derive but are hardly meant, and their sound neighbours, which are not warned of.
+//! Valid models that probably contain a mistake, and correct variants of them, for which clebsch does not warn.
 
 mod fields;
 mod typed;
@@ -62,9 +62,9 @@ fn a_forgotten_step_is_said() {
         text.contains("did you forget `/h`, or the factor `h`"),
         "{text}"
     );
-    // Without any kinetic energy, and with one that vanishes too fast.
+    // No kinetic energy, and a kinetic energy that vanishes too fast.
     assert!(top("-h*dot(gU, Γ) + h*tr(J*Ω)").contains(&DegenerateKineticEnergy));
-    // The step in the wrong power.
+    // The wrong power of the step size.
     assert!(body("-tr(J*Ω)/h^2").contains(&NoLimit));
     assert_eq!(top("-tr(J*Ω)/h - dot(gU, Γ)"), [NoLimit]);
 }
@@ -85,22 +85,22 @@ fn no_energy_is_listed_without_kinetic_energy() {
 
 #[test]
 fn degenerate_kinetic_energy_is_told_from_none() {
-    // A point mass on a rod: nothing turns it about the rod.
+    // A point mass on a rod has no inertia about the rod.
     let rod = "param a: Vec<3>; param m: Real; group Λ: SO<3> velocity Ω; \
                constraint next(Λ) = Λ*Ω; lagrangian = m/(2*h)*dot((Ω - Id)*a, (Ω - Id)*a);";
     assert_eq!(topics(rod), [DegenerateKineticEnergy]);
     assert!(words(rod).contains("rank 2 of 3"), "{}", words(rod));
-    // The translation of a body has none.
+    // The translation of a body has no kinetic energy.
     let still =
         format!("{POINT} param e: Vec<3>; lagrangian = -tr(J*rot(V))/h - h*m*dot(e, pos(G));");
     assert_eq!(topics(&still), [DegenerateKineticEnergy]);
     assert!(words(&still).contains("rank 3 of 6"), "{}", words(&still));
-    // One body of two.
+    // One of two bodies has no kinetic energy.
     let two = "param J: Sym<3>; group A: SO<3> velocity V; group B: SO<3> velocity W; \
                constraint next(A) = A*V; constraint next(B) = B*W; \
                lagrangian = -tr(J*V)/h - tr(J*W);";
     assert!(topics(two).contains(&DegenerateKineticEnergy));
-    // An assumption takes the inertia away.
+    // An assumption makes the inertia zero.
     let flat = "param J: Sym<3>; assume J == -J; group Λ: SO<3> velocity Ω; \
                 constraint next(Λ) = Λ*Ω; lagrangian = -tr(J*Ω)/h;";
     assert!(topics(flat).contains(&DegenerateKineticEnergy));
@@ -111,7 +111,7 @@ fn the_sign_of_the_kinetic_energy_is_said() {
     assert_eq!(body("tr(J*Ω)/h"), [SignOfKineticEnergy]);
     assert_eq!(top("tr(J*Ω)/h + h*dot(gU, Γ)"), [SignOfKineticEnergy]);
     assert!(words(&format!("{BODY} lagrangian = tr(J*Ω)/h;")).contains("negative"));
-    // Typed as another multiple of the action.
+    // The same action stated with a scale.
     assert_eq!(
         topics(&format!("{BODY} scale -h; lagrangian = tr(J*Ω);")),
         []
@@ -120,7 +120,7 @@ fn the_sign_of_the_kinetic_energy_is_said() {
         topics(&format!("{BODY} scale h; lagrangian = tr(J*Ω);")),
         [SignOfKineticEnergy]
     );
-    // One of two velocities, which makes the form indefinite.
+    // One of two velocities has the wrong sign, which makes the form indefinite.
     let mixed = format!(
         "{POINT} let x = pos(G^-1*next(G)); \
         lagrangian = -tr(J*rot(G^-1*next(G)))/h - m*dot(x, x)/(2*h);"
@@ -128,12 +128,12 @@ fn the_sign_of_the_kinetic_energy_is_said() {
     assert_eq!(topics(&mixed), [SignOfKineticEnergy]);
     let sound = mixed.replace("- m*dot", "+ m*dot");
     assert_eq!(topics(&sound), []);
-    // A sign that the parameters carry is theirs.
+    // A sign in a parameter is left to the parameter.
     let carried = format!("{BODY} param c: Real; assume c < 0; lagrangian = c*tr(J*Ω)/h;");
     assert_eq!(topics(&carried), []);
     let other = format!("{BODY} param c: Real; assume c == 2; lagrangian = c*tr(J*Ω)/h;");
     assert_eq!(topics(&other), [SignOfKineticEnergy]);
-    // Couplings are admitted where they are small: of matrices, vectors and numbers.
+    // Couplings of matrices, vectors and scalars are admitted, since they may be small.
     let coupled = format!(
         "{POINT} param D: Mat<3>; param a, b, c, e: Vec<3>; param p, q: Real; \
         let x = pos(G^-1*next(G)); let w = vee(rot(G^-1*next(G))); \
@@ -149,7 +149,7 @@ fn the_sign_of_the_kinetic_energy_is_said() {
 
 #[test]
 fn first_order_that_is_not_asked_for_is_said() {
-    // A magnetic term taken at one end of the step: linear in the velocity.
+    // A magnetic term at one end of the step, linear in the velocity.
     let plane = |term: &str| {
         format!(
             "{POINT} param f: Real; param a, b: Vec<3>; let X = dot(a, pos(G)); \
@@ -161,17 +161,17 @@ fn first_order_that_is_not_asked_for_is_said() {
     let sided = topics(&plane("m*f*X*(next(Y) - Y)"));
     assert_eq!(sided, [FirstOrder]);
     assert_eq!(topics(&plane("m*f*(X + next(X))/2*(next(Y) - Y)")), []);
-    // A correction with an even power of the step.
+    // A correction with an even power of the step size.
     assert_eq!(
         top("-tr(J*Ω)/h - h*dot(gU, Γ) - h^2*dot(gU, Γ)^2"),
         [FirstOrder]
     );
-    // Total differences, of either parity, leave the scheme as it is.
+    // Total differences, even or odd, do not change the scheme.
     for difference in ["dot(gU, next(Γ) - Γ)", "h*dot(gU, next(Γ) - Γ)"] {
         let with = top(&format!("-tr(J*Ω)/h - h*dot(gU, Γ) + {difference}"));
         assert_eq!(with, [ConstantTerm], "{difference}");
     }
-    // What is asked for is not warned of, but what else is of first order is.
+    // A requested first-order rule causes no warning, but other first-order terms do.
     for rule in ["incoming", "outgoing"] {
         let rule = |l: &str| topics(&format!("{TOP} node {rule}; lagrangian = {l};"));
         assert_eq!(rule("-tr(J*Ω)/h - h*dot(gU, Γ)"), []);
@@ -179,7 +179,7 @@ fn first_order_that_is_not_asked_for_is_said() {
         let sided = rule("-tr(J*Ω)/h - h*dot(gU, Γ)*dot(gU, next(Γ))^2");
         assert_eq!(sided, [FirstOrder]);
     }
-    // The terms are named, and no others, with what they leave over.
+    // The warning names these terms and no others, with the remainder they leave.
     let pair = |term: &str| {
         words(&format!(
             "param J: Sym<3>; param b, z: Vec<3>; param f: Real; group A: SO<3> velocity u; \
@@ -206,7 +206,7 @@ fn first_order_that_is_not_asked_for_is_said() {
             "- h^2*f*dot(z, A*b) + f*dot(A*vee(u), B*b)",
             "because of the terms -h² f z·(A_k b) and f (A_k vee(u_k))·(B_k b)\n",
         ),
-        // Two that are self-adjoint together.
+        // Two terms that are self-adjoint together.
         (
             "+ f*dot(z, A*b)*dot(z, next(B)*b - B*b) - h^2*f*dot(z, B*b) \
              + f*dot(z, next(A)*b)*dot(z, next(B)*b - B*b)",
@@ -218,7 +218,7 @@ fn first_order_that_is_not_asked_for_is_said() {
         let first = first.map(|l| format!("{l}\n")).unwrap_or_default();
         assert!(first.contains(said), "{term}: {found}");
     }
-    // A general left factor is symmetric where it is a symmetric matrix.
+    // A general left factor is symmetric if its matrix is.
     let general = "param C: Mat<3>; group Λ: SO<3> velocity Ω; constraint next(Λ) = Λ*Ω; \
                    lagrangian = -tr(C*Ω)/h;";
     assert_eq!(topics(general), []);
@@ -237,7 +237,7 @@ fn what_has_no_effect_is_said() {
     assert!(words(&assumed).contains("an assumption only"));
     let hidden = format!("{BODY} param a: Real; let w = a*a; lagrangian = -tr(J*Ω)/h;");
     assert_eq!(topics(&hidden), [UnusedLet]);
-    // Used in a scale, or in the definition of what is carried.
+    // Used in a scale, or in the definition of an advected quantity.
     let scaled = format!("{BODY} param c: Real; scale c; lagrangian = -c*tr(J*Ω)/h;");
     assert_eq!(topics(&scaled), []);
 }
@@ -245,10 +245,10 @@ fn what_has_no_effect_is_said() {
 #[test]
 fn constant_potentials_are_said() {
     assert_eq!(top("-tr(J*Ω)/h - h*dot(gU, gU)*dot(Γ, Γ)"), [ConstantTerm]);
-    // Constant only as a sum.
+    // Only the sum is constant.
     let sum = top("-tr(J*Ω)/h - h*dot(gU, gU)*(dot(E1, Γ)^2 + dot(E2, Γ)^2 + dot(E3, Γ)^2)");
     assert_eq!(sum, [ConstantTerm]);
-    // One term of several.
+    // One term of several is constant.
     assert_eq!(
         top("-tr(J*Ω)/h - h*dot(gU, Γ) - h*dot(Γ, Γ)"),
         [ConstantTerm]
@@ -257,7 +257,7 @@ fn constant_potentials_are_said() {
         top("-tr(J*Ω)/h - h*dot(gU, Γ) + h*tr(Ω*Ω^T)"),
         [ConstantTerm]
     );
-    // Without any configuration.
+    // A constant without any configuration.
     let flat = topics(&format!(
         "{BODY} param m, g, l: Real; lagrangian = -tr(J*Ω)/h - h*m*g*l;"
     ));
@@ -273,21 +273,21 @@ fn what_the_motion_does_not_depend_on_is_said() {
         ))
     };
     for term in [
-        // Constants with a parameter of their own, beside a potential.
+        // Constants with a parameter of their own, next to a potential.
         "- h*p",
         "- p/h",
         "- p",
         "+ h*p*dot(n, n)",
         "- h^2*p*dot(gU, z)",
         "- h*exp(p)*sqrt(1 + q^2)",
-        // Total differences: one term, a product, in pairs.
+        // Total differences: a single term, a product, in pairs.
         "+ p*dot(gU, next(Γ) - Γ)",
         "+ p*(dot(n, next(Γ)) - dot(n, Γ))",
         "+ p*dot(n, next(Γ))^3 - p*dot(n, Γ)^3",
         "+ dot(gU, next(Γ))^2 - dot(gU, Γ)^2",
         "+ h*(dot(n, next(Γ))^2 - dot(n, Γ)^2)",
         "+ p*dot(n, (next(Γ) + Γ)/2)*0 + p*(Γ[1] + next(Γ)[1])*(Γ[1] - next(Γ)[1])",
-        // Constant by what the group keeps.
+        // Constant because the group preserves it.
         "+ p*dot(Γ, next(Γ) - Ω^T*Γ)",
         "+ h*p*dot(next(Γ), next(Γ))",
     ] {
@@ -298,7 +298,7 @@ fn what_the_motion_does_not_depend_on_is_said() {
     for term in [
         "- h*p*dot(gU, Γ)^2",
         "+ p*dot(gU, next(Γ) - Γ)*dot(n, Γ + next(Γ))",
-        // A constant that normalises what moves.
+        // A constant that normalizes another term.
         "+ h*(1 + dot(n, n))*dot(gU, z) - h*p*dot(n, Γ)",
         "+ (1 + q^2)*tr(J)/h - h*p*dot(n, Γ)",
         "- h*p*(1 - dot(n, Γ))",
@@ -343,7 +343,7 @@ fn a_potential_with_a_wrong_power_of_the_step_is_said() {
         assert!(found.contains(&NoLimit), "{wrong}: {found:?}");
         assert!(!found.contains(&FirstOrder), "{wrong}: {found:?}");
     }
-    // A correction of the order of the step to a potential that is there, and one scaled.
+    // A higher-order correction to an existing potential, and a scaled one.
     assert!(!point("- h*dot(z, pos(G)) - h^3*dot(z, z)*dot(z, pos(G))^2").contains(&NoLimit));
     let scaled = |l: &str| topics(&format!("{TOP} scale -h; lagrangian = {l};"));
     assert_eq!(scaled("tr(J*Ω) + h^2*dot(gU, Γ)"), []);
@@ -432,7 +432,7 @@ fn assumptions_that_say_nothing_are_told() {
     }
 }
 
-/// The texts that ship: the gallery, and the models of the description of the language.
+/// The shipped texts: the gallery, and the models in the language reference.
 fn shipped() -> Vec<(String, String)> {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
     let files = std::fs::read_dir(format!("{root}/models/src")).map_or(Vec::new(), |list| {

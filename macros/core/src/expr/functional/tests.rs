@@ -1,4 +1,4 @@
-//! Gradients and directional derivatives of functionals beside those of what they are, and difference
+//! Compares gradients and directional derivatives of functionals with those of their definitions and with difference
 //! quotients.
 
 use super::sample::{Sample, THREE, at};
@@ -12,7 +12,7 @@ use crate::schedule::program;
 /// A derivative of some order.
 type Order<'a> = dyn Fn(&Expr) -> Expr + 'a;
 
-/// Letters, functionals and numbers made of them.
+/// Letters, functionals, and scalars that contain them.
 pub(crate) struct Table {
     pub(crate) sample: Sample,
     pub(crate) x: SymbolId,
@@ -64,7 +64,7 @@ impl Table {
         found.remove(0)
     }
 
-    /// Numbers with functionals in every position.
+    /// Scalars with functionals in every position.
     pub(crate) fn numbers(&self) -> Vec<Expr> {
         let s = &self.sample;
         let (x, y, u, m) = (
@@ -126,7 +126,7 @@ fn gradients_are_those_of_what_functionals_are() {
                 close(&gradient, &wanted, 1e-13),
                 "{e:?}\n{gradient:?} {wanted:?}"
             );
-            // Difference quotients of the values alone.
+            // Difference quotients of the values.
             let quotient = (0..3).map(|i| {
                 let moved = |by: f64| {
                     let mut values = values.clone();
@@ -162,7 +162,7 @@ fn derivatives_of_derivatives_stay_among_the_two_kinds() {
     let along = |e: &Expr, by: SymbolId| {
         expr::directional(s, e, &[(at(t.x), t.at(by)), (at(t.y), t.at(t.x))])
     };
-    // Nested ones would be written out at great length.
+    // The definitions of nested functionals would be very long.
     let numbers = t.numbers();
     for e in [0, 2, 3, 7].map(|i| &numbers[i]) {
         let open = t.sample.opened(e);
@@ -200,7 +200,7 @@ fn directional_derivatives_are_pairings_with_gradients() {
             "{e:?}\n{change:?}\n{paired:?}"
         );
         assert!(!algebra.is_zero(&paired));
-        // Derivatives in two directions, in either order.
+        // Derivatives in two directions commute.
         let other = [(at(t.x), t.at(t.v))];
         let first = expr::directional(s, &change, &other);
         let second = expr::directional(s, &e, &other);
@@ -227,7 +227,7 @@ fn functionals_are_shifted_and_substituted_through_their_arguments() {
     assert!(expr::contains(&g(&x), at(t.u)) && !expr::contains(&g(&x), at(t.y)));
     assert_eq!(g(&x).shape(), Shape::vector(THREE));
     assert_eq!(back(&x, &x).size(), 4);
-    // What a seed or a direction of zero gives.
+    // Derivatives with a zero seed or a zero direction.
     assert!(
         expr::substitute(
             s,
@@ -247,14 +247,14 @@ fn numbers_come_out_of_derivatives_but_not_of_those_over_sites() {
     let back = t.sample.back("g", &[&x, &u], 0, &scaled);
     let alone = t.sample.back("g", &[&x, &u], 0, &u);
     assert_eq!(back, expr::neg(expr::mul(m.clone(), alone)));
-    // Of a number the gradient remains.
+    // For a scalar functional, the gradient remains.
     let gradient = t.sample.back("f", &[&x], 0, &m);
     let one = t.sample.back("f", &[&x], 0, &expr::integer(1));
     assert_eq!(gradient, expr::mul(m.clone(), one.clone()));
     assert!(matches!(one.node(), Node::PullBack(..)));
     let change = expr::directional(s, &t.sample.of("f", &[&x]), &[(at(t.x), u.clone())]);
     assert_eq!(change, expr::dot(one, u.clone()));
-    // An area per site: the mass of a site stays where the pull-back is taken, 2 does not.
+    // The argument of `area` is one value per site: the mass of a site remains in the seed, the constant 2 does not.
     let seed = expr::scale(Rational::integer(2), m.clone());
     let area = t.sample.back("area", &[&x], 0, &seed);
     let own = t.sample.back("area", &[&x], 0, &m);

@@ -1,4 +1,5 @@
-//! What is kept in which coordinates, how its velocities are found then, and what is refused.
+//! Configurations that are stored in coordinates: which coordinates, how the velocities are found, and which models
+//! are rejected.
 
 use super::By;
 use crate::line::{Line, Refused, SiteSolve};
@@ -70,7 +71,7 @@ fn rigid_motions_are_rotations_and_places() {
         .map(|m| matches!(m.how, SiteSolve::Rotation { .. } | SiteSolve::Field { .. }))
         .collect();
     assert_eq!(hows, [true, true]);
-    // Added masses join both.
+    // Added masses couple both velocities.
     let line = taken(&frames("dot(u, M*u)"));
     let movers = &line.lone[0].movers;
     assert!(

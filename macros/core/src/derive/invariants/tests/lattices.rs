@@ -1,11 +1,11 @@
-//! Symmetries of lattices: each configuration at all its sites moved by itself, and those that every single site keeps;
-//! with statements that break them.
+//! Symmetries of chains: a configuration is moved at all sites, or at a single site. Each test has a statement that
+//! breaks the symmetry.
 
 use crate::derive::invariants::Family;
 use crate::lattice::{Choice, Lattice};
 use crate::pipeline;
 
-/// Names of the Noether momenta without their sites, each with how many there are.
+/// Names of the Noether momenta without their sites, each with the number of its occurrences.
 fn momenta(text: &str, periodic: bool) -> Vec<(String, usize)> {
     let model = pipeline::parse_source(text).unwrap_or_else(|e| panic!("{e}"));
     let lattice = Lattice::read(&model).unwrap_or_else(|e| panic!("{e}"));
@@ -33,7 +33,7 @@ fn expect(text: &str, periodic: bool, whole: &[(&str, usize)]) {
     assert_eq!(momenta(text, periodic), whole, "{text}");
 }
 
-/// Point masses in the plane, joined by springs, by their coordinates.
+/// Point masses in the plane connected by springs, stated by coordinates.
 fn planar(more: &str) -> String {
     format!(
         "model Chain {{ label i in 0..N; periodic; param m, k, l: Real; field x: Real at nodes; field y: Real at nodes;
@@ -42,7 +42,7 @@ fn planar(more: &str) -> String {
     )
 }
 
-/// Names without numbers of sites, where each is one sum over all of them.
+/// Expects momenta that are each one sum over all sites.
 fn sums(text: &str, periodic: bool, whole: &[&str]) {
     let whole: Vec<(&str, usize)> = whole.iter().map(|n| (*n, 1)).collect();
     expect(text, periodic, &whole);
@@ -57,7 +57,7 @@ fn coordinates_of_a_chain_keep_their_momenta_each_and_that_of_turns() {
     ];
     sums(&planar(""), false, &all);
     sums(&planar(""), true, &all);
-    // Weight along y, and a spring to a wall.
+    // Weight along y, and springs to a fixed point.
     sums(&planar(" - h*m*y"), false, &all[..1]);
     sums(&planar(" - h*k*(x^2 + 2*y^2)"), false, &[]);
     sums(&planar(" - h*k*(x^2 + y^2)"), false, &all[2..]);
@@ -79,7 +79,7 @@ fn particles_of_shallow_water_keep_their_potential_vorticity_each() {
         true,
         &[("momentum Y", 5), ("total momentum X", 1)],
     );
-    // Sideways springs between particles leave the sums.
+    // Transverse springs between particles leave only the sums.
     let tied = water(" - h*g*(next(Y, i) - Y)^2");
     sums(&tied, true, &["total momentum Y", "total momentum X"]);
 }
@@ -158,7 +158,8 @@ fn bodies_listed_one_by_one_keep_the_momenta_of_their_coordinates_apart() {
     );
 }
 
-/// An inextensible rod: places at nodes, frames at segments, and the force that keeps each segment along its frame.
+/// An inextensible rod: positions at nodes, frames at segments, and the constraint that aligns each segment with its
+/// frame.
 fn rod(ends: &str, more: &str) -> String {
     format!(
         "model Rod {{ label i in 0..N step s; periodic; param m: Real at nodes; param J, B: Sym<3>; param g: Vec<3>;
@@ -174,13 +175,13 @@ fn forces_along_a_rod_leave_its_angular_momentum() {
     let places = "total momentum x";
     let free = ["total momentum x", "total momentum angular"];
     sums(&rod("", ""), false, &free);
-    // A ring that does not close keeps that along its gap.
+    // A ring with an offset conserves the angular momentum about the offset.
     sums(&rod("", ""), true, &[places, "total momentum angular X"]);
     let weight = "+ h*m*dot(g, x)";
     let about = ["total momentum x across g", "total momentum angular g"];
     sums(&rod("", weight), false, &about);
     sums(&rod("", weight), true, &about[..1]);
-    // Segments that turn against their frames: what is left is to turn these about the axis.
+    // Segments aligned by the inverse of their frame: only rotations of the frames about their axis remain.
     let against = rod("", "").replace("= s*R*E3", "= s*R^T*E3");
     sums(&against, false, &[places, "total momentum R E3"]);
 }

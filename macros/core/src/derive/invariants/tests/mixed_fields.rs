@@ -1,5 +1,5 @@
-//! Symmetries that mix the components of fields: turns of space stated by its coordinates, turns about
-//! a skew axis, hyperbolic turns, each with a statement that breaks it.
+//! Symmetries that mix components of fields: rotations of space in coordinates, rotations about a skew axis,
+//! hyperbolic rotations. Each test has a statement that breaks the symmetry.
 
 use super::{Family, derive};
 use crate::print::{Format, Style};
@@ -22,7 +22,7 @@ fn names(text: &str) -> Vec<String> {
     momenta(text).into_iter().map(|(name, _)| name).collect()
 }
 
-/// A particle in a potential of its three coordinates.
+/// A particle in a potential that depends on its three coordinates.
 fn coordinates(potential: &str) -> String {
     format!(
         "model Particle {{
@@ -104,7 +104,7 @@ fn numbers_move_along_components_of_vectors() {
     let bob = "dot(y - x*E1, y - x*E1)";
     let kept = "total_momentum_E1 = p_{2,k}·E₁ + p_{1,k}";
     assert_eq!(told(&cart(bob, "dot(E2, y)")), [kept]);
-    // A cart on a slope, and one that the bob is tied to the other way round, keep nothing.
+    // A cart on a slope, and a constraint that depends on the position of the cart, conserve nothing.
     assert!(told(&cart(bob, "(dot(E2, y) + x)")).is_empty());
     let crossed = "dot(y - x*E1, y - x*E1) + x*dot(E1, y)";
     assert!(told(&cart(crossed, "dot(E2, y)")).is_empty());
@@ -123,7 +123,7 @@ fn an_angle_turns_with_a_vector() {
         told(&spring("a")),
         ["joint_momentum_angular_E1_E2 = p_{1,k} + E₁·((-p_{2,k} y_kᵀ + y_k p_{2,k}ᵀ) E₂)"]
     );
-    // Twice the angle turns half as far.
+    // If the potential depends on twice the angle, the angle moves half as far.
     let twice = told(&spring("2*a"));
     assert_eq!(twice.len(), 1, "{twice:?}");
     assert!(twice[0].contains('2') && twice != told(&spring("a")));
@@ -143,7 +143,7 @@ fn numbers_move_in_proportion_to_parameters() {
         ["total_momentum_r = ϖ_{2,k} + r ϖ_{1,k}"]
     );
     assert!(told(&wheel("x - r*p^2")).is_empty());
-    // A component of a vector likewise, held.
+    // The same for a component of a vector in a constraint.
     let string = |way: &str| {
         format!(
             "model String {{ param m, j, r: Real; field x: Vec<2>; field p: Real; hold n: {way} = 0; lagrangian = \

@@ -1,4 +1,4 @@
-//! The sizes of the terms of momenta of rigid motions: the lever arm belongs to the angular part, and to it only.
+//! Scales of the momenta of rigid motions: the lever arm occurs in the angular part only.
 
 use super::derive;
 use crate::derive::Derivation;
@@ -6,7 +6,7 @@ use crate::derive::invariants::Invariant;
 use crate::expr::{self, Shift};
 use crate::print::{Format, Style, expression};
 
-/// A rigid body with a potential of this text.
+/// A rigid body with this potential.
 fn body(potential: &str) -> Derivation {
     derive(&format!(
         "model Body {{
@@ -23,7 +23,7 @@ fn of<'a>(d: &'a Derivation, name: &str) -> &'a Invariant {
     found.unwrap_or_else(|| panic!("{name} in {:?}", all()))
 }
 
-/// Whether the configuration is among what the scale is made of.
+/// Whether the scale contains the configuration.
 fn has_place(d: &Derivation, scale: &expr::Expr) -> bool {
     let element = d.spec.configurations[0].element;
     let here = |l: &expr::Letter| l.symbol == element && l.shift == Shift::HERE;
@@ -38,7 +38,7 @@ fn the_whole_momentum_has_a_scale_for_each_of_its_parts() {
     let value = whole.value.as_ref().expect("a value");
     assert_eq!(scale.shape(), value.shape());
     let text = expression(scale, &d.letters.symbols, &Style::new("k"), Format::Text);
-    // As a pair of the angular and the linear part.
+    // The momentum as a pair of angular and linear parts.
     let linear = "|lin(μ_k)|";
     let angular = format!("(|ang(μ_k)| + |pos(G_k)| {linear})");
     let ones = "(E₁ + E₂ + E₃)";
@@ -47,7 +47,7 @@ fn the_whole_momentum_has_a_scale_for_each_of_its_parts() {
 
 #[test]
 fn parts_of_it_have_their_own() {
-    // Falling along the axis n: the part about n and the parts across it are kept.
+    // Free fall along the axis n conserves the angular momentum about n and the linear momentum across n.
     let d = body(" - h*dot(n, pos(G))");
     for (name, lever) in [
         ("spatial_momentum_angular_n", true),

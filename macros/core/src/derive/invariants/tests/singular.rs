@@ -1,5 +1,5 @@
-//! Symmetries of potentials that are singular where bodies meet, or that hold roots: in exact arithmetic
-//! half of all numbers have none.
+//! Symmetries of potentials that are singular where bodies meet, or that contain square roots. In exact arithmetic
+//! modulo a prime, half of all numbers have no square root.
 
 use super::{Family, derive};
 
@@ -12,7 +12,7 @@ fn momenta(text: &str) -> Vec<String> {
 
 const TOTALS: [&str; 2] = ["total_momentum", "total_momentum_angular"];
 
-/// Bodies that attract each other pair by pair.
+/// Bodies with a potential for each pair.
 fn bodies(names: &[&str], size: u8, pair: impl Fn(&str) -> String) -> String {
     let mut terms = Vec::new();
     for (i, a) in names.iter().enumerate() {
@@ -54,8 +54,8 @@ fn totals_of_bodies_that_attract_each_other() {
 
 #[test]
 fn totals_of_more_bodies_than_are_counted() {
-    // Eleven places and momenta are more unknowns than the count of all symmetries takes: what is found by itself is
-    // listed all the same, and the sum of the momenta does not stand for that of their moments.
+    // Eleven positions and momenta exceed the limit on unknowns for the search for all symmetries. The momenta that
+    // are found directly are listed even then, and the total momentum does not hide the total angular momentum.
     let names: Vec<String> = (0..14).map(|i| format!("a{i}")).collect();
     for count in [10, 11, 14] {
         let masses = names[..count]

@@ -1,5 +1,5 @@
-//! Symmetries that move several configurations together, from space and in the bodies, and those that
-//! change the action by a total difference: each with a statement that breaks it.
+//! Symmetries that move several configurations together, from space and in the bodies, and symmetries that change the
+//! action by a total difference. Each test has a statement that breaks the symmetry.
 
 use super::{Family, derive};
 
@@ -10,7 +10,7 @@ fn momenta(text: &str) -> Vec<String> {
     own.map(|v| v.name.clone()).collect()
 }
 
-/// Momenta of a statement in which a word is kept, and of the one in which it is replaced.
+/// Compares the momenta of a statement with `whole`, and with `left` after `word` is replaced by `broken`.
 fn compare(text: &str, word: &str, broken: &str, whole: &[&str], left: &[&str]) {
     assert!(text.contains(word));
     assert_eq!(momenta(text), whole, "{text}");
@@ -35,7 +35,7 @@ fn quaternions_and_rotations_share_the_vertical() {
     );
 }
 
-/// A rigid motion in gravity and a rotation, coupled by two axes; what more is said.
+/// A rigid motion in gravity and a rotation, coupled by two axes, with further terms.
 fn motion_and_rotation(more: &str) -> String {
     format!(
         "model Pair {{
@@ -51,7 +51,7 @@ fn motion_and_rotation(more: &str) -> String {
 
 #[test]
 fn rigid_motions_and_rotations_share_the_vertical() {
-    // Turned about its own origin, the body keeps its height: the sum of both spins is kept whole.
+    // A rotation about its own origin does not change the height of the body, so the sum of both spins is conserved.
     compare(
         &motion_and_rotation(" - h*k*dot(z, pos(G) + rot(G)*d) - h*k*dot(z, Λ*a)"),
         "dot(z, Λ*a)",
@@ -138,7 +138,7 @@ fn isotropic_bodies_keep_the_sum_of_their_body_momenta() {
         &["total_body_momentum"],
         &[],
     );
-    // The same of one body and a quaternion, one of them stated in space.
+    // The same for a body and a quaternion, one of them stated in space.
     compare(
         "model Mixed {
             param c, d: Real; param J: Sym<3>; param A: Mat<3>;
@@ -171,7 +171,7 @@ fn what_moves_space_and_body_is_told_as_joint() {
 
 #[test]
 fn space_and_body_turn_together() {
-    // What depends on the angle of a turn alone.
+    // A potential that depends on the angle of a rotation only.
     compare(
         "model Angle {
             param c, k: Real; param K: Sym<3>;
@@ -183,7 +183,7 @@ fn space_and_body_turn_together() {
         &["joint_momentum"],
         &[],
     );
-    // The body of the first in the space of the second.
+    // The body frame of the first is the space frame of the second.
     compare(
         "model Chain {
             param c, k: Real; param J: Sym<3>; param A: Mat<3>;
@@ -196,7 +196,7 @@ fn space_and_body_turn_together() {
         &["joint_momentum"],
         &[],
     );
-    // About an axis of space in one and of the body in the other.
+    // About an axis of space in one, and an axis of the body in the other.
     compare(
         "model Axes {
             param J: Sym<3>; param k: Real; param z: Vec<3>; param a: Vec<3>;
@@ -209,7 +209,7 @@ fn space_and_body_turn_together() {
         &["joint_momentum_E3"],
         &[],
     );
-    // Wheels: one turns twice as fast.
+    // Wheels, one of which rotates twice as fast.
     compare(
         "model Gear {
             param a, b: Real; param K: Sym<2>;
@@ -226,7 +226,7 @@ fn space_and_body_turn_together() {
 
 #[test]
 fn symmetries_up_to_a_total_difference() {
-    // A charge in a uniform field, by the potential that is symmetric about the origin.
+    // A charge in a uniform field, with the potential that is symmetric about the origin.
     let charge = "model Charge {
             param J: Sym<3>; param m: Real; param B, a: Vec<3>;
             group G: SE<3> velocity V; constraint next(G) = G*V;
@@ -247,7 +247,7 @@ fn symmetries_up_to_a_total_difference() {
         .iter()
         .find(|v| v.name == "spatial_momentum_linear");
     assert!(v.is_some_and(|v| v.reason.contains("total difference")));
-    // By a potential that is not, in uniform gravity: what is left are shifts across the vertical.
+    // With a potential that is not symmetric, in uniform gravity: translations across the vertical remain.
     compare(
         "model Landau {
             param J: Sym<3>; param m, f: Real; param a, u, v, z: Vec<3>;
@@ -266,7 +266,7 @@ fn symmetries_up_to_a_total_difference() {
 
 #[test]
 fn cyclic_coordinates() {
-    // A body in uniform gravity turns freely about its centre of mass.
+    // A body in uniform gravity rotates freely about its centre of mass.
     compare(
         "model Thrown {
             param J: Sym<3>; param m, g: Real; param a, z: Vec<3>;
@@ -287,7 +287,7 @@ fn cyclic_coordinates() {
             "spin_z",
         ],
     );
-    // Entries of a matrix that the potential does not hold.
+    // Entries of a matrix that the potential does not contain.
     compare(
         "model Affine {
             param I0: Sym<3>; param a, b: Vec<3>;
@@ -307,7 +307,7 @@ fn cyclic_coordinates() {
             "coordinate_momentum_rows_across_b",
         ],
     );
-    // The whole matrix of one that is free.
+    // The whole matrix of a free map.
     assert_eq!(
         momenta(
             "model Free {
@@ -321,7 +321,7 @@ fn cyclic_coordinates() {
             "coordinate_momentum"
         ]
     );
-    // A rotor that spins about its axis, which another body carries.
+    // A rotor that spins about its axis, mounted on another body.
     compare(
         "model Rotor {
             param J, K: Sym<3>; param w: Real; param b, y, z: Vec<3>;
@@ -351,14 +351,14 @@ fn about_a_place_that_a_parameter_is() {
         "let w = pos(G) - o",
         "let w = pos(G) - p",
         &["spatial_momentum_angular_about_o"],
-        // Turns about the line through both places.
+        // Rotations about the line through both points.
         &["joint_momentum_linear_across_o_p_angular_o_p"],
     );
 }
 
 #[test]
 fn wide_bodies_share_an_axis() {
-    // Planes of several dimensions in two bodies, along one axis.
+    // Rotations in several planes in two bodies, with one fixed axis.
     compare(
         "model Wide {
             param C, D: Sym<4>; param z, a: Vec<4>;

@@ -1,5 +1,5 @@
-//! Sums of momenta that advected rotations carry into one frame, whatever else the action couples, on
-//! either side and for either group of turns; and momenta without terms that are zero.
+//! Sums of momenta that advected rotations transform into one frame, for any other couplings, on either side and for
+//! either rotation group; and momenta without terms that vanish.
 
 use super::{Family, derive, found};
 use crate::algebra::{assumed, exact::Point};
@@ -49,7 +49,7 @@ fn what_rotations_join_turns_together() {
             two,
             "total_momentum_A_B_g: (m_{1,k} + R_k m_{2,k})·g_k",
         ),
-        // A turn of the body B is the opposite of one of space.
+        // A rotation of the body B is the inverse of a rotation of space.
         (
             rotations,
             "constraint next(A) = u*A; constraint next(B) = B*v; \
@@ -68,7 +68,7 @@ fn what_rotations_join_turns_together() {
         let text = pair(groups, carried, kinetic);
         let found = shown(&text, Family::Casimir);
         assert!(found.iter().any(|v| v == said), "{text}\n{found:#?}");
-        // What turns with another body is not carried along.
+        // A vector advected by another body's velocity is not part of the sum.
         let (head, tail) = text.split_once("next(g) = ").unwrap();
         let (_, rest) = tail.split_once(';').unwrap();
         let broken = format!("{head}next(g) = rot(w)^T*g;{rest}");
@@ -77,7 +77,7 @@ fn what_rotations_join_turns_together() {
     }
 }
 
-/// Whether a term of a sum, or of one that is read along an axis, is zero whatever the letters are.
+/// Whether a term of a sum, or of a sum projected on an axis, vanishes for all values of the letters.
 fn has_idle_term(point: &Point, e: &Expr) -> bool {
     let vanishes = |t: &Expr| point.value(t).is_some_and(|m| m.vanishes());
     match e.node() {
@@ -112,7 +112,7 @@ fn about_a_place_the_whole_momentum_is_found_and_no_term_of_it_is_zero() {
              + rot(G_k) ang(μ_{5,k}) + pos(G_k) × (rot(G_k) lin(μ_{5,k})) + b × (rot(G_k) lin(μ_{5,k}))"
         ]
     );
-    // Without them the vertical is left, and shifts across it.
+    // Without the springs, rotations about the vertical and translations across it remain.
     let free = text.replace("+ dot(pos(G), pos(G))/2", "");
     for text in [text, &free] {
         let d = derive(text);
@@ -137,12 +137,12 @@ fn constraints_between_bodies_leave_the_sums_of_momenta() {
     };
     let both = ["total_momentum", "total_momentum_angular"];
     assert_eq!(pair("dot(y - x, y - x)"), both);
-    // A reaction that pulls at one of them twice as hard leaves another sum, and turns nothing.
+    // A constraint force that acts twice as strongly on one point conserves another sum, and exerts no moment.
     assert_eq!(
         pair("dot(y - 2*x, y - 2*x)"),
         ["joint_momentum", "total_momentum_angular"]
     );
-    // A chain: links between neighbours.
+    // A chain with links between neighbours.
     let chain = found(
         "model Chain { param m, a: Real; param g: Vec<3>; field x, y, z: Vec<3>;
             hold l: dot(y - x, y - x) = a^2; hold k: dot(z - y, z - y) = a^2;
@@ -178,7 +178,7 @@ fn joints_leave_what_is_conserved_where_they_hold() {
     assert_eq!(momenta(weight, ball), about, "a ball joint under weight");
     let hinge = format!("{ball} hold k: dot(R*c, S*a) = 0; hold j: dot(R*g, S*a) = 0;");
     assert_eq!(momenta("", &hinge), free, "a common axis");
-    // Turned together from space, one side of this turns with the frames and the other does not.
+    // Under a common rotation of space, one side of this constraint rotates with its frame and the other does not.
     let held = format!("{ball} hold k: dot(R*c, S^T*a) = 0;");
     assert_eq!(
         momenta("", &held),
@@ -195,7 +195,7 @@ fn joints_leave_what_is_conserved_where_they_hold() {
 
 #[test]
 fn joints_of_rigid_motions_leave_their_angular_momentum() {
-    // Of a rigid motion the momentum has both, about the origin and along.
+    // The momentum of a rigid motion has both parts, angular about the origin and linear.
     let rows = |hold: &str| {
         let d = derive(&format!(
             "model Joint {{ param J, K: Sym<3>; param m, n: Real; param d, e: Vec<3>;
@@ -208,7 +208,7 @@ fn joints_of_rigid_motions_leave_their_angular_momentum() {
     };
     let joint = "pos(A) + rot(A)*d = pos(B) + rot(B)*e";
     assert_eq!(rows(joint), Some(Dim::Fixed(6)));
-    // What turns against its body leaves the sum along alone.
+    // If one vector rotates against its body, only the linear sum remains.
     let turned = joint.replace("rot(B)*e", "rot(B)^T*e");
     assert_ne!(rows(&turned), Some(Dim::Fixed(6)));
 }

@@ -1,5 +1,5 @@
-//! Warnings of models of fields: jumps are no constants, roots of the step no missing kinetic energy, and what
-//! is said of first order.
+//! Warnings about fields: jumps are not constants, a root that contains the step size is not a missing kinetic
+//! energy, and first-order terms.
 
 use super::{topics, words};
 use crate::derive::warnings::Topic::*;
@@ -22,7 +22,7 @@ fn an_absolute_value_is_no_total_difference() {
         assert!(!found.contains(&ConstantTerm), "{term}: {found:?}");
         assert!(found.contains(&NotSmooth), "{term}: {found:?}");
     }
-    // Of one end each they are.
+    // If each jump depends on one end only, their difference is a constant term.
     for term in [
         "(abs(next(X)) - abs(X))",
         "(sign(next(X)) - sign(X))",
@@ -51,9 +51,9 @@ fn a_root_of_the_step_is_no_missing_kinetic_energy() {
     }
     let text = relativistic("-m*c*sqrt(c*c*h*h - dot(d, d))");
     assert!(text.contains("no limit of small steps is seen"), "{text}");
-    // What is offered has one.
+    // The suggested form has a limit.
     assert_eq!(relativistic("-m*c*c*h*sqrt(1 - dot(d, d)/(c*h)^2)"), "");
-    // Without any it is said still.
+    // If the root does not contain the step size, the warning about the kinetic energy remains.
     let text = relativistic("-m*c*sqrt(1 + dot(d, d))");
     assert!(text.contains("no kinetic energy"), "{text}");
 }
@@ -99,7 +99,7 @@ fn what_a_clock_multiplies_is_no_total_difference_while_it_goes_on() {
         let found = with(term);
         assert!(!found.contains(&ConstantTerm), "{term}: {found:?}");
     }
-    // A parameter, a clock that shows the same again, and one that is differenced with it.
+    // A parameter, a periodic function of a clock, and a difference that includes the clock.
     for term in [
         "sin(w)*dot(F, next(x) - x)",
         "(next(t) - t)*dot(F, next(x) - x)",

@@ -1,4 +1,4 @@
-//! Definitions that nothing uses, Lagrangians per unit time, and Lagrangians of first order.
+//! Unused definitions, Lagrangians per unit time, and Lagrangians of first order.
 
 use super::{BODY, model, topics, words};
 use crate::derive::warnings::Topic::*;
@@ -14,13 +14,13 @@ fn a_definition_that_nothing_uses_is_said() {
         text.contains("`f` is named by `let` and never used"),
         "{text}"
     );
-    // A force that is only named.
+    // A force that has a name only.
     let force = words(&format!("let force = -k*x; {spring}"));
     assert!(
         force.contains("forces without a potential are not supported yet"),
         "{force}"
     );
-    // By another one that nothing uses, and by one that is used.
+    // Used by another unused definition, and by a used one.
     assert_eq!(
         topics(&format!("let f = k*x; let g = f*x; {spring}")),
         [UnusedLet, UnusedLet]
@@ -28,7 +28,7 @@ fn a_definition_that_nothing_uses_is_said() {
     let used = "param m, k: Real; field x: Real; let f = k*x; let V = f*x/2; \
                 lagrangian = m*(next(x) - x)^2/(2*h) - h*V;";
     assert_eq!(topics(used), []);
-    // In a constraint, a definition of what is carried and an assumption.
+    // Used in a constraint, in the definition of an advected quantity, and in an assumption.
     let elsewhere = "param m, k, c: Real; field x: Vec<2>; advected t: Real; let r = dot(x, x); let n = h; let p = k^2; \
                      assume p > c; constraint next(t) = t + n; hold l: r = k^2; \
                      lagrangian = m*dot(next(x) - x, next(x) - x)/(2*h) - h*c*t*x[1];";
@@ -48,7 +48,7 @@ fn a_lagrangian_of_first_order_is_no_forgotten_factor() {
     };
     let linear = "(a*dot(perp(x), next(x) - x) + b*dot(perp(y), next(y) - y))/2";
     assert_eq!(topics(&vortices(linear)), []);
-    // The same by mean values.
+    // The same with mean values.
     let mean =
         "(a*dot(perp((x + next(x))/2), next(x) - x) + b*dot(perp((y + next(y))/2), next(y) - y))/2";
     assert_eq!(topics(&vortices(mean)), []);
@@ -56,7 +56,7 @@ fn a_lagrangian_of_first_order_is_no_forgotten_factor() {
     let canonical = "param k: Real; field q, p: Real; \
                      lagrangian = (p + next(p))/2*(next(q) - q) - h*(p^2 + k*q^2)/2;";
     assert_eq!(topics(canonical), []);
-    // A velocity that stands in no linear term, a total difference, and a kinetic term without its divisor.
+    // A velocity without a linear term of its own, a total difference, and a kinetic term without its divisor.
     for (kinetic, why) in [
         (
             "a*dot(perp(x), next(x) - x) + b*dot(y, next(y) - y)",
@@ -88,7 +88,7 @@ fn a_lagrangian_per_unit_time_is_told_to_be_multiplied_by_the_step() {
     );
     let step = format!("{pendulum} lagrangian = h*(m*l^2*v^2/2 + m*g*l*cos(q));");
     assert_eq!(topics(&step), []);
-    // One of both only.
+    // Only one of the two.
     let kinetic = format!("{pendulum} lagrangian = m*l^2*v^2/2 + h*m*g*l*cos(q);");
     assert!(
         !words(&kinetic).contains("per unit time"),
